@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The whole contract of the library on one page. A model of a concept lives in one header and includes this one.
+
+#include <clearance/math.hpp>
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace clearance {
+
+/// Something stored in the leaves of a tree.
+///
+/// Law: `p.distance(q)` is the distance in metres from point q to the primitive; negative inside, where it has an inside.
+/// Law: `p.nearest(q)` lies on the primitive, `p.distance(q)` away from q; `p.normal(q)` is the unit vector along which
+///      the distance grows fastest at q, the primitive's own where the distance is 0, or (0,0,0) if there is none.
+/// Law: the convex hull of `p.balls()` contains the primitive.
+template <class P>
+concept primitive = std::is_trivially_copyable_v<P> && requires(const P p, vec3 q) {
+  { p.distance(q) } -> std::same_as<real>;
+  { p.nearest(q) } -> std::same_as<vec3>;
+  { p.normal(q) } -> std::same_as<vec3>;
+  { std::span<const ball>(p.balls()) };
+};
+
+/// How the library reaches a volume: by its members. Specialise for a type that you cannot change.
+template <class V>
+struct bounding_volume_traits {
+  static V fit(std::span<const ball> balls)
+    requires requires { { V::fit(balls) } -> std::same_as<V>; }
+  {
+    return V::fit(balls);
+  }
+  CLEARANCE_HD static real lower_bound(const V& v, vec3 q)
+    requires requires { { v.lower_bound(q) } -> std::same_as<real>; }
+  {
+    return v.lower_bound(q);
+  }
+  /// Optional: a few balls whose convex hull contains the volume. Needed by the layered fit alone.
+  static auto balls(const V& v)
+    requires requires { std::span<const ball>(v.balls()); }
+  {
+    return v.balls();
+  }
+};
+
+/// A convex shape that encloses balls and can say how far away they must be.
+///
+/// Law: `lower_bound(fit(balls), q)` never exceeds the signed distance from q to any of the balls, nor a primitive's
+///      computed distance, after float rounding (see `lowered`); inside the volume it is negative.
+/// `fit` runs on the host while building; `lower_bound` runs wherever the query runs.
+template <class V>
+concept bounding_volume = std::is_trivially_copyable_v<V> && requires(const V v, vec3 q, std::span<const ball> balls) {
+  { bounding_volume_traits<V>::fit(balls) } -> std::same_as<V>;
+  { bounding_volume_traits<V>::lower_bound(v, q) } -> std::same_as<real>;
+};
+
+/// A tree of volumes over primitives, ours or anybody's. Traversals use nothing else.
+///
+/// Law: the volume of a node encloses every primitive below it; every primitive is below the root exactly once.
+/// Law: `id` is the primitive's position in the user's array; `depth()` counts the edges from the root to the deepest
+///      leaf and `width()` is the largest number of children, so depth * (width - 1) + 1 entries suffice for a stack.
+template <class H>
+concept hierarchy = std::is_trivially_copyable_v<H> && requires(const H h, const typename H::node_type n, std::uint32_t k) {
+  requires bounding_volume<typename H::volume_type>;
+  requires primitive<typename H::primitive_type>;
+  { h.root() } -> std::same_as<typename H::node_type>;
+  { h.is_leaf(n) } -> std::same_as<bool>;
+  { h.size(n) } -> std::same_as<std::uint32_t>;  // children of an inner node, primitives of a leaf
+  { h.child(n, k) } -> std::same_as<typename H::node_type>;
+  { h.volume(n) } -> std::convertible_to<const typename H::volume_type&>;
+  { h.primitive(n, k) } -> std::convertible_to<const typename H::primitive_type&>;
+  { h.id(n, k) } -> std::same_as<std::uint32_t>;
+  { h.depth() } -> std::same_as<std::uint32_t>;
+  { h.width() } -> std::same_as<std::uint32_t>;
+};
+
+/// Why a record or pixel gave no point.
+enum class drop_reason : std::uint8_t { none, not_finite, missing, saturated, out_of_range };
+inline constexpr int drop_reasons = 5;
+
+/// What a point source says about one index: a position in its own frame, or why there is none.
+struct sample {
+  vec3 position;
+  drop_reason dropped = drop_reason::none;
+
+  CLEARANCE_HD constexpr bool valid() const { return dropped == drop_reason::none; }
+};
+
+/// Where points come from: a view that is read in place, and never written to memory just to be read again.
+///
+/// Law: `s[i]` is pure; a valid sample has a finite position; positions are metres in the source's own frame.
+template <class S>
+concept point_source = std::is_trivially_copyable_v<S> && requires(const S s, std::size_t i) {
+  { s.size() } -> std::convertible_to<std::size_t>;
+  { s[i] } -> std::same_as<sample>;
+};
+
+/// What a traversal is looking for. One object per query point; it starts as a copy of the user's.
+///
+/// Law: `reach()` never grows, and an offer farther than `reach()` leaves `result()` unchanged.
+/// Law: the order of offers does not matter; of equally distant ones the lowest id wins.
+template <class Q>
+concept query = requires(Q q, const Q c, std::uint32_t id, real distance) {
+  typename Q::result_type;
+  { c.reach() } -> std::same_as<real>;
+  q.offer(id, distance);
+  { c.result() } -> std::same_as<typename Q::result_type>;
+};
+
+/// Walks a hierarchy for one point.
+///
+/// Law: shows the query each primitive that is no farther from the point than `reach()` at that moment (strict > prunes,
+///      so ties are shown; NaN prunes).
+template <class T, class H, class Q>
+concept traversal = std::is_trivially_copyable_v<T> && hierarchy<H> && query<Q> &&
+                    requires(const T walk, const H h, vec3 p, Q q) { walk(h, p, q); };
+
+/// Where work runs and where its memory lives: a value, and the first argument of every operation.
+///
+/// Law: work given to one backend value runs in the order given; `wait()` returns when all of it is done.
+template <class B>
+concept backend = requires(const B on, std::size_t n, void (*body)(std::size_t), typename B::template buffer<int> data,
+                           std::span<const int> input) {
+  on.for_each(n, body);
+  on.wait();
+  { on.copy_in(input) } -> std::same_as<typename B::template buffer<int>>;
+  { on.copy_out(data) } -> std::same_as<std::vector<int>>;
+};
+
+}  // namespace clearance

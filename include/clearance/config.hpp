@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The only header that asks which compiler is running. The version is read from here by CMake too.
+
+#define CLEARANCE_VERSION_MAJOR 0
+#define CLEARANCE_VERSION_MINOR 1
+#define CLEARANCE_VERSION_PATCH 0
+/// 10000 * major + 100 * minor + patch.
+#define CLEARANCE_VERSION (10000 * CLEARANCE_VERSION_MAJOR + 100 * CLEARANCE_VERSION_MINOR + CLEARANCE_VERSION_PATCH)
+
+#if defined(__CUDACC__)
+#define CLEARANCE_HD __host__ __device__
+#else
+#define CLEARANCE_HD
+#endif
+
+#if defined(__FAST_MATH__)
+#error "clearance: -ffast-math breaks NaN handling and the certified bracket; compile this file without it"
+#endif

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Points, balls, rigid transforms, and arithmetic that gives the same bits under every compiler.
+//
+// Rule of the whole library: where a product feeds a sum, it is written `fma`; a product never meets an operator + or -
+// that a compiler could contract. So host and device, with and without -mfma, agree bit for bit.
+
+#include <clearance/config.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace clearance {
+
+using real = float;
+
+/// Constants, because device code may not call the functions.
+inline constexpr real infinity = std::numeric_limits<real>::infinity();
+inline constexpr real not_a_number = std::numeric_limits<real>::quiet_NaN();
+
+/// Relative slack by which every lower bound is lowered and every fit inflated: 32 units of rounding (2^-24), more than
+/// all errors of a bound and of a leaf formula together.
+inline constexpr real slack = 0x1p-19f;
+
+struct vec3 {
+  real x, y, z;
+
+  friend constexpr bool operator==(const vec3&, const vec3&) = default;
+};
+
+/// Rounded once, never contracted with what follows.
+CLEARANCE_HD inline real fma(real a, real b, real c) {
+#if defined(__CUDA_ARCH__)
+  return __fmaf_rn(a, b, c);
+#else
+  return std::fma(a, b, c);
+#endif
+}
+
+CLEARANCE_HD inline real square_root(real a) {
+#if defined(__CUDA_ARCH__)
+  return __fsqrt_rn(a);
+#else
+  return std::sqrt(a);
+#endif
+}
+
+CLEARANCE_HD inline real divide(real a, real b) {
+#if defined(__CUDA_ARCH__)
+  return __fdiv_rn(a, b);
+#else
+  return a / b;
+#endif
+}
+
+CLEARANCE_HD constexpr vec3 operator+(vec3 a, vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+CLEARANCE_HD constexpr vec3 operator-(vec3 a, vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+CLEARANCE_HD constexpr vec3 operator-(vec3 a) { return {-a.x, -a.y, -a.z}; }
+/// s * a + b.
+CLEARANCE_HD inline vec3 fma(real s, vec3 a, vec3 b) { return {fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)}; }
+CLEARANCE_HD inline vec3 scaled(real s, vec3 a) { return fma(s, a, vec3{0, 0, 0}); }
+CLEARANCE_HD inline real dot(vec3 a, vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+CLEARANCE_HD inline real length(vec3 a) { return square_root(dot(a, a)); }
+CLEARANCE_HD inline vec3 cross(vec3 a, vec3 b) {
+  return {fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x))};
+}
+
+CLEARANCE_HD constexpr real min(real a, real b) { return b < a ? b : a; }
+CLEARANCE_HD constexpr real max(real a, real b) { return a < b ? b : a; }
+CLEARANCE_HD constexpr real clamp01(real t) { return t < 0 ? 0 : (t > 1 ? 1 : t); }
+CLEARANCE_HD constexpr real absolute(real a) { return a < 0 ? -a : a; }
+
+/// False for NaN and for both infinities.
+CLEARANCE_HD constexpr bool is_finite(real a) { return absolute(a) <= std::numeric_limits<real>::max(); }
+CLEARANCE_HD constexpr bool is_finite(vec3 a) { return is_finite(a.x) && is_finite(a.y) && is_finite(a.z); }
+
+/// A computed `distance` to a volume of extent `size`, lowered so that rounding cannot push it above a true one.
+CLEARANCE_HD constexpr real lowered(real distance, real size) { return distance - slack * (absolute(distance) + size); }
+
+/// A solid ball. Everything a volume must enclose is handed to it as balls (a point is a ball of radius 0).
+struct ball {
+  vec3 center;
+  real radius;
+};
+
+/// x -> R x + t, in floats and in a fixed order of operations. Made from a double pose on the host (see pose.hpp).
+struct rigid_transform {
+  vec3 row[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  vec3 translation = {0, 0, 0};
+
+  CLEARANCE_HD vec3 operator()(vec3 p) const {
+    return {fma(row[0].x, p.x, fma(row[0].y, p.y, fma(row[0].z, p.z, translation.x))),
+            fma(row[1].x, p.x, fma(row[1].y, p.y, fma(row[1].z, p.z, translation.y))),
+            fma(row[2].x, p.x, fma(row[2].y, p.y, fma(row[2].z, p.z, translation.z)))};
+  }
+};
+
+}  // namespace clearance
