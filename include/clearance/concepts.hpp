@@ -59,6 +59,17 @@ concept bounding_volume = std::is_trivially_copyable_v<V> && requires(const V v,
   { bounding_volume_traits<V>::lower_bound(v, q) } -> std::same_as<real>;
 };
 
+/// `bounding_volume<V>` with reasons: nvcc does not say which requirement of a concept failed.
+template <class V>
+consteval bool explain_bounding_volume() {
+  static_assert(std::is_trivially_copyable_v<V>, "a bounding volume must be trivially copyable");
+  static_assert(requires(std::span<const ball> balls) { { bounding_volume_traits<V>::fit(balls) } -> std::same_as<V>; },
+                "a bounding volume V needs: static V fit(std::span<const ball>), as a member or in bounding_volume_traits<V>");
+  static_assert(requires(const V v, vec3 q) { { bounding_volume_traits<V>::lower_bound(v, q) } -> std::same_as<real>; },
+                "a bounding volume needs: CLEARANCE_HD real lower_bound(vec3) const, as a member or in bounding_volume_traits<V>");
+  return bounding_volume<V>;
+}
+
 /// A tree of volumes over primitives, ours or anybody's. Traversals use nothing else.
 ///
 /// Law: the volume of a node encloses every primitive below it; every primitive is below the root exactly once.
@@ -78,6 +89,12 @@ concept hierarchy = std::is_trivially_copyable_v<H> && requires(const H h, const
   { h.depth() } -> std::same_as<std::uint32_t>;
   { h.width() } -> std::same_as<std::uint32_t>;
 };
+
+/// Entries that a depth-first walk of `tree` can have pending.
+template <hierarchy H>
+CLEARANCE_HD std::uint32_t stack_need(const H& tree) {
+  return tree.width() == 0 ? 1 : tree.depth() * (tree.width() - 1) + 1;
+}
 
 /// Why a record or pixel gave no point.
 enum class drop_reason : std::uint8_t { none, not_finite, missing, saturated, out_of_range };

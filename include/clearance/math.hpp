@@ -71,8 +71,8 @@ CLEARANCE_HD constexpr real max(real a, real b) { return a < b ? b : a; }
 CLEARANCE_HD constexpr real clamp01(real t) { return t < 0 ? 0 : (t > 1 ? 1 : t); }
 CLEARANCE_HD constexpr real absolute(real a) { return a < 0 ? -a : a; }
 
-/// False for NaN and for both infinities.
-CLEARANCE_HD constexpr bool is_finite(real a) { return absolute(a) <= std::numeric_limits<real>::max(); }
+/// False for NaN, infinities and coordinates whose square would overflow (beyond 1e18 m).
+CLEARANCE_HD constexpr bool is_finite(real a) { return absolute(a) <= 1e18f; }
 CLEARANCE_HD constexpr bool is_finite(vec3 a) { return is_finite(a.x) && is_finite(a.y) && is_finite(a.z); }
 
 /// A computed `distance` to a volume of extent `size`, lowered so that rounding cannot push it above a true one.

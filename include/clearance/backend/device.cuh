@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/backend/device_buffer.cuh>
+#include <clearance/concepts.hpp>
+#include <clearance/indices.hpp>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace clearance {
+
+namespace detail {
+
+template <class F>
+__global__ void __launch_bounds__(128) ranges_kernel(std::size_t n, F body) {
+  const std::size_t first = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x;
+  if (first < n) body(indices{first, n, std::size_t(gridDim.x) * blockDim.x});
+}
+
+template <class F>
+struct each_body {
+  F body;
+  CLEARANCE_HD void operator()(indices range) const {
+    for (std::size_t i = range.begin; i < range.end; i += range.step) body(i);
+  }
+};
+
+/// Bytes that travel as kernel arguments, so that nobody waits for a copy from pageable memory.
+struct argument_bytes {
+  static constexpr std::size_t capacity = 3968;
+  alignas(16) std::byte bytes[capacity];
+};
+
+template <class T>
+__global__ void stage_kernel(std::byte* to, unsigned count, const __grid_constant__ T from) {
+  for (unsigned i = threadIdx.x; i < count; i += blockDim.x) to[i] = from.bytes[i];
+}
+
+}  // namespace detail
+
+/// Runs on CUDA device `id`, in the order of `stream` (which belongs to that device; null: its default stream).
+/// The caller's current device is left as it was.
+struct device {
+  template <class T>
+  using buffer = device_buffer<T>;
+  template <class T>
+  using scratch = stream_buffer<T>;
+
+  int id = 0;
+  cudaStream_t stream = nullptr;
+
+  /// Enqueues `body(indices)` over a grid stride; returns at once. A body that recurses says its need in device_stack().
+  template <class F>
+  void for_ranges(std::size_t n, F body) const {
+    if (n == 0) return;
+    const device_guard guard(id);
+    if constexpr (requires { body.device_stack(); }) need_stack(body.device_stack());
+    constexpr unsigned threads = 128;
+    int processors = 0;
+    check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, id), "cudaDeviceGetAttribute");
+    const auto blocks = std::min<std::size_t>((n + threads - 1) / threads, std::size_t(processors) * 32);
+    detail::ranges_kernel<<<unsigned(blocks), threads, 0, stream>>>(n, body);
+    check_cuda(cudaGetLastError(), "kernel launch");
+  }
+
+  template <class F>
+  void for_each(std::size_t n, F body) const {
+    for_ranges(n, detail::each_body<F>{body});
+  }
+
+  void wait() const {
+    const device_guard guard(id);
+    check_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
+  }
+
+  template <class T>
+  buffer<T> copy_in(std::span<const T> data) const {
+    const device_guard guard(id);
+    buffer<T> copy(data.size(), id);
+    if (!data.empty())
+      check_cuda(cudaMemcpyAsync(copy.data(), data.data(), data.size_bytes(), cudaMemcpyHostToDevice, stream), "cudaMemcpyAsync");
+    check_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
+    return copy;
+  }
+
+  template <class T>
+  std::vector<T> copy_out(const buffer<T>& data) const {
+    return copy_out(data.data(), data.size());
+  }
+  template <class T>
+  std::vector<T> copy_out(const T* data, std::size_t n) const {
+    const device_guard guard(id);
+    std::vector<T> copy(n);
+    if (n != 0) check_cuda(cudaMemcpyAsync(copy.data(), data, n * sizeof(T), cudaMemcpyDeviceToHost, stream), "cudaMemcpyAsync");
+    check_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
+    return copy;
+  }
+
+  /// Room for one call, in stream order.
+  template <class T>
+  scratch<T> make_scratch(std::size_t n) const {
+    const device_guard guard(id);
+    return {n, stream};
+  }
+
+  /// Enqueues a copy of `data`; it may change as soon as this returns, and nothing is waited for.
+  template <class T>
+  void stage(std::span<const T> data, T* to) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const device_guard guard(id);
+    const auto bytes = std::as_bytes(data);
+    for (std::size_t at = 0; at < bytes.size(); at += detail::argument_bytes::capacity) {
+      detail::argument_bytes chunk;
+      const std::size_t n = std::min(bytes.size() - at, detail::argument_bytes::capacity);
+      std::copy_n(bytes.data() + at, n, chunk.bytes);
+      detail::stage_kernel<<<1, 256, 0, stream>>>(reinterpret_cast<std::byte*>(to) + at, unsigned(n), chunk);
+      check_cuda(cudaGetLastError(), "kernel launch");
+    }
+  }
+
+  /// Can kernels read this address as it is (device, pinned or managed memory)?
+  bool reads(const void* memory) const {
+    const device_guard guard(id);
+    cudaPointerAttributes attributes{};
+    check_cuda(cudaPointerGetAttributes(&attributes, memory), "cudaPointerGetAttributes");
+    if (attributes.type == cudaMemoryTypeUnregistered) return false;
+    return attributes.devicePointer != nullptr;
+  }
+
+ private:
+  void need_stack(std::size_t bytes) const {
+    std::size_t limit = 0;
+    check_cuda(cudaDeviceGetLimit(&limit, cudaLimitStackSize), "cudaDeviceGetLimit");
+    if (limit < bytes)
+      throw std::invalid_argument("clearance: this recursion may need " + std::to_string(bytes) + " bytes of call stack a thread, but the device's limit is " +
+                                  std::to_string(limit) + "; raise cudaLimitStackSize or use another traversal");
+  }
+};
+
+static_assert(backend<device>);
+
+}  // namespace clearance

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/backend/cuda_error.cuh>
+
+#include <cstddef>
+#include <utility>
+
+namespace clearance {
+
+/// Owns an array in the memory of one device. Giving it back waits until no stream can still be reading it.
+template <class T>
+class device_buffer {
+ public:
+  using value_type = T;
+
+  device_buffer() = default;
+  device_buffer(std::size_t n, int device) : size_(n), device_(device) {
+    const device_guard guard(device);
+    if (n != 0) check_cuda(cudaMalloc(reinterpret_cast<void**>(&data_), n * sizeof(T)), "cudaMalloc");
+  }
+  device_buffer(device_buffer&& other) noexcept { *this = std::move(other); }
+  device_buffer& operator=(device_buffer&& other) noexcept {
+    std::swap(data_, other.data_), std::swap(size_, other.size_), std::swap(device_, other.device_);
+    return *this;
+  }
+  ~device_buffer() { release(device_, [this] { return cudaFree(data_); }); }
+
+  T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+
+ private:
+  template <class F>
+  static void release(int device, F free) {
+    int before = 0;
+    cudaGetDevice(&before);
+    if (before != device) cudaSetDevice(device);
+    free();
+    if (before != device) cudaSetDevice(before);
+  }
+
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+  int device_ = 0;
+};
+
+/// Device memory for one call: taken and given back in the order of the stream, so that the host never waits for it.
+template <class T>
+class stream_buffer {
+ public:
+  using value_type = T;
+
+  stream_buffer(std::size_t n, cudaStream_t stream) : size_(n), stream_(stream) {
+    if (n != 0) check_cuda(cudaMallocAsync(reinterpret_cast<void**>(&data_), n * sizeof(T), stream), "cudaMallocAsync");
+  }
+  stream_buffer(stream_buffer&& other) noexcept
+      : data_(std::exchange(other.data_, nullptr)), size_(other.size_), stream_(other.stream_) {}
+  stream_buffer& operator=(stream_buffer&&) = delete;
+  ~stream_buffer() {
+    if (data_ != nullptr) cudaFreeAsync(data_, stream_);
+  }
+
+  T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+  cudaStream_t stream_ = nullptr;
+};
+
+}  // namespace clearance

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/concepts.hpp>
+#include <clearance/indices.hpp>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+namespace clearance {
+
+/// Runs on the CPU, on `threads` threads of TBB (0: as many as TBB likes). Memory is the process's own.
+struct host {
+  template <class T>
+  using buffer = std::vector<T>;
+  template <class T>
+  using scratch = std::vector<T>;
+
+  unsigned threads = 0;
+
+  /// Calls `body(indices)` for ranges that together cover 0 .. n-1 once; small enough to balance uneven work.
+  template <class F>
+  void for_ranges(std::size_t n, F body) const {
+    constexpr std::size_t grain = 1024;
+    if (n <= grain || threads == 1) return body(indices{0, n, 1});
+    const auto all = [&] {
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
+                        [&](const auto& r) { body(indices{r.begin(), r.end(), 1}); }, tbb::simple_partitioner{});
+    };
+    if (threads == 0) return all();
+    tbb::task_arena arena(int(threads), 1);
+    arena.execute(all);
+  }
+
+  template <class F>
+  void for_each(std::size_t n, F body) const {
+    for_ranges(n, [&](indices range) {
+      for (std::size_t i = range.begin; i < range.end; i += range.step) body(i);
+    });
+  }
+
+  void wait() const {}
+
+  template <class T>
+  buffer<T> copy_in(std::span<const T> data) const {
+    return {data.begin(), data.end()};
+  }
+  template <class T>
+  std::vector<T> copy_out(const buffer<T>& data) const {
+    return data;
+  }
+
+  /// Room for one call.
+  template <class T>
+  scratch<T> make_scratch(std::size_t n) const {
+    return scratch<T>(n);
+  }
+  template <class T>
+  void stage(std::span<const T> data, T* to) const {
+    std::copy(data.begin(), data.end(), to);
+  }
+  bool reads(const void*) const { return true; }
+};
+
+static_assert(backend<host>);
+
+}  // namespace clearance

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/bvh.hpp>
+#include <clearance/bvh/fit.hpp>
+#include <clearance/bvh/split.hpp>
+
+#include <ranges>
+#include <stdexcept>
+#include <string>
+
+namespace clearance {
+
+struct build_options {
+  std::uint32_t width = 8;      ///< Children a node: 2, 4 or 8.
+  std::uint32_t leaf_size = 4;  ///< Most primitives in a leaf.
+};
+
+namespace detail {
+
+/// Cuts `items` into at most `width` groups, always the largest that is not yet a leaf; each gets its own range.
+template <class Split>
+std::vector<std::pair<std::uint32_t, std::uint32_t>> cut(std::span<split_item> items, std::uint32_t begin, std::uint32_t end,
+                                                         const build_options& options, const Split& split) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> groups = {{begin, end}};
+  while (groups.size() < options.width) {
+    const auto largest = std::ranges::max_element(groups, {}, [](auto g) { return g.second - g.first; });
+    const auto [b, e] = *largest;
+    if (e - b <= options.leaf_size) break;
+    const auto middle = b + std::uint32_t(split(items.subspan(b, e - b)));
+    *largest = {b, middle};
+    groups.insert(largest + 1, {middle, e});
+  }
+  return groups;
+}
+
+struct topology {
+  std::vector<bvh_node> nodes;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> range;  ///< Of the items below each node.
+  std::uint32_t depth = 0;
+};
+
+/// Children of a node follow one another, and come after it.
+template <class Split>
+topology arrange(std::span<split_item> items, const build_options& options, const Split& split) {
+  topology t;
+  std::vector<std::uint32_t> level = {0};
+  t.nodes.resize(1);
+  t.range.emplace_back(0, std::uint32_t(items.size()));
+  for (std::uint32_t n = 0; n < t.nodes.size(); ++n) {
+    const auto [begin, end] = t.range[n];
+    if (end - begin <= options.leaf_size) {
+      t.nodes[n] = {begin, (end - begin) | bvh_node::leaf_bit};
+      continue;
+    }
+    const auto groups = cut(items, begin, end, options, split);
+    t.nodes[n] = {std::uint32_t(t.nodes.size()), std::uint32_t(groups.size())};
+    for (const auto& g : groups) {
+      t.nodes.push_back({});
+      t.range.push_back(g);
+      level.push_back(level[n] + 1);
+      t.depth = std::max(t.depth, level[n] + 1);
+    }
+  }
+  return t;
+}
+
+}  // namespace detail
+
+/// Builds a tree of volumes V over a contiguous range of primitives, on the host, top down; deterministic.
+/// The depth is such that a stack of 64 entries suffices (`stack_need`). Throws if there is no primitive, or a bad one.
+template <class V, std::ranges::contiguous_range R, class Fit = wrapped, class Split = surface_area_split,
+          primitive P = std::ranges::range_value_t<R>>
+bvh<V, P> build(const R& input, build_options options = {}, Fit fit = {}, Split split = {}) {
+  static_assert(explain_bounding_volume<V>());
+  const std::span<const P> primitives(input);
+  if (primitives.empty()) throw std::invalid_argument("clearance::build: there are no primitives");
+  if (options.width != 2 && options.width != 4 && options.width != 8)
+    throw std::invalid_argument("clearance::build: width is " + std::to_string(options.width) + ", but must be 2, 4 or 8");
+  if (options.leaf_size == 0) throw std::invalid_argument("clearance::build: leaf_size is 0, but must be at least 1");
+
+  std::vector<split_item> items(primitives.size());
+  for (std::uint32_t id = 0; id < items.size(); ++id) {
+    Eigen::Vector3f lower = Eigen::Vector3f::Constant(infinity), upper = -lower;
+    for (const ball& b : primitives[id].balls()) {
+      if (!is_finite(b.center) || !(b.radius >= 0) || !is_finite(b.radius))
+        throw std::invalid_argument("clearance::build: primitive " + std::to_string(id) + " is not finite or has a negative radius");
+      const Eigen::Vector3f c(b.center.x, b.center.y, b.center.z);
+      lower = lower.cwiseMin((c.array() - b.radius).matrix());
+      upper = upper.cwiseMax((c.array() + b.radius).matrix());
+    }
+    items[id] = {id, lower, upper};
+  }
+  const auto too_deep = [&](const detail::topology& t) { return t.depth * (options.width - 1) + 1 > 64; };
+  auto shape = detail::arrange(items, options, split);
+  if (too_deep(shape)) shape = detail::arrange(items, options, median_split{});
+
+  bvh<V, P> tree;
+  std::vector<ball> balls;
+  std::vector<std::uint32_t> first_ball = {0};
+  for (const auto& item : items) {
+    tree.ids.push_back(item.id);
+    tree.primitives.push_back(primitives[item.id]);
+    for (const ball& b : primitives[item.id].balls()) balls.push_back(b);
+    first_ball.push_back(std::uint32_t(balls.size()));
+  }
+  tree.nodes = std::move(shape.nodes);
+  tree.depth = shape.depth;
+  tree.volumes.resize(tree.nodes.size());
+  for (std::size_t n = tree.nodes.size(); n-- > 0;) {  // children before their parents
+    const auto [begin, end] = shape.range[n];
+    const auto& node = tree.nodes[n];
+    tree.width = std::max(tree.width, node.is_leaf() ? 1u : node.count());
+    const auto children = node.is_leaf() ? std::span<const V>{} : std::span<const V>(tree.volumes).subspan(node.first, node.count());
+    tree.volumes[n] = fit(std::span<const ball>(balls).subspan(first_ball[begin], first_ball[end] - first_ball[begin]), children);
+  }
+  return tree;
+}
+
+}  // namespace clearance

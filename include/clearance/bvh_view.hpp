@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/concepts.hpp>
+
+namespace clearance {
+
+/// Where a node's children or primitives are; they are contiguous.
+struct bvh_node {
+  std::uint32_t first;
+  std::uint32_t count_and_kind;
+
+  static constexpr std::uint32_t leaf_bit = 0x80000000u;
+  CLEARANCE_HD constexpr bool is_leaf() const { return (count_and_kind & leaf_bit) != 0; }
+  CLEARANCE_HD constexpr std::uint32_t count() const { return count_and_kind & ~leaf_bit; }
+};
+
+/// Non-owning, trivially copyable handle to our own wide tree: what a kernel receives by value.
+template <bounding_volume V, primitive P>
+struct bvh_view {
+  using node_type = std::uint32_t;
+  using volume_type = V;
+  using primitive_type = P;
+
+  const V* volumes;
+  const bvh_node* nodes;
+  const P* primitives;
+  const std::uint32_t* ids;  ///< Position of each primitive in the user's array.
+  std::uint32_t levels, widest;
+
+  CLEARANCE_HD node_type root() const { return 0; }
+  CLEARANCE_HD bool is_leaf(node_type n) const { return nodes[n].is_leaf(); }
+  CLEARANCE_HD std::uint32_t size(node_type n) const { return nodes[n].count(); }
+  CLEARANCE_HD node_type child(node_type n, std::uint32_t k) const { return nodes[n].first + k; }
+  CLEARANCE_HD const V& volume(node_type n) const { return volumes[n]; }
+  CLEARANCE_HD const P& primitive(node_type n, std::uint32_t k) const { return primitives[nodes[n].first + k]; }
+  CLEARANCE_HD std::uint32_t id(node_type n, std::uint32_t k) const { return ids[nodes[n].first + k]; }
+  CLEARANCE_HD std::uint32_t depth() const { return levels; }
+  CLEARANCE_HD std::uint32_t width() const { return widest; }
+};
+
+}  // namespace clearance

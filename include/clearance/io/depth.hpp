@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace clearance::io {
+
+/// Raw 16-bit depths row by row, as the sensor's file has them; unit and invalid values are the reader's business.
+struct depth_frame {
+  std::string name;
+  std::vector<std::uint16_t> pixels;
+  std::size_t width = 0, height = 0;
+};
+
+}  // namespace clearance::io

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/io/pcd_header.hpp>
+
+#include <liblzf/lzf.h>
+
+#include <bit>
+#include <cstring>
+
+namespace clearance::io {
+
+static_assert(std::endian::native == std::endian::little, "PCD files are little-endian; so must the reader be");
+
+/// One element of a record, whatever its type, as a double.
+inline double pcd_value(const char* bytes, const pcd_field& field) {
+  const auto as = [&]<class T>(T value) {
+    std::memcpy(&value, bytes, sizeof value);
+    return double(value);
+  };
+  switch (field.size | (field.type == 'F' ? 16u : field.type == 'I' ? 32u : 64u)) {
+    case 16 | 4: return as(float{});
+    case 16 | 8: return as(double{});
+    case 32 | 1: return as(std::int8_t{});
+    case 32 | 2: return as(std::int16_t{});
+    case 32 | 4: return as(std::int32_t{});
+    case 32 | 8: return as(std::int64_t{});
+    case 64 | 1: return as(std::uint8_t{});
+    case 64 | 2: return as(std::uint16_t{});
+    case 64 | 4: return as(std::uint32_t{});
+    default: return as(std::uint64_t{});
+  }
+}
+
+/// x, y, z of `points` records; value k of record i lies at offset[k] + i * step[k]. The caller has checked the size.
+inline std::vector<Eigen::Vector3d> pcd_records(const char* data, const pcd_header& header, bool by_field) {
+  std::vector<Eigen::Vector3d> points(header.points);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& field = header.fields[header.xyz[std::size_t(axis)]];
+    const char* at = data + field.offset * (by_field ? header.points : 1);
+    for (auto& p : points) {
+      p[axis] = pcd_value(at, field);
+      at += by_field ? field.size : header.record_bytes;
+    }
+  }
+  return points;
+}
+
+inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_header& header, const std::string& file) {
+  if (header.points > rest.size() / 2 + 1)  // a record needs a digit and an end of line at least
+    refuse(file, "POINTS says " + std::to_string(header.points) + ", more than a file of this size can hold");
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(header.points);
+  for (std::size_t at = header.lines + 1; !rest.empty(); ++at) {
+    std::string_view line = take_line(rest);
+    if (const auto end = line.find('\0'); end != line.npos) line = line.substr(0, end);  // padding
+    const auto values = words(line);
+    if (values.empty()) continue;
+    if (points.size() == header.points)
+      refuse(file, "POINTS says " + std::to_string(header.points) + ", but here is another record", at);
+    if (values.size() != header.record_words)
+      refuse(file, "a record needs " + std::to_string(header.record_words) + " values, here are " +
+                       std::to_string(values.size()), at);
+    Eigen::Vector3d p;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto word = values[header.fields[header.xyz[std::size_t(axis)]].column];
+      const auto value = number<double>(word);
+      if (!value) refuse(file, "\"" + std::string(word.substr(0, 40)) + "\" is not a number", at);
+      p[axis] = *value;
+    }
+    points.push_back(p);
+  }
+  if (points.size() != header.points)
+    refuse(file, "POINTS says " + std::to_string(header.points) + ", but the file ends after " +
+                     std::to_string(points.size()) + " records");
+  return points;
+}
+
+inline std::vector<Eigen::Vector3d> pcd_compressed(std::string_view rest, const pcd_header& header,
+                                                   const std::string& file) {
+  if (header.points == 0) return {};
+  std::uint32_t packed = 0, unpacked = 0;
+  if (rest.size() < 8) refuse(file, "the file ends before the sizes of the compressed block");
+  std::memcpy(&packed, rest.data(), 4);
+  std::memcpy(&unpacked, rest.data() + 4, 4);
+  rest.remove_prefix(8);
+  if (packed > rest.size())
+    refuse(file, "the compressed block of " + std::to_string(packed) + " bytes is cut short after " +
+                     std::to_string(rest.size()));
+  if (unpacked / header.record_bytes != header.points || unpacked % header.record_bytes != 0)
+    refuse(file, "the compressed block holds " + std::to_string(unpacked) + " bytes, not POINTS " +
+                     std::to_string(header.points) + " records of " + std::to_string(header.record_bytes));
+  if (unpacked / 88 > packed)  // three bytes of LZF stand for at most 264
+    refuse(file, "the compressed block says that " + std::to_string(packed) + " bytes unpack to " +
+                     std::to_string(unpacked) + ", which is impossible");
+  std::vector<char> data(unpacked);
+  if (lzf_decompress(rest.data(), packed, data.data(), unpacked) != unpacked)
+    refuse(file, "the compressed block is damaged");
+  return pcd_records(data.data(), header, true);  // stored field by field
+}
+
+/// Reads a PCD file: ascii, binary or binary_compressed, fields in any order and of any type; other fields are skipped,
+/// bytes after the data ignored. Throws std::runtime_error naming file and line.
+inline cloud load_pcd(const std::string& file) {
+  const std::string bytes = read_bytes(file);
+  std::string_view rest = bytes;
+  const pcd_header header = take_pcd_header(rest, file);
+  std::vector<Eigen::Vector3d> points;
+  switch (header.data) {
+    case pcd_header::encoding::ascii: points = pcd_ascii(rest, header, file); break;
+    case pcd_header::encoding::binary:
+      if (header.points > rest.size() / header.record_bytes)
+        refuse(file, "POINTS says " + std::to_string(header.points) + " records of " +
+                         std::to_string(header.record_bytes) + " bytes, but the file ends " +
+                         std::to_string(rest.size()) + " bytes after the header");
+      points = pcd_records(rest.data(), header, false);
+      break;
+    case pcd_header::encoding::binary_compressed: points = pcd_compressed(rest, header, file); break;
+  }
+  cloud made = make_cloud(file, points, header.width, header.height);
+  made.viewpoint = header.viewpoint;
+  return made;
+}
+
+}  // namespace clearance::io

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// stb_image is a C header that carries its own implementation. Its functions are made static and are put into a
+// namespace of ours, so that a program may use its own copy, with its own settings, before or after this header.
+
+#include <clearance/io/depth.hpp>
+#include <clearance/io/png_check.hpp>
+
+// What stb_image.h includes must have been included before it is put into a namespace.
+#include <assert.h>
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <memory>
+#include <stdexcept>
+
+#pragma push_macro("STBI_INCLUDE_STB_IMAGE_H")
+#pragma push_macro("STBI_ASSERT")
+#pragma push_macro("STBIDEF")
+#pragma push_macro("STB_IMAGE_IMPLEMENTATION")
+#undef STBI_INCLUDE_STB_IMAGE_H
+#undef STBI_ASSERT
+#undef STBIDEF
+#undef STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#define STBI_NO_SIMD
+// A crafted file must not end the program.
+#define STBI_ASSERT(holds) ((holds) ? void() : throw std::logic_error("stb_image: " #holds))
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+#pragma GCC diagnostic ignored "-Wsign-compare"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wold-style-cast"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wduplicated-branches"
+#pragma GCC diagnostic ignored "-Wuseless-cast"
+#endif
+namespace clearance::io::stb {
+#if __has_include(<stb/stb_image.h>)
+#include <stb/stb_image.h>
+#else
+#include <stb_image.h>
+#endif
+}  // namespace clearance::io::stb
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+#undef STB_IMAGE_STATIC
+#undef STBI_ONLY_PNG
+#undef STBI_NO_STDIO
+#undef STBI_NO_SIMD
+#undef STBI_NO_JPEG
+#undef STBI_NO_BMP
+#undef STBI_NO_PSD
+#undef STBI_NO_TGA
+#undef STBI_NO_GIF
+#undef STBI_NO_HDR
+#undef STBI_NO_PIC
+#undef STBI_NO_PNM
+#undef STBI_NO_LINEAR
+#undef STBI_NO_ZLIB
+#undef STBI_INCLUDE_STB_IMAGE_H
+#pragma pop_macro("STBI_INCLUDE_STB_IMAGE_H")
+#undef STBI_ASSERT
+#pragma pop_macro("STBI_ASSERT")
+#undef STBIDEF
+#pragma pop_macro("STBIDEF")
+#undef STB_IMAGE_IMPLEMENTATION
+#pragma pop_macro("STB_IMAGE_IMPLEMENTATION")
+
+namespace clearance::io {
+
+/// Reads a depth frame from a 16-bit grey PNG; any other PNG, and a damaged or truncated one, is refused with a
+/// std::runtime_error. Static, because it calls static functions: one definition in each translation unit.
+[[maybe_unused]] static depth_frame load_png(const std::string& file) {
+  const std::string bytes = read_bytes(file);
+  check_depth_png(bytes, file);
+  if (bytes.size() > INT_MAX) refuse(file, "is larger than 2 GiB");
+  int width = 0, height = 0, channels = 0;
+  const std::unique_ptr<stb::stbi_us, decltype(&std::free)> pixels(
+      stb::stbi_load_16_from_memory(reinterpret_cast<const stb::stbi_uc*>(bytes.data()), int(bytes.size()), &width,
+                                    &height, &channels, 1),
+      &std::free);
+  if (!pixels) refuse(file, "the PNG image is damaged (" + std::string(stb::stbi_failure_reason()) + ")");
+  const std::size_t size = std::size_t(width) * std::size_t(height);
+  return {file, {pixels.get(), pixels.get() + size}, std::size_t(width), std::size_t(height)};
+}
+
+}  // namespace clearance::io

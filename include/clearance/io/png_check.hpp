@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What must hold of a PNG file before its pixels are decoded. stb_image checks no checksums, so a damaged file would
+// give wrong depths without a word; and it trusts the size in the header.
+
+#include <clearance/io/error.hpp>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace clearance::io {
+
+inline constexpr auto png_crc_table = [] {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t i = 0; i < 256; ++i) {
+    std::uint32_t c = i;
+    for (int bit = 0; bit < 8; ++bit) c = (c & 1u) ? 0xEDB88320u ^ (c >> 1) : c >> 1;
+    table[i] = c;
+  }
+  return table;
+}();
+
+/// The checksum of a PNG chunk's name and data.
+constexpr std::uint32_t png_crc(std::string_view bytes) {
+  std::uint32_t c = 0xFFFFFFFFu;
+  for (const char byte : bytes) c = png_crc_table[(c ^ std::uint8_t(byte)) & 255u] ^ (c >> 8);
+  return c ^ 0xFFFFFFFFu;
+}
+
+constexpr std::uint32_t png_number(std::string_view bytes) {
+  std::uint32_t value = 0;
+  for (const char byte : bytes.substr(0, 4)) value = value << 8 | std::uint8_t(byte);
+  return value;
+}
+
+/// Refuses anything but a complete, undamaged PNG of 16-bit grey pixels whose size its data can fill.
+inline void check_depth_png(std::string_view bytes, const std::string& file) {
+  using namespace std::string_view_literals;
+  constexpr std::string_view signature = "\x89PNG\r\n\x1a\n"sv;
+  if (!bytes.starts_with(signature)) refuse(file, "is not a PNG image");
+  bytes.remove_prefix(signature.size());
+  std::uint64_t width = 0, height = 0, packed = 0;
+  for (bool first = true;; first = false) {
+    if (bytes.size() < 12) refuse(file, "the PNG image is cut short");
+    const std::uint64_t size = png_number(bytes);
+    const std::string_view name = bytes.substr(4, 4);
+    if (size > bytes.size() - 12) refuse(file, "the PNG image is cut short");
+    if (png_crc(bytes.substr(4, 4 + size)) != png_number(bytes.substr(8 + size)))
+      refuse(file, "the PNG image is damaged (a checksum does not match)");
+    const std::string_view data = bytes.substr(8, size);
+    if (first != (name == "IHDR") || (first && size != 13)) refuse(file, "the PNG image has no proper header");
+    if (first) {
+      width = png_number(data);
+      height = png_number(data.substr(4));
+      const int depth = std::uint8_t(data[8]), colour = std::uint8_t(data[9]);
+      if (depth != 16 || colour != 0) {
+        constexpr std::array<const char*, 7> kinds = {"grey", "?", "colour", "palette", "grey with alpha", "?",
+                                                      "colour with alpha"};
+        refuse(file, "a depth image must be a 16-bit grey PNG, this one is " + std::to_string(depth) + "-bit " +
+                         (colour < 7 ? kinds[std::size_t(colour)] : "?"));
+      }
+      if (width == 0 || height == 0) refuse(file, "the PNG image has no pixels");
+    }
+    if (name == "IDAT") packed += size;
+    bytes.remove_prefix(12 + size);
+    if (name == "IEND") break;
+  }
+  // Deflate packs at most 1032 bytes into one.
+  if (width > (1u << 24) || height > (1u << 24) || (2 * width + 1) * height > 1032 * packed)
+    refuse(file, "the PNG image says " + std::to_string(width) + "x" + std::to_string(height) +
+                     " pixels, more than its data can hold");
+}
+
+}  // namespace clearance::io

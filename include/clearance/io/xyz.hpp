@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/io/cloud.hpp>
+#include <clearance/io/cloud_text.hpp>
+#include <clearance/io/error.hpp>
+
+namespace clearance::io {
+
+/// Reads a text file with a point on each line: x y z in metres, then anything. Blanks, tabs, commas and semicolons
+/// separate; # starts a comment; "nan" keeps a record's place. Throws std::runtime_error naming file and line.
+inline cloud load_xyz(const std::string& file) {
+  constexpr std::string_view separators = " \t\r\v\f,;";
+  const std::string bytes = read_bytes(file);
+  std::string_view rest = bytes;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // the mark that some editors put first
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t at = 1; !rest.empty(); ++at) {
+    std::string_view line = take_line(rest);
+    line = line.substr(0, line.find('#'));
+    std::string_view word = take_word(line, separators);
+    if (word.empty()) continue;
+    Eigen::Vector3d p;
+    for (int axis = 0; axis < 3; word = take_word(line, separators), ++axis) {
+      if (word.empty()) refuse(file, "a point needs three numbers, here are " + std::to_string(axis), at);
+      const auto value = number<double>(word);
+      if (!value) refuse(file, "\"" + std::string(word.substr(0, 40)) + "\" is not a number", at);
+      p[axis] = *value;
+    }
+    points.push_back(p);
+  }
+  return make_cloud(file, points, points.size(), 1);
+}
+
+}  // namespace clearance::io

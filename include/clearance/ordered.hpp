@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// One 64-bit word that is smaller exactly if the distance is smaller, or equal at a lower index. It can be minimised
+// atomically, in any order, by any number of threads, with one result.
+
+#include <clearance/math.hpp>
+
+#include <atomic>
+#include <bit>
+
+namespace clearance {
+
+/// Maps floats (never NaN) to integers in the same order; -0 and 0 are one.
+CLEARANCE_HD inline std::uint32_t ordered(real distance) {
+  const std::uint32_t u = std::bit_cast<std::uint32_t>(distance + 0.0f);
+  return u & 0x80000000u ? ~u : u | 0x80000000u;
+}
+
+CLEARANCE_HD inline real from_ordered(std::uint32_t u) {
+  return std::bit_cast<real>(u & 0x80000000u ? u & 0x7fffffffu : ~u);
+}
+
+/// (distance, index); the least is the answer.
+using distance_key = unsigned long long;
+
+CLEARANCE_HD inline distance_key make_key(real distance, std::uint32_t index) {
+  return distance_key(ordered(distance)) << 32 | index;
+}
+CLEARANCE_HD inline real key_distance(distance_key k) { return from_ordered(std::uint32_t(k >> 32)); }
+CLEARANCE_HD inline std::uint32_t key_index(distance_key k) { return std::uint32_t(k); }
+
+/// Infinitely far, at no index: larger than any other key.
+inline constexpr distance_key no_key = 0xff800000ffffffffull;
+
+/// A stale value only costs work, so reads are relaxed.
+template <class T>
+CLEARANCE_HD T load_relaxed(const T* word) {
+#if defined(__CUDA_ARCH__)
+  return *reinterpret_cast<const volatile T*>(word);
+#else
+  return std::atomic_ref<T>(*const_cast<T*>(word)).load(std::memory_order_relaxed);
+#endif
+}
+
+CLEARANCE_HD inline void lower_to(distance_key* word, distance_key value) {
+#if defined(__CUDA_ARCH__)
+  atomicMin(word, value);
+#else
+  std::atomic_ref<distance_key> shared(*word);
+  for (distance_key seen = shared.load(std::memory_order_relaxed); value < seen;)
+    if (shared.compare_exchange_weak(seen, value, std::memory_order_relaxed)) break;
+#endif
+}
+
+CLEARANCE_HD inline void add_to(unsigned long long* word, unsigned long long value) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(word, value);
+#else
+  std::atomic_ref<unsigned long long>(*word).fetch_add(value, std::memory_order_relaxed);
+#endif
+}
+
+}  // namespace clearance

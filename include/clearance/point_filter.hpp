@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/concepts.hpp>
+
+namespace clearance {
+
+/// Which points of a cloud count: metres from `sensor` (a position in the cloud's own frame), both ends included.
+struct point_filter {
+  real nearest = 0, farthest = infinity;
+  vec3 sensor = {0, 0, 0};
+  bool zero_is_missing = false;  ///< Some lidars write (0,0,0) where nothing came back.
+
+  CLEARANCE_HD sample operator()(vec3 p) const {
+    if (!is_finite(p)) return {p, drop_reason::not_finite};
+    if (zero_is_missing && p == vec3{0, 0, 0}) return {p, drop_reason::missing};
+    if (nearest > 0 || farthest < infinity) {
+      const real away = length(p - sensor);
+      if (!(away >= nearest && away <= farthest)) return {p, drop_reason::out_of_range};
+    }
+    return {p, drop_reason::none};
+  }
+};
+
+}  // namespace clearance

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/concepts.hpp>
+
+namespace clearance {
+
+/// Pinhole camera, pixels; the centre of the first pixel is (0, 0). z looks forward, x right, y down.
+struct intrinsics {
+  double fx, fy, cx, cy;
+};
+
+/// A depth image, deprojected while it is read: `std::uint16_t` pixels times `scale`, or `float` metres (REP 118).
+///
+/// 0 is missing, 65535 in 16 bits saturated, NaN and Inf not finite; `nearest` and `farthest` bound z, in metres.
+template <class Pixel>
+struct depth_image {
+  static_assert(std::is_same_v<Pixel, std::uint16_t> || std::is_same_v<Pixel, float>, "depth pixels are 16-bit integers or floats");
+
+  const Pixel* pixels = nullptr;
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t row = 0;  ///< Pixels from one row to the next.
+  real scale = 1;         ///< Metres a unit.
+  real nearest = 0, farthest = infinity;
+  real inverse_fx = 1, inverse_fy = 1, cx = 0, cy = 0;
+
+  depth_image() = default;
+  depth_image(const Pixel* pixels, std::uint32_t width, std::uint32_t height, intrinsics camera,
+              double scale = std::is_same_v<Pixel, float> ? 1.0 : 0.001)
+      : pixels(pixels), width(width), height(height), row(width), scale(real(scale)), inverse_fx(real(1 / camera.fx)),
+        inverse_fy(real(1 / camera.fy)), cx(real(camera.cx)), cy(real(camera.cy)) {}
+
+  CLEARANCE_HD std::size_t size() const { return std::size_t(width) * height; }
+  CLEARANCE_HD sample operator[](std::size_t i) const {
+    const std::uint32_t v = std::uint32_t(i) / width, u = std::uint32_t(i) - v * width;
+    const Pixel d = pixels[std::size_t(v) * row + u];
+    const real z = real(d) * scale;
+    const vec3 p{(real(u) - cx) * inverse_fx * z, (real(v) - cy) * inverse_fy * z, z};
+    if (d == 0) return {p, drop_reason::missing};
+    if constexpr (std::is_same_v<Pixel, std::uint16_t>) {
+      if (d == 65535) return {p, drop_reason::saturated};
+    }
+    if (!is_finite(p)) return {p, drop_reason::not_finite};
+    if (!(z >= nearest && z <= farthest)) return {p, drop_reason::out_of_range};
+    return {p, drop_reason::none};
+  }
+
+  std::span<const std::byte> bytes() const { return std::as_bytes(std::span(pixels, std::size_t(row) * height)); }
+  depth_image at(const std::byte* copy) const {
+    depth_image moved = *this;
+    moved.pixels = reinterpret_cast<const Pixel*>(copy);
+    return moved;
+  }
+};
+
+static_assert(point_source<depth_image<std::uint16_t>> && point_source<depth_image<float>>);
+
+}  // namespace clearance

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/point_filter.hpp>
+
+namespace clearance {
+
+/// `count` times three floats, x y z, one after another (12 bytes a point).
+struct point_span {
+  const vec3* points = nullptr;
+  std::size_t count = 0;
+  point_filter filter = {};
+
+  point_span() = default;
+  point_span(const vec3* points, std::size_t count, point_filter filter = {}) : points(points), count(count), filter(filter) {}
+  point_span(std::span<const vec3> s, point_filter filter = {}) : point_span(s.data(), s.size(), filter) {}
+  point_span(const std::vector<vec3>& v, point_filter filter = {}) : point_span(v.data(), v.size(), filter) {}
+
+  CLEARANCE_HD std::size_t size() const { return count; }
+  CLEARANCE_HD sample operator[](std::size_t i) const { return filter(points[i]); }
+
+  /// The memory it reads, and the same view of a copy elsewhere.
+  std::span<const std::byte> bytes() const { return std::as_bytes(std::span(points, count)); }
+  point_span at(const std::byte* copy) const { return {reinterpret_cast<const vec3*>(copy), count, filter}; }
+};
+
+static_assert(point_source<point_span>);
+
+}  // namespace clearance

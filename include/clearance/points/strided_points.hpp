@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/point_filter.hpp>
+
+#include <cstring>
+
+namespace clearance {
+
+/// Records of any size with x, y, z at any byte offset, aligned or not: a ROS PointCloud2 (little-endian), a PCL array.
+template <class Scalar = float>
+struct strided_points {
+  static_assert(std::is_same_v<Scalar, float> || std::is_same_v<Scalar, double>, "PointCloud2 coordinates are FLOAT32 or FLOAT64");
+
+  const std::byte* data = nullptr;
+  std::size_t count = 0;
+  std::uint32_t step = 0;              ///< point_step, bytes.
+  std::uint32_t offset[3] = {0, 4, 8};  ///< of x, y and z within a record, bytes.
+  std::uint32_t width = 0;             ///< Records a row, where rows are padded; 0: all records follow one another.
+  std::size_t row_step = 0;            ///< Bytes from one row to the next, if `width` is not 0.
+  vec3 origin = {0, 0, 0};             ///< Subtracted from doubles before they become floats.
+  point_filter filter = {};
+
+  CLEARANCE_HD std::size_t size() const { return count; }
+  CLEARANCE_HD sample operator[](std::size_t i) const {
+    const std::byte* record = data + (width == 0 ? i * step : i / width * row_step + i % width * step);
+    return filter({load(record + offset[0], origin.x), load(record + offset[1], origin.y), load(record + offset[2], origin.z)});
+  }
+
+  std::span<const std::byte> bytes() const { return {data, width == 0 ? count * step : (count + width - 1) / width * row_step}; }
+  strided_points at(const std::byte* copy) const {
+    strided_points moved = *this;
+    moved.data = copy;
+    return moved;
+  }
+
+ private:
+  // Byte by byte: a record of 18 or 22 bytes puts floats at odd addresses, which a GPU cannot load.
+  CLEARANCE_HD static real load(const std::byte* from, real minus) {
+    Scalar s;
+    if (reinterpret_cast<std::uintptr_t>(from) % alignof(Scalar) == 0)
+      s = *reinterpret_cast<const Scalar*>(from);
+    else
+      memcpy(&s, from, sizeof s);
+    return real(s - minus);
+  }
+};
+
+static_assert(point_source<strided_points<float>> && point_source<strided_points<double>>);
+
+}  // namespace clearance

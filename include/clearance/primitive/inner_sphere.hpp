@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/concepts.hpp>
+
+#include <array>
+
+namespace clearance {
+
+/// A ball packed inside a solid (Weller & Zachmann 2009). Metres; the distance is negative inside.
+struct inner_sphere {
+  vec3 center;
+  real radius;
+
+  CLEARANCE_HD real distance(vec3 q) const { return length(q - center) - radius; }
+  CLEARANCE_HD vec3 nearest(vec3 q) const { return fma(radius, normal(q), center); }
+  CLEARANCE_HD vec3 normal(vec3 q) const {
+    const vec3 d = q - center;
+    const real l = length(d);
+    return l > 0 ? scaled(divide(1, l), d) : vec3{0, 0, 0};
+  }
+  std::array<ball, 1> balls() const { return {{{center, radius}}}; }
+};
+
+static_assert(primitive<inner_sphere>);
+
+}  // namespace clearance

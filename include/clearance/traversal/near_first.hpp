@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/concepts.hpp>
+
+namespace clearance {
+
+/// Depth first, nearest child first, the children's bounds carried on the stack so that a node is tested once.
+template <int Capacity = 64>
+struct basic_near_first {
+  static constexpr std::uint32_t capacity = Capacity;
+
+  template <hierarchy H, query Q>
+  CLEARANCE_HD void operator()(const H& tree, vec3 p, Q& q) const {
+    using traits = bounding_volume_traits<typename H::volume_type>;
+    struct entry {
+      real bound;
+      typename H::node_type node;
+    };
+    entry pending[Capacity];
+    std::uint32_t count = 0;
+    pending[count++] = {traits::lower_bound(tree.volume(tree.root()), p), tree.root()};
+    while (count > 0) {
+      const entry top = pending[--count];
+      if (!(top.bound <= q.reach())) continue;  // NaN prunes; ties survive
+      const std::uint32_t size = tree.size(top.node);
+      if (tree.is_leaf(top.node)) {
+        for (std::uint32_t k = 0; k < size; ++k) q.offer(tree.id(top.node, k), tree.primitive(top.node, k).distance(p));
+        continue;
+      }
+      const std::uint32_t base = count;
+      const real reach = q.reach();
+      for (std::uint32_t k = 0; k < size; ++k) {
+        const auto c = tree.child(top.node, k);
+        const entry e{traits::lower_bound(tree.volume(c), p), c};
+        if (!(e.bound <= reach)) continue;
+        std::uint32_t at = count++;  // insertion keeps the nearest on top
+        for (; at > base && pending[at - 1].bound < e.bound; --at) pending[at] = pending[at - 1];
+        pending[at] = e;
+      }
+    }
+  }
+};
+
+using near_first = basic_near_first<>;
+
+}  // namespace clearance

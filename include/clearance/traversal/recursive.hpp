@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/concepts.hpp>
+
+namespace clearance {
+
+/// Depth first on the call stack, children in stored order: the paper's Algorithm 4.
+struct recursive {
+  /// Upper bound of what one level takes on the device's call stack (ptxas reports less for every tree of ours).
+  static constexpr std::size_t bytes_a_level = 160;
+
+  /// What a launch needs of cudaLimitStackSize, with room for the kernel itself.
+  static std::size_t device_stack(std::uint32_t depth) { return 512 + (depth + 1) * bytes_a_level; }
+
+  template <hierarchy H, query Q>
+  CLEARANCE_HD void operator()(const H& tree, vec3 p, Q& q) const {
+    using traits = bounding_volume_traits<typename H::volume_type>;
+    if (traits::lower_bound(tree.volume(tree.root()), p) <= q.reach()) visit(tree, tree.root(), p, q);
+  }
+
+ private:
+  template <hierarchy H, query Q>
+  CLEARANCE_HD static void visit(const H& tree, typename H::node_type n, vec3 p, Q& q) {
+    using traits = bounding_volume_traits<typename H::volume_type>;
+    const std::uint32_t size = tree.size(n);
+    if (tree.is_leaf(n)) {
+      for (std::uint32_t k = 0; k < size; ++k) q.offer(tree.id(n, k), tree.primitive(n, k).distance(p));
+      return;
+    }
+    for (std::uint32_t k = 0; k < size; ++k) {
+      const auto c = tree.child(n, k);
+      if (traits::lower_bound(tree.volume(c), p) <= q.reach()) visit(tree, c, p, q);
+    }
+  }
+};
+
+}  // namespace clearance

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/concepts.hpp>
+
+namespace clearance {
+
+/// Depth first with a stack of its own, children in stored order: the paper's Algorithm 5.
+template <int Capacity = 64>
+struct basic_stack {
+  static constexpr std::uint32_t capacity = Capacity;
+
+  template <hierarchy H, query Q>
+  CLEARANCE_HD void operator()(const H& tree, vec3 p, Q& q) const {
+    using traits = bounding_volume_traits<typename H::volume_type>;
+    typename H::node_type pending[Capacity];
+    std::uint32_t count = 0;
+    if (traits::lower_bound(tree.volume(tree.root()), p) <= q.reach()) pending[count++] = tree.root();
+    while (count > 0) {
+      const auto n = pending[--count];
+      const std::uint32_t size = tree.size(n);
+      if (tree.is_leaf(n)) {
+        for (std::uint32_t k = 0; k < size; ++k) q.offer(tree.id(n, k), tree.primitive(n, k).distance(p));
+        continue;
+      }
+      for (std::uint32_t k = size; k-- > 0;) {
+        const auto c = tree.child(n, k);
+        if (traits::lower_bound(tree.volume(c), p) <= q.reach()) pending[count++] = c;
+      }
+    }
+  }
+};
+
+using stack = basic_stack<>;
+
+}  // namespace clearance

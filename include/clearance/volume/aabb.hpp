@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/concepts.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace clearance {
+
+/// Axis-aligned box.
+struct aabb {
+  vec3 lower, upper;
+
+  /// Exact in double, then widened by `slack` of the diagonal and rounded outward.
+  static aabb fit(std::span<const ball> balls) {
+    double lo[3] = {infinity, infinity, infinity}, hi[3] = {-infinity, -infinity, -infinity};
+    for (const ball& b : balls) {
+      const double c[3] = {b.center.x, b.center.y, b.center.z};
+      for (int k = 0; k < 3; ++k) {
+        lo[k] = std::min(lo[k], c[k] - b.radius);
+        hi[k] = std::max(hi[k], c[k] + b.radius);
+      }
+    }
+    const double margin = 2.0 * slack * std::hypot(hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]);
+    const auto down = [&](double x) { return std::nextafter(real(x - margin), -infinity); };
+    const auto up = [&](double x) { return std::nextafter(real(x + margin), infinity); };
+    return {{down(lo[0]), down(lo[1]), down(lo[2])}, {up(hi[0]), up(hi[1]), up(hi[2])}};
+  }
+
+  /// Outside: the distance to the box. Inside: minus the distance to the nearest face, or deep points would be lost.
+  CLEARANCE_HD real lower_bound(vec3 q) const {
+    const vec3 beyond{max(lower.x - q.x, q.x - upper.x), max(lower.y - q.y, q.y - upper.y), max(lower.z - q.z, q.z - upper.z)};
+    const real deepest = max(max(beyond.x, beyond.y), beyond.z);
+    if (deepest < 0) return deepest * (1 + slack);
+    return length({max(beyond.x, 0), max(beyond.y, 0), max(beyond.z, 0)}) * (1 - slack);
+  }
+
+  std::array<ball, 8> balls() const {
+    std::array<ball, 8> corners;
+    for (int k = 0; k < 8; ++k)
+      corners[k] = {{k & 1 ? upper.x : lower.x, k & 2 ? upper.y : lower.y, k & 4 ? upper.z : lower.z}, 0};
+    return corners;
+  }
+};
+
+static_assert(bounding_volume<aabb>);
+
+}  // namespace clearance
