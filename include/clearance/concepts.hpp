@@ -27,6 +27,21 @@ concept primitive = std::is_trivially_copyable_v<P> && requires(const P p, vec3 
   { std::span<const ball>(p.balls()) };
 };
 
+/// `primitive<P>` with reasons: nvcc does not say which requirement of a concept failed.
+template <class P>
+consteval bool explain_primitive() {
+  static_assert(std::is_trivially_copyable_v<P>, "a primitive must be trivially copyable");
+  static_assert(requires(const P p, vec3 q) { { p.distance(q) } -> std::same_as<real>; },
+                "a primitive needs: CLEARANCE_HD real distance(vec3) const");
+  static_assert(requires(const P p, vec3 q) { { p.nearest(q) } -> std::same_as<vec3>; },
+                "a primitive needs: CLEARANCE_HD vec3 nearest(vec3) const");
+  static_assert(requires(const P p, vec3 q) { { p.normal(q) } -> std::same_as<vec3>; },
+                "a primitive needs: CLEARANCE_HD vec3 normal(vec3) const");
+  static_assert(requires(const P p) { std::span<const ball>(p.balls()); },
+                "a primitive needs: balls() const, a few balls whose convex hull contains it");
+  return primitive<P>;
+}
+
 /// How the library reaches a volume: by its members. Specialise for a type that you cannot change.
 template <class V>
 struct bounding_volume_traits {
@@ -96,6 +111,30 @@ CLEARANCE_HD std::uint32_t stack_need(const H& tree) {
   return tree.width() == 0 ? 1 : tree.depth() * (tree.width() - 1) + 1;
 }
 
+/// `hierarchy<H>` with reasons.
+template <class H>
+consteval bool explain_hierarchy() {
+  static_assert(std::is_trivially_copyable_v<H>, "a hierarchy must be a trivially copyable view");
+  static_assert(requires { typename H::node_type; typename H::volume_type; typename H::primitive_type; },
+                "a hierarchy needs the types node_type, volume_type and primitive_type");
+  static_assert(explain_bounding_volume<typename H::volume_type>() && explain_primitive<typename H::primitive_type>());
+  using node = typename H::node_type;
+  static_assert(requires(const H h) { { h.root() } -> std::same_as<node>; }, "a hierarchy needs: CLEARANCE_HD node_type root() const");
+  static_assert(requires(const H h, const node n) { { h.is_leaf(n) } -> std::same_as<bool>; { h.size(n) } -> std::same_as<std::uint32_t>; },
+                "a hierarchy needs: CLEARANCE_HD bool is_leaf(node_type) const and CLEARANCE_HD std::uint32_t size(node_type) const");
+  static_assert(requires(const H h, const node n, std::uint32_t k) { { h.child(n, k) } -> std::same_as<node>; },
+                "a hierarchy needs: CLEARANCE_HD node_type child(node_type, std::uint32_t) const");
+  static_assert(requires(const H h, const node n) { { h.volume(n) } -> std::convertible_to<const typename H::volume_type&>; },
+                "a hierarchy needs: CLEARANCE_HD const volume_type& volume(node_type) const");
+  static_assert(requires(const H h, const node n, std::uint32_t k) {
+                  { h.primitive(n, k) } -> std::convertible_to<const typename H::primitive_type&>;
+                  { h.id(n, k) } -> std::same_as<std::uint32_t>;
+                }, "a hierarchy needs: primitive(node_type, std::uint32_t) const and std::uint32_t id(node_type, std::uint32_t) const");
+  static_assert(requires(const H h) { { h.depth() } -> std::same_as<std::uint32_t>; { h.width() } -> std::same_as<std::uint32_t>; },
+                "a hierarchy needs: std::uint32_t depth() const and std::uint32_t width() const");
+  return hierarchy<H>;
+}
+
 /// Why a record or pixel gave no point.
 enum class drop_reason : std::uint8_t { none, not_finite, missing, saturated, out_of_range };
 inline constexpr int drop_reasons = 5;
@@ -117,6 +156,17 @@ concept point_source = std::is_trivially_copyable_v<S> && requires(const S s, st
   { s[i] } -> std::same_as<sample>;
 };
 
+/// `point_source<S>` with reasons.
+template <class S>
+consteval bool explain_point_source() {
+  static_assert(std::is_trivially_copyable_v<S>, "a point source must be a trivially copyable view");
+  static_assert(requires(const S s) { { s.size() } -> std::convertible_to<std::size_t>; },
+                "a point source needs: CLEARANCE_HD std::size_t size() const");
+  static_assert(requires(const S s, std::size_t i) { { s[i] } -> std::same_as<sample>; },
+                "a point source needs: CLEARANCE_HD sample operator[](std::size_t) const");
+  return point_source<S>;
+}
+
 /// What a traversal is looking for. One object per query point; it starts as a copy of the user's.
 ///
 /// Law: `reach()` never grows, and an offer farther than `reach()` leaves `result()` unchanged.
@@ -128,6 +178,32 @@ concept query = requires(Q q, const Q c, std::uint32_t id, real distance) {
   q.offer(id, distance);
   { c.result() } -> std::same_as<typename Q::result_type>;
 };
+
+/// `query<Q>` with reasons.
+template <class Q>
+consteval bool explain_query() {
+  static_assert(requires { typename Q::result_type; }, "a query needs: a type result_type");
+  static_assert(requires(const Q q) { { q.reach() } -> std::same_as<real>; }, "a query needs: CLEARANCE_HD real reach() const");
+  static_assert(requires(Q q, std::uint32_t id, real distance) { q.offer(id, distance); },
+                "a query needs: CLEARANCE_HD void offer(std::uint32_t id, real distance)");
+  static_assert(requires(const Q q) { { q.result() } -> std::same_as<typename Q::result_type>; },
+                "a query needs: CLEARANCE_HD result_type result() const");
+  return query<Q>;
+}
+
+/// Shows a query every primitive of a leaf: the one place where a traversal meets a primitive. A query may also take
+/// `offer(id, distance, primitive)`, if it wants the primitive itself.
+template <hierarchy H, query Q>
+CLEARANCE_HD void offer_leaf(const H& tree, const typename H::node_type n, vec3 p, Q& q) {
+  const std::uint32_t size = tree.size(n);
+  for (std::uint32_t k = 0; k < size; ++k) {
+    const typename H::primitive_type& primitive = tree.primitive(n, k);
+    if constexpr (requires { q.offer(0u, real(0), primitive); })
+      q.offer(tree.id(n, k), primitive.distance(p), primitive);
+    else
+      q.offer(tree.id(n, k), primitive.distance(p));
+  }
+}
 
 /// Walks a hierarchy for one point.
 ///

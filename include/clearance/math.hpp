@@ -38,6 +38,14 @@ CLEARANCE_HD inline real fma(real a, real b, real c) {
 #endif
 }
 
+CLEARANCE_HD inline double fma(double a, double b, double c) {
+#if defined(__CUDA_ARCH__)
+  return __fma_rn(a, b, c);
+#else
+  return std::fma(a, b, c);
+#endif
+}
+
 CLEARANCE_HD inline real square_root(real a) {
 #if defined(__CUDA_ARCH__)
   return __fsqrt_rn(a);
@@ -74,6 +82,13 @@ CLEARANCE_HD constexpr real absolute(real a) { return a < 0 ? -a : a; }
 /// False for NaN, infinities and coordinates whose square would overflow (beyond 1e18 m).
 CLEARANCE_HD constexpr bool is_finite(real a) { return absolute(a) <= 1e18f; }
 CLEARANCE_HD constexpr bool is_finite(vec3 a) { return is_finite(a.x) && is_finite(a.y) && is_finite(a.z); }
+
+/// The largest float that is not above `x`, and the least that is not below.
+CLEARANCE_HD inline real rounded_down(double x) {
+  const real f = real(x);
+  return double(f) > x ? nextafterf(f, -infinity) : f;
+}
+CLEARANCE_HD inline real rounded_up(double x) { return -rounded_down(-x); }
 
 /// A computed `distance` to a volume of extent `size`, lowered so that rounding cannot push it above a true one.
 CLEARANCE_HD constexpr real lowered(real distance, real size) { return distance - slack * (absolute(distance) + size); }

@@ -10,14 +10,29 @@
 
 namespace clearance {
 
+CLEARANCE_HD inline std::uint32_t to_bits(real x) {
+#if defined(__CUDA_ARCH__)
+  return __float_as_uint(x);
+#else
+  return std::bit_cast<std::uint32_t>(x);
+#endif
+}
+CLEARANCE_HD inline real from_bits(std::uint32_t u) {
+#if defined(__CUDA_ARCH__)
+  return __uint_as_float(u);
+#else
+  return std::bit_cast<real>(u);
+#endif
+}
+
 /// Maps floats (never NaN) to integers in the same order; -0 and 0 are one.
 CLEARANCE_HD inline std::uint32_t ordered(real distance) {
-  const std::uint32_t u = std::bit_cast<std::uint32_t>(distance + 0.0f);
+  const std::uint32_t u = to_bits(distance + 0.0f);
   return u & 0x80000000u ? ~u : u | 0x80000000u;
 }
 
 CLEARANCE_HD inline real from_ordered(std::uint32_t u) {
-  return std::bit_cast<real>(u & 0x80000000u ? u & 0x7fffffffu : ~u);
+  return from_bits(u & 0x80000000u ? u & 0x7fffffffu : ~u);
 }
 
 /// (distance, index); the least is the answer.

@@ -101,8 +101,7 @@ struct device {
   /// Room for one call, in stream order.
   template <class T>
   scratch<T> make_scratch(std::size_t n) const {
-    const device_guard guard(id);
-    return {n, stream};
+    return {n, id, stream};
   }
 
   /// Enqueues a copy of `data`; it may change as soon as this returns, and nothing is waited for.

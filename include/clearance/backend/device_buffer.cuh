@@ -8,6 +8,16 @@
 
 namespace clearance {
 
+/// For destructors, which cannot throw.
+template <class F>
+void on_device(int device, F action) {
+  int before = device;
+  cudaGetDevice(&before);
+  if (before != device) cudaSetDevice(device);
+  action();
+  if (before != device) cudaSetDevice(before);
+}
+
 /// Owns an array in the memory of one device. Giving it back waits until no stream can still be reading it.
 template <class T>
 class device_buffer {
@@ -24,21 +34,14 @@ class device_buffer {
     std::swap(data_, other.data_), std::swap(size_, other.size_), std::swap(device_, other.device_);
     return *this;
   }
-  ~device_buffer() { release(device_, [this] { return cudaFree(data_); }); }
+  ~device_buffer() {
+    if (data_ != nullptr) on_device(device_, [this] { return cudaFree(data_); });
+  }
 
   T* data() const { return data_; }
   std::size_t size() const { return size_; }
 
  private:
-  template <class F>
-  static void release(int device, F free) {
-    int before = 0;
-    cudaGetDevice(&before);
-    if (before != device) cudaSetDevice(device);
-    free();
-    if (before != device) cudaSetDevice(before);
-  }
-
   T* data_ = nullptr;
   std::size_t size_ = 0;
   int device_ = 0;
@@ -50,14 +53,18 @@ class stream_buffer {
  public:
   using value_type = T;
 
-  stream_buffer(std::size_t n, cudaStream_t stream) : size_(n), stream_(stream) {
+  stream_buffer(std::size_t n, int device, cudaStream_t stream) : size_(n), device_(device), stream_(stream) {
+    const device_guard guard(device);
     if (n != 0) check_cuda(cudaMallocAsync(reinterpret_cast<void**>(&data_), n * sizeof(T), stream), "cudaMallocAsync");
   }
-  stream_buffer(stream_buffer&& other) noexcept
-      : data_(std::exchange(other.data_, nullptr)), size_(other.size_), stream_(other.stream_) {}
-  stream_buffer& operator=(stream_buffer&&) = delete;
+  stream_buffer(stream_buffer&& other) noexcept { *this = std::move(other); }
+  stream_buffer& operator=(stream_buffer&& other) noexcept {
+    std::swap(data_, other.data_), std::swap(size_, other.size_);
+    std::swap(device_, other.device_), std::swap(stream_, other.stream_);
+    return *this;
+  }
   ~stream_buffer() {
-    if (data_ != nullptr) cudaFreeAsync(data_, stream_);
+    if (data_ != nullptr) on_device(device_, [this] { return cudaFreeAsync(data_, stream_); });
   }
 
   T* data() const { return data_; }
@@ -66,6 +73,7 @@ class stream_buffer {
  private:
   T* data_ = nullptr;
   std::size_t size_ = 0;
+  int device_ = 0;
   cudaStream_t stream_ = nullptr;
 };
 

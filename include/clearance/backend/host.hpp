@@ -53,6 +53,11 @@ struct host {
     return data;
   }
 
+  template <class T>
+  std::vector<T> copy_out(const T* data, std::size_t n) const {
+    return {data, data + n};
+  }
+
   /// Room for one call.
   template <class T>
   scratch<T> make_scratch(std::size_t n) const {

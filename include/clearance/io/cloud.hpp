@@ -48,12 +48,12 @@ inline Eigen::Vector3d far_origin(const std::vector<Eigen::Vector3d>& points) {
     for (const auto& p : points)
       if (std::isfinite(p.sum()) && !p.isZero(0)) along.push_back(p[axis]);
     if (along.empty()) continue;
-    const auto at = [&](std::size_t percent) {
-      const auto place = along.begin() + std::ptrdiff_t((along.size() - 1) * percent / 100);
-      std::nth_element(along.begin(), place, along.end());
-      return *place;
+    const std::size_t last = along.size() - 1, few = last / 20;
+    const auto at = [&](std::size_t rank) {
+      std::nth_element(along.begin(), along.begin() + std::ptrdiff_t(rank), along.end());
+      return along[rank];
     };
-    const double low = at(5), high = at(95), middle = float(at(50));
+    const double low = at(few), high = at(last - few), middle = float(at(last / 2));
     if (std::isfinite(middle) && std::abs(middle) > near && std::abs(middle) > high - low) origin[axis] = middle;
   }
   return origin;

@@ -23,12 +23,11 @@ struct basic_near_first {
     while (count > 0) {
       const entry top = pending[--count];
       if (!(top.bound <= q.reach())) continue;  // NaN prunes; ties survive
-      const std::uint32_t size = tree.size(top.node);
       if (tree.is_leaf(top.node)) {
-        for (std::uint32_t k = 0; k < size; ++k) q.offer(tree.id(top.node, k), tree.primitive(top.node, k).distance(p));
+        offer_leaf(tree, top.node, p, q);
         continue;
       }
-      const std::uint32_t base = count;
+      const std::uint32_t base = count, size = tree.size(top.node);
       const real reach = q.reach();
       for (std::uint32_t k = 0; k < size; ++k) {
         const auto c = tree.child(top.node, k);

@@ -23,11 +23,8 @@ struct recursive {
   template <hierarchy H, query Q>
   CLEARANCE_HD static void visit(const H& tree, typename H::node_type n, vec3 p, Q& q) {
     using traits = bounding_volume_traits<typename H::volume_type>;
+    if (tree.is_leaf(n)) return offer_leaf(tree, n, p, q);
     const std::uint32_t size = tree.size(n);
-    if (tree.is_leaf(n)) {
-      for (std::uint32_t k = 0; k < size; ++k) q.offer(tree.id(n, k), tree.primitive(n, k).distance(p));
-      return;
-    }
     for (std::uint32_t k = 0; k < size; ++k) {
       const auto c = tree.child(n, k);
       if (traits::lower_bound(tree.volume(c), p) <= q.reach()) visit(tree, c, p, q);

@@ -18,12 +18,11 @@ struct basic_stack {
     if (traits::lower_bound(tree.volume(tree.root()), p) <= q.reach()) pending[count++] = tree.root();
     while (count > 0) {
       const auto n = pending[--count];
-      const std::uint32_t size = tree.size(n);
       if (tree.is_leaf(n)) {
-        for (std::uint32_t k = 0; k < size; ++k) q.offer(tree.id(n, k), tree.primitive(n, k).distance(p));
+        offer_leaf(tree, n, p, q);
         continue;
       }
-      for (std::uint32_t k = size; k-- > 0;) {
+      for (std::uint32_t k = tree.size(n); k-- > 0;) {
         const auto c = tree.child(n, k);
         if (traits::lower_bound(tree.volume(c), p) <= q.reach()) pending[count++] = c;
       }

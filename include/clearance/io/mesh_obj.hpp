@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Own readers for OBJ, OFF and PLY meshes: assimp 5.2 loses triangle order among materials, refuses ".8e-1", reads
+// "1.#IND" as 1, and hangs or crashes on damaged OFF and PLY headers. Being our own, they keep doubles too.
+
+#include <clearance/io/cloud_text.hpp>
+#include <clearance/io/error.hpp>
+#include <clearance/io/mesh_polygons.hpp>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace clearance::io {
+
+/// Reads x, y and z from the words of a line, or ends with a sentence.
+inline Eigen::Vector3d take_vertex(std::string_view& line, const std::string& file, std::size_t at) {
+  Eigen::Vector3d v;
+  for (double& x : v) {
+    const std::string_view word = take_word(line);
+    const auto value = number<double>(word);
+    if (word.empty()) refuse(file, "a vertex has fewer than three coordinates", at);
+    if (!value) refuse(file, "\"" + std::string(word.substr(0, 40)) + "\" is not a number", at);
+    if (!std::isfinite(*value)) refuse(file, "a vertex has a coordinate that is not finite", at);
+    x = *value;
+  }
+  return v;
+}
+
+/// Vertices and faces of a Wavefront OBJ file; all else (normals, materials, groups, lines, points) is passed over.
+inline polygon_mesh read_obj(std::string_view rest, const std::string& file) {
+  polygon_mesh mesh;
+  if (rest.find('\0') != rest.npos) refuse(file, "is not an OBJ file: it has zero bytes, so it is not plain text");
+  std::uint32_t largest = 0;
+  std::size_t largest_at = 0;
+  std::string joined;
+  for (std::size_t at = 1; !rest.empty(); ++at) {
+    const std::size_t first = at;
+    std::string_view line = take_line(rest);
+    if (line.ends_with('\\')) {  // goes on in the next line
+      joined.clear();
+      for (; line.ends_with('\\') && !rest.empty(); ++at, line = take_line(rest))
+        joined.append(line.substr(0, line.size() - 1)).push_back(' ');
+      joined.append(line);
+      line = joined;
+    }
+    const std::string_view key = take_word(line);
+    if (key == "v") {
+      mesh.vertices.push_back(take_vertex(line, file, first));
+    } else if (key == "f") {
+      const std::size_t begin = mesh.corners.size();
+      for (auto word = take_word(line); !word.empty() && word.front() != '#'; word = take_word(line)) {
+        const auto given = number<std::int64_t>(word.substr(0, word.find('/')));
+        const std::int64_t count = std::int64_t(mesh.vertices.size());
+        const std::int64_t index = !given ? 0 : *given < 0 ? *given + count + 1 : *given;  // from 1; negative: from the end
+        if (index < 1 || index > std::int64_t(UINT32_MAX))
+          refuse(file, "\"" + std::string(word.substr(0, 40)) + "\" is no vertex of a face", first);
+        if (index > largest) largest = std::uint32_t(index), largest_at = first;
+        mesh.corners.push_back(std::uint32_t(index - 1));
+      }
+      if (mesh.corners.size() < begin + 3) refuse(file, "a face has fewer than three vertices", first);
+      mesh.ends.push_back(mesh.corners.size());
+    }
+  }
+  if (largest > mesh.vertices.size())
+    refuse(file, "a face has vertex " + std::to_string(largest) + ", the file has " + std::to_string(mesh.vertices.size()),
+           largest_at);
+  return mesh;
+}
+
+}  // namespace clearance::io

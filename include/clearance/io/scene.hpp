@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// A picture of a query for any glTF viewer: robot, points, witness.
+
+#include <clearance/io/scene_mesh.hpp>
+
+#include <assimp/Exporter.hpp>
+#include <assimp/scene.h>
+
+#include <Eigen/Geometry>
+
+#include <memory>
+#include <optional>
+
+namespace clearance::io {
+
+struct scene_body {
+  std::string name;
+  triangle_mesh mesh;  // in the body's frame
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // world-from-body
+  colour paint = {0.75f, 0.75f, 0.78f, 1};
+};
+
+struct scene_points {
+  std::string name;
+  std::vector<vec3> points;  // in the cloud's frame; those that are not finite are left out
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  colour paint = {0.25f, 0.45f, 0.85f, 1};
+};
+
+struct scene_balls {
+  std::string name;
+  std::vector<ball> balls;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  colour paint = {0.9f, 0.7f, 0.3f, 1};
+};
+
+/// A thin red rod in world coordinates.
+struct scene_segment {
+  std::string name;
+  Eigen::Vector3d from, to;
+  colour paint = {0.9f, 0.1f, 0.1f, 1};
+};
+
+/// Metres, z up, in world coordinates; `origin` is subtracted from them, because a glTF file holds floats.
+struct scene {
+  std::vector<scene_body> bodies;
+  std::vector<scene_points> clouds;
+  std::vector<scene_balls> balls;
+  std::vector<scene_segment> segments;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+};
+
+/// Writes a binary glTF file (.glb); glTF's y is up, so all is turned by -90 degrees about x. Throws std::runtime_error.
+inline void save_scene(const scene& world, const std::string& file) {
+  std::vector<std::unique_ptr<aiMesh>> meshes;
+  std::vector<std::unique_ptr<aiMaterial>> materials;
+  std::vector<std::unique_ptr<aiNode>> nodes;
+  const auto add = [&](const std::string& name, std::unique_ptr<aiMesh> mesh, const Eigen::Isometry3d& pose, colour paint) {
+    if (mesh->mNumVertices == 0) return;
+    auto node = std::make_unique<aiNode>(name);
+    Eigen::Isometry3d relative = pose;
+    relative.translation() -= world.origin;
+    for (unsigned r = 0; r < 4; ++r)
+      for (unsigned c = 0; c < 4; ++c) node->mTransformation[r][c] = ai_real(relative(r, c));
+    node->mNumMeshes = 1;
+    node->mMeshes = new unsigned[1]{unsigned(meshes.size())};
+    mesh->mName = name;
+    mesh->mMaterialIndex = unsigned(materials.size());
+    meshes.push_back(std::move(mesh));
+    materials.push_back(scene_material(name, paint));
+    nodes.push_back(std::move(node));
+  };
+  for (const auto& body : world.bodies) add(body.name, faces_of(body.mesh), body.pose, body.paint);
+  for (const auto& cloud : world.clouds) add(cloud.name, points_of(cloud.points, cloud.paint), cloud.pose, cloud.paint);
+  for (const auto& set : world.balls) add(set.name, faces_of(octahedra(set.balls)), set.pose, set.paint);
+  for (const auto& s : world.segments) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() = s.from;
+    add(s.name, faces_of(rod(s.to - s.from)), pose, s.paint);
+  }
+  if (meshes.empty()) refuse(file, "there is nothing to draw");
+
+  aiScene out;  // owns what is handed over
+  const auto hand_over = [](auto& from, auto*** to, unsigned& count) {
+    count = unsigned(from.size());
+    *to = new std::remove_reference_t<decltype(**to)>[count];
+    for (unsigned i = 0; i < count; ++i) (*to)[i] = from[i].release();
+  };
+  hand_over(meshes, &out.mMeshes, out.mNumMeshes);
+  hand_over(materials, &out.mMaterials, out.mNumMaterials);
+  out.mRootNode = new aiNode("world");
+  out.mRootNode->mTransformation = aiMatrix4x4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+  for (auto& node : nodes) node->mParent = out.mRootNode;
+  hand_over(nodes, &out.mRootNode->mChildren, out.mRootNode->mNumChildren);
+  Assimp::Exporter exporter;
+  if (exporter.Export(&out, "glb2", file) != aiReturn_SUCCESS)
+    refuse(file, std::string("the scene cannot be written: ") + exporter.GetErrorString());
+}
+
+}  // namespace clearance::io

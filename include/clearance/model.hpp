@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/part.hpp>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace clearance {
+
+/// What an operation takes of a robot: part views in the memory of a backend, and their facts on the host.
+/// Whoever has trees of his own fills this in himself.
+template <class PartView>
+struct model_view {
+  using part_type = PartView;
+
+  const PartView* parts;
+  std::span<const part_facts> facts;
+  std::uint32_t depth, width;  ///< The largest of all trees.
+
+  std::size_t size() const { return facts.size(); }
+};
+
+/// Owns the parts of a robot in the memory of one backend. Parts are numbered as given.
+template <class Part, backend B = host>
+class model {
+ public:
+  using part_type = Part;
+  using view_type = decltype(std::declval<const Part&>().view());
+
+  explicit model(std::vector<Part> parts, const B& on = {}) : parts_(std::move(parts)) {
+    if (parts_.empty()) throw std::invalid_argument("clearance::model: there are no parts");
+    std::vector<view_type> views;
+    for (const Part& p : parts_) {
+      views.push_back(p.view());
+      facts_.push_back(p.facts);
+      depth_ = std::max(depth_, views.back().tree.depth());
+      width_ = std::max(width_, views.back().tree.width());
+    }
+    views_ = on.copy_in(std::span<const view_type>(views));
+  }
+
+  const std::vector<Part>& parts() const { return parts_; }
+  std::size_t size() const { return parts_.size(); }
+  model_view<view_type> view() const { return {views_.data(), facts_, depth_, width_}; }
+
+  /// A copy where `other` runs.
+  template <backend Other>
+  auto on(const Other& other) const {
+    std::vector<decltype(parts_[0].on(other))> copies;
+    for (const Part& p : parts_) copies.push_back(p.on(other));
+    return model<decltype(parts_[0].on(other)), Other>(std::move(copies), other);
+  }
+
+ private:
+  std::vector<Part> parts_;
+  std::vector<part_facts> facts_;
+  std::uint32_t depth_ = 0, width_ = 0;
+  typename B::template buffer<view_type> views_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/concepts.hpp>
+#include <clearance/pose.hpp>
+
+namespace clearance {
+
+/// What a bracket means for a robot that is about to move.
+enum class state : std::uint8_t {
+  free,       ///< lower > 0: no valid point touches the robot.
+  possible,   ///< The bracket contains 0, and nothing more is certain.
+  collision,  ///< Some point is certainly inside.
+  no_data,    ///< There was no valid point: nothing is known.
+};
+
+inline const char* to_string(state s) {
+  constexpr const char* names[] = {"free", "possible", "collision", "no_data"};
+  return names[int(s)];
+}
+
+inline constexpr std::uint32_t none = ~0u;
+
+/// The least distance of one part. Without a valid point within its bound: infinitely far, at no point.
+struct part_minimum {
+  real distance = infinity;
+  std::uint32_t cloud = none, point = none, primitive = none;
+};
+
+/// The clearance of a robot, its bracket and its witness; plain data, that a kernel may write or read.
+///
+/// `lower <= distance to the solid <= upper` (0 inside it), float errors included. With `no_data` the distance is NaN,
+/// lower 0 and upper infinite, so that `if (r.lower < margin) stop()` stops.
+struct min_distance_result {
+  clearance::state state = clearance::state::no_data;
+  real distance = not_a_number;  ///< Metres; to sphere parts signed, to triangle parts 0 inside.
+  real lower = 0, upper = infinity;
+  std::uint32_t cloud = none;      ///< Which cloud of the call,
+  std::uint32_t point = none;      ///< which of its points (index as in the input),
+  std::uint32_t part = none;       ///< which part,
+  std::uint32_t primitive = none;  ///< which of its primitives attain it; ties: the lowest numbers.
+  position at = {0, 0, 0};         ///< The point, in world coordinates,
+  position nearest = {0, 0, 0};    ///< the nearest point of the primitive,
+  vec3 normal = {0, 0, 0};         ///< and the unit vector from robot to point; (0,0,0) if there is none.
+  std::uint64_t seen = 0, valid = 0;
+  std::uint64_t dropped[drop_reasons] = {};  ///< Counts by drop_reason; [none] stays 0.
+};
+static_assert(std::is_trivially_copyable_v<min_distance_result>);
+
+}  // namespace clearance

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/indices.hpp>
+#include <clearance/query/any_within.hpp>
+#include <clearance/search/frame.hpp>
+
+namespace clearance::search {
+
+/// The query of the shared minimum (the paper's Algorithm 3): its reach is the best that anybody has found.
+struct shared_nearest {
+  using result_type = real;
+
+  const distance_key* shared;
+  real best = infinity;
+
+  CLEARANCE_HD real reach() const { return min(best, key_distance(load_relaxed(shared))); }
+  CLEARANCE_HD void offer(std::uint32_t, real distance) {
+    if (distance < best) best = distance;
+  }
+  CLEARANCE_HD real result() const { return best; }
+};
+static_assert(query<shared_nearest>);
+
+/// What one thread met, added to the totals once.
+struct tally {
+  std::uint32_t dropped[drop_reasons] = {};
+
+  CLEARANCE_HD void add_to(totals& all) const {
+    for (int r = 1; r < drop_reasons; ++r) {
+#if defined(__CUDA_ARCH__)
+      const unsigned together = __activemask();
+      const unsigned sum = __reduce_add_sync(together, dropped[r]);
+      if (sum != 0 && (threadIdx.x & 31) == unsigned(__ffs(int(together)) - 1)) add_to_word(&all.dropped[r], sum);
+#else
+      if (dropped[r] != 0) add_to_word(&all.dropped[r], dropped[r]);
+#endif
+    }
+  }
+
+ private:
+  CLEARANCE_HD static void add_to_word(unsigned long long* word, std::uint32_t n) { clearance::add_to(word, n); }
+};
+
+/// The whole of Algorithm 3 for a range of points: every part, one shared bound, or one a part.
+template <class PartView, point_source Source, class Traversal>
+struct point_body {
+  const PartView* parts;
+  const placement* places;
+  std::uint32_t part_count;
+  Source source;
+  vec3 origin;
+  std::uint32_t first;      ///< Number of this cloud's first point among all clouds' points.
+  totals* all;
+  distance_key* part_best;  ///< One bound a part, or null: all parts share `all->best`.
+  Traversal walk;
+
+  CLEARANCE_HD void operator()(indices range) const {
+    tally mine;
+    for (std::size_t i = range.begin; i < range.end; i += range.step) {
+      const sample s = source[i];
+      if (!s.valid()) {
+        for (int r = 1; r < drop_reasons; ++r) mine.dropped[r] += int(s.dropped) == r;
+        continue;
+      }
+      const vec3 p = s.position - origin;
+      for (std::uint32_t k = 0; k < part_count; ++k) visit(p, first + std::uint32_t(i), k);
+    }
+    mine.add_to(*all);
+  }
+
+  std::size_t device_stack() const
+    requires requires { Traversal::device_stack(1); }
+  {
+    return stack_bytes;
+  }
+  std::size_t stack_bytes = 0;
+
+ private:
+  CLEARANCE_HD void visit(vec3 p, std::uint32_t index, std::uint32_t k) const {
+    distance_key* const bound = part_best != nullptr ? part_best + k : &all->best;
+    const placement& place = places[k];
+    // Cheap and conservative, in the cloud's own frame: most points end here, whatever a compiler contracts.
+    const real reach = key_distance(load_relaxed(bound));
+    const vec3 d = p - place.around.center;
+    const real limit = reach + place.around.radius;
+    if (!((d.x * d.x + d.y * d.y + d.z * d.z) * (1 - 4 * slack) <= limit * absolute(limit))) return;
+
+    const PartView& part = parts[k];
+    const vec3 q = place.part_from_cloud(p);
+    using interior = typename PartView::interior_type;
+    if constexpr (!requires { interior::empty; }) {
+      // 0 is the least such a part can have: once a lower point has it for certain, nothing is left to learn.
+      if (load_relaxed(bound) <= make_key(0, index) && load_relaxed(&all->certain) != 0) return;
+      if (part.interior.inside(q)) {
+        lower_to(bound, make_key(0, index));
+        if (load_relaxed(&all->certain) == 0) {
+          any_within surface{place.error + part.facts.tolerance};
+          walk(part.tree, q, surface);
+          if (!surface.found) add_to(&all->certain, 1);
+        }
+        return;
+      }
+    }
+    shared_nearest ask{bound};
+    walk(part.tree, q, ask);
+    if (ask.best < infinity) {
+      const distance_key key = make_key(ask.best, index);
+      if (key < load_relaxed(bound)) lower_to(bound, key);
+    }
+  }
+};
+
+}  // namespace clearance::search
