@@ -81,11 +81,14 @@ inline pcd_header take_pcd_header(std::string_view& rest, const std::string& fil
         refuse(file, std::string(what) + " has " + std::to_string(values.size()) + " entries for " +
                          std::to_string(header.fields.size()) + " fields", header.lines);
     };
-    if (key != "FIELDS" && key != "COLUMNS" && values.empty())
-      refuse(file, "the PCD header entry " + std::string(key.substr(0, 40)) + " is unknown or has no value", header.lines);
+    constexpr std::string_view known[] = {"VERSION", "FIELDS", "COLUMNS", "SIZE", "TYPE", "COUNT",
+                                          "WIDTH", "HEIGHT", "POINTS", "VIEWPOINT", "DATA"};
+    if (std::find(std::begin(known), std::end(known), key) == std::end(known))
+      refuse(file, "\"" + std::string(key.substr(0, 40)) + "\" is no PCD header entry", header.lines);
+    if (values.empty()) refuse(file, std::string(key) + " has no value", header.lines);
     if (key == "VERSION") {
-      constexpr std::string_view known[] = {".5", ".6", ".7", "0.5", "0.6", "0.7"};
-      if (std::find(std::begin(known), std::end(known), values[0]) == std::end(known))
+      constexpr std::string_view versions[] = {".5", ".6", ".7", "0.5", "0.6", "0.7"};
+      if (std::find(std::begin(versions), std::end(versions), values[0]) == std::end(versions))
         refuse(file, "PCD version \"" + std::string(values[0].substr(0, 40)) + "\" is not .5, .6 or .7", header.lines);
     } else if (key == "FIELDS" || key == "COLUMNS") {
       if (has_fields) refuse(file, "FIELDS is given twice", header.lines);
@@ -127,7 +130,7 @@ inline pcd_header take_pcd_header(std::string_view& rest, const std::string& fil
         v[i] = *value;
       }
       header.viewpoint = {{v[0], v[1], v[2]}, Eigen::Quaterniond(v[3], v[4], v[5], v[6])};
-    } else if (key == "DATA") {
+    } else {  // DATA
       if (values[0] == "ascii") header.data = pcd_header::encoding::ascii;
       else if (values[0] == "binary") header.data = pcd_header::encoding::binary;
       else if (values[0] == "binary_compressed") header.data = pcd_header::encoding::binary_compressed;
@@ -145,8 +148,6 @@ inline pcd_header take_pcd_header(std::string_view& rest, const std::string& fil
           refuse(file, "field " + field.name + " is a float of " + std::to_string(field.size) + " bytes");
       lay_out(header, file);
       return header;
-    } else {
-      refuse(file, "\"" + std::string(key.substr(0, 40)) + "\" is no PCD header entry", header.lines);
     }
   }
   refuse(file, "the PCD header has no DATA entry (is the file cut short, or no PCD?)");

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/scratch_file.hpp"
+#include "support/catch.hpp"
+
+#include <clearance/io/cloud_file.hpp>
+
+#include <random>
+
+using namespace clearance;
+
+namespace {
+
+std::string refused(const std::string& end, const std::string& bytes) {
+  const scratch_file file(end, bytes);
+  return refusal([&] { io::load_cloud(file.path); });
+}
+
+bool contains(const std::string& sentence, const std::string& part) {
+  INFO("\"" << sentence << "\" should say \"" << part << "\"");
+  CHECK(sentence.find(part) != std::string::npos);
+  return true;
+}
+
+io::cloud read(const std::string& end, const std::string& bytes) {
+  const scratch_file file(end, bytes);
+  return io::load_cloud(file.path);
+}
+
+std::string ply(const std::string& format, const std::string& count, const std::string& type, const std::string& rest) {
+  return "ply\nformat " + format + " 1.0\ncomment ours\nelement vertex " + count + "\nproperty " + type + " z\nproperty uchar red\nproperty " +
+         type + " x\nproperty " + type + " y\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n" + rest;
+}
+
+std::string record(float x, float y, float z) {
+  std::string bytes(13, '\xC8');
+  std::memcpy(bytes.data(), &z, 4);
+  std::memcpy(bytes.data() + 5, &x, 4);
+  std::memcpy(bytes.data() + 9, &y, 4);
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("an XYZ file may have comments, other separators and further columns") {
+  const io::cloud c = read(".xyz", "\xEF\xBB\xBF# made by hand\n1 2 3\r\n\n  4,5,6, 255\n7;8\t9 # last\nnan nan nan\n+1e1 -.5 inf");
+  REQUIRE(c.points.size() == 5);
+  CHECK(c.points[0] == vec3{1, 2, 3});
+  CHECK(c.points[1] == vec3{4, 5, 6});
+  CHECK(c.points[2] == vec3{7, 8, 9});
+  CHECK(!is_finite(c.points[3]));
+  CHECK(c.points[4].x == 10);
+  CHECK(c.points[4].z == infinity);
+  CHECK(c.width == 5);
+  CHECK(c.height == 1);
+}
+
+TEST_CASE("an XYZ file is refused with the number of its line") {
+  contains(refused(".xyz", "1 2 3\n# fine\n1 2\n"), ":3: a point needs three numbers, here are 2");
+  contains(refused(".xyz", "x y z\n1 2 3\n"), ":1: \"x\" is not a number");
+  contains(refused(".xyz", "1 2 +-3\n"), ":1: \"+-3\" is not a number");
+  contains(refused(".xyz", ""), "is empty (0 bytes)");
+  CHECK(read(".xyz", "# nothing\n\n").points.empty());
+  contains(refused(".las", "1 2 3\n"), "is no point cloud by its name");
+}
+
+TEST_CASE("float clouds near 0 are kept as they are, and a shift of far ones is exact") {
+  std::mt19937 random(3);
+  for (const double away : {0.0, 5.0, 70.0, 1e4, 5e6}) {
+    std::uniform_real_distribution<float> along(float(away) - 5, float(away) + 5);
+    std::vector<Eigen::Vector3d> points;
+    for (int i = 0; i < 500; ++i) points.emplace_back(double(along(random)), double(along(random)), double(along(random)));
+    const io::cloud c = io::make_cloud("", points, points.size(), 1);
+    CHECK(c.origin.isZero(0) == (away < 16));
+    for (std::size_t i = 0; i < points.size(); ++i)
+      CHECK(Eigen::Vector3d(c.origin + Eigen::Vector3d(double(c.points[i].x), double(c.points[i].y), double(c.points[i].z))) == points[i]);
+  }
+}
+
+TEST_CASE("the points of a PLY file come in the file's order, from text and from bytes") {
+  const std::string text = ply("ascii", "3", "float", "3 200 1 2\nnan 200 nan nan\n6 200 4 5\n");
+  const std::string bytes = ply("binary_little_endian", "3", "float", record(1, 2, 3) + record(not_a_number, 0, 0) + record(4, 5, 6));
+  for (const io::cloud& c : {read(".ply", text), read(".PLY", bytes)}) {
+    REQUIRE(c.points.size() == 3);
+    CHECK(c.points[0] == vec3{1, 2, 3});
+    CHECK(!is_finite(c.points[1]));
+    CHECK(c.points[2] == vec3{4, 5, 6});
+  }
+  // Data that begin with what looks like the end of a line.
+  for (const std::string begin : {"\n", "\r\n", "\n\n", "\r", " "}) {
+    std::string first = record(1, 2, 3);
+    first.replace(0, begin.size(), begin);
+    float z;
+    std::memcpy(&z, first.data(), 4);
+    const io::cloud c = read(".ply", ply("binary_little_endian", "2", "float", first + record(4, 5, 6)));
+    CHECK(c.points[0] == vec3{1, 2, z});
+    CHECK(c.points[1] == vec3{4, 5, 6});
+  }
+}
+
+TEST_CASE("a PLY file that is not what it says is refused") {
+  CHECK(read(".ply", ply("ascii", "0", "float", "")).points.empty());
+  contains(refused(".ply", ""), "is empty (0 bytes)");
+  contains(refused(".ply", "plx\n"), "is not a PLY file");
+  contains(refused(".ply", ply("ascii", "353535235358", "float", "3 200 1 2\n")), "more than the file holds");
+  contains(refused(".ply", ply("binary_little_endian", "2", "float", record(1, 2, 3))), "more than the file holds");
+  contains(refused(".ply", ply("ascii", "2", "float", "3.0000 200 1.00000 2.00000\n")), "the file ends after 1");
+  contains(refused(".ply", ply("ascii", "1", "float", "3 200 1 two\n")), ":12: \"two\" is not a number");
+  contains(refused(".ply", ply("ascii", "1", "float", "3 200 1\n\n\n")), ":12: a vertex needs 4 values, here are 3");
+  contains(refused(".ply", ply("ascii", "1", "real", "")), ":5: a PLY property needs");
+  contains(refused(".ply", ply("ascii", "1", "double", "1 200 5000000.125 2\n")), "rounded to float");
+  CHECK(read(".ply", ply("ascii", "1", "double", "1 200 5.125 2\n")).points.at(0) == vec3{5.125, 2, 1});
+}
+
+TEST_CASE("a PLY file cut at any length or with any byte changed is read or refused, never more") {
+  for (const std::string& whole : {ply("ascii", "2", "float", "3 200 1 2\n6 200 4 5\n"),
+                                   ply("binary_big_endian", "2", "float", record(1, 2, 3) + record(4, 5, 6))}) {
+    const scratch_file file(".ply", whole);
+    for (std::size_t length = 0; length < whole.size() - 1; ++length) {
+      file.put(whole.substr(0, length));
+      const std::string why = refusal([&] { io::load_ply(file.path); });
+      if (whole.size() - length > 2) CHECK(!why.empty());  // without the last digit or line end, text is still whole
+    }
+    std::mt19937 random(5);
+    std::size_t most = 0;
+    for (int i = 0; i < 1500; ++i) {
+      std::string changed = whole;
+      for (int k = 0; k <= i % 3; ++k) changed[random() % changed.size()] = char(random());
+      file.put(changed);
+      refusal([&] { most = std::max(most, io::load_ply(file.path).points.size()); });
+    }
+    CHECK(most <= whole.size());
+  }
+}
+
+TEST_CASE("real damaged PLY files are read or refused", "[data]") {
+  const std::string folder = CLEARANCE_TEST_DATA "/malformed/";
+  if (!std::filesystem::exists(folder)) {
+    WARN("SKIPPED: no folder " << folder);
+    return;
+  }
+  int read = 0, refused = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (io::extension(entry.path().string()) != ".ply") continue;
+    INFO(entry.path());
+    const std::string why = refusal([&] { io::load_ply(entry.path().string()); });
+    ++(why.empty() ? read : refused);
+    CHECK((why.empty() || why.find(entry.path().string()) == 0));
+  }
+  CHECK(read == 21);
+  CHECK(refused == 3);
+  CHECK(io::load_ply(folder + "trimesh/points_emptyface.ply").points.size() == 1024);
+  CHECK(io::load_ply(folder + "trimesh/empty.ply").points.empty());
+}

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/scratch_file.hpp"
+#include "support/catch.hpp"
+
+#include <clearance/io/pcd.hpp>
+#include <clearance/io/png.hpp>
+
+#include <random>
+
+using namespace clearance;
+
+namespace {
+
+std::string big(std::uint32_t value) {
+  return {char(value >> 24), char(value >> 16), char(value >> 8), char(value)};
+}
+
+std::string chunk(const std::string& name, const std::string& data) {
+  return big(std::uint32_t(data.size())) + name + data + big(io::png_crc(name + data));
+}
+
+/// Stored, not packed: a deflate block of raw bytes.
+std::string zlib(const std::string& data) {
+  std::uint32_t a = 1, b = 0;
+  for (const char c : data) a = (a + std::uint8_t(c)) % 65521, b = (b + a) % 65521;
+  const auto size = std::uint16_t(data.size()), not_size = std::uint16_t(~size);
+  return std::string("\x78\x01\x01", 3) + char(size) + char(size >> 8) + char(not_size) + char(not_size >> 8) + data + big(b << 16 | a);
+}
+
+std::string png(std::uint32_t width, std::uint32_t height, int depth, int colour, const std::string& rows) {
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", big(width) + big(height) + char(depth) + char(colour) + std::string(3, '\0')) +
+         chunk("IDAT", zlib(rows)) + chunk("IEND", "");
+}
+
+// 3 x 2 pixels: 0 1 258, 65535 1000 7
+const std::string pixels("\0\0\0\0\1\1\2\0\xff\xff\3\xe8\0\7", 14);
+
+std::string refused(const std::string& bytes) {
+  const scratch_file file(".png", bytes);
+  return refusal([&] { io::load_png(file.path); });
+}
+
+bool contains(const std::string& sentence, const std::string& part) {
+  INFO("\"" << sentence << "\" should say \"" << part << "\"");
+  CHECK(sentence.find(part) != std::string::npos);
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("a 16-bit PNG gives its numbers unchanged, row by row") {
+  const scratch_file file(".png", png(3, 2, 16, 0, pixels));
+  const io::depth_frame frame = io::load_png(file.path);
+  CHECK(frame.width == 3);
+  CHECK(frame.height == 2);
+  CHECK(frame.pixels == std::vector<std::uint16_t>{0, 1, 258, 65535, 1000, 7});
+  CHECK(frame.name == file.path);
+}
+
+TEST_CASE("any other PNG is refused by what it is") {
+  contains(refused(png(3, 2, 8, 0, std::string(8, '\0'))), "must be a 16-bit grey PNG, this one is 8-bit grey");
+  contains(refused(png(1, 1, 16, 2, std::string(7, '\0'))), "16-bit colour");
+  contains(refused(png(1, 1, 8, 6, std::string(5, '\0'))), "8-bit colour with alpha");
+  contains(refused("P5 3 2 65535\n"), "is not a PNG image");
+  contains(refused(""), "is empty (0 bytes)");
+  contains(refused(png(0, 2, 16, 0, "")), "has no pixels");
+}
+
+TEST_CASE("a PNG cut short or damaged anywhere is refused") {
+  const std::string whole = png(3, 2, 16, 0, pixels);
+  const scratch_file file(".png", whole);
+  const auto read = [&](const std::string& bytes) {
+    file.put(bytes);
+    return refusal([&] { io::load_png(file.path); });
+  };
+  REQUIRE(read(whole).empty());
+  REQUIRE(read(whole + "padding").empty());
+  for (std::size_t length = 0; length < whole.size(); ++length) CHECK(!read(whole.substr(0, length)).empty());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    std::string changed = whole;
+    changed[i] = char(changed[i] ^ 0x10);
+    CHECK(!read(changed).empty());
+  }
+}
+
+TEST_CASE("a PNG with right checksums and wrong contents is read or refused, never more") {
+  contains(refused(png(16000000, 16000000, 16, 0, pixels)), "more than its data can hold");
+  CHECK(!refused(png(3, 3, 16, 0, pixels)).empty());
+  std::mt19937 random(11);
+  const scratch_file file(".png");
+  int accepted = 0, wrong = 0;
+  for (int i = 0; i < 2000; ++i) {
+    std::string rows = zlib(pixels);
+    for (int k = 0; k <= i % 4; ++k) rows[random() % rows.size()] = char(random());
+    file.put("\x89PNG\r\n\x1a\n" + chunk("IHDR", big(3) + big(2) + char(16) + std::string(4, '\0')) + chunk("IDAT", rows) + chunk("IEND", ""));
+    accepted += refusal([&] { wrong += io::load_png(file.path).pixels.size() != 6; }).empty();
+  }
+  CHECK(wrong == 0);
+  CHECK(accepted < 2000);
+}
+
+TEST_CASE("the PNG and the PCD of one real frame agree in every pixel", "[data]") {
+  const std::string folder = CLEARANCE_TEST_DATA "/clouds/kinect_seq/";
+  if (!std::filesystem::exists(folder)) {
+    WARN("SKIPPED: no folder " << folder);
+    return;
+  }
+  for (const std::string name : {"frame_20121214T142255.814212", "frame_20121214T142256.068683", "frame_20121214T142256.332395"}) {
+    const io::depth_frame depth = io::load_png(folder + name + "_depth.png");
+    const io::cloud cloud = io::load_pcd(folder + name + ".pcd");
+    REQUIRE(depth.pixels.size() == cloud.points.size());
+    REQUIRE(depth.width == cloud.width);
+    double worst = 0;
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
+      const bool valid = is_finite(cloud.points[i]);
+      differ += valid != (depth.pixels[i] != 0);
+      if (!valid) continue;
+      const double z = 0.001 * depth.pixels[i], u = double(i % depth.width), v = double(i / depth.width);
+      const Eigen::Vector3d p((u - 320) * z / 525, (v - 240) * z / 525, z);
+      const vec3 q = cloud.points[i];
+      worst = std::max(worst, (p - Eigen::Vector3d(double(q.x), double(q.y), double(q.z))).norm());
+    }
+    CHECK(differ == 0);
+    CHECK(worst < 1e-6);
+  }
+}

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/scratch_file.hpp"
+#include "support/catch.hpp"
+
+#include <clearance/io/pcd.hpp>
+
+#include <random>
+
+using namespace clearance;
+
+namespace {
+
+template <class... T>
+std::string raw(T... values) {
+  std::string bytes;
+  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
+  return bytes;
+}
+
+std::string header(const std::string& fields, const std::string& size, const std::string& type,
+                   const std::string& count, const std::string& rest) {
+  return "# .PCD\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE " + type + "\nCOUNT " + count + "\n" + rest;
+}
+
+std::string plain(const std::string& rest) { return header("x y z", "4 4 4", "F F F", "1 1 1", rest); }
+
+io::cloud read(const std::string& bytes) {
+  const scratch_file file(".pcd", bytes);
+  return io::load_pcd(file.path);
+}
+
+std::string refused(const std::string& bytes) {
+  return refusal([&] { read(bytes); });
+}
+
+bool says(const std::string& sentence, const std::string& part) {
+  INFO("\"" << sentence << "\" should say \"" << part << "\"");
+  CHECK(sentence.find(part) != std::string::npos);
+  return sentence.find(part) != std::string::npos;
+}
+
+/// The same three records (1,2,3) (nan) (4,5,6) with a colour, in the three encodings.
+std::string sample_file(const std::string& encoding) {
+  const std::string head = header("rgb x y z", "4 4 4 4", "U F F F", "1 1 1 1", "WIDTH 3\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 3\nDATA " + encoding + "\n");
+  const float nan = not_a_number;
+  if (encoding == "ascii") return head + "7 1 2 3\n8 nan nan nan\n9 4 5 6\n";
+  if (encoding == "binary") return head + raw(7u, 1.f, 2.f, 3.f, 8u, nan, nan, nan, 9u, 4.f, 5.f, 6.f);
+  const std::string by_field = raw(7u, 8u, 9u, 1.f, nan, 4.f, 2.f, nan, 5.f, 3.f, nan, 6.f);
+  std::string packed(200, '\0');
+  const unsigned size = lzf_compress(by_field.data(), unsigned(by_field.size()), packed.data(), unsigned(packed.size()));
+  REQUIRE(size > 0);
+  return head + raw(std::uint32_t(size), std::uint32_t(by_field.size())) + packed.substr(0, size) + std::string(3901, '\0');
+}
+
+}  // namespace
+
+TEST_CASE("the three encodings of a PCD file give the same records, invalid ones in their place") {
+  for (const std::string encoding : {"ascii", "binary", "binary_compressed"}) {
+    const io::cloud c = read(sample_file(encoding));
+    REQUIRE(c.points.size() == 3);
+    CHECK(c.points[0] == vec3{1, 2, 3});
+    CHECK(!is_finite(c.points[1].x));
+    CHECK(c.points[2] == vec3{4, 5, 6});
+    CHECK(c.origin.isZero(0));
+    CHECK(c.width == 3);
+    REQUIRE(c.viewpoint);
+    CHECK(c.viewpoint->translation == Eigen::Vector3d(1, 2, 3));
+    CHECK(c.viewpoint->rotation.x() == 1);  // PCD puts w first
+  }
+}
+
+TEST_CASE("fields may have any order and type, and counts above one") {
+  const std::string bytes = header("z _ y n x", "2 1 8 4 1", "I U F F U", "1 3 1 2 1", "WIDTH 1\nHEIGHT 2\nPOINTS 2\nDATA binary\n");
+  const auto record = [](std::int16_t z, double y, std::uint8_t x) {
+    return raw(z) + "___" + raw(y, 1.f, 2.f, x);
+  };
+  const io::cloud c = read(bytes + record(-3, 2.5, 200) + record(4, -1, 0));
+  REQUIRE(c.points.size() == 2);
+  CHECK(c.points[0] + vec3{real(c.origin.x()), 0, 0} == vec3{200, 2.5, -3});
+  CHECK(c.points[1] + vec3{real(c.origin.x()), 0, 0} == vec3{0, -1, 4});
+  CHECK(c.height == 2);
+  const io::cloud text = read(header("z _ y", "4 1 4", "F U F", "1 3 1", "").substr(0, 0) +
+                              "VERSION .5\r\nCOLUMNS z _ y x\r\nSIZE 4 1 4 4\r\nTYPE F U F F\r\nCOUNT 1 2 1 1\r\nWIDTH 1\r\nDATA ascii\r\n3 0 0 2 1\r\n");
+  REQUIRE(text.points.size() == 1);
+  CHECK(text.points[0] == vec3{1, 2, 3});
+}
+
+TEST_CASE("coordinates far from 0 keep the precision of the file") {
+  const std::string head = header("x y z", "8 8 8", "F F F", "1 1 1", "WIDTH 3\nHEIGHT 1\nPOINTS 3\nDATA ");
+  const double x = 447123.0625, y = 5411987.001;
+  for (const auto& bytes : {head + "binary\n" + raw(x, y, 250.5, x + 0.001, y, 250.25, 0.0, 0.0, 0.0),
+                            head + "ascii\n447123.0625 5411987.001 250.5\n447123.0635 5411987.001 250.25\n0 0 0\n"}) {
+    const io::cloud c = read(bytes);
+    REQUIRE(c.points.size() == 3);
+    const auto at = [&](std::size_t i) -> Eigen::Vector3d {
+      return c.origin + Eigen::Vector3d(double(c.points[i].x), double(c.points[i].y), double(c.points[i].z));
+    };
+    CHECK((at(0) - Eigen::Vector3d(x, y, 250.5)).norm() < 1e-7);
+    CHECK((at(1) - Eigen::Vector3d(x + 0.001, y, 250.25)).norm() < 1e-7);
+    CHECK(at(2).isZero(0));  // "no return" must stay recognisable
+  }
+}
+
+TEST_CASE("an empty PCD cloud is a cloud, an empty file is an error") {
+  CHECK(read(plain("WIDTH 0\nHEIGHT 1\nPOINTS 0\nDATA ascii\n")).points.empty());
+  CHECK(read(plain("WIDTH 0\nHEIGHT 1\nPOINTS 0\nDATA binary\n")).points.empty());
+  CHECK(read(plain("WIDTH 0\nHEIGHT 1\nPOINTS 0\nDATA binary_compressed\n")).points.empty());
+  says(refused(""), "is empty (0 bytes)");
+  says(refusal([] { io::load_pcd("/nonexistent/cloud.pcd"); }), "/nonexistent/cloud.pcd: there is no such file");
+}
+
+TEST_CASE("a PCD file that contradicts itself is refused with its line or its numbers") {
+  says(refused("hello\n"), "\"hello\" is no PCD header entry");
+  says(refused(plain("WIDTH 2\nHEIGHT 2\nPOINTS 3\nDATA ascii\n")), "WIDTH 2 times HEIGHT 2 is not POINTS 3");
+  says(refused(plain("WIDTH 2\nPOINTS 2\nDATA ascii\n1 2 3\n")), "ends after 1 records");
+  says(refused(plain("WIDTH 1\nPOINTS 1\nDATA ascii\n1 2 3\n4 5 6\n")), ":11: POINTS says 1, but here is another record");
+  says(refused(plain("WIDTH 1\nPOINTS 1\nDATA ascii\n1 2\n")), ":10: a record needs 3 values, here are 2");
+  says(refused(plain("WIDTH 1\nPOINTS 1\nDATA ascii\n1 2 3m\n")), ":10: \"3m\" is not a number");
+  says(refused(plain("WIDTH -1\nDATA ascii\n")), ":7: WIDTH \"-1\" is not a whole number in range");
+  says(refused(header("x y", "4 4", "F F", "1 1", "WIDTH 0\nDATA ascii\n")), "no field z");
+  says(refused(header("x y z x", "4 4 4 4", "F F F F", "1 1 1 1", "WIDTH 0\nDATA ascii\n")), "more than one field x");
+  says(refused(header("x y z", "4 4", "F F F", "1 1 1", "")), ":4: SIZE has 2 entries for 3 fields");
+  says(refused(header("x y z", "4 4 3", "F F F", "1 1 1", "")), "SIZE 3 is not 1, 2, 4 or 8");
+  says(refused(header("x y z", "4 4 2", "F F F", "1 1 1", "WIDTH 0\nDATA ascii\n")), "float of 2 bytes");
+  says(refused(header("x y z", "4 4 4", "F F G", "1 1 1", "")), "TYPE \"G\" is not F, I or U");
+  says(refused(plain("WIDTH 1\nPOINTS 1\n")), "no DATA entry");
+  says(refused(plain("WIDTH 1\nDATA zip\n")), "DATA \"zip\"");
+  says(refused("VERSION 0.8\n"), "version");
+}
+
+TEST_CASE("no number in a PCD file is believed before it is compared with the file's size") {
+  const std::string most = "4294967295";
+  for (const std::string encoding : {"ascii", "binary", "binary_compressed"}) {
+    CHECK(!refused(plain("WIDTH " + most + "\nHEIGHT 1\nPOINTS " + most + "\nDATA " + encoding + "\n")).empty());
+    CHECK(!refused(plain("WIDTH " + most + "\nHEIGHT " + most + "\nDATA " + encoding + "\n12345678")).empty());
+    CHECK(!refused(header("x y z _", "4 4 4 8", "F F F F", "1 1 1 " + most, "WIDTH 1\nDATA " + encoding + "\n1 2 3\n")).empty());
+    CHECK(!refused(plain("WIDTH 99999999999999999999\nDATA " + encoding + "\n")).empty());
+  }
+  const std::string head = plain("WIDTH 100000000\nHEIGHT 1\nPOINTS 100000000\nDATA binary_compressed\n");
+  says(refused(head + raw(16u, 1200000000u) + std::string(16, 'x')), "which is impossible");
+  says(refused(head + raw(17u, 1200000000u) + std::string(16, 'x')), "cut short");
+  says(refused(plain("WIDTH 2\nDATA binary_compressed\n") + raw(16u, 24u) + std::string(16, '\xff')), "damaged");
+}
+
+TEST_CASE("a PCD file cut at any length or with any byte changed is read or refused, never more") {
+  for (const std::string encoding : {"ascii", "binary", "binary_compressed"}) {
+    const std::string whole = sample_file(encoding).substr(0, 330);
+    const scratch_file file(".pcd", whole);
+    const std::size_t enough = io::load_pcd(file.path).points.size() == 3 ? whole.find("DATA") + 10 : 0;
+    for (std::size_t length = 0; length < whole.size(); ++length) {
+      file.put(whole.substr(0, length));
+      const std::string why = refusal([&] { io::load_pcd(file.path); });
+      if (length < enough) CHECK(!why.empty());
+    }
+    std::mt19937 random(7);
+    int accepted = 0;
+    std::size_t most = 0;
+    for (int i = 0; i < 2000; ++i) {
+      std::string changed = whole;
+      for (int k = 0; k <= i % 3; ++k) changed[random() % changed.size()] = char(random());
+      file.put(changed);
+      accepted += refusal([&] { most = std::max(most, io::load_pcd(file.path).points.size()); }).empty();
+    }
+    CHECK(most <= whole.size());
+    CHECK(accepted > 20);
+    CHECK(accepted < 1980);
+  }
+}
+
+TEST_CASE("every real PCD file is read, with the number of invalid points that its source states", "[data]") {
+  const std::string folder = CLEARANCE_TEST_DATA "/clouds/";
+  if (!std::filesystem::exists(folder)) {
+    WARN("SKIPPED: no folder " << folder);
+    return;
+  }
+  struct expected { const char* file; std::size_t width, height, invalid; };
+  for (const auto& [name, width, height, invalid] : {
+           expected{"kinect_seq/frame_20121214T142255.814212.pcd", 640, 480, 35625},
+           expected{"lidar/251370668.pcd", 69088, 1, 0}, expected{"lidar/room_scan1.pcd", 112586, 1, 0},
+           expected{"organized/capture0001.pcd", 640, 480, 57553}, expected{"organized/five_people.pcd", 640, 480, 68125},
+           expected{"organized/table_scene_mug_stereo_textured.pcd", 640, 480, 97920}, expected{"small/bunny.pcd", 397, 1, 0},
+           expected{"small/car6.pcd", 10031, 1, 0}, expected{"small/colored_cloud.pcd", 1, 1000, 0},
+           expected{"small/curve_close.pcd", 110, 1, 0}, expected{"small/krylon.pcd", 4467, 1, 0},
+           expected{"small/lamppost.pcd", 1771, 1, 0}, expected{"small/milk_color.pcd", 13704, 1, 0},
+           expected{"small/object_template_0.pcd", 1397, 1, 0}, expected{"small/octants.pcd", 8, 1, 0},
+           expected{"unorganized/region_growing_tutorial_mm.pcd", 108104, 1, 0}}) {
+    INFO(name);
+    const io::cloud c = io::load_pcd(folder + name);
+    CHECK(c.width == width);
+    CHECK(c.height == height);
+    CHECK(c.points.size() == width * height);
+    CHECK(std::size_t(std::count_if(c.points.begin(), c.points.end(), [](vec3 p) { return !is_finite(p); })) == invalid);
+  }
+  const io::cloud octants = io::load_pcd(folder + "small/octants.pcd");
+  CHECK(std::abs(octants.points.front().z) <= 9);
+}
