@@ -25,7 +25,7 @@ class ply_values {
   ply_values(std::string_view rest, std::string format, const std::string& file, std::size_t line)
       : rest_(rest), format_(std::move(format)), file_(file), at_(line) {}
 
-  std::size_t left() const { return rest_.size(); }
+  std::size_t left() const { return rest_.size() + line_.size(); }
   bool ascii() const { return format_ == "ascii"; }
 
   /// In ascii files each record is one line; what is left of the last one is passed over.
@@ -108,7 +108,7 @@ inline polygon_mesh read_ply_mesh(std::string_view rest, const std::string& file
   ply_values values(rest, format, file, at + 1);
   for (const auto& element : elements) {
     if (element.properties.empty()) continue;
-    if (element.count > values.left() + 1 || element.count > UINT32_MAX)
+    if (element.count > values.left() || element.count > UINT32_MAX)
       refuse(file, "the header says " + std::to_string(element.count) + " of " + element.name.substr(0, 40) +
                        ", more than the file holds");
     const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
@@ -130,7 +130,7 @@ inline polygon_mesh read_ply_mesh(std::string_view rest, const std::string& file
         }
         const bool corners = is_face && (p.name == "vertex_indices" || p.name == "vertex_index");
         const double count = values.next(p.count_type);
-        if (!(count >= 0 && count <= double(values.left()) + 1e3 && count == std::floor(count)))
+        if (!(count >= 0 && count <= double(values.left()) && count == std::floor(count)))
           refuse(file, "a list is longer than the file");
         if (corners && count < 3) refuse(file, "face " + std::to_string(i) + " has fewer than three vertices");
         for (std::uint64_t k = 0; k < std::uint64_t(count); ++k) {
