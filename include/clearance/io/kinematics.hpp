@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace clearance::io {
+
+enum class joint_kind { fixed, revolute, continuous, prismatic };
+
+/// Its value is multiplier * (value of the joint named) + offset.
+struct mimic {
+  std::string joint;
+  double multiplier = 1, offset = 0;
+};
+
+/// parent-from-child is origin, then the motion by the joint's value (radians, metres) about or along the axis.
+struct joint {
+  std::string name;
+  joint_kind kind = joint_kind::fixed;
+  std::string parent, child;
+  Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
+  std::optional<mimic> follows;
+
+  bool movable() const { return kind != joint_kind::fixed && !follows; }
+};
+
+struct joint_options {
+  bool ignore_limits = false;
+};
+
+/// Links joined to a tree. A configuration is one value for each movable joint that follows no other, in the order in
+/// which the joints were given. Joints that follow another do so beyond their own limits too.
+class kinematic_tree {
+ public:
+  kinematic_tree() = default;
+
+  /// Throws std::invalid_argument with the joint's name if the joints do not make one tree of all links, or if an
+  /// origin, axis, limit or mimic makes no sense.
+  kinematic_tree(std::vector<std::string> links, std::vector<joint> joints)
+      : links_(std::move(links)), joints_(std::move(joints)) {
+    for (std::size_t i = 0; i < links_.size(); ++i)
+      if (!link_at_.emplace(links_[i], i).second) throw std::invalid_argument("two links are named \"" + links_[i] + '"');
+    for (std::size_t j = 0; j < joints_.size(); ++j)
+      if (!joint_at_.emplace(joints_[j].name, j).second)
+        throw std::invalid_argument("two joints are named \"" + joints_[j].name + '"');
+    std::vector<std::size_t> parents(links_.size(), none);  // the joint above each link
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      check(joints_[j]);
+      const std::size_t child = link(joints_[j].child);
+      link(joints_[j].parent);
+      if (parents[child] != none)
+        throw std::invalid_argument("link \"" + links_[child] + "\" has two joints above it, \"" +
+                                    joints_[parents[child]].name + "\" and \"" + joints_[j].name + "\"");
+      parents[child] = j;
+      if (joints_[j].movable()) movable_.push_back(j);
+    }
+    order_links(parents);
+    order_values();
+  }
+
+  const std::vector<std::string>& links() const { return links_; }
+  const std::vector<joint>& joints() const { return joints_; }
+  std::size_t base() const { return base_; }
+
+  /// How many values a configuration has, and whose they are.
+  std::size_t size() const { return movable_.size(); }
+  const joint& movable(std::size_t i) const { return joints_[movable_[i]]; }
+
+  /// The number of a link; std::invalid_argument if there is none of that name.
+  std::size_t link(const std::string& name) const {
+    const auto at = link_at_.find(name);
+    if (at == link_at_.end()) throw std::invalid_argument("the robot has no link \"" + name + '"');
+    return at->second;
+  }
+
+  /// Each joint at 0, or at the limit nearest to it.
+  std::vector<double> rest() const {
+    std::vector<double> q;
+    for (const std::size_t j : movable_) q.push_back(std::clamp(0.0, joints_[j].lower, joints_[j].upper));
+    return q;
+  }
+
+  /// The configuration in which the joints named have these values and the others are at rest.
+  std::vector<double> configuration(const std::map<std::string, double>& values, joint_options options = {}) const {
+    std::vector<double> q = rest();
+    for (const auto& [name, value] : values) {
+      const std::size_t i = value_of(name);
+      q[i] = value;
+      check_value(joints_[movable_[i]], value, options);
+    }
+    return q;
+  }
+
+  /// base-from-link for every link, composed in double. Throws std::invalid_argument if there are too many or too few
+  /// values, or if one is not finite or beyond its limits.
+  std::vector<Eigen::Isometry3d> link_poses(std::span<const double> q, joint_options options = {}) const {
+    if (q.size() != size())
+      throw std::invalid_argument("the robot has " + std::to_string(size()) + " movable joints, here are " +
+                                  std::to_string(q.size()) + " values");
+    std::vector<double> value(joints_.size(), 0.0);
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      check_value(joints_[movable_[i]], q[i], options);
+      value[movable_[i]] = q[i];
+    }
+    for (const auto& [j, leader] : followers_)
+      value[j] = joints_[j].follows->multiplier * value[leader] + joints_[j].follows->offset;
+    std::vector<Eigen::Isometry3d> poses(links_.size(), Eigen::Isometry3d::Identity());
+    for (const auto& [j, parent, child] : steps_) {
+      const joint& by = joints_[j];
+      poses[child] = poses[parent] * by.origin;
+      if (by.kind == joint_kind::prismatic) poses[child].translate(value[j] * by.axis);
+      if (by.kind == joint_kind::revolute || by.kind == joint_kind::continuous)
+        poses[child].rotate(Eigen::AngleAxisd(value[j], by.axis));
+    }
+    return poses;
+  }
+
+ private:
+  static constexpr std::size_t none = std::size_t(-1);
+  struct step {
+    std::size_t joint, parent, child;
+  };
+  struct follower {
+    std::size_t joint, leader;
+  };
+
+  void check(joint& j) const {
+    const std::string who = "joint \"" + j.name + "\" ";
+    const Eigen::Matrix3d r = j.origin.linear();
+    if (!j.origin.matrix().allFinite() || !(r * r.transpose()).isIdentity(1e-9) || r.determinant() < 0)
+      throw std::invalid_argument(who + "has an origin that is not a rigid transform");
+    if (j.kind == joint_kind::fixed) {
+      j.follows.reset();
+      return;
+    }
+    const double length = j.axis.norm();
+    if (!(length > 1e-9) || !std::isfinite(length)) throw std::invalid_argument(who + "has an axis without direction");
+    j.axis /= length;
+    if (!(j.lower <= j.upper)) throw std::invalid_argument(who + "has a lower limit above its upper limit");
+    if (j.follows && !(std::isfinite(j.follows->multiplier) && std::isfinite(j.follows->offset)))
+      throw std::invalid_argument(who + "follows another by a factor that is not finite");
+  }
+
+  void order_links(const std::vector<std::size_t>& parents) {
+    std::vector<std::vector<std::size_t>> below(links_.size());
+    std::vector<std::size_t> pending;
+    for (std::size_t i = 0; i < links_.size(); ++i)
+      if (parents[i] == none) pending.push_back(i);
+      else below[link(joints_[parents[i]].parent)].push_back(i);
+    if (pending.size() != 1) throw std::invalid_argument("the joints make " + std::to_string(pending.size()) + " trees, not one");
+    base_ = pending[0];
+    while (!pending.empty()) {
+      const std::size_t parent = pending.back();
+      pending.pop_back();
+      for (const std::size_t child : below[parent]) {
+        steps_.push_back({parents[child], parent, child});
+        pending.push_back(child);
+      }
+    }
+    if (steps_.size() + 1 != links_.size()) throw std::invalid_argument("some joints make a ring, apart from the base link");
+  }
+
+  /// Leaders before those that follow them.
+  void order_values() {
+    std::vector<bool> done(joints_.size()), entered(joints_.size());
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      std::vector<std::size_t> chain;
+      for (std::size_t at = j; joints_[at].follows && !done[at]; at = find(joints_[at].follows->joint, joints_[at].name)) {
+        if (entered[at]) throw std::invalid_argument("joint \"" + joints_[at].name + "\" follows itself");
+        entered[at] = true;
+        chain.push_back(at);
+      }
+      for (; !chain.empty(); chain.pop_back()) {
+        const std::size_t leader = find(joints_[chain.back()].follows->joint, "");
+        if (joints_[leader].kind == joint_kind::fixed)
+          throw std::invalid_argument("joint \"" + joints_[chain.back()].name + "\" follows the fixed joint \"" + joints_[leader].name + "\"");
+        followers_.push_back({chain.back(), leader});
+        done[chain.back()] = true;
+      }
+    }
+  }
+
+  std::size_t find(const std::string& name, const std::string& for_whom) const {
+    if (const auto at = joint_at_.find(name); at != joint_at_.end()) return at->second;
+    throw std::invalid_argument(for_whom.empty() ? "the robot has no joint \"" + name + "\""
+                                                 : "joint \"" + for_whom + "\" follows \"" + name + "\", which does not exist");
+  }
+
+  std::size_t value_of(const std::string& name) const {
+    const std::size_t at = find(name, "");
+    const joint& j = joints_[at];
+    if (j.kind == joint_kind::fixed) throw std::invalid_argument("joint \"" + name + "\" is fixed and takes no value");
+    if (j.follows) throw std::invalid_argument("joint \"" + name + "\" follows \"" + j.follows->joint + "\" and takes no value");
+    return std::size_t(std::lower_bound(movable_.begin(), movable_.end(), at) - movable_.begin());
+  }
+
+  static void check_value(const joint& j, double value, joint_options options) {
+    if (!std::isfinite(value)) throw std::invalid_argument("joint \"" + j.name + "\" has a value that is not finite");
+    if (!options.ignore_limits && !(value >= j.lower && value <= j.upper))
+      throw std::invalid_argument("joint \"" + j.name + "\" at " + std::to_string(value) + " is outside its limits " +
+                                  std::to_string(j.lower) + " to " + std::to_string(j.upper));
+  }
+
+  std::vector<std::string> links_;
+  std::vector<joint> joints_;
+  std::map<std::string, std::size_t> link_at_, joint_at_;
+  std::vector<std::size_t> movable_;
+  std::vector<follower> followers_;
+  std::vector<step> steps_;
+  std::size_t base_ = 0;
+};
+
+}  // namespace clearance::io

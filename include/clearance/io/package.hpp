@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/io/error.hpp>
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace clearance::io {
+
+/// Whether a folder has a package.xml that names this package.
+inline bool is_package(const std::filesystem::path& folder, std::string_view name) {
+  std::error_code failed;
+  const auto file = folder / "package.xml";
+  if (!std::filesystem::is_regular_file(file, failed)) return false;
+  const std::string text = read_bytes(file.string());
+  std::string_view found = text;
+  const std::size_t begin = found.find("<name>");
+  if (begin == found.npos) return false;
+  found.remove_prefix(begin + 6);
+  found = found.substr(0, found.find('<'));
+  const std::size_t first = found.find_first_not_of(" \t\r\n");
+  return first != found.npos && found.substr(first, found.find_last_not_of(" \t\r\n") + 1 - first) == name;
+}
+
+/// Where a package may be, the likeliest first: as given, the folders above `urdf` (one of that name, or whose
+/// package.xml has it, or one beside), ROS_PACKAGE_PATH, and share/<name> in AMENT_PREFIX_PATH.
+inline std::vector<std::filesystem::path> find_package(const std::string& name, const std::filesystem::path& urdf,
+                                                       const std::map<std::string, std::filesystem::path>& given) {
+  namespace fs = std::filesystem;
+  if (const auto at = given.find(name); at != given.end()) return {at->second};
+  std::vector<fs::path> found;
+  std::error_code failed;
+  const auto add = [&](const fs::path& folder, bool fits) {
+    if (fits && fs::is_directory(folder, failed)) found.push_back(folder);
+  };
+  fs::path above = fs::weakly_canonical(fs::absolute(urdf), failed).parent_path();
+  for (bool more = !above.empty(); more; above = above.parent_path()) {
+    add(above, above.filename() == name || is_package(above, name));
+    add(above / name, true);
+    more = above != above.root_path();
+  }
+  const auto each = [](const char* variable, auto visit) {
+    const char* value = std::getenv(variable);
+    std::string_view rest = value ? value : "";
+    while (!rest.empty()) {
+      const std::string_view entry = rest.substr(0, rest.find(':'));
+      rest.remove_prefix(std::min(entry.size() + 1, rest.size()));
+      if (!entry.empty()) visit(fs::path(entry));
+    }
+  };
+  each("ROS_PACKAGE_PATH", [&](const fs::path& root) {
+    add(root, root.filename() == name || is_package(root, name));
+    add(root / name, true);
+    for (fs::directory_iterator at(root, failed), end; !failed && at != end; at.increment(failed)) {
+      add(at->path(), is_package(at->path(), name));
+      add(at->path() / name, true);
+    }
+  });
+  each("AMENT_PREFIX_PATH", [&](const fs::path& prefix) { add(prefix / "share" / name, true); });
+  return found;
+}
+
+/// The file that a URDF means by package://name/path, file:///path, or a path from the URDF's own folder. Throws
+/// std::runtime_error if the package is nowhere, or if the scheme is another.
+inline std::filesystem::path resolve_uri(const std::string& uri, const std::filesystem::path& urdf,
+                                         const std::map<std::string, std::filesystem::path>& packages) {
+  const std::size_t scheme = uri.find("://");
+  if (uri.empty()) refuse(urdf.string(), "a mesh has an empty file name");
+  if (scheme == uri.npos) return urdf.parent_path() / uri;
+  if (uri.starts_with("file:///")) return uri.substr(7);
+  if (!uri.starts_with("package://"))
+    refuse(urdf.string(), "\"" + uri + "\" is none of package://name/path, file:///path and a relative path");
+  const std::string name = uri.substr(10, uri.find('/', 10) - 10);
+  const std::string inside = uri.size() > 11 + name.size() ? uri.substr(11 + name.size()) : "";
+  if (name.empty() || inside.empty()) refuse(urdf.string(), "\"" + uri + "\" names no file in a package");
+  const auto folders = find_package(name, urdf, packages);
+  std::error_code failed;
+  for (const auto& folder : folders)
+    if (std::filesystem::exists(folder / inside, failed)) return folder / inside;
+  if (!folders.empty()) return folders.front() / inside;  // whoever opens it says that it is missing
+  refuse(urdf.string(), "the package of \"" + uri + "\" is neither given, nor a folder above, nor in ROS_PACKAGE_PATH or AMENT_PREFIX_PATH");
+}
+
+}  // namespace clearance::io

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/io/robot_link.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace clearance::io {
+
+/// The rigid parts of a robot description and how they move. The base link is at the origin.
+class robot {
+ public:
+  robot(std::string name, kinematic_tree tree, std::vector<robot_part> parts, std::vector<std::string> notes)
+      : name_(std::move(name)), tree_(std::move(tree)), parts_(std::move(parts)), notes_(std::move(notes)) {}
+
+  const std::string& name() const { return name_; }
+  const std::vector<robot_part>& parts() const { return parts_; }
+  const kinematic_tree& kinematics() const { return tree_; }
+  /// Sentences that a user should see, such as which links gave their visual for want of a collision.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+  /// base-from-part for each part; see kinematic_tree::link_poses.
+  std::vector<Eigen::Isometry3d> poses(std::span<const double> configuration, joint_options options = {}) const {
+    const auto all = tree_.link_poses(configuration, options);
+    std::vector<Eigen::Isometry3d> made;
+    for (const auto& part : parts_) made.push_back(all[part.link]);
+    return made;
+  }
+
+  /// base-from-link for any link, with geometry or not.
+  Eigen::Isometry3d link_pose(const std::string& link, std::span<const double> configuration, joint_options options = {}) const {
+    return tree_.link_poses(configuration, options)[tree_.link(link)];
+  }
+
+ private:
+  std::string name_;
+  kinematic_tree tree_;
+  std::vector<robot_part> parts_;
+  std::vector<std::string> notes_;
+};
+
+/// Reads a URDF file and all its geometry; a part is a link that has some, in the file's order. Throws
+/// std::runtime_error if a file is damaged or missing, std::invalid_argument if a link to exclude does not exist.
+inline robot load_robot(const std::filesystem::path& urdf, const robot_options& options = {}) {
+  if (!(options.tessellation > 0)) throw std::invalid_argument("the tessellation error must be above 0");
+  const urdf_file file = read_urdf(urdf.string());
+  for (const auto& name : options.exclude_links)
+    if (std::none_of(file.links.begin(), file.links.end(), [&](const auto& link) { return link->name == name; }))
+      throw std::invalid_argument("the robot has no link \"" + name + "\" to exclude");
+  std::vector<robot_part> parts;
+  std::vector<std::string> notes;
+  for (const auto& link : file.links) {
+    if (std::find(options.exclude_links.begin(), options.exclude_links.end(), link->name) != options.exclude_links.end()) continue;
+    if (link->collision_array.empty() && link->visual_array.empty()) continue;
+    robot_part part{link->name, {}, 0, options.geometry, file.tree.link(link->name)};
+    if (part.used == robot_geometry::collision && link->collision_array.empty()) {
+      part.used = robot_geometry::visual;
+      notes.push_back("link \"" + part.name + "\" has no collision geometry: its visual is used");
+    } else if (part.used == robot_geometry::visual && link->visual_array.empty()) {
+      part.used = robot_geometry::collision;
+      notes.push_back("link \"" + part.name + "\" has no visual geometry: its collision is used");
+    }
+    if (part.used == robot_geometry::collision)
+      for (const auto& shape : link->collision_array) add_geometry(part, *shape, urdf, options);
+    else
+      for (const auto& shape : link->visual_array) add_geometry(part, *shape, urdf, options);
+    parts.push_back(std::move(part));
+  }
+  if (parts.empty())
+    refuse(urdf.string(), options.exclude_links.empty() ? "no link has geometry" : "no link that is not excluded has geometry");
+  return {file.name, file.tree, std::move(parts), std::move(notes)};
+}
+
+}  // namespace clearance::io
