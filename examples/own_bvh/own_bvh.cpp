@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "own_bvh.hpp"
+
+#include <clearance/backend/host.hpp>
+
+int main() {
+  std::vector<theirs::node> memory(600);
+  return example(clearance::host{}, memory);
+}
