@@ -63,13 +63,18 @@ struct bounding_volume_traits {
   }
 };
 
+/// Byte by byte, as to a device: trivially copyable, or the traits vouch for it with `static constexpr bool
+/// bitwise_copyable = true` (Eigen's types copy so, but do not say it).
+template <class V>
+concept copied_as_bytes = std::is_trivially_copyable_v<V> || requires { requires bounding_volume_traits<V>::bitwise_copyable; };
+
 /// A convex shape that encloses balls and can say how far away they must be.
 ///
 /// Law: `lower_bound(fit(balls), q)` never exceeds the signed distance from q to any of the balls, nor a primitive's
 ///      computed distance, after float rounding (see `lowered`); inside the volume it is negative.
 /// `fit` runs on the host while building; `lower_bound` runs wherever the query runs.
 template <class V>
-concept bounding_volume = std::is_trivially_copyable_v<V> && requires(const V v, vec3 q, std::span<const ball> balls) {
+concept bounding_volume = copied_as_bytes<V> && requires(const V v, vec3 q, std::span<const ball> balls) {
   { bounding_volume_traits<V>::fit(balls) } -> std::same_as<V>;
   { bounding_volume_traits<V>::lower_bound(v, q) } -> std::same_as<real>;
 };
@@ -77,7 +82,7 @@ concept bounding_volume = std::is_trivially_copyable_v<V> && requires(const V v,
 /// `bounding_volume<V>` with reasons: nvcc does not say which requirement of a concept failed.
 template <class V>
 consteval bool explain_bounding_volume() {
-  static_assert(std::is_trivially_copyable_v<V>, "a bounding volume must be trivially copyable");
+  static_assert(copied_as_bytes<V>, "a bounding volume must be trivially copyable");
   static_assert(requires(std::span<const ball> balls) { { bounding_volume_traits<V>::fit(balls) } -> std::same_as<V>; },
                 "a bounding volume V needs: static V fit(std::span<const ball>), as a member or in bounding_volume_traits<V>");
   static_assert(requires(const V v, vec3 q) { { bounding_volume_traits<V>::lower_bound(v, q) } -> std::same_as<real>; },
