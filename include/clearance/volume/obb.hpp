@@ -62,16 +62,18 @@ struct obb {
       box.axis[k] = {real(frame(0, k)), real(frame(1, k)), real(frame(2, k))};
       axes.row(k) << box.axis[k].x, box.axis[k].y, box.axis[k].z;
     }
+    // Measured from a float near by: far from the origin, even a double would lose the size of something tiny.
+    const Eigen::Vector3d near(balls[0].center.x, balls[0].center.y, balls[0].center.z);
     Eigen::Vector3d lo = Eigen::Vector3d::Constant(infinity), hi = -lo;
     for (const ball& b : balls) {
-      const Eigen::Vector3d t = axes * Eigen::Vector3d(b.center.x, b.center.y, b.center.z);
+      const Eigen::Vector3d t = axes * (Eigen::Vector3d(b.center.x, b.center.y, b.center.z) - near);
       const double r = b.radius * (1 + 1e-6);  // the axes' length is 1 to 1e-7 only
       lo = lo.cwiseMin((t.array() - r).matrix());
       hi = hi.cwiseMax((t.array() + r).matrix());
     }
-    const Eigen::Vector3d middle = axes.inverse() * ((lo + hi) / 2);
+    const Eigen::Vector3d middle = near + axes.inverse() * ((lo + hi) / 2);
     box.center = {real(middle.x()), real(middle.y()), real(middle.z())};
-    const Eigen::Vector3d at = axes * Eigen::Vector3d(box.center.x, box.center.y, box.center.z);
+    const Eigen::Vector3d at = axes * (Eigen::Vector3d(box.center.x, box.center.y, box.center.z) - near);
     const double margin = 2.0 * slack * (hi - lo).norm();
     for (int k = 0; k < 3; ++k)
       box.half[k] = std::nextafter(real(std::max(hi[k] - at[k], at[k] - lo[k]) + margin), infinity);
