@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/laws.hpp"
+#include "support/volumes.hpp"
+
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/obb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+
+TEST_CASE("A sphere never promises more distance than there is") { check_volume_laws<clearance::sphere>(); }
+TEST_CASE("An axis-aligned box never promises more distance than there is") { check_volume_laws<clearance::aabb>(); }
+TEST_CASE("An oriented box never promises more distance than there is") { check_volume_laws<clearance::obb>(); }
+TEST_CASE("A volume of one's own obeys the same laws") { check_volume_laws<kdop14>(); }
+TEST_CASE("A foreign type obeys them through its traits") { check_volume_laws<Eigen::AlignedBox3f>(); }
+
+namespace {
+
+/// How deep inside it says the point is, at most, and how far a point outside.
+template <class V>
+void check_tightness(const std::vector<ball>& balls, vec3 inside, real depth, vec3 outside, real distance) {
+  using traits = clearance::bounding_volume_traits<V>;
+  const V v = traits::fit(balls);
+  CHECK(traits::lower_bound(v, inside) == Approx(-depth).epsilon(1e-4));
+  CHECK(traits::lower_bound(v, outside) == Approx(distance).epsilon(1e-4));
+}
+
+}  // namespace
+
+TEST_CASE("A volume around one ball is as deep as the ball, and around a box as the box") {
+  const std::vector<ball> one = {{{1, 2, 3}, 0.5f}};
+  check_tightness<clearance::sphere>(one, {1, 2, 3}, 0.5f, {1, 2, 5}, 1.5f);
+  check_tightness<clearance::aabb>(one, {1, 2, 3}, 0.5f, {1, 2, 5}, 1.5f);
+  check_tightness<clearance::obb>(one, {1, 2, 3}, 0.5f, {1, 2, 5}, 1.5f);
+  std::vector<ball> box;
+  for (int k = 0; k < 8; ++k) box.push_back({{k & 1 ? 3.f : -3.f, k & 2 ? 2.f : -2.f, k & 4 ? 1.f : -1.f}, 0});
+  check_tightness<clearance::aabb>(box, {2.5f, 0, 0}, 0.5f, {6, 6, 1}, 5);
+  check_tightness<clearance::obb>(box, {2.5f, 0, 0}, 0.5f, {6, 6, 1}, 5);
+}
+
+TEST_CASE("An oriented box turns with a turned box") {
+  dice d(3);
+  for (int round = 0; round < 50; ++round) {
+    const Eigen::Matrix3f turn = d.pose(0).linear().cast<float>();
+    std::vector<ball> box;
+    for (int k = 0; k < 8; ++k) {
+      const Eigen::Vector3f p = turn * Eigen::Vector3f(k & 1 ? 4 : -4, k & 2 ? 1 : -1, k & 4 ? 0.25f : -0.25f);
+      box.push_back({{p.x(), p.y(), p.z()}, 0});
+    }
+    const auto fitted = clearance::obb::fit(box);
+    std::array half = {fitted.half[0], fitted.half[1], fitted.half[2]};
+    std::sort(half.begin(), half.end());
+    CHECK(half[0] == Approx(0.25).epsilon(1e-3));
+    CHECK(half[1] == Approx(1).epsilon(1e-3));
+    CHECK(half[2] == Approx(4).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("A bound of a point that is not a number is no bound to go by") {
+  const std::vector<ball> balls = {{{1, 2, 3}, 0.5f}, {{2, 2, 2}, 0.5f}};
+  const vec3 nowhere{clearance::not_a_number, 0, 0};
+  CHECK_FALSE(clearance::sphere::fit(balls).lower_bound(nowhere) <= infinity);
+}
