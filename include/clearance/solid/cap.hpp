@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/solid/triangle_mesh.hpp>
+
+#include <Eigen/Geometry>
+
+#include <numeric>
+#include <span>
+
+namespace clearance {
+
+/// Triangles whose sides are those of the loop, in its direction, once all sides inside have cancelled: ears cut in the
+/// loop's mean plane, and where there is no ear (the loop crosses itself, or is very long), a fan around the middle.
+/// May append one vertex.
+inline void append_cap(triangle_mesh& mesh, std::span<const std::uint32_t> loop) {
+  const std::size_t n = loop.size();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d origin = mesh.vertices[loop[0]];
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d a = mesh.vertices[loop[i]] - origin, b = mesh.vertices[loop[(i + 1) % n]] - origin;
+    normal += a.cross(b);
+    middle += a / double(n);
+  }
+  std::vector<std::uint32_t> left(n);  // positions in the loop that are not cut off yet
+  std::iota(left.begin(), left.end(), 0u);
+  constexpr std::size_t longest = 4096;  // cutting ears takes quadratic time
+  if (normal.squaredNorm() > 0 && n <= longest) {
+    normal.normalize();
+    const Eigen::Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
+    std::vector<Eigen::Vector2d> flat(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Eigen::Vector3d p = mesh.vertices[loop[i]] - origin;
+      flat[i] = {p.dot(x), p.dot(y)};
+    }
+    const auto turn = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      const Eigen::Vector2d u = flat[b] - flat[a], v = flat[c] - flat[a];
+      return u.x() * v.y() - u.y() * v.x();
+    };
+    std::size_t at = 0, failures = 0;
+    while (left.size() > 3 && failures < left.size()) {
+      const std::size_t m = left.size(), before = (at + m - 1) % m, after = (at + 1) % m;
+      const std::uint32_t a = left[before], b = left[at], c = left[after];
+      bool ear = turn(a, b, c) > 0;
+      for (std::size_t i = 0; ear && i < m; ++i) {
+        const std::uint32_t p = left[i];
+        if (p == a || p == b || p == c) continue;
+        ear = !(turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0);
+      }
+      if (ear) {
+        mesh.triangles.push_back({loop[a], loop[b], loop[c]});
+        left.erase(left.begin() + std::ptrdiff_t(at));
+        failures = 0;
+        at = at % left.size();
+        at = (at + 1) % left.size();  // leaping one makes fatter ears than going round
+      } else {
+        at = after;
+        ++failures;
+      }
+    }
+  }
+  if (left.size() == 3) {
+    mesh.triangles.push_back({loop[left[0]], loop[left[1]], loop[left[2]]});
+    return;
+  }
+  if (left.size() != n) {
+    middle.setZero();
+    for (const std::uint32_t i : left) middle += (mesh.vertices[loop[i]] - origin) / double(left.size());
+  }
+  const std::uint32_t hub = std::uint32_t(mesh.vertices.size());
+  mesh.vertices.push_back(origin + middle);
+  for (std::size_t i = 0; i < left.size(); ++i)
+    mesh.triangles.push_back({hub, loop[left[i]], loop[left[(i + 1) % left.size()]]});
+}
+
+}  // namespace clearance
