@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Settings for our own tests, examples, benchmarks and the command; nothing here reaches a consumer.
+
+if(PROJECT_IS_TOP_LEVEL)
+  if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo or MinSizeRel" FORCE)
+  endif()
+  find_program(CLEARANCE_CCACHE ccache)
+  mark_as_advanced(CLEARANCE_CCACHE)
+  if(CLEARANCE_CCACHE)
+    foreach(language CXX CUDA)
+      if(NOT DEFINED CMAKE_${language}_COMPILER_LAUNCHER)
+        set(CMAKE_${language}_COMPILER_LAUNCHER ${CLEARANCE_CCACHE})
+      endif()
+    endforeach()
+  endif()
+endif()
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+# CLEARANCE_HAS_CUDA: our CUDA programs are built. They are for one architecture unless told otherwise; "native" would
+# be an error on a machine without a GPU, and CI is one.
+set(CLEARANCE_HAS_CUDA OFF)
+if(NOT CLEARANCE_CUDA STREQUAL "OFF")
+  include(CheckLanguage)
+  check_language(CUDA)
+  if(CMAKE_CUDA_COMPILER)
+    if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+      set(CMAKE_CUDA_ARCHITECTURES 90 CACHE STRING "GPU architectures of our own programs")
+    endif()
+    enable_language(CUDA)
+    set(CLEARANCE_HAS_CUDA ON)
+  elseif(CLEARANCE_CUDA STREQUAL "AUTO")
+    message(STATUS "clearance: no CUDA compiler, so no GPU programs")
+  else()
+    message(FATAL_ERROR "CLEARANCE_CUDA is ${CLEARANCE_CUDA}, but there is no CUDA compiler (set CUDACXX to nvcc)")
+  endif()
+endif()
+
+# clearance_own: linked by every program of ours; warnings and sanitizers.
+add_library(clearance_own INTERFACE)
+target_link_libraries(clearance_own INTERFACE clearance::clearance)
+target_compile_options(clearance_own INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic>
+  $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Xcompiler=-Wall,-Wextra>)
+if(CLEARANCE_WARNINGS_AS_ERRORS)
+  target_compile_options(clearance_own INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-Werror> $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Werror=all-warnings -Xcompiler=-Werror>)
+endif()
+if(CLEARANCE_SANITIZE)
+  target_compile_options(clearance_own INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined
+                         -fno-sanitize-recover=undefined -fno-omit-frame-pointer>)
+  target_link_options(clearance_own INTERFACE -fsanitize=address,undefined)
+endif()
+
+# The GPU check, linked into device programs that CTest runs: exit code 77 ("skipped") where there is no GPU.
+if(CLEARANCE_HAS_CUDA AND CLEARANCE_BUILD_TESTS)
+  add_library(clearance_require_device OBJECT ${PROJECT_SOURCE_DIR}/tests/support/require_device.cu)
+  target_link_libraries(clearance_require_device PRIVATE clearance_own)
+endif()
+
+# clearance_program(NAME name SOURCES files... [DEVICE] [TEST] [ARGUMENTS args...] [LIBRARIES targets...])
+# One program; DEVICE: needs a GPU to run; TEST: CTest runs it.
+function(clearance_program)
+  cmake_parse_arguments(P "DEVICE;TEST" "NAME" "SOURCES;ARGUMENTS;LIBRARIES" ${ARGN})
+  add_executable(${P_NAME} ${P_SOURCES})
+  target_link_libraries(${P_NAME} PRIVATE clearance_own ${P_LIBRARIES})
+  if(P_DEVICE)
+    set_property(GLOBAL APPEND PROPERTY clearance_device_programs ${P_NAME})
+  endif()
+  if(P_TEST AND CLEARANCE_BUILD_TESTS)
+    add_test(NAME ${P_NAME} COMMAND ${P_NAME} ${P_ARGUMENTS})
+    set_tests_properties(${P_NAME} PROPERTIES TIMEOUT 600)
+    if(P_DEVICE)
+      target_link_libraries(${P_NAME} PRIVATE clearance_require_device)
+      set_tests_properties(${P_NAME} PROPERTIES SKIP_RETURN_CODE 77 LABELS device)
+    endif()
+  endif()
+endfunction()

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <clearance/backend/device.cuh>
+#include <clearance/bvh/build.hpp>
+#include <clearance/min_distance.hpp>
+#include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/volume/obb.hpp>
+
+// Not called: where this is built there need be no GPU.
+float distance_on_device(const clearance::device& gpu, const std::vector<clearance::inner_sphere>& spheres,
+                         const std::vector<clearance::vec3>& cloud) {
+  const auto part = clearance::make_part(clearance::build<clearance::obb>(spheres)).on(gpu);
+  return clearance::min_distance(gpu, part, Eigen::Isometry3d::Identity(), cloud).distance;
+}
