@@ -52,7 +52,8 @@ class kinematic_tree {
   kinematic_tree(std::vector<std::string> links, std::vector<joint> joints)
       : links_(std::move(links)), joints_(std::move(joints)) {
     for (std::size_t i = 0; i < links_.size(); ++i)
-      if (!link_at_.emplace(links_[i], i).second) throw std::invalid_argument("two links are named \"" + links_[i] + '"');
+      if (!link_at_.emplace(links_[i], i).second)
+        throw std::invalid_argument("two links are named \"" + links_[i] + '"');
     for (std::size_t j = 0; j < joints_.size(); ++j)
       if (!joint_at_.emplace(joints_[j].name, j).second)
         throw std::invalid_argument("two joints are named \"" + joints_[j].name + '"');
@@ -158,9 +159,12 @@ class kinematic_tree {
     std::vector<std::vector<std::size_t>> below(links_.size());
     std::vector<std::size_t> pending;
     for (std::size_t i = 0; i < links_.size(); ++i)
-      if (parents[i] == none) pending.push_back(i);
-      else below[link(joints_[parents[i]].parent)].push_back(i);
-    if (pending.size() != 1) throw std::invalid_argument("the joints make " + std::to_string(pending.size()) + " trees, not one");
+      if (parents[i] == none)
+        pending.push_back(i);
+      else
+        below[link(joints_[parents[i]].parent)].push_back(i);
+    if (pending.size() != 1)
+      throw std::invalid_argument("the joints make " + std::to_string(pending.size()) + " trees, not one");
     base_ = pending[0];
     while (!pending.empty()) {
       const std::size_t parent = pending.back();
@@ -170,7 +174,8 @@ class kinematic_tree {
         pending.push_back(child);
       }
     }
-    if (steps_.size() + 1 != links_.size()) throw std::invalid_argument("some joints make a ring, apart from the base link");
+    if (steps_.size() + 1 != links_.size())
+      throw std::invalid_argument("some joints make a ring, apart from the base link");
   }
 
   /// Leaders before those that follow them.
@@ -178,7 +183,8 @@ class kinematic_tree {
     std::vector<bool> done(joints_.size()), entered(joints_.size());
     for (std::size_t j = 0; j < joints_.size(); ++j) {
       std::vector<std::size_t> chain;
-      for (std::size_t at = j; joints_[at].follows && !done[at]; at = find(joints_[at].follows->joint, joints_[at].name)) {
+      for (std::size_t at = j; joints_[at].follows && !done[at];
+           at = find(joints_[at].follows->joint, joints_[at].name)) {
         if (entered[at]) throw std::invalid_argument("joint \"" + joints_[at].name + "\" follows itself");
         entered[at] = true;
         chain.push_back(at);
@@ -186,7 +192,8 @@ class kinematic_tree {
       for (; !chain.empty(); chain.pop_back()) {
         const std::size_t leader = find(joints_[chain.back()].follows->joint, "");
         if (joints_[leader].kind == joint_kind::fixed)
-          throw std::invalid_argument("joint \"" + joints_[chain.back()].name + "\" follows the fixed joint \"" + joints_[leader].name + "\"");
+          throw std::invalid_argument("joint \"" + joints_[chain.back()].name + "\" follows the fixed joint \"" +
+                                      joints_[leader].name + "\"");
         followers_.push_back({chain.back(), leader});
         done[chain.back()] = true;
       }
@@ -195,15 +202,17 @@ class kinematic_tree {
 
   std::size_t find(const std::string& name, const std::string& for_whom) const {
     if (const auto at = joint_at_.find(name); at != joint_at_.end()) return at->second;
-    throw std::invalid_argument(for_whom.empty() ? "the robot has no joint \"" + name + "\""
-                                                 : "joint \"" + for_whom + "\" follows \"" + name + "\", which does not exist");
+    throw std::invalid_argument(for_whom.empty()
+                                    ? "the robot has no joint \"" + name + "\""
+                                    : "joint \"" + for_whom + "\" follows \"" + name + "\", which does not exist");
   }
 
   std::size_t value_of(const std::string& name) const {
     const std::size_t at = find(name, "");
     const joint& j = joints_[at];
     if (j.kind == joint_kind::fixed) throw std::invalid_argument("joint \"" + name + "\" is fixed and takes no value");
-    if (j.follows) throw std::invalid_argument("joint \"" + name + "\" follows \"" + j.follows->joint + "\" and takes no value");
+    if (j.follows)
+      throw std::invalid_argument("joint \"" + name + "\" follows \"" + j.follows->joint + "\" and takes no value");
     return std::size_t(std::lower_bound(movable_.begin(), movable_.end(), at) - movable_.begin());
   }
 

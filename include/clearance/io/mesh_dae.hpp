@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What must hold of a COLLADA file before assimp reads it: assimp 5.2 reads beyond the end of arrays that are too short,
-// reserves whatever a count says, and follows nodes that contain themselves until the stack ends.
+// What must hold of a COLLADA file before assimp reads it: assimp 5.2 reads beyond the end of arrays that are too
+// short, reserves whatever a count says, and follows nodes that contain themselves until the stack ends.
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
@@ -94,13 +94,16 @@ inline void check_dae(std::string_view bytes, const std::string& file) {
       const auto word = tag.attribute(name);
       const auto value = number<std::uint64_t>(word);
       if (!word.empty() && !(value && *value <= bytes.size()))
-        refuse(file, std::string("a ") + name + " of " + std::string(word.substr(0, 40)) + " is more than the file holds", tag.line);
+        refuse(file,
+               std::string("a ") + name + " of " + std::string(word.substr(0, 40)) + " is more than the file holds",
+               tag.line);
       return double(value.value_or(otherwise));
     };
     const double count = counted("count", 0);
     if (tag.element.ends_with("_array")) arrays["#" + std::string(tag.attribute("id"))] = count;
     if (tag.element == "accessor")
-      accessors.push_back({std::string(tag.attribute("source")), counted("offset", 0) + count * counted("stride", 1), tag.line});
+      accessors.push_back(
+          {std::string(tag.attribute("source")), counted("offset", 0) + count * counted("stride", 1), tag.line});
     nodes.add(tag);
   });
   for (const auto& [source, needed, line] : accessors)

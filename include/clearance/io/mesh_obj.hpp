@@ -52,7 +52,9 @@ inline polygon_mesh read_obj(std::string_view rest, const std::string& file) {
       for (auto word = take_word(line); !word.empty() && word.front() != '#'; word = take_word(line)) {
         const auto given = number<std::int64_t>(word.substr(0, word.find('/')));
         const std::int64_t count = std::int64_t(mesh.vertices.size());
-        const std::int64_t index = !given ? 0 : *given < 0 ? *given + count + 1 : *given;  // from 1; negative: from the end
+        const std::int64_t index = !given       ? 0
+                                   : *given < 0 ? *given + count + 1
+                                                : *given;  // from 1; negative: from the end
         if (index < 1 || index > std::int64_t(UINT32_MAX))
           refuse(file, "\"" + std::string(word.substr(0, 40)) + "\" is no vertex of a face", first);
         if (index > largest) largest = std::uint32_t(index), largest_at = first;
@@ -63,7 +65,8 @@ inline polygon_mesh read_obj(std::string_view rest, const std::string& file) {
     }
   }
   if (largest > mesh.vertices.size())
-    refuse(file, "a face has vertex " + std::to_string(largest) + ", the file has " + std::to_string(mesh.vertices.size()),
+    refuse(file,
+           "a face has vertex " + std::to_string(largest) + ", the file has " + std::to_string(mesh.vertices.size()),
            largest_at);
   return mesh;
 }

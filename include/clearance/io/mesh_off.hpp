@@ -21,7 +21,9 @@ inline polygon_mesh read_off(std::string_view rest, const std::string& file) {
   const auto count = [&](std::string_view& line, const char* what) {
     const std::string_view word = take_word(line);
     const auto value = number<std::uint64_t>(word);
-    if (!value) refuse(file, std::string("there is no number of ") + what + ", but \"" + std::string(word.substr(0, 40)) + '"', at);
+    if (!value)
+      refuse(file, std::string("there is no number of ") + what + ", but \"" + std::string(word.substr(0, 40)) + '"',
+             at);
     return *value;
   };
 
@@ -35,8 +37,10 @@ inline polygon_mesh read_off(std::string_view rest, const std::string& file) {
   if (line.find_first_not_of(" \t\r\v\f") == line.npos) line = next_line("counts");
   const std::uint64_t vertices = count(line, "vertices"), faces = count(line, "faces");
   if (vertices > rest.size() || faces > rest.size() || vertices > UINT32_MAX)
-    refuse(file, "the header says " + std::to_string(vertices) + " vertices and " + std::to_string(faces) +
-                     " faces, more than the file holds", at);
+    refuse(file,
+           "the header says " + std::to_string(vertices) + " vertices and " + std::to_string(faces) +
+               " faces, more than the file holds",
+           at);
   for (std::uint64_t i = 0; i < vertices; ++i) {
     line = next_line("last vertex");
     mesh.vertices.push_back(take_vertex(line, file, at));

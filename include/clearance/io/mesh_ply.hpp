@@ -149,7 +149,8 @@ inline polygon_mesh read_ply_mesh(std::string_view rest, const std::string& file
   }
   for (const std::uint32_t index : mesh.corners)
     if (index >= mesh.vertices.size())
-      refuse(file, "a face has vertex " + std::to_string(index) + ", the file has " + std::to_string(mesh.vertices.size()));
+      refuse(file,
+             "a face has vertex " + std::to_string(index) + ", the file has " + std::to_string(mesh.vertices.size()));
   return mesh;
 }
 

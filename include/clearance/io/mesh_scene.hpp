@@ -4,9 +4,9 @@
 #include <clearance/io/error.hpp>
 #include <clearance/io/mesh_polygons.hpp>
 
-#include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/scene.h>
+#include <assimp/Importer.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -35,10 +35,14 @@ inline void check_glb(std::string_view bytes, const std::string& file) {
   if (json.find("\"sparse\"") != json.npos)  // assimp 5.2 writes wherever such indices say
     refuse(file, "has sparse accessors, which are not supported");
   for (std::size_t i = 0; i < json.size(); ++i) {
-    if (json[i] == '\\') ++i;
-    else if (json[i] == '"') quoted = !quoted;
-    else if (!quoted && (json[i] == '[' || json[i] == '{') && ++depth > 100) refuse(file, "its JSON is nested too deep");
-    else if (!quoted && (json[i] == ']' || json[i] == '}')) --depth;
+    if (json[i] == '\\')
+      ++i;
+    else if (json[i] == '"')
+      quoted = !quoted;
+    else if (!quoted && (json[i] == '[' || json[i] == '{') && ++depth > 100)
+      refuse(file, "its JSON is nested too deep");
+    else if (!quoted && (json[i] == ']' || json[i] == '}'))
+      --depth;
   }
 }
 
@@ -49,7 +53,8 @@ inline polygon_mesh read_scene(std::string_view bytes, const std::string& format
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, format.c_str());
   if (!scene || !scene->mRootNode || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE))
-    refuse(file, std::string("cannot be read: ") + (*importer.GetErrorString() ? importer.GetErrorString() : "it is incomplete"));
+    refuse(file, std::string("cannot be read: ") +
+                     (*importer.GetErrorString() ? importer.GetErrorString() : "it is incomplete"));
 
   polygon_mesh made;
   std::vector<std::pair<const aiNode*, Eigen::Affine3d>> pending{{scene->mRootNode, Eigen::Affine3d::Identity()}};
@@ -76,7 +81,7 @@ inline polygon_mesh read_scene(std::string_view bytes, const std::string& format
         if (face.mNumIndices < 3) continue;  // points and lines
         for (unsigned i = 0; i < face.mNumIndices; ++i) {
           const unsigned index = face.mIndices[mirrored ? face.mNumIndices - 1 - i : i];
-          if (index >= mesh.mNumVertices) 
+          if (index >= mesh.mNumVertices)
             refuse(file, "a face has vertex " + std::to_string(index) + ", of " + std::to_string(mesh.mNumVertices));
           made.corners.push_back(std::uint32_t(first + index));
         }

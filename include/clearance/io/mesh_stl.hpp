@@ -25,15 +25,18 @@ inline std::size_t check_ascii_stl(std::string_view rest, const std::string& fil
   };
   const auto expect = [&](const char* wanted) {
     if (const std::string got = next(); got != wanted)
-      refuse(file, std::string("expected \"") + wanted + "\", " +
-                       (got.empty() ? "but the file ends" : "found \"" + got.substr(0, 40) + '"'), at);
+      refuse(file,
+             std::string("expected \"") + wanted + "\", " +
+                 (got.empty() ? "but the file ends" : "found \"" + got.substr(0, 40) + '"'),
+             at);
   };
   const auto three_numbers = [&](bool must_be_finite) {
     for (int i = 0; i < 3; ++i) {
       const std::string word = next();
       const auto value = number<double>(word);
       if (!value) refuse(file, "expected a number, found \"" + word.substr(0, 40) + '"', at);
-      if (must_be_finite && !std::isfinite(float(*value))) refuse(file, "a vertex has a coordinate that is not finite", at);
+      if (must_be_finite && !std::isfinite(float(*value)))
+        refuse(file, "a vertex has a coordinate that is not finite", at);
     }
   };
   for (std::string word = next(); !word.empty(); word = next()) {
@@ -41,8 +44,10 @@ inline std::size_t check_ascii_stl(std::string_view rest, const std::string& fil
     line = {};  // its name
     for (word = next(); word != "endsolid"; word = next(), ++triangles) {
       if (word != "facet")
-        refuse(file, "expected \"facet\" or \"endsolid\", " +
-                         (word.empty() ? "but the file ends" : "found \"" + word.substr(0, 40) + '"'), at);
+        refuse(file,
+               "expected \"facet\" or \"endsolid\", " +
+                   (word.empty() ? "but the file ends" : "found \"" + word.substr(0, 40) + '"'),
+               at);
       expect("normal");
       three_numbers(false);
       expect("outer");

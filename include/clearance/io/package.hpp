@@ -83,7 +83,8 @@ inline std::filesystem::path resolve_uri(const std::string& uri, const std::file
   for (const auto& folder : folders)
     if (std::filesystem::exists(folder / inside, failed)) return folder / inside;
   if (!folders.empty()) return folders.front() / inside;  // whoever opens it says that it is missing
-  refuse(urdf.string(), "the package of \"" + uri + "\" is neither given, nor a folder above, nor in ROS_PACKAGE_PATH or AMENT_PREFIX_PATH");
+  refuse(urdf.string(), "the package of \"" + uri +
+                            "\" is neither given, nor a folder above, nor in ROS_PACKAGE_PATH or AMENT_PREFIX_PATH");
 }
 
 }  // namespace clearance::io

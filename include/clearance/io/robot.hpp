@@ -32,7 +32,8 @@ class robot {
   }
 
   /// base-from-link for any link, with geometry or not.
-  Eigen::Isometry3d link_pose(const std::string& link, std::span<const double> configuration, joint_options options = {}) const {
+  Eigen::Isometry3d link_pose(const std::string& link, std::span<const double> configuration,
+                              joint_options options = {}) const {
     return tree_.link_poses(configuration, options)[tree_.link(link)];
   }
 
@@ -54,7 +55,9 @@ inline robot load_robot(const std::filesystem::path& urdf, const robot_options& 
   std::vector<robot_part> parts;
   std::vector<std::string> notes;
   for (const auto& link : file.links) {
-    if (std::find(options.exclude_links.begin(), options.exclude_links.end(), link->name) != options.exclude_links.end()) continue;
+    if (std::find(options.exclude_links.begin(), options.exclude_links.end(), link->name) !=
+        options.exclude_links.end())
+      continue;
     if (link->collision_array.empty() && link->visual_array.empty()) continue;
     robot_part part{link->name, {}, 0, options.geometry, file.tree.link(link->name)};
     if (part.used == robot_geometry::collision && link->collision_array.empty()) {
@@ -71,7 +74,8 @@ inline robot load_robot(const std::filesystem::path& urdf, const robot_options& 
     parts.push_back(std::move(part));
   }
   if (parts.empty())
-    refuse(urdf.string(), options.exclude_links.empty() ? "no link has geometry" : "no link that is not excluded has geometry");
+    refuse(urdf.string(),
+           options.exclude_links.empty() ? "no link has geometry" : "no link that is not excluded has geometry");
   return {file.name, file.tree, std::move(parts), std::move(notes)};
 }
 

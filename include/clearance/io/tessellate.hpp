@@ -25,7 +25,8 @@ struct tessellation {
 inline tessellation tessellate_box(const Eigen::Vector3d& size) {
   tessellation made;
   for (int i = 0; i < 8; ++i)
-    made.mesh.vertices.push_back(0.5 * size.cwiseProduct(Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+    made.mesh.vertices.push_back(0.5 *
+                                 size.cwiseProduct(Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
   made.mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                          {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   return made;
@@ -44,7 +45,8 @@ inline tessellation tessellate_cylinder(double radius, double length, double tol
     made.mesh.vertices.emplace_back(x, y, -0.5 * length);
     made.mesh.vertices.emplace_back(x, y, 0.5 * length);
     const std::uint32_t a = 2 + 2 * i, b = 2 + 2 * ((i + 1) % n);
-    made.mesh.triangles.insert(made.mesh.triangles.end(), {{a, b, b + 1}, {a, b + 1, a + 1}, {0, b, a}, {1, a + 1, b + 1}});
+    made.mesh.triangles.insert(made.mesh.triangles.end(),
+                               {{a, b, b + 1}, {a, b + 1, a + 1}, {0, b, a}, {1, a + 1, b + 1}});
   }
   return made;
 }
@@ -53,11 +55,22 @@ inline tessellation tessellate_cylinder(double radius, double length, double tol
 /// 128 by 128 each.
 inline tessellation tessellate_sphere(double radius, double tolerance = 1e-4) {
   const double g = std::numbers::phi;
-  const std::array<Eigen::Vector3d, 12> corner{{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                                                {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}}};
-  constexpr std::uint32_t faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                                          {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                                          {3, 8, 9},  {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  const std::array<Eigen::Vector3d, 12> corner{{{-1, g, 0},
+                                                {1, g, 0},
+                                                {-1, -g, 0},
+                                                {1, -g, 0},
+                                                {0, -1, g},
+                                                {0, 1, g},
+                                                {0, -1, -g},
+                                                {0, 1, -g},
+                                                {g, 0, -1},
+                                                {g, 0, 1},
+                                                {-g, 0, -1},
+                                                {-g, 0, 1}}};
+  constexpr std::uint32_t faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                          {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                          {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                          {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
   // In the middle of a face, where triangles are largest, the error is 0.292 radius / n^2.
   const auto n = std::uint32_t(std::clamp(std::ceil(std::sqrt(0.292 * radius / tolerance)), 2.0, 128.0));
   tessellation made;
@@ -68,8 +81,8 @@ inline tessellation tessellate_sphere(double radius, double tolerance = 1e-4) {
       std::array<std::pair<std::uint32_t, std::uint32_t>, 3> parts{{{face[0], n - i - j}, {face[1], i}, {face[2], j}}};
       for (auto& [c, weight] : parts) c = weight ? c : 0;
       std::sort(parts.begin(), parts.end());
-      const std::array<std::uint32_t, 6> key{parts[0].first, parts[0].second, parts[1].first,
-                                             parts[1].second, parts[2].first, parts[2].second};
+      const std::array<std::uint32_t, 6> key{parts[0].first,  parts[0].second, parts[1].first,
+                                             parts[1].second, parts[2].first,  parts[2].second};
       const auto [at, is_new] = known.try_emplace(key, std::uint32_t(made.mesh.vertices.size()));
       if (is_new) {
         Eigen::Vector3d v = Eigen::Vector3d::Zero();

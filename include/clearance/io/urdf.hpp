@@ -85,7 +85,8 @@ inline urdf_file read_urdf(const std::string& file) {
   urdf_file made;
   made.name = model->getName();
   std::vector<std::string> link_names;
-  for (const auto& [name, link] : model->links_) link_order.push_back(name);  // whatever the scan did not see, at the end
+  for (const auto& [name, link] : model->links_)
+    link_order.push_back(name);  // whatever the scan did not see, at the end
   for (std::set<std::string> seen; const auto& name : link_order)
     if (const auto at = model->links_.find(name); at != model->links_.end() && seen.insert(name).second) {
       link_names.push_back(name);
@@ -104,13 +105,23 @@ inline urdf_file read_urdf(const std::string& file) {
     to.upper = std::numeric_limits<double>::infinity();
     to.lower = -to.upper;
     switch (from.type) {
-      case urdf::Joint::FIXED: break;
-      case urdf::Joint::CONTINUOUS: to.kind = joint_kind::continuous; break;
-      case urdf::Joint::REVOLUTE: to.kind = joint_kind::revolute; break;
-      case urdf::Joint::PRISMATIC: to.kind = joint_kind::prismatic; break;
-      case urdf::Joint::FLOATING: refuse(file, "joint \"" + name + "\" is floating, which is not supported: give the base pose instead");
-      case urdf::Joint::PLANAR: refuse(file, "joint \"" + name + "\" is planar, which is not supported");
-      default: refuse(file, "joint \"" + name + "\" has an unknown type");
+      case urdf::Joint::FIXED:
+        break;
+      case urdf::Joint::CONTINUOUS:
+        to.kind = joint_kind::continuous;
+        break;
+      case urdf::Joint::REVOLUTE:
+        to.kind = joint_kind::revolute;
+        break;
+      case urdf::Joint::PRISMATIC:
+        to.kind = joint_kind::prismatic;
+        break;
+      case urdf::Joint::FLOATING:
+        refuse(file, "joint \"" + name + "\" is floating, which is not supported: give the base pose instead");
+      case urdf::Joint::PLANAR:
+        refuse(file, "joint \"" + name + "\" is planar, which is not supported");
+      default:
+        refuse(file, "joint \"" + name + "\" has an unknown type");
     }
     if (from.limits && (to.kind == joint_kind::revolute || to.kind == joint_kind::prismatic)) {
       to.lower = from.limits->lower;
