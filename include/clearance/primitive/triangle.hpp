@@ -9,9 +9,10 @@ namespace clearance {
 
 /// A flat triangle, slivers and degenerate ones included; the distance is unsigned.
 ///
-/// Three clamped segments are always right, so they decide; the plane is asked only where the point projects inside.
-/// That test uses the unit normal made in double, so its error does not grow with the triangle's aspect, as it does in
-/// region-based formulas (which lose centimetres on needles).
+/// Three clamped segments are always right, so they decide; the plane is asked only where the point surely projects
+/// inside: it does so by every side's sign, and the nearest side is near with its interior (to a convex polygon's inside
+/// no corner is the nearest). Signs alone would let through points beyond the tip of a needle, metres away. The unit
+/// normal is made in double, so that no error grows with the triangle's aspect, as in region-based formulas.
 struct triangle {
   vec3 a, b, c;
   vec3 unit_normal;  ///< (b-a) x (c-a), normalised in double; (0,0,0) for a triangle without area.
@@ -28,27 +29,14 @@ struct triangle {
   }
 
   CLEARANCE_HD real distance(vec3 q) const {
-    const vec3 ab = b - a, bc = c - b, ca = a - c;
-    const vec3 aq = q - a, bq = q - b, cq = q - c;
-    const vec3 to_ab = to_segment(aq, ab), to_bc = to_segment(bq, bc), to_ca = to_segment(cq, ca);
-    const real edge = square_root(min(min(dot(to_ab, to_ab), dot(to_bc, to_bc)), dot(to_ca, to_ca)));
-    return above(ab, bc, ca, aq, bq, cq) ? min(edge, absolute(dot(aq, unit_normal))) : edge;
+    const measured m = measure(q);
+    return m.over_face ? min(m.edge, absolute(m.height) + 0.0f) : m.edge;  // + 0: never -0
   }
 
-  CLEARANCE_HD vec3 nearest(vec3 q) const {
-    const vec3 ab = b - a, bc = c - b, ca = a - c;
-    const vec3 aq = q - a, bq = q - b, cq = q - c;
-    vec3 offset = to_segment(aq, ab);
-    const vec3 others[2] = {to_segment(bq, bc), to_segment(cq, ca)};
-    for (const vec3& o : others)
-      if (dot(o, o) < dot(offset, offset)) offset = o;
-    const real height = dot(aq, unit_normal);
-    if (above(ab, bc, ca, aq, bq, cq) && absolute(height) <= length(offset)) offset = scaled(height, unit_normal);
-    return q - offset;
-  }
+  CLEARANCE_HD vec3 nearest(vec3 q) const { return q - away(q); }
 
   CLEARANCE_HD vec3 normal(vec3 q) const {
-    const vec3 d = q - nearest(q);
+    const vec3 d = away(q);
     const real l = length(d);
     return l > 0 ? scaled(divide(1, l), d) : unit_normal;
   }
@@ -56,16 +44,48 @@ struct triangle {
   std::array<ball, 3> balls() const { return {{{a, 0}, {b, 0}, {c, 0}}}; }
 
  private:
-  /// From the nearest point of the segment (start at 0, along `edge`) to `p`.
-  CLEARANCE_HD static vec3 to_segment(vec3 p, vec3 edge) {
-    const real squared = dot(edge, edge);
-    const real t = squared > 0 ? clamp01(divide(dot(p, edge), squared)) : 0;
-    return fma(-t, edge, p);
+  struct measured {
+    vec3 offset;     ///< From the nearest point of the three sides to the query point,
+    real edge;       ///< and its length.
+    real height;     ///< Above the plane.
+    bool over_face;  ///< Does the query point surely project inside?
+  };
+  struct side {
+    vec3 offset;
+    real squared;
+    bool interior;  ///< Nearest with its interior, not with a corner.
+  };
+
+  CLEARANCE_HD measured measure(vec3 q) const {
+    const vec3 ab = b - a, bc = c - b, ca = a - c;
+    const vec3 aq = q - a, bq = q - b, cq = q - c;
+    // What positions below are uncertain by. A power of two, so that no contraction changes a bit.
+    const real noise = 0x1p-22f * (extent(aq) + extent(ab) + extent(ca));
+    const side sides[3] = {to_side(aq, ab, noise), to_side(bq, bc, noise), to_side(cq, ca, noise)};
+    side least = sides[0];
+    for (const side& s : sides)
+      if (s.squared < least.squared) least = s;
+    measured m{least.offset, square_root(least.squared), dot(aq, unit_normal), false};
+    const real nearly = (m.edge + noise) * (m.edge + noise);
+    bool interior = false;
+    for (const side& s : sides) interior = interior || (s.interior && s.squared <= nearly);
+    m.over_face = interior && dot(cross(unit_normal, ab), aq) > 0 && dot(cross(unit_normal, bc), bq) > 0 &&
+                  dot(cross(unit_normal, ca), cq) > 0;
+    return m;
   }
-  /// Does the point project strictly inside? One sign a side, measured from that side's own corner.
-  CLEARANCE_HD bool above(vec3 ab, vec3 bc, vec3 ca, vec3 aq, vec3 bq, vec3 cq) const {
-    return dot(cross(unit_normal, ab), aq) > 0 && dot(cross(unit_normal, bc), bq) > 0 && dot(cross(unit_normal, ca), cq) > 0;
+  /// From the nearest point to the query point.
+  CLEARANCE_HD vec3 away(vec3 q) const {
+    const measured m = measure(q);
+    return m.over_face && absolute(m.height) <= m.edge ? scaled(m.height, unit_normal) : m.offset;
   }
+  /// The side starts at 0 and goes along `edge`.
+  CLEARANCE_HD static side to_side(vec3 p, vec3 edge, real noise) {
+    const real length2 = dot(edge, edge);
+    const real t = length2 > 0 ? divide(dot(p, edge), length2) : 0, beyond = max(-t, t - 1);
+    const vec3 offset = fma(-clamp01(t), edge, p);
+    return {offset, dot(offset, offset), beyond < 0 || beyond * beyond * length2 <= noise * noise};
+  }
+  CLEARANCE_HD static real extent(vec3 v) { return absolute(v.x) + absolute(v.y) + absolute(v.z); }
 };
 
 static_assert(primitive<triangle>);
