@@ -25,7 +25,7 @@ vec wider(const T& p) {
 }
 
 inline wide dot(vec a, vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline wide length(vec a) { return std::hypot(a.x, a.y, a.z); }
+inline wide length(vec a) { return std::sqrt(dot(a, a)); }
 inline wide between(vec a, vec b) { return length(a - b); }
 
 /// Signed: negative inside.
@@ -38,16 +38,22 @@ inline wide to_segment(vec q, vec a, vec b) {
   return between(q, a + t * edge);
 }
 
-/// The least distance to the segments parallel to bc that make up the triangle: a convex function of their height, so
-/// halving finds its minimum. Uses no normal, no plane and no region, so no triangle is special.
+/// The least distance to the segments parallel to bc that make up the triangle: a convex function of their height, so a
+/// golden section finds its minimum. Uses no normal, no plane and no region, so no triangle is special.
 inline wide to_triangle(vec q, vec a, vec b, vec c) {
   const auto at = [&](wide t) { return to_segment(q, a + t * (b - a), a + t * (c - a)); };
-  wide low = 0, high = 1;
-  for (int k = 0; k < 160 && low < high; ++k) {
-    const wide third = (high - low) / 3, left = low + third, right = high - third;
-    (at(left) <= at(right) ? high : low) = at(left) <= at(right) ? right : left;
+  constexpr wide golden = 0.618033988749894848204586834365638118L;
+  wide low = 0, high = 1, left = 1 - golden, right = golden, at_left = at(left), at_right = at(right);
+  for (int k = 0; k < 92; ++k) {
+    if (at_left <= at_right) {
+      high = right, right = left, at_right = at_left;
+      left = high - golden * (high - low), at_left = at(left);
+    } else {
+      low = left, left = right, at_left = at_right;
+      right = low + golden * (high - low), at_right = at(right);
+    }
   }
-  return std::min({at(low), at((low + high) / 2), at(high), at(0), at(1)});
+  return std::min({at_left, at_right, at(low), at(high), at(0), at(1)});
 }
 
 /// Row-major world-from-something, as given by any matrix with (row, column).
