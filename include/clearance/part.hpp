@@ -34,23 +34,28 @@ struct part_view {
 };
 
 /// A ball around all of them, in double and rounded up. Not the smallest, but a fair one.
-template <primitive P>
-ball enclosing_ball(std::span<const P> primitives) {
+inline ball enclosing_ball(std::span<const ball> balls) {
   double lo[3] = {infinity, infinity, infinity}, hi[3] = {-infinity, -infinity, -infinity};
-  const auto each = [&](auto visit) {
-    for (const P& p : primitives)
-      for (const ball& b : p.balls()) visit(b);
-  };
-  each([&](const ball& b) {
+  for (const ball& b : balls) {
     const double c[3] = {b.center.x, b.center.y, b.center.z};
     for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], c[k] - b.radius), hi[k] = std::max(hi[k], c[k] + b.radius);
-  });
+  }
   const vec3 center{real((lo[0] + hi[0]) / 2), real((lo[1] + hi[1]) / 2), real((lo[2] + hi[2]) / 2)};
   double radius = 0;
-  each([&](const ball& b) {
-    radius = std::max(radius, std::hypot(double(b.center.x) - center.x, double(b.center.y) - center.y, double(b.center.z) - center.z) + b.radius);
-  });
-  return {center, std::nextafter(real(radius * (1 + 2.0 * slack)), infinity)};
+  for (const ball& b : balls) {
+    const double d[3] = {double(b.center.x) - center.x, double(b.center.y) - center.y, double(b.center.z) - center.z};
+    radius = std::max(radius, std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + b.radius);
+  }
+  return {center, rounded_up(radius * (1 + 2.0 * slack))};
+}
+
+/// Around primitives, in their part's frame.
+template <primitive P>
+ball enclosing_ball(std::span<const P> primitives) {
+  std::vector<ball> balls;
+  for (const P& p : primitives)
+    for (const ball& b : p.balls()) balls.push_back(b);
+  return enclosing_ball(std::span<const ball>(balls));
 }
 
 /// Owns what a part_view points to, in the memory of one backend.

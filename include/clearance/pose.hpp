@@ -12,14 +12,17 @@
 namespace clearance {
 
 /// Returns `pose` with its rotation made orthonormal to double precision. Throws if it is not rigid to 1e-4: scale, shear,
-/// a reflection, or a number that is not finite.
-inline Eigen::Isometry3d rigid(const Eigen::Isometry3d& pose, const std::string& name = "pose") {
+/// a reflection, or a number that is not finite. `what` and `number` say in the message which pose it was.
+inline Eigen::Isometry3d rigid(const Eigen::Isometry3d& pose, const char* what = "pose", std::int64_t number = -1) {
+  const auto refuse = [&](const std::string& why) {
+    throw std::invalid_argument("clearance: the pose of " + std::string(what) + (number < 0 ? "" : " " + std::to_string(number)) + " is not rigid: " + why);
+  };
   const Eigen::Matrix3d r = pose.linear();
-  if (!pose.matrix().allFinite()) throw std::invalid_argument("clearance: " + name + " is not rigid: it has a number that is not finite");
+  if (!pose.matrix().allFinite()) refuse("it has a number that is not finite");
   const double skew = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (skew > 1e-4)
-    throw std::invalid_argument("clearance: " + name + " is not rigid: its axes deviate from orthonormal by " + std::to_string(skew));
-  if (r.determinant() < 0) throw std::invalid_argument("clearance: " + name + " is not rigid: it is a reflection");
+  if (skew > 1e-4) refuse("its axes deviate from orthonormal by " + std::to_string(skew));
+  if (r.determinant() < 0) refuse("it is a reflection");
+  if (skew < 1e-14) return pose;
   Eigen::Isometry3d clean = Eigen::Isometry3d::Identity();
   clean.linear() = Eigen::Quaterniond(r).normalized().toRotationMatrix();
   clean.translation() = pose.translation();

@@ -33,7 +33,24 @@ struct depth_image {
   CLEARANCE_HD std::size_t size() const { return std::size_t(width) * height; }
   CLEARANCE_HD sample operator[](std::size_t i) const {
     const std::uint32_t v = std::uint32_t(i) / width, u = std::uint32_t(i) - v * width;
-    const Pixel d = pixels[std::size_t(v) * row + u];
+    return deproject(pixels[std::size_t(v) * row + u], u, v);
+  }
+
+  /// Four pixels of one row at once, where width and address allow.
+  CLEARANCE_HD bool loads4() const {
+    return width % 4 == 0 && row % 4 == 0 && reinterpret_cast<std::uintptr_t>(pixels) % (4 * sizeof(Pixel)) == 0;
+  }
+  CLEARANCE_HD void load4(std::size_t i, sample (&out)[4]) const {
+    struct alignas(4 * sizeof(Pixel)) wide {
+      Pixel d[4];
+    };
+    const std::uint32_t v = std::uint32_t(i) / width, u = std::uint32_t(i) - v * width;
+    const wide four = *reinterpret_cast<const wide*>(pixels + std::size_t(v) * row + u);
+    for (std::uint32_t j = 0; j < 4; ++j) out[j] = deproject(four.d[j], u + j, v);
+  }
+
+  /// The point that pixel (u, v) shows if it holds `d`.
+  CLEARANCE_HD sample deproject(Pixel d, std::uint32_t u, std::uint32_t v) const {
     const real z = real(d) * scale;
     const vec3 p{(real(u) - cx) * inverse_fx * z, (real(v) - cy) * inverse_fy * z, z};
     if (d == 0) return {p, drop_reason::missing};

@@ -6,49 +6,53 @@
 
 namespace clearance::search {
 
-/// From the minimum to what is certain: counts, bracket, state. One thread, after the last cloud.
+/// From the minimum to what is certain: counts, bracket, state.
+CLEARANCE_HD inline void conclude(min_distance_result& r, double lower, real winner_tolerance, const totals& all, double error,
+                                  std::uint64_t seen) {
+  r.seen = r.valid = seen;
+  for (int k = 1; k < drop_reasons; ++k) {
+    r.dropped[k] = all.dropped[k];
+    r.valid -= all.dropped[k];
+  }
+  if (r.part == none) return;  // no data
+  const double error_here = fma(unit_error, double(absolute(r.distance)), error);
+  const bool inside = all.certain != 0 || r.distance < -(error_here + winner_tolerance);
+  // A point inside leaves nothing above 0, and a missing certificate (an infinite gap) nothing below.
+  r.lower = lower > 0 && !inside ? rounded_down(lower) : 0;
+  r.upper = r.distance < 0 || inside ? 0 : rounded_up(double(r.distance) + winner_tolerance + error_here);
+  r.state = inside ? state::collision : (r.lower > 0 ? state::free : state::possible);
+}
+
+/// What a minimum of `distance` leaves certain for a part that may be nearer by `slop` (gap and tolerance).
+CLEARANCE_HD inline double certain_distance(real distance, double slop, double error) {
+  return double(distance) - slop - fma(unit_error, double(absolute(distance)), error);
+}
+CLEARANCE_HD inline double slop(const part_facts& f) { return double(f.gap) + double(f.tolerance); }
+
+/// One thread, after the last cloud.
 template <class PartView>
 struct conclude_body {
   const PartView* parts;
   std::uint32_t part_count;
   const totals* all;
   const distance_key* part_best;
-  double error;  ///< The largest `placement::error` of the call.
+  double error;         ///< The largest `placement::error` of the call.
+  double largest_slop;  ///< Of all parts: all that is known of a part without a minimum of its own.
   std::uint64_t seen;
   min_distance_result* result;
 
   CLEARANCE_HD void operator()(std::size_t) const {
-    min_distance_result& r = *result;
-    r.seen = r.valid = seen;
-    for (int k = 1; k < drop_reasons; ++k) {
-      r.dropped[k] = all->dropped[k];
-      r.valid -= all->dropped[k];
+    const real d = result->distance;
+    double lower = certain_distance(d, largest_slop, error);
+    if (part_best != nullptr) {
+      lower = infinity;
+      for (std::uint32_t k = 0; k < part_count; ++k) {
+        const double its = certain_distance(key_distance(part_best[k]), slop(parts[k].facts), error);
+        lower = its < lower ? its : lower;
+      }
     }
-    if (r.part == none) {
-      // Valid points, yet none near enough to compare (coordinates overflow): as good as no data.
-      r.state = state::no_data;
-      return;
-    }
-    double lower = infinity;
-    for (std::uint32_t k = 0; k < part_count; ++k) {
-      // Without minima of its own, a part is only known to be no nearer than the nearest one.
-      const real distance = part_best != nullptr ? key_distance(part_best[k]) : r.distance;
-      const double certain = double(distance) - parts[k].facts.gap - parts[k].facts.tolerance - error_at(distance);
-      lower = certain < lower ? certain : lower;
-    }
-    const part_facts& winner = parts[r.part].facts;
-    const double error_here = error_at(r.distance);
-    const double upper = r.distance < 0 ? 0 : double(r.distance) + winner.tolerance + error_here;
-    // A negative distance, or a point inside, leaves nothing above 0; no certificate leaves nothing below.
-    r.lower = lower > 0 ? rounded_down(lower) : 0;
-    r.upper = rounded_up(upper);
-    const bool inside = all->certain != 0 || r.distance < -(error_here + winner.tolerance);
-    r.state = inside ? state::collision : (r.lower > 0 ? state::free : state::possible);
-    if (all->certain != 0) r.upper = 0;
+    conclude(*result, lower, result->part == none ? 0 : parts[result->part].facts.tolerance, *all, error, seen);
   }
-
- private:
-  CLEARANCE_HD double error_at(real distance) const { return fma(unit_error, double(absolute(distance)), error); }
 };
 
 }  // namespace clearance::search

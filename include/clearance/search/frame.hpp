@@ -37,10 +37,11 @@ inline vec3 origin_near(const Eigen::Vector3d& robot_in_cloud) {
 /// `part_from_cloud` maps positions that `origin` was subtracted from.
 inline placement place(const part_facts& facts, const Eigen::Isometry3d& world_from_part, const Eigen::Isometry3d& world_from_cloud,
                        vec3 origin) {
-  Eigen::Isometry3d part_from_cloud = world_from_part.inverse() * world_from_cloud;
-  part_from_cloud.translation() = world_from_part.inverse() * (world_from_cloud * Eigen::Vector3d(origin.x, origin.y, origin.z));
+  const Eigen::Isometry3d part_from_world = world_from_part.inverse(Eigen::Isometry);
+  Eigen::Isometry3d part_from_cloud = part_from_world * world_from_cloud;
+  part_from_cloud.translation() = part_from_world * (world_from_cloud * Eigen::Vector3d(origin.x, origin.y, origin.z));
   const Eigen::Vector3d part_center(facts.center.x, facts.center.y, facts.center.z);
-  const Eigen::Vector3d center = part_from_cloud.inverse() * part_center;
+  const Eigen::Vector3d center = part_from_cloud.linear().transpose() * (part_center - part_from_cloud.translation());
   const double size = part_center.norm() + facts.radius, away = part_from_cloud.translation().norm();
   const double error = unit_error * 2 * (size + away);
   placement p;
@@ -50,5 +51,33 @@ inline placement place(const part_facts& facts, const Eigen::Isometry3d& world_f
   p.world_from_part = world_transform(world_from_part);
   return p;
 }
+
+/// All parts as seen from one cloud, made on the host for every frame.
+struct cloud_frame {
+  vec3 origin;
+  double error = 0;  ///< The largest of all parts.
+  double slop = 0;   ///< The largest gap plus tolerance of all parts.
+  ball robot;        ///< Around all parts' balls.
+  std::vector<placement> places;
+
+  /// Throws if a pose is not rigid. `world_from_cloud` is taken as checked.
+  cloud_frame(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& world_from_cloud) {
+    std::vector<Eigen::Isometry3d> clean;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      clean.push_back(rigid(poses[k], "part", std::int64_t(k)));
+      middle += clean.back().translation() / double(poses.size());
+    }
+    origin = origin_near(world_from_cloud.inverse() * middle);
+    std::vector<ball> balls;
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      places.push_back(place(facts[k], clean[k], world_from_cloud, origin));
+      error = std::max(error, double(places.back().error));
+      slop = std::max(slop, double(facts[k].gap) + double(facts[k].tolerance));
+      balls.push_back(places.back().around);
+    }
+    robot = enclosing_ball(std::span<const ball>(balls));
+  }
+};
 
 }  // namespace clearance::search

@@ -47,7 +47,7 @@ class minimum_search {
     if (poses.size() != model.size())
       throw std::invalid_argument("clearance::min_distance: there are " + std::to_string(model.size()) + " parts, but " +
                                   std::to_string(poses.size()) + " poses");
-    for (std::size_t k = 0; k < poses.size(); ++k) poses_.push_back(rigid(poses[k], "the pose of part " + std::to_string(k)));
+    poses_.assign(poses.begin(), poses.end());
     search::check_stack<Traversal>(model.depth, model.width);
     if constexpr (requires { Traversal::device_stack(1); }) stack_bytes_ = Traversal::device_stack(model.depth);
     const search::totals start;
@@ -64,24 +64,21 @@ class minimum_search {
   template <point_source S>
   void add(const S& source, const Eigen::Isometry3d& cloud_pose = Eigen::Isometry3d::Identity()) {
     const std::uint32_t cloud = clouds_++;
-    const Eigen::Isometry3d world_from_cloud = rigid(cloud_pose, "the pose of cloud " + std::to_string(cloud));
+    const Eigen::Isometry3d world_from_cloud = rigid(cloud_pose, "cloud", cloud);
     const std::uint64_t n = source.size();
     if (seen_ + n >= none) throw std::invalid_argument("clearance::min_distance: more than 2^32 - 2 points in one call");
-    const vec3 origin = search::origin_near(world_from_cloud.inverse() * middle());
-    std::vector<search::placement> places;
-    for (std::size_t k = 0; k < model_.size(); ++k) {
-      places.push_back(search::place(model_.facts[k], poses_[k], world_from_cloud, origin));
-      error_ = std::max(error_, double(places.back().error));
-    }
+    const search::cloud_frame frame(model_.facts, poses_, world_from_cloud);
+    error_ = std::max(error_, frame.error);
+    slop_ = frame.slop;
     places_ = on_.template make_scratch<search::placement>(model_.size());
-    on_.stage(std::span<const search::placement>(places), places_.data());
+    on_.stage(std::span<const search::placement>(frame.places), places_.data());
     const auto parts = std::uint32_t(model_.size());
     const auto first = std::uint32_t(seen_);
     distance_key* const part_best = minima_ == nullptr ? nullptr : part_best_.data();
-    on_.for_ranges(n, search::point_body<PartView, S, Traversal>{model_.parts, places_.data(), parts, source, origin, first,
+    on_.for_ranges(n, search::point_body<PartView, S, Traversal>{model_.parts, places_.data(), parts, source, frame.origin, first,
                                                                  totals_.data(), part_best, walk_, stack_bytes_});
     on_.for_each(parts + 1, search::resolve_body<PartView, S, Traversal>{
-                                model_.parts, places_.data(), parts, source, origin, world_transform(world_from_cloud), first, cloud,
+                                model_.parts, places_.data(), parts, source, frame.origin, world_transform(world_from_cloud), first, cloud,
                                 totals_.data(), part_best, walk_, result_, minima_, stack_bytes_});
     seen_ += n;
   }
@@ -89,17 +86,10 @@ class minimum_search {
   /// Enqueues the end: counts, bracket and state.
   void conclude() {
     on_.for_each(1, search::conclude_body<PartView>{model_.parts, std::uint32_t(model_.size()), totals_.data(),
-                                                    minima_ == nullptr ? nullptr : part_best_.data(), error_, seen_, result_});
+                                                    minima_ == nullptr ? nullptr : part_best_.data(), error_, slop_, seen_, result_});
   }
 
  private:
-  /// Somewhere among the parts, in world coordinates.
-  Eigen::Vector3d middle() const {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const auto& p : poses_) sum += p.translation() / double(poses_.size());
-    return sum;
-  }
-
   template <class T>
   using scratch = typename B::template scratch<T>;
 
@@ -115,7 +105,7 @@ class minimum_search {
   std::size_t stack_bytes_ = 0;
   std::uint32_t clouds_ = 0;
   std::uint64_t seen_ = 0;
-  double error_ = 0;
+  double error_ = 0, slop_ = 0;
 };
 
 }  // namespace clearance

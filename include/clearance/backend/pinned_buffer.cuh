@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/backend/device_buffer.cuh>
+
+namespace clearance {
+
+/// Page-locked host memory that kernels can write and the host can watch.
+template <class T>
+class pinned_buffer {
+ public:
+  pinned_buffer() = default;
+  pinned_buffer(std::size_t n, int device) : size_(n), device_(device) {
+    const device_guard guard(device);
+    if (n != 0) check_cuda(cudaHostAlloc(reinterpret_cast<void**>(&data_), n * sizeof(T), cudaHostAllocPortable | cudaHostAllocMapped), "cudaHostAlloc");
+  }
+  pinned_buffer(pinned_buffer&& other) noexcept { *this = std::move(other); }
+  pinned_buffer& operator=(pinned_buffer&& other) noexcept {
+    std::swap(data_, other.data_), std::swap(size_, other.size_), std::swap(device_, other.device_);
+    return *this;
+  }
+  ~pinned_buffer() {
+    if (data_ != nullptr) on_device(device_, [this] { return cudaFreeHost(data_); });
+  }
+
+  T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+  int device_ = 0;
+};
+
+}  // namespace clearance
