@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/product.hpp"
+
+#include <clearance/volume/obb.hpp>
+
+TEST_CASE("Inner spheres in oriented boxes: every width, fit, traversal and point source is brute force, bit for bit") {
+  testing::check_product<clearance::obb, clearance::inner_sphere>();
+}
