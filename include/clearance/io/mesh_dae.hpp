@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 // What must hold of a COLLADA file before assimp reads it: assimp 5.2 reads beyond the end of arrays that are too
-// short, reserves whatever a count says, and follows nodes that contain themselves until the stack ends.
+// short, reserves whatever a count says, goes round for ever where an index is no number, and follows nodes that
+// contain themselves until the stack ends.
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
@@ -104,6 +105,9 @@ inline void check_dae(std::string_view bytes, const std::string& file) {
     if (tag.element == "accessor")
       accessors.push_back(
           {std::string(tag.attribute("source")), counted("offset", 0) + count * counted("stride", 1), tag.line});
+    const bool indices = tag.element == "p" || tag.element == "h" || tag.element == "v" || tag.element == "vcount";
+    if (indices && tag.content.find_first_not_of("0123456789- \t\r\n") != std::string_view::npos)
+      refuse(file, "a list of indices has something in it that is no number", tag.line);
     nodes.add(tag);
   });
   for (const auto& [source, needed, line] : accessors)

@@ -11,9 +11,10 @@
 
 namespace clearance::io {
 
-/// A start tag: its element, the text of its attributes, how many elements are around it, and its line.
+/// A start tag: its element, the text of its attributes, what follows up to the next end tag, how many elements are
+/// around it, and its line.
 struct xml_tag {
-  std::string_view element, attributes;
+  std::string_view element, attributes, content;
   std::size_t depth = 0, line = 0;
 
   /// The value of an attribute as it is written, or nothing.
@@ -62,7 +63,8 @@ void scan_xml(std::string_view text, const std::string& file, Visit visit) {
     const bool closed = tag.ends_with('/');
     if (closed) tag.remove_suffix(1);
     const std::size_t name = std::min(tag.find_first_of(" \t\r\n"), tag.size());
-    visit(xml_tag{tag.substr(0, name), tag.substr(name), depth, line});
+    const std::string_view content = closed ? std::string_view() : text.substr(at, text.find("</", at) - at);
+    visit(xml_tag{tag.substr(0, name), tag.substr(name), content, depth, line});
     if (!closed && ++depth > 200) refuse(file, "has more than 200 elements inside one another", line);
   }
   if (depth > 0) refuse(file, "is cut short: " + std::to_string(depth) + " elements are not closed");
