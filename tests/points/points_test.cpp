@@ -122,6 +122,15 @@ TEST_CASE("A filter holds for records too") {
   require_same(r.view, points, r.view.filter);
 }
 
+namespace {
+
+void require_there(vec3 p, std::uint32_t u, std::uint32_t v, wide z, const clearance::intrinsics& camera, verdict& verdict) {
+  const auto truth = oracle::deprojected(u, v, z, camera.fx, camera.fy, camera.cx, camera.cy);
+  verdict.require(oracle::between(wider(p), truth) <= 8 * 0x1p-24L * oracle::length(truth), "pixel", u, v, " is elsewhere");
+}
+
+}  // namespace
+
 TEST_CASE("Depth images give the points that the oracle deprojects, and say what is no pixel") {
   const clearance::intrinsics camera{525.5, 520.25, 20.25, 15.75};
   dice d(5);
@@ -146,19 +155,15 @@ TEST_CASE("Depth images give the points that the oracle deprojects, and say what
   for (std::uint32_t y = 0; y < height; ++y)
     for (std::uint32_t x = 0; x < width; ++x) {
       const std::size_t i = y * width + x, at = y * row + x;
-      const auto same = [&](vec3 p, wide z) {
-        const auto truth = oracle::deprojected(x, y, z, camera.fx, camera.fy, camera.cx, camera.cy);
-        v.require(oracle::between(wider(p), truth) <= 8 * 0x1p-24L * oracle::length(truth), "pixel", i, " is elsewhere");
-      };
       const auto a = millimetres[i];
       const auto expected = raw[at] == 0 ? drop_reason::missing : raw[at] == 65535 ? drop_reason::saturated : drop_reason::none;
       v.require(a.dropped == expected, "pixel", i, " of 16 bits");
-      if (a.valid()) same(a.position, wide(raw[at]) * 0.001L);
+      if (a.valid()) require_there(a.position, x, y, wide(raw[at]) * 0.001L, camera, v);
       const auto b = floats[i];
       const float z = metres[at];
       v.require(b.dropped == (z == 0 ? drop_reason::missing : !std::isfinite(z) ? drop_reason::not_finite
                               : z < 0 ? drop_reason::out_of_range : drop_reason::none), "pixel", i, " of floats");
-      if (b.valid()) same(b.position, wide(z));
+      if (b.valid()) require_there(b.position, x, y, z, camera, v);
     }
 }
 

@@ -20,20 +20,22 @@ namespace {
 
 /// Everything that is no farther than `margin`: its reach never shrinks, so each such primitive must be shown, once.
 struct all_within {
-  using result_type = std::vector<std::uint32_t>;
+  using result_type = all_within;
 
   real margin;
-  std::vector<std::uint32_t> ids = {};
+  std::uint64_t shown[4] = {};  ///< A bit an id.
+  bool twice = false;
 
-  real reach() const { return margin; }
-  void offer(std::uint32_t id, real distance) {
-    if (distance <= margin) ids.push_back(id);
+  CLEARANCE_HD real reach() const { return margin; }
+  CLEARANCE_HD void offer(std::uint32_t id, real distance) {
+    if (!(distance <= margin)) return;
+    const std::uint64_t bit = std::uint64_t(1) << id % 64;
+    twice = twice || (shown[id / 64] & bit) != 0;
+    shown[id / 64] |= bit;
   }
-  result_type result() const {
-    auto sorted = ids;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted;
-  }
+  CLEARANCE_HD all_within result() const { return *this; }
+
+  friend bool operator==(const all_within&, const all_within&) = default;
 };
 
 template <class P, class Q>
@@ -169,9 +171,9 @@ TEST_CASE("Near first tests fewer primitives than stored order") {
     using result_type = int;
     real best = infinity;
     int offers = 0;
-    real reach() const { return best; }
-    void offer(std::uint32_t, real distance) { ++offers, best = std::min(best, distance); }
-    int result() const { return offers; }
+    CLEARANCE_HD real reach() const { return best; }
+    CLEARANCE_HD void offer(std::uint32_t, real distance) { ++offers, best = clearance::min(best, distance); }
+    CLEARANCE_HD int result() const { return offers; }
   };
   dice d(12);
   const auto primitives = random_spheres(d, 2000, 1, 0.02);
