@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs the built command as a user does.
+#include "io/scratch_file.hpp"
+#include "support/catch.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <clearance/io/png_check.hpp>
+
+#include <cstdio>
+#include <sys/wait.h>
+
+namespace {
+
+struct outcome {
+  int code;
+  std::string out, err;
+};
+
+/// `arguments` in a shell's words.
+outcome run_command(const std::string& arguments) {
+  const scratch_file err(".txt");
+  FILE* pipe = ::popen(("\"" CLEARANCE_COMMAND "\" " + arguments + " 2>" + err.path).c_str(), "r");
+  REQUIRE(pipe);
+  outcome o;
+  char piece[4096];
+  for (std::size_t n; (n = std::fread(piece, 1, sizeof piece, pipe)) > 0;) o.out.append(piece, n);
+  const int status = ::pclose(pipe);
+  o.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  std::ifstream in(err.path);
+  o.err.assign(std::istreambuf_iterator<char>(in), {});
+  return o;
+}
+
+/// Exit code 1 and one line on stderr that says so; nothing on stdout.
+void refuses(const std::string& arguments, const std::string& sentence) {
+  const outcome o = run_command(arguments);
+  INFO("clearance " << arguments << " said: " << o.err);
+  CHECK(o.code == 1);
+  CHECK(o.out.empty());
+  CHECK(o.err.find(sentence) != std::string::npos);
+  CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+}
+
+/// A box of 0.2 m on a table, a second one on a slide above it (z of its centre is 0.5 + the joint's value), and a
+/// camera on the second.
+const char* const robot_text = R"(<robot name="two">
+  <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="tool"><visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual></link>
+  <link name="eye"/>
+  <link name="extra"/>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="tool"/><origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
+    <limit lower="-0.1" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="mount" type="fixed"><parent link="tool"/><child link="eye"/><origin xyz="0 0 0.1"/></joint>
+  <joint name="echo" type="prismatic"><parent link="base"/><child link="extra"/><axis xyz="0 0 1"/><mimic joint="slide"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+</robot>
+)";
+
+std::string chunk(const std::string& name, const std::string& data) {
+  const auto big = [](std::uint32_t v) { return std::string{char(v >> 24), char(v >> 16), char(v >> 8), char(v)}; };
+  return big(std::uint32_t(data.size())) + name + data + big(clearance::io::png_crc(name + data));
+}
+
+/// 2 x 1 pixels of the given depths; `depth_bits` 16, or 8 for what must be refused.
+std::string png(std::uint16_t left, std::uint16_t right, int depth_bits = 16) {
+  std::string row(1, '\0');
+  for (const auto d : {left, right}) row += depth_bits == 16 ? std::string{char(d >> 8), char(d)} : std::string(1, char(d));
+  std::uint32_t a = 1, b = 0;
+  for (const char c : row) a = (a + std::uint8_t(c)) % 65521, b = (b + a) % 65521;
+  const std::string packed = std::string("\x78\x01\x01", 3) + char(row.size()) + '\0' + char(~row.size()) + '\xff' + row +
+                             char(b >> 8) + char(b) + char(a >> 8) + char(a);
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", std::string("\0\0\0\2\0\0\0\1", 8) + char(depth_bits) + std::string(4, '\0')) +
+         chunk("IDAT", packed) + chunk("IEND", "");
+}
+
+struct scene {
+  scratch_file urdf{".urdf", robot_text};
+  scratch_file cloud{".xyz", "5 5 5\n0 0 1.0\nnan 0 0\n"};  // 0.4 m above the tool
+  std::string robot = "query --robot " + urdf.path;
+  std::string ask = robot + " --cloud " + cloud.path;
+};
+
+nlohmann::json parsed(const outcome& o) {
+  INFO(o.err);
+  INFO(o.out);
+  REQUIRE(!o.out.empty());
+  return nlohmann::json::parse(o.out);
+}
+
+}  // namespace
+
+TEST_CASE("clearance query finds the nearest point, its part and its bracket") {
+  const scene s;
+  const outcome o = run_command(s.ask + " --model triangles --json");
+  const auto j = parsed(o);
+  CHECK(o.code == 0);
+  CHECK(j.at("state") == "free");
+  CHECK(j.at("distance").get<double>() == Approx(0.4));
+  CHECK(j.at("lower").get<double>() <= 0.4);
+  CHECK(j.at("upper").get<double>() >= 0.4);
+  CHECK(j.at("cloud") == s.cloud.path);
+  CHECK(j.at("point") == 1);
+  CHECK(j.at("pixel").is_null());
+  CHECK(j.at("point_xyz").at(2).get<double>() == Approx(1));
+  CHECK(j.at("part") == "tool");
+  CHECK(j.at("primitive").is_number());
+  CHECK(j.at("nearest_xyz").at(2).get<double>() == Approx(0.6));
+  CHECK(j.at("normal").at(2).get<double>() == Approx(1));
+  REQUIRE(j.at("parts").size() == 2);
+  CHECK(j.at("parts").at(0).at("name") == "base");
+  CHECK(j.at("parts").at(0).at("distance").get<double>() == Approx(0.9));
+  CHECK(j.at("parts").at(0).at("point") == 1);
+  CHECK(j.at("points").at("seen") == 3);
+  CHECK(j.at("points").at("valid") == 2);
+  CHECK(j.at("points").at("dropped").at("not_finite") == 1);
+  CHECK(j.at("model") == "triangles");
+  CHECK(j.at("volume") == "obb");
+  CHECK(j.at("backend").is_string());
+  for (const char* key : {"load", "pack", "build", "upload", "query"}) CHECK(j.at("seconds").at(key).get<double>() >= 0);
+  CHECK(o.err.find("link \"tool\" has no collision geometry") != std::string::npos);
+
+  const outcome text = run_command(s.ask + " --model triangles");
+  CHECK(text.code == 0);
+  CHECK(text.out.find("free") != std::string::npos);
+  CHECK(text.out.find("tool") != std::string::npos);
+}
+
+TEST_CASE("both models and all volumes give brackets that meet") {
+  const scene s;
+  double lower = 0, upper = 1e9;
+  for (const std::string model : {"spheres --spheres 300", "triangles"})
+    for (const std::string volume : {"sphere", "aabb", "obb"}) {
+      const auto j = parsed(run_command(s.ask + " --backend host --json --model " + model + " --volume " + volume));
+      lower = std::max(lower, j.at("lower").get<double>());
+      upper = std::min(upper, j.at("upper").get<double>());
+      CHECK(j.at("volume") == volume);
+      CHECK(j.at("part") == "tool");
+    }
+  CHECK(lower <= upper);
+  CHECK(lower <= 0.4);
+  CHECK(upper >= 0.4);
+}
+
+TEST_CASE("the exit code says free enough, too near, no data or error") {
+  const scene s;
+  const std::string ask = s.ask + " --model triangles --json";
+  CHECK(run_command(ask + " --check 0.39").code == 0);
+  CHECK(run_command(ask + " --check 0.4").code == 2);  // lower is rounded down
+  CHECK(parsed(run_command(ask + " --check 0.5")).at("check").at("passes") == false);
+  CHECK(run_command(ask + " --check -1").code == 0);
+  const scratch_file empty(".xyz", "# nothing\n");
+  const outcome none = run_command(s.robot + " --model triangles --json --check 0.1 --cloud " + empty.path);
+  CHECK(none.code == 3);
+  const auto j = parsed(none);
+  CHECK(j.at("state") == "no_data");
+  for (const char* key : {"distance", "cloud", "point", "pixel", "point_xyz", "part", "primitive", "nearest_xyz", "normal", "lower", "upper"})
+    CHECK(j.at(key).is_null());
+  CHECK(j.at("points").at("seen") == 0);
+  CHECK(j.at("parts").at(1).at("distance").is_null());
+  CHECK(run_command(s.robot + " --cloud " + empty.path).code == 3);
+  CHECK(run_command(ask + " --range 0,0.5").code == 3);
+}
+
+TEST_CASE("a point inside a link is a collision at distance 0") {
+  const scene s;
+  const scratch_file inside(".xyz", "0 0 0.5\n");
+  const auto j = parsed(run_command(s.robot + " --model triangles --json --cloud " + inside.path));
+  CHECK(j.at("state") == "collision");
+  CHECK(j.at("distance") == 0);
+  CHECK(j.at("lower") == 0);
+  CHECK(j.at("upper") == 0);
+  const auto spheres = parsed(run_command(s.robot + " --spheres 200 --json --cloud " + inside.path));
+  CHECK(spheres.at("state") == "collision");
+  CHECK(spheres.at("distance").get<double>() < 0);
+  CHECK(spheres.at("upper") == 0);
+}
+
+TEST_CASE("poses, intrinsics, scale and range before the first cloud hold for all, after one for that one") {
+  const scene s;
+  const scratch_file first(".png", png(0, 1000)), second(".png", png(2000, 65535));
+  // World-from-camera: looks up from 0.5 m above the tool, or from where the second pose says.
+  const std::string common = s.robot + " --model triangles --json --intrinsics 500,500,0,0 --camera-pose 0,0,1.1,0,0,0,1 ";
+  auto j = parsed(run_command(common + "--cloud " + first.path + " --cloud " + second.path));
+  CHECK(j.at("cloud") == first.path);
+  CHECK(j.at("pixel") == nlohmann::json({1, 0}));
+  CHECK(j.at("point") == 1);
+  CHECK(j.at("distance").get<double>() == Approx(1.5));
+  CHECK(j.at("points").at("dropped").at("missing") == 1);
+  CHECK(j.at("points").at("dropped").at("saturated") == 1);
+  j = parsed(run_command(common + "--cloud " + first.path + " --cloud " + second.path + " --depth-scale 0.0001"));
+  CHECK(j.at("cloud") == second.path);
+  CHECK(j.at("distance").get<double>() == Approx(0.7));
+  j = parsed(run_command(common + "--cloud " + first.path + " --cloud " + second.path + " --camera-pose 0,0,-1.1,0,0,0,1"));
+  CHECK(j.at("cloud") == second.path);
+  CHECK(j.at("distance").get<double>() == Approx(0.3));
+  j = parsed(run_command(common + "--range 1.5,inf --cloud " + first.path + " --cloud " + second.path));
+  CHECK(j.at("cloud") == second.path);
+  CHECK(j.at("points").at("dropped").at("out_of_range") == 1);
+  j = parsed(run_command(common + "--cloud " + first.path + " --range 0,0.5 --cloud " + second.path));
+  CHECK(j.at("cloud") == second.path);
+}
+
+TEST_CASE("a camera on a link moves with the joint") {
+  const scene s;
+  const scratch_file depth(".png", png(0, 300));
+  const std::string ask = s.robot + " --model triangles --json --camera-link eye --intrinsics 500,500,1,0 --cloud " + depth.path;
+  for (const double slide : {-0.05, 0.0, 0.5}) {
+    const auto j = parsed(run_command(ask + " --joints " + std::to_string(slide)));
+    CHECK(j.at("distance").get<double>() == Approx(0.3));
+    CHECK(j.at("point_xyz").at(2).get<double>() == Approx(0.9 + slide));
+  }
+  CHECK(parsed(run_command(ask + " --joint slide=-.05 --base-pose -1,0,10,0,0,0,1")).at("point_xyz").at(2).get<double>() == Approx(10.85));
+}
+
+TEST_CASE("joints are taken by order or by name, and refused with a sentence") {
+  const scene s;
+  const std::string ask = s.ask + " --model triangles --json";
+  CHECK(parsed(run_command(ask + " --joints 0.1")).at("distance").get<double>() == Approx(0.3));
+  CHECK(parsed(run_command(ask + " --joint slide=0.1")).at("distance").get<double>() == Approx(0.3));
+  CHECK(parsed(run_command(ask + " --ignore-limits --joints -.2")).at("distance").get<double>() == Approx(0.6));
+  refuses(ask + " --joints 0.1,0.2", "the robot has 1 movable joints (slide), here are 2 values");
+  refuses(ask + " --joints 2", "slide");
+  refuses(ask + " --joint slide=2", "slide");
+  refuses(ask + " --joint echo=0", "echo");
+  refuses(ask + " --joint mount=0", "mount");
+  refuses(ask + " --joint nobody=0", "nobody");
+  refuses(ask + " --joint slide", "\"slide\" is not of the form name=value");
+  refuses(ask + " --joint slide=fast", "\"fast\" is not a number");
+  refuses(ask + " --joint slide=0 --joint slide=0", "slide is given twice");
+  refuses(ask + " --joints 0 --joint slide=0", "cannot be mixed");
+}
+
+TEST_CASE("wrong usage is one sentence and exit code 1") {
+  const scene s;
+  const scratch_file depth(".png", png(1000, 1000)), shallow(".png", png(10, 10, 8)), cut(".pcd", "VERSION .7\n"), nothing(".ply", "");
+  refuses("", "subcommand");
+  refuses("quarry", "quarry: there is no such subcommand");
+  refuses("query", "--robot is required");
+  refuses(s.robot, "--cloud is required");
+  refuses(s.ask + " --colour red", "--colour");
+  refuses(s.ask + " --robot x", "--robot");
+  refuses(s.ask + " --model cubes", "--model: \"cubes\" is not spheres or triangles");
+  refuses(s.ask + " --volume box", "--volume: \"box\" is not sphere, aabb or obb");
+  refuses(s.ask + " --backend gpu", "--backend: \"gpu\" is not host or device");
+  refuses(s.ask + " --geometry both", "--geometry: \"both\" is not collision or visual");
+  refuses(s.ask + " --spheres 0", "--spheres: \"0\" is not a whole number from 1");
+  refuses(s.ask + " --spheres -5", "--spheres: \"-5\" is not a whole number from 1");
+  refuses(s.ask + " --spheres 1e3", "is not a whole number");
+  refuses(s.ask + " --check near", "--check: \"near\" is not a number");
+  refuses(s.ask + " --check nan", "--check: \"nan\" is not a finite number");
+  refuses(s.ask + " --base-pose 0,0,0,0,0,0,2", "the quaternion has length 2");
+  refuses(s.ask + " --camera-pose 0,0,0,0,0,0,0", "the quaternion has length 0");
+  refuses(s.ask + " --camera-pose 0,0,0,1", "--camera-pose: needs 7 numbers, x,y,z,qx,qy,qz,qw; here are 4");
+  refuses(s.ask + " --camera-pose 0,0,inf,0,0,0,1", "\"inf\" is not a finite number");
+  refuses(s.ask + " --camera-link elbow", "elbow");
+  refuses(s.ask + " --range 2,1", "--range: needs 0 <= near < far");
+  refuses(s.ask + " --range 1", "--range: needs 2 numbers");
+  refuses(s.ask + " --intrinsics 1,1,0,0", "--intrinsics: is for depth images");
+  refuses(s.robot + " --cloud " + depth.path, "needs --intrinsics fx,fy,cx,cy");
+  refuses(s.robot + " --cloud " + depth.path + " --intrinsics 0,1,0,0", "must be above 0");
+  refuses(s.robot + " --cloud " + depth.path + " --intrinsics 1,1,0,0 --depth-scale 0", "must be above 0");
+  refuses(s.robot + " --cloud " + shallow.path + " --intrinsics 1,1,0,0", "must be a 16-bit grey PNG, this one is 8-bit grey");
+  refuses(s.robot + " --cloud " + cut.path, cut.path + ": the PCD header has no DATA entry");
+  refuses(s.robot + " --cloud " + nothing.path, nothing.path + ": is empty (0 bytes)");
+  refuses(s.robot + " --cloud nowhere.pcd", "nowhere.pcd: there is no such file");
+  refuses(s.robot + " --cloud cloud.las", "cloud.las: is no point cloud by its name");
+  refuses("query --robot nowhere.urdf --cloud " + s.cloud.path, "nowhere.urdf");
+  refuses(s.ask + " --exclude-link nobody", "nobody");
+  refuses(s.ask + " --exclude-link base --exclude-link tool", "no link");
+  refuses(s.ask + " --use-viewpoint", "has no VIEWPOINT");
+  refuses(s.ask + " --model triangles --scene /nonexistent/folder/x.glb", "/nonexistent/folder/x.glb");
+  CHECK(run_command("query --help").code == 0);
+  CHECK(run_command("--version").code == 0);
+}
+
+TEST_CASE("a quaternion of nearly unit length is normalised") {
+  const scene s;
+  const auto j = parsed(run_command(s.ask + " --model triangles --json --camera-pose 0,0,0,0,0,0,1.0009"));
+  CHECK(j.at("distance").get<double>() == Approx(0.4));
+}
+
+TEST_CASE("(0,0,0) is a point unless the user says otherwise, and many are mentioned") {
+  const scene s;
+  for (const std::string away : {"", "5000000"}) {  // far from the world's origin, too
+    const scratch_file zeros(".xyz", "0 0 0\n" + (away.empty() ? "0" : away) + " 0 1.0\n");
+    const std::string ask = s.robot + " --model triangles --json --cloud " + zeros.path;
+    const outcome plain = run_command(ask);
+    CHECK(parsed(plain).at("state") == "collision");
+    CHECK(plain.err.find("1 of 2 points are (0,0,0)") != std::string::npos);
+    const outcome dropped = run_command(ask + " --zero-is-missing");
+    CHECK(parsed(dropped).at("points").at("dropped").at("missing") == 1);
+    CHECK(parsed(dropped).at("points").at("dropped").at("not_finite") == 0);
+    CHECK(parsed(dropped).at("point") == 1);
+  }
+}
+
+TEST_CASE("a cloud in map coordinates is as exact as its numbers") {
+  const scene s;
+  const scratch_file far(".xyz", "447123.0625 5411987.125 251.0\n447123.0625 5411987.125 251.001\n");
+  const auto j = parsed(run_command(s.robot + " --model triangles --json --base-pose 447123.0625,5411987.125,250,0,0,0,1 --cloud " + far.path));
+  CHECK(j.at("point") == 0);
+  CHECK(std::abs(j.at("distance").get<double>() - 0.4) < 1e-5);
+  CHECK(std::abs(j.at("point_xyz").at(1).get<double>() - 5411987.125) < 1e-6);
+}
+
+TEST_CASE("a PCD's viewpoint is reported, and applied only when asked") {
+  const scene s;
+  const scratch_file pcd(".pcd", "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nVIEWPOINT 0 0 0.2 1 0 0 0\nDATA ascii\n0 0 1\n");
+  const std::string ask = s.robot + " --model triangles --json --cloud " + pcd.path;
+  const outcome plain = run_command(ask);
+  CHECK(parsed(plain).at("distance").get<double>() == Approx(0.4));
+  CHECK(parsed(plain).at("clouds").at(0).at("viewpoint") == nlohmann::json({0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 1.0}));
+  CHECK(plain.err.find("--use-viewpoint") != std::string::npos);
+  CHECK(parsed(run_command(ask + " --use-viewpoint")).at("distance").get<double>() == Approx(0.6));
+}
+
+TEST_CASE("an excluded link is no part, and --scene writes a glTF file") {
+  const scene s;
+  const scratch_file glb(".glb");
+  const auto j = parsed(run_command(s.ask + " --model triangles --json --exclude-link tool --scene " + glb.path));
+  CHECK(j.at("part") == "base");
+  CHECK(j.at("parts").size() == 1);
+  std::ifstream in(glb.path, std::ios::binary);
+  std::string magic(4, '\0');
+  in.read(magic.data(), 4);
+  CHECK(magic == "glTF");
+}
+
+TEST_CASE("clearance pack fills a mesh and writes its spheres") {
+  // A box of 0.2 x 0.2 x 0.2 with its top left open.
+  const scratch_file mesh(".obj", "v -.1 -.1 -.1\nv .1 -.1 -.1\nv .1 .1 -.1\nv -.1 .1 -.1\nv -.1 -.1 .1\nv .1 -.1 .1\nv .1 .1 .1\nv -.1 .1 .1\n"
+                                  "f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const scratch_file csv(".csv");
+  const outcome o = run_command("pack " + mesh.path + " --spheres 50 --json --out " + csv.path);
+  CHECK(o.code == 0);
+  CHECK(o.err.empty());  // no progress into a pipe
+  const auto j = parsed(o);
+  CHECK(j.at("spheres") == 50);
+  CHECK(j.at("stopped_by") == "count");
+  CHECK(j.at("fill").get<double>() > 0.5);
+  CHECK(j.at("fill").get<double>() < 1);
+  CHECK(j.at("gap").get<double>() > 0);
+  CHECK(j.at("radius_max").get<double>() == Approx(0.1));
+  CHECK(j.at("radius_min").get<double>() > 0);
+  CHECK(j.at("caps").at("loops") == 1);
+  CHECK(j.at("caps").at("area").get<double>() == Approx(0.04));
+  CHECK(j.at("seconds").is_number());
+  std::ifstream in(csv.path);
+  std::string line;
+  std::getline(in, line);
+  CHECK(line == "x,y,z,r");
+  int rows = 0;
+  while (std::getline(in, line)) rows += std::count(line.begin(), line.end(), ',') == 3;
+  CHECK(rows == 50);
+  CHECK(run_command("pack " + mesh.path + " --spheres 5").out.find("fill") != std::string::npos);
+  const scratch_file flat(".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), empty(".stl", "");
+  refuses("pack " + flat.path + " --spheres 5", flat.path + ": ");
+  refuses("pack " + empty.path + " --spheres 5", "is empty (0 bytes)");
+  refuses("pack nowhere.stl --spheres 5", "nowhere.stl: there is no such file");
+  refuses("pack " + mesh.path, "--spheres is required");
+  refuses("pack " + mesh.path + " --spheres many", "\"many\" is not a whole number");
+  refuses("pack " + mesh.path + " --spheres 5 --out /nonexistent/folder/s.csv", "/nonexistent/folder/s.csv");
+}
+
+TEST_CASE("clearance demo agrees with itself") {
+  const outcome o = run_command("demo --spheres 100");
+  INFO(o.out);
+  CHECK(o.code == 0);
+  CHECK(o.out.find("Witnesses within a model are the same. Brackets meet.") != std::string::npos);
+  CHECK(o.err.empty());
+}
+
+TEST_CASE("clearance info says what it is and what it runs on") {
+  const outcome o = run_command("info --json");
+  CHECK(o.code == 0);
+  const auto j = parsed(o);
+  CHECK(j.at("version").is_string());
+  CHECK((j.at("device").is_null() || j.at("backend") == "device"));
+  CHECK(run_command("info").out.find("host") != std::string::npos);
+  if (j.at("device").is_null()) {
+    const scene s;
+    refuses(s.ask + " --backend device", "--backend: device is not possible");
+  }
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The only way from the command to the library's query: plain data in, plain data out, so that each backend is one
+// translation unit and only device.cu needs nvcc.
+
+#include <clearance/part.hpp>
+#include <clearance/points/depth_image.hpp>
+#include <clearance/points/point_span.hpp>
+#include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/primitive/triangle.hpp>
+#include <clearance/result.hpp>
+#include <clearance/solid/winding.hpp>
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+enum class model_kind { spheres, triangles };
+enum class volume_kind { sphere, aabb, obb };
+
+inline const char* to_string(model_kind kind) { return kind == model_kind::spheres ? "spheres" : "triangles"; }
+inline const char* to_string(volume_kind kind) {
+  return kind == volume_kind::sphere ? "sphere" : kind == volume_kind::aabb ? "aabb" : "obb";
+}
+
+/// One rigid body: its spheres, or its triangles and their inside.
+struct body {
+  std::string name;
+  std::vector<clearance::inner_sphere> spheres;
+  std::vector<clearance::triangle> triangles;
+  std::optional<clearance::winding<>> interior;
+  double gap = 0;        // of the spheres, m; infinite: no certificate
+  double tolerance = 0;  // how far the true surface may be from the mesh, m
+};
+
+struct seen_points {
+  std::variant<clearance::point_span, clearance::depth_image<std::uint16_t>> points;
+  Eigen::Isometry3d pose;  // world-from-points
+};
+
+struct question {
+  model_kind model = model_kind::spheres;
+  volume_kind volume = volume_kind::sphere;
+  const std::vector<body>* bodies = nullptr;
+  std::vector<Eigen::Isometry3d> poses;  // world-from-body
+  std::vector<seen_points> clouds;
+  int repeat = 1;  // ask so often and report the shortest time
+};
+
+struct answer {
+  clearance::min_distance_result result;
+  std::vector<clearance::part_minimum> parts;
+  double build = 0, upload = 0, query = 0;  // seconds
+};
+
+answer ask_host(const question& asked);
+
+/// Throws std::runtime_error if no device is compiled in.
+answer ask_device(const question& asked);
+
+struct device_state {
+  bool compiled = false, present = false;
+  std::string says;  // which device, or why there is none
+};
+
+device_state find_device();

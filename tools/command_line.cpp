@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "command_line.hpp"
+
+#include <clearance/io/cloud_text.hpp>
+
+#include <cmath>
+#include <cstdint>
+
+namespace {
+
+std::string quoted(std::string_view text) { return '"' + std::string(text.substr(0, 60)) + '"'; }
+
+}  // namespace
+
+std::vector<double> numbers(const std::string& option, const std::string& text, bool infinite) {
+  std::vector<double> values;
+  std::string_view rest = text;
+  for (;;) {
+    const std::size_t comma = rest.find(',');
+    std::string_view word = rest.substr(0, comma);
+    while (word.starts_with(' ')) word.remove_prefix(1);
+    while (word.ends_with(' ')) word.remove_suffix(1);
+    const auto value = clearance::io::number<double>(word);
+    if (!value || std::isnan(*value) || (!infinite && !std::isfinite(*value)))
+      throw usage_error(option, quoted(word) + " is not a" + (value ? " finite" : "") + " number");
+    values.push_back(*value);
+    if (comma == rest.npos) return values;
+    rest.remove_prefix(comma + 1);
+  }
+}
+
+std::vector<double> numbers(const std::string& option, const std::string& text, std::size_t count,
+                            const std::string& what, bool infinite) {
+  auto values = numbers(option, text, infinite);
+  if (values.size() != count)
+    throw usage_error(option, "needs " + std::to_string(count) + " numbers, " + what + "; here are " +
+                                  std::to_string(values.size()));
+  return values;
+}
+
+double number(const std::string& option, const std::string& text) { return numbers(option, text, 1, "one")[0]; }
+
+std::size_t whole_number(const std::string& option, const std::string& text) {
+  constexpr std::uint64_t most = 10'000'000;
+  const auto value = clearance::io::number<std::uint64_t>(text);
+  if (!value || *value < 1 || *value > most)
+    throw usage_error(option, quoted(text) + " is not a whole number from 1 to " + std::to_string(most));
+  return *value;
+}
+
+Eigen::Isometry3d pose(const std::string& option, const std::string& text) {
+  const auto v = numbers(option, text, 7, "x,y,z,qx,qy,qz,qw");
+  return pose(option, {v[0], v[1], v[2]}, Eigen::Quaterniond(v[6], v[3], v[4], v[5]));
+}
+
+Eigen::Isometry3d pose(const std::string& option, const Eigen::Vector3d& translation, Eigen::Quaterniond rotation) {
+  const double length = rotation.norm();
+  if (!(std::abs(length - 1) <= 1e-3))
+    throw usage_error(option, "the quaternion has length " + std::to_string(length) +
+                                  ", not 1, so the pose is not rigid (the order is qx,qy,qz,qw)");
+  Eigen::Isometry3d made = Eigen::Isometry3d::Identity();
+  made.linear() = rotation.normalized().toRotationMatrix();
+  made.translation() = translation;
+  return made;
+}
+
+std::size_t choice(const std::string& option, const std::string& text, const std::vector<std::string>& names) {
+  std::string all;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (text == names[i]) return i;
+    all += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+  }
+  throw usage_error(option, quoted(text) + " is not " + all);
+}
+
+std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == text.npos || equals == 0 || equals + 1 == text.size())
+    throw usage_error(option, quoted(text) + " is not of the form name=value");
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}

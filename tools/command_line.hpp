@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What the subcommands share: how words become numbers and poses, and what is said when they do not.
+
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+/// A sentence about an option; exit code 1.
+struct usage_error : std::invalid_argument {
+  usage_error(const std::string& option, const std::string& why) : std::invalid_argument(option + ": " + why) {}
+};
+
+/// A subcommand: its options are filled in when `run` is called; what it returns is the exit code.
+using subcommand = std::function<int()>;
+
+subcommand add_query(CLI::App& app);
+subcommand add_pack(CLI::App& app);
+subcommand add_demo(CLI::App& app);
+subcommand add_info(CLI::App& app);
+
+/// Numbers between commas, finite unless `infinite`; `what` names them: "fx,fy,cx,cy".
+std::vector<double> numbers(const std::string& option, const std::string& text, bool infinite = false);
+std::vector<double> numbers(const std::string& option, const std::string& text, std::size_t count,
+                            const std::string& what, bool infinite = false);
+double number(const std::string& option, const std::string& text);
+
+/// A whole number from 1 to 10 million.
+std::size_t whole_number(const std::string& option, const std::string& text);
+
+/// x,y,z,qx,qy,qz,qw. A quaternion within 1e-3 of unit length is normalised, any other refused.
+Eigen::Isometry3d pose(const std::string& option, const std::string& text);
+Eigen::Isometry3d pose(const std::string& option, const Eigen::Vector3d& translation, Eigen::Quaterniond rotation);
+
+/// Which of `names` the text is.
+std::size_t choice(const std::string& option, const std::string& text, const std::vector<std::string>& names);
+
+/// name=value, split at the first '='.
+std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text);

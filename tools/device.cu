@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ask.hpp"
+
+#include <clearance/backend/device.cuh>
+
+namespace {
+
+// Launched by nobody: is there code for this GPU in the program?
+template <int>
+__global__ void probe() {}
+
+}  // namespace
+
+answer ask_device(const question& asked) { return ask(clearance::device{}, asked); }
+
+device_state find_device() {
+  int count = 0;
+  const cudaError_t failed = cudaGetDeviceCount(&count);
+  if (failed != cudaSuccess || count == 0)
+    return {true, false, std::string("there is no CUDA device (") + (failed != cudaSuccess ? cudaGetErrorString(failed) : "none found") + ')'};
+  cudaDeviceProp properties{};
+  if (const cudaError_t why = cudaGetDeviceProperties(&properties, 0); why != cudaSuccess)
+    return {true, false, std::string("the CUDA device does not answer (") + cudaGetErrorString(why) + ')'};
+  const std::string name = std::string(properties.name) + " (sm_" + std::to_string(properties.major) + std::to_string(properties.minor) + ')';
+  cudaFuncAttributes attributes{};
+  if (const cudaError_t why = cudaFuncGetAttributes(&attributes, probe<0>); why != cudaSuccess) {
+    cudaGetLastError();  // it is answered; the next call shall not see it
+    return {true, false, name + " cannot run this clearance (" + cudaGetErrorString(why) + ')'};
+  }
+  return {true, true, name};
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "observations.hpp"
+
+#include "command_line.hpp"
+
+#include <clearance/io/cloud_file.hpp>
+#include <clearance/io/png.hpp>
+
+#include <cstdio>
+
+using namespace clearance;
+
+std::uint64_t observation::size() const { return image() ? image()->pixels.size() : points()->points.size(); }
+
+observation observe(const cloud_options& from) {
+  observation made{from, {}, 0, {}};
+  if (from.is_image()) {
+    made.data = io::load_png(from.file);
+    return made;
+  }
+  io::cloud cloud = io::load_cloud(from.file);
+  const vec3 zero{-real(cloud.origin.x()), -real(cloud.origin.y()), -real(cloud.origin.z())};  // exact: the origin is in floats
+  std::uint64_t zeros = 0;
+  for (vec3& p : cloud.points) {
+    if (p != zero) continue;
+    ++zeros;
+    if (from.zero_is_missing) p.x = not_a_number;
+  }
+  if (from.zero_is_missing) made.zeros = zeros;
+  if (!from.zero_is_missing && 100 * zeros > cloud.points.size())
+    made.notes.push_back(from.file + ": " + std::to_string(zeros) + " of " + std::to_string(cloud.points.size()) +
+                         " points are (0,0,0) and count as points; --zero-is-missing drops them");
+  if (from.use_viewpoint && !cloud.viewpoint) throw usage_error("--use-viewpoint", from.file + " has no VIEWPOINT");
+  if (cloud.viewpoint && !from.use_viewpoint) {
+    const auto& [t, q] = *cloud.viewpoint;
+    if (t != Eigen::Vector3d::Zero() || q.coeffs() != Eigen::Quaterniond::Identity().coeffs()) {
+      char says[256];
+      std::snprintf(says, sizeof says, ": VIEWPOINT x,y,z,qx,qy,qz,qw %g,%g,%g,%g,%g,%g,%g is not applied; --use-viewpoint does so",
+                    t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+      made.notes.push_back(from.file + says);
+    }
+  }
+  made.data = std::move(cloud);
+  return made;
+}
+
+seen_points observation::seen(const Eigen::Isometry3d& carrier) const {
+  const Eigen::Isometry3d placed = carrier * from.pose;
+  if (const auto* frame = image()) {
+    depth_image<std::uint16_t> source(frame->pixels.data(), std::uint32_t(frame->width), std::uint32_t(frame->height),
+                                      *from.camera, from.scale);
+    source.nearest = real(from.nearest);
+    source.farthest = real(from.farthest);
+    return {source, placed};
+  }
+  const io::cloud& cloud = *points();
+  Eigen::Isometry3d world = placed;
+  if (from.use_viewpoint)
+    world = placed * pose("--use-viewpoint: " + from.file, cloud.viewpoint->translation, cloud.viewpoint->rotation);
+  world.translation() = world * cloud.origin;
+  point_span source(cloud.points);
+  source.filter.nearest = real(from.nearest);
+  source.filter.farthest = real(from.farthest);
+  source.filter.sensor = {-real(cloud.origin.x()), -real(cloud.origin.y()), -real(cloud.origin.z())};
+  return {source, world};
+}
+
+std::vector<vec3> valid_points(const seen_points& seen) {
+  std::vector<vec3> valid;
+  std::visit(
+      [&](const auto& source) {
+        for (std::size_t i = 0; i < source.size(); ++i)
+          if (const sample s = source[i]; s.valid()) valid.push_back(s.position);
+      },
+      seen.points);
+  return valid;
+}

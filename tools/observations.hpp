@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "backends.hpp"
+#include "query_options.hpp"
+
+#include <clearance/io/cloud.hpp>
+#include <clearance/io/depth.hpp>
+
+#include <map>
+#include <variant>
+
+/// One loaded --cloud.
+struct observation {
+  cloud_options from;
+  std::variant<clearance::io::cloud, clearance::io::depth_frame> data;
+  std::uint64_t zeros = 0;  // records that are (0,0,0) and were taken for missing, so that they are NaN in `data`
+  std::vector<std::string> notes;
+
+  std::uint64_t size() const;
+  const clearance::io::cloud* points() const { return std::get_if<clearance::io::cloud>(&data); }
+  const clearance::io::depth_frame* image() const { return std::get_if<clearance::io::depth_frame>(&data); }
+
+  /// What the query reads, in place. `carrier`: world-from-link of the link that --camera-link names, else the identity.
+  seen_points seen(const Eigen::Isometry3d& carrier) const;
+};
+
+/// Reads the file. Throws if it is damaged.
+observation observe(const cloud_options& from);
+
+/// Its valid points in the frame of observation::seen, for a picture.
+std::vector<clearance::vec3> valid_points(const seen_points& seen);

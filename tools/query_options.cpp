@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "query_options.hpp"
+
+#include "command_line.hpp"
+
+#include <clearance/io/cloud_file.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <map>
+
+bool cloud_options::is_image() const { return clearance::io::extension(file) == ".png"; }
+
+namespace {
+
+using texts = std::vector<std::string>;
+
+struct raw_options {
+  std::string robot, joints, geometry, base, model, volume, spheres, backend, check, scene;
+  texts joint, packages, excluded, clouds, poses, links, cameras, scales, ranges;
+  bool ignore_limits = false, json = false;
+};
+
+/// An option that takes one word each time it is given, as often as wanted.
+CLI::Option* repeatable(CLI::App& app, const std::string& name, texts& to, const std::string& says) {
+  return app.add_option(name, to, says)->allow_extra_args(false);
+}
+
+/// Sets one per-cloud option, as it was given on the command line.
+void set(cloud_options& cloud, const std::string& option, const std::string& text) {
+  if (option == "--camera-pose") cloud.pose = pose(option, text);
+  if (option == "--camera-link") cloud.link = text;
+  if (option == "--intrinsics") {
+    const auto v = numbers(option, text, 4, "fx,fy,cx,cy");
+    if (!(v[0] > 0 && v[1] > 0)) throw usage_error(option, "the focal lengths fx and fy must be above 0 (pixels)");
+    cloud.camera = clearance::intrinsics{v[0], v[1], v[2], v[3]};
+  }
+  if (option == "--depth-scale") {
+    cloud.scale = number(option, text);
+    if (!(cloud.scale > 0)) throw usage_error(option, "must be above 0 (metres a unit)");
+  }
+  if (option == "--range") {
+    const auto v = numbers(option, text, 2, "near,far", true);
+    if (!(v[0] >= 0 && v[0] < v[1])) throw usage_error(option, "needs 0 <= near < far (metres)");
+    cloud.nearest = v[0];
+    cloud.farthest = v[1];
+  }
+  if (option == "--use-viewpoint") cloud.use_viewpoint = true;
+  if (option == "--zero-is-missing") cloud.zero_is_missing = true;
+  if (!cloud.file.empty() && !cloud.is_image() && (option == "--intrinsics" || option == "--depth-scale"))
+    throw usage_error(option, "is for depth images, and " + cloud.file + " is none");
+  if (!cloud.file.empty() && cloud.is_image() && (option == "--use-viewpoint" || option == "--zero-is-missing"))
+    throw usage_error(option, "is for point clouds, and " + cloud.file + " is a depth image");
+}
+
+/// The clouds in their order; an option before the first is for all, one after a cloud for that one.
+std::vector<cloud_options> clouds_of(const CLI::App& app) {
+  std::vector<cloud_options> clouds;
+  cloud_options all;
+  std::map<const CLI::Option*, std::size_t> taken;
+  for (const CLI::Option* option : app.parse_order()) {
+    const std::string name = option->get_name();
+    const std::string& text = option->results().at(taken[option]++);
+    if (name == "--cloud") {
+      clouds.push_back(all);
+      clouds.back().file = text;
+    } else {
+      set(clouds.empty() ? all : clouds.back(), name, text);
+    }
+  }
+  for (const auto& cloud : clouds)
+    if (cloud.is_image() && !cloud.camera)
+      throw usage_error("--cloud", cloud.file + " is a depth image, which needs --intrinsics fx,fy,cx,cy");
+  return clouds;
+}
+
+query_options read(const CLI::App& app, const raw_options& raw) {
+  query_options o;
+  o.robot = raw.robot;
+  if (!raw.joints.empty()) o.joints = numbers("--joints", raw.joints);
+  for (const auto& text : raw.joint) {
+    const auto [name, value] = assignment("--joint", text);
+    for (const auto& before : o.joint)
+      if (before.first == name) throw usage_error("--joint", name + " is given twice");
+    o.joint.emplace_back(name, number("--joint " + name, value));
+  }
+  if (!o.joints.empty() && !o.joint.empty()) throw usage_error("--joints", "cannot be mixed with --joint");
+  o.ignore_limits = raw.ignore_limits;
+  if (!raw.geometry.empty()) o.visual = choice("--geometry", raw.geometry, {"collision", "visual"}) == 1;
+  for (const auto& text : raw.packages) o.packages.push_back(assignment("--package", text));
+  if (!raw.base.empty()) o.base = pose("--base-pose", raw.base);
+  o.clouds = clouds_of(app);
+  o.model = model_kind(choice("--model", raw.model, {"spheres", "triangles"}));
+  o.volume = o.model == model_kind::spheres ? volume_kind::sphere : volume_kind::obb;
+  if (!raw.volume.empty()) o.volume = volume_kind(choice("--volume", raw.volume, {"sphere", "aabb", "obb"}));
+  o.spheres = whole_number("--spheres", raw.spheres);
+  o.excluded = raw.excluded;
+  const device_state gpu = find_device();
+  o.on_device = raw.backend.empty() ? gpu.present : choice("--backend", raw.backend, {"host", "device"}) == 1;
+  if (o.on_device && !gpu.present) throw usage_error("--backend", "device is not possible: " + gpu.says);
+  if (!raw.check.empty()) o.margin = number("--check", raw.check);
+  o.json = raw.json;
+  o.scene = raw.scene;
+  return o;
+}
+
+}  // namespace
+
+std::function<query_options()> add_query_options(CLI::App& app) {
+  auto raw = std::make_shared<raw_options>();
+  raw->model = "spheres";
+  raw->spheres = "2048";
+  const auto one = [&](const std::string& name, std::string& to, const std::string& says) {
+    return app.add_option(name, to, says);
+  };
+  one("--robot", raw->robot, "Robot description, URDF")->required();
+  one("--joints", raw->joints, "a,b,...: joint positions (rad, m) in the file's order of movable, non-mimic joints");
+  app.add_option("--joint", raw->joint, "name=value: the position of one joint; others are 0 or their nearest limit");
+  app.add_flag("--ignore-limits", raw->ignore_limits, "Accept joint positions outside their limits");
+  one("--geometry", raw->geometry, "visual or collision (default; visual where a link has no collision)");
+  app.add_option("--package", raw->packages, "name=DIR: where package://name/ is");
+  one("--base-pose", raw->base, "x,y,z,qx,qy,qz,qw: world-from-base (m; default: the base is at the world's origin)");
+  app.add_option("--cloud", raw->clouds, "Point cloud (.pcd .ply .xyz) or 16-bit depth image (.png); may be repeated")->required();
+  repeatable(app, "--camera-pose", raw->poses, "x,y,z,qx,qy,qz,qw: world-from-cloud, or link-from-cloud with --camera-link");
+  repeatable(app, "--camera-link", raw->links, "The link that carries the camera");
+  repeatable(app, "--intrinsics", raw->cameras, "fx,fy,cx,cy of a depth image, pixels");
+  repeatable(app, "--depth-scale", raw->scales, "Metres a unit of a depth image (default 0.001)");
+  repeatable(app, "--range", raw->ranges, "near,far: other points do not count (m; along z for images, else from the sensor)");
+  app.add_flag("--use-viewpoint")->description("Apply the VIEWPOINT of a PCD file");
+  app.add_flag("--zero-is-missing")->description("(0,0,0) is no point");
+  one("--model", raw->model, "spheres (default) or triangles");
+  one("--volume", raw->volume, "sphere, aabb or obb (default: sphere for spheres, obb for triangles)");
+  one("--spheres", raw->spheres, "Inner spheres a link (default 2048)");
+  app.add_option("--exclude-link", raw->excluded, "Leave out this link's geometry");
+  one("--backend", raw->backend, "host or device (default: device where there is one)");
+  one("--check", raw->check, "Margin in m: exit code 2 unless the lower end of the bracket is above it");
+  app.add_flag("--json", raw->json, "Print one JSON object");
+  one("--scene", raw->scene, "Write robot, clouds and witness to this .glb file");
+  app.footer(
+      "--camera-pose, --camera-link, --intrinsics, --depth-scale, --range, --use-viewpoint and --zero-is-missing hold\n"
+      "for all clouds if given before the first --cloud, else for the --cloud before them.");
+  return [raw, &app] { return read(app, *raw); };
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "backends.hpp"
+
+#include <Eigen/Geometry>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+/// One --cloud, with the options that hold for it.
+struct cloud_options {
+  std::string file;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // world-from-cloud, or link-from-cloud
+  std::string link;                                         // empty: the world
+  std::optional<clearance::intrinsics> camera;
+  double scale = 0.001;
+  double nearest = 0, farthest = clearance::infinity;
+  bool use_viewpoint = false, zero_is_missing = false;
+
+  bool is_image() const;
+};
+
+struct query_options {
+  std::string robot;
+  std::vector<double> joints;                          // in the file's order; empty: not given
+  std::vector<std::pair<std::string, double>> joint;   // by name
+  bool ignore_limits = false;
+  std::optional<bool> visual;                          // --geometry
+  std::vector<std::pair<std::string, std::string>> packages;
+  Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
+  std::vector<cloud_options> clouds;
+  model_kind model = model_kind::spheres;
+  volume_kind volume = volume_kind::sphere;
+  std::size_t spheres = 2048;
+  std::vector<std::string> excluded;
+  bool on_device = false;
+  std::optional<double> margin;
+  bool json = false;
+  std::string scene;
+};
+
+/// Declares the options of `clearance query`; what it returns reads them once they are parsed. Throws usage_error.
+std::function<query_options()> add_query_options(CLI::App& app);
