@@ -82,11 +82,11 @@ struct part {
   }
 };
 
-/// A part whose primitives are the solid: its bracket is as wide as float rounding.
+/// A part whose primitives are all there is of the solid; or, with a certified `gap`, all but that. Metres.
 template <bounding_volume V, primitive P>
-part<bvh<V, P>> make_part(bvh<V, P> tree) {
+part<bvh<V, P>> make_part(bvh<V, P> tree, double gap = 0, double tolerance = 0) {
   const ball around = enclosing_ball(std::span<const P>(tree.primitives));
-  return {std::move(tree), {}, {around.center, around.radius, 0, 0}};
+  return {std::move(tree), {}, {around.center, around.radius, rounded_up(gap), rounded_up(tolerance)}};
 }
 
 }  // namespace clearance

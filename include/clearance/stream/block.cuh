@@ -25,10 +25,12 @@ struct pending {
   std::uint32_t survivor;
 };
 
-/// The test of a point x against a part's ball, in three multiply-adds: x.m + w + |x|^2 <= 0.
-struct root_test {
+/// The test of a point x against a part's ball, in three multiply-adds: x.m + w + |x|^2 <= 0 if it may be inside.
+struct alignas(16) root_test {
   vec3 m;  ///< -2 c
-  real w;  ///< |c|^2 - limit^2, less all rounding; falls with the bound.
+  real w;  ///< |c|^2 - limit^2, less all rounding; rises as the bound falls.
+
+  __device__ real operator()(vec3 x) const { return fma(x.x, m.x, fma(x.y, m.y, fma(x.z, m.z, w))); }
 };
 
 template <class T>

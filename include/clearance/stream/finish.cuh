@@ -15,7 +15,7 @@ __device__ const stream_part<PartView>& part(const frame_args<PartView, Source>&
 
 /// The answer from the best record: what search::resolve_body writes, without searching again.
 template <class PartView, class Source>
-__device__ void write_result(const frame_args<PartView, Source>& a, const block_memory<PartView>& s) {
+__noinline__ __device__ void write_result(const frame_args<PartView, Source>& a, const block_memory<PartView>& s) {
   const record best = s.best;
   min_distance_result out;
   real tolerance = 0;

@@ -29,8 +29,7 @@ struct frame {
     constexpr std::uint32_t chunk = 32 * quad, warps = block_threads / 32;
     const std::uint32_t stride = chunk * warps * gridDim.x;
     std::uint32_t at = (t / 32 * gridDim.x + blockIdx.x) * chunk;
-    sample p[quad];
-    load(at, p);
+    points p = load(at);
     prepare(t);
     __syncthreads();
     if (!__syncthreads_or(from_last_frame(t))) seed(p);
@@ -38,12 +37,12 @@ struct frame {
     __syncthreads();
     const std::uint32_t rounds = (a.points + stride - 1) / stride;
     for (std::uint32_t r = 0; r < rounds; ++r, at += stride) {
-      sample next[quad];
       const bool more = r + 1 < rounds;
-      if (more) load(at + stride, next);
+      points next = p;
+      if (more) next = load(at + stride);
       filter(at, p);
       if (more) {
-        for (int j = 0; j < quad; ++j) p[j] = next[j];
+        p = next;
         if (t == 0) atomicMin(&s.bound, fresh(a.state->bound));
         if (t - 32 < a.parts && t >= 32) s.sharpen(t - 32, part(t - 32).place.around);
         if (!__syncthreads_or(s.survivors > block_memory<PartView>::survivor_capacity / 4)) continue;
@@ -66,17 +65,34 @@ struct frame {
     else
       return false;
   }
-  __device__ void load(std::uint32_t at, sample (&p)[quad]) const {
-    if constexpr (requires { a.source.load4(std::size_t(0), p); }) {
-      if (a.source.loads4() && at + 32 * quad <= a.points) {
-        a.source.load4(at + (threadIdx.x & 31) * quad, p);
-        return;
+  /// A thread's points, and a byte for each: 0 valid, else why not.
+  struct points {
+    vec3 at[quad];
+    std::uint32_t why;
+  };
+  static constexpr std::uint32_t absent = 0xff;
+
+  __device__ points load(std::uint32_t at) const {
+    points p;
+    sample s[quad];
+    bool read = false;
+    if constexpr (requires { a.source.load4(std::size_t(0), s); }) {
+      read = a.source.loads4() && at + 32 * quad <= a.points;
+      if (read) a.source.load4(at + (threadIdx.x & 31) * quad, s);
+    }
+    if (!read)
+#pragma unroll
+      for (int j = 0; j < quad; ++j) {
+        const std::uint32_t i = index(a.source, at, j);
+        s[j] = i < a.points ? a.source[i] : sample{{0, 0, 0}, drop_reason(absent)};
       }
-    }
+    p.why = 0;
+#pragma unroll
     for (int j = 0; j < quad; ++j) {
-      const std::uint32_t i = index(a.source, at, j);
-      p[j] = i < a.points ? a.source[i] : sample{{0, 0, 0}, drop_reason::missing};
+      p.at[j] = s[j].position - a.origin;
+      p.why |= std::uint32_t(s[j].dropped) << 8 * j;
     }
+    return p;
   }
 
   __device__ const stream_part<PartView>& part(std::uint32_t k) const { return stream::part(a, s, k); }
@@ -112,16 +128,16 @@ struct frame {
 
   /// No last frame: eight lanes take the most promising of their points down the tree, and all blocks wait a little for
   /// one another. Nothing depends on that wait but speed, so it gives up rather than hang.
-  __device__ void seed(const sample (&p)[quad]) {
+  __device__ void seed(const points& p) {
     real nearest = infinity;
     std::uint32_t nearest_part = 0;
     vec3 position{0, 0, 0};
     for (int j = 0; j < quad; ++j) {
-      if (!p[j].valid()) continue;
+      if (p.why >> 8 * j & 0xff) continue;
       for (std::uint32_t k = 0; k < a.parts; ++k) {
         const ball& around = part(k).place.around;
-        const real lb = length(p[j].position - a.origin - around.center) - around.radius;
-        if (lb < nearest) nearest = lb, nearest_part = k, position = p[j].position;
+        const real lb = length(p.at[j] - around.center) - around.radius;
+        if (lb < nearest) nearest = lb, nearest_part = k, position = p.at[j];
       }
     }
     real least = nearest;
@@ -132,7 +148,7 @@ struct frame {
       const int from = __ffs(int(winners)) - 1;
       nearest_part = __shfl_sync(mine, nearest_part, from);
       position = {__shfl_sync(mine, position.x, from), __shfl_sync(mine, position.y, from), __shfl_sync(mine, position.z, from)};
-      descend(nearest_part, in_part(nearest_part, position), mine);
+      descend(nearest_part, part(nearest_part).place.part_from_cloud(position), mine);
     }
     __syncthreads();
     if (threadIdx.x == 0) {
@@ -169,30 +185,34 @@ struct frame {
     if (d < infinity) atomicMin(&s.bound, ordered(d));
   }
 
-  __device__ void filter(std::uint32_t at, const sample (&p)[quad]) {
-    vec3 x[quad];
-    real square[quad];
-    bool valid[quad];
-    unsigned hit = 0;
-    for (int j = 0; j < quad; ++j) {
-      const bool exists = index(a.source, at, j) < a.points;
-      valid[j] = exists && p[j].valid();
-      if (exists && !valid[j]) dropped += 1ull << 16 * (int(p[j].dropped) - 1);
-      x[j] = p[j].position - a.origin;
-      square[j] = valid[j] ? dot(x[j], x[j]) : not_a_number;  // fails every comparison
-    }
+  /// Three multiply-adds and a minimum for each point and part; whoever passes any test is looked at again.
+  __device__ void filter(std::uint32_t at, points& p) {
+    if (p.why != 0) count_and_remove(p);
+    real least[quad];
+#pragma unroll
+    for (int j = 0; j < quad; ++j) least[j] = infinity;
+#pragma unroll 4
     for (std::uint32_t k = 0; k < a.parts; ++k) {
       const root_test root = s.roots[k];
-      for (int j = 0; j < quad; ++j)
-        if (fma(x[j].x, root.m.x, fma(x[j].y, root.m.y, fma(x[j].z, root.m.z, root.w))) <= -square[j]) hit |= 1u << j;
+#pragma unroll
+      for (int j = 0; j < quad; ++j) least[j] = min(least[j], root(p.at[j]));
     }
-    if (hit == 0) return;
+#pragma unroll
+    for (int j = 0; j < quad; ++j)
+      if (least[j] <= -dot(p.at[j], p.at[j])) admit(p.at[j], index(a.source, at, j));
+  }
+  __device__ void admit(vec3 x, std::uint32_t point) {
+    const real square = dot(x, x);
+    for (std::uint32_t k = 0; k < a.parts; ++k)
+      if (s.roots[k](x) <= -square) admit(x, point, k);
+  }
+  __device__ void count_and_remove(points& p) {
+#pragma unroll
     for (int j = 0; j < quad; ++j) {
-      if (!(hit >> j & 1)) continue;
-      for (std::uint32_t k = 0; k < a.parts; ++k) {
-        const root_test root = s.roots[k];
-        if (fma(x[j].x, root.m.x, fma(x[j].y, root.m.y, fma(x[j].z, root.m.z, root.w))) <= -square[j]) admit(x[j], index(a.source, at, j), k);
-      }
+      const std::uint32_t why = p.why >> 8 * j & 0xff;
+      if (why == 0) continue;
+      if (why != absent) dropped += 1ull << 16 * (why - 1);
+      p.at[j] = {not_a_number, not_a_number, not_a_number};  // fails every comparison
     }
   }
 
@@ -235,7 +255,7 @@ struct frame {
     else
       alone(e.node, q, point, k);  // exact, only slower
   }
-  __device__ void alone(bvh_node top, vec3 q, std::uint32_t point, std::uint32_t k) {
+  __noinline__ __device__ void alone(bvh_node top, vec3 q, std::uint32_t point, std::uint32_t k) {
     const PartView& view = part(k).view;
     block_nearest<PartView> ask{&s, a.state, &view, point, k};
     near_first{}(subtree<hierarchy>{view.tree, top}, q, ask);
