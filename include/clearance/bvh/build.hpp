@@ -69,9 +69,10 @@ topology arrange(std::span<split_item> items, const build_options& options, cons
 
 /// Builds a tree of volumes V over a contiguous range of primitives, on the host, top down; deterministic.
 /// The depth is such that a stack of 64 entries suffices (`stack_need`). Throws if there is no primitive, or a bad one.
+/// Returns a bvh<V, P>; declared `auto`, because a V that is no volume would otherwise fail without its sentence.
 template <class V, std::ranges::contiguous_range R, class Fit = wrapped, class Split = surface_area_split,
           primitive P = std::ranges::range_value_t<R>>
-bvh<V, P> build(const R& input, build_options options = {}, Fit fit = {}, Split split = {}) {
+auto build(const R& input, build_options options = {}, Fit fit = {}, Split split = {}) {
   static_assert(explain_bounding_volume<V>());
   const std::span<const P> primitives(input);
   if (primitives.empty()) throw std::invalid_argument("clearance::build: there are no primitives");

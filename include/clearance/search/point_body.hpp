@@ -28,7 +28,7 @@ struct tally {
 
   CLEARANCE_HD void add_to(totals& all) const {
     for (int r = 1; r < drop_reasons; ++r) {
-#if defined(__CUDA_ARCH__)
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800  // older ones have no such sum
       const unsigned together = __activemask();
       const unsigned sum = __reduce_add_sync(together, dropped[r]);
       if (sum != 0 && (threadIdx.x & 31) == unsigned(__ffs(int(together)) - 1)) add_to_word(&all.dropped[r], sum);
