@@ -96,15 +96,17 @@ inline void check_dae(std::string_view bytes, const std::string& file) {
       const auto value = number<std::uint64_t>(word);
       if (!word.empty() && !(value && *value <= bytes.size()))
         refuse(file,
-               std::string("a ") + name + " of " + std::string(word.substr(0, 40)) + " is more than the file holds",
+               std::string("the ") + name + " of " + std::string(word.substr(0, 40)) + " is more than the file holds",
                tag.line);
       return double(value.value_or(otherwise));
     };
-    const double count = counted("count", 0);
+    const double count = counted("count", 0), offset = counted("offset", 0);
+    if (tag.element == "input" && offset > 31) refuse(file, "an input has an offset above 31", tag.line);
+    if (tag.element == "triangles" && 6 * count > double(bytes.size()))  // each has three indices
+      refuse(file, "says it has more triangles than the file holds", tag.line);
     if (tag.element.ends_with("_array")) arrays["#" + std::string(tag.attribute("id"))] = count;
     if (tag.element == "accessor")
-      accessors.push_back(
-          {std::string(tag.attribute("source")), counted("offset", 0) + count * counted("stride", 1), tag.line});
+      accessors.push_back({std::string(tag.attribute("source")), offset + count * counted("stride", 1), tag.line});
     const bool indices = tag.element == "p" || tag.element == "h" || tag.element == "v" || tag.element == "vcount";
     if (indices && tag.content.find_first_not_of("0123456789- \t\r\n") != std::string_view::npos)
       refuse(file, "a list of indices has something in it that is no number", tag.line);
