@@ -28,6 +28,7 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
     most_blocks_ = unsigned(processors) * 2;
     records_ = device_buffer<stream::record>(most_blocks_, on.id);
     if (parts_.size() > inline_parts) more_ = device_buffer<stream::stream_part<view_type>>(parts_.size() - inline_parts, on.id);
+    for (const view_type& part : parts_) roots_.push_back(on.copy_out(part.tree.nodes, 1)[0]);
     forget();
     answer_.data()->done = 0;
   }
@@ -95,7 +96,7 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
     a.state = state_.data(), a.records = records_.data(), a.result = result, a.done = done, a.frame = frame_;
     std::vector<stream::stream_part<view_type>> rest;
     for (std::uint32_t k = 0; k < a.parts; ++k) {
-      const stream::stream_part<view_type> part{frame.places[k], parts_[k]};
+      const stream::stream_part<view_type> part{frame.places[k], roots_[k], parts_[k]};
       if (k < inline_parts)
         a.part[k] = part;
       else
@@ -123,6 +124,7 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
   device on_;
   std::vector<part_facts> facts_;
   std::vector<view_type> parts_;
+  std::vector<bvh_node> roots_;
   unsigned most_blocks_ = 0;
   std::uint32_t frame_ = 0;
   device_buffer<stream::frame_state> state_;

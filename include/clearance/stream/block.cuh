@@ -11,7 +11,13 @@ inline constexpr int lanes = 8;  ///< Threads that share one pair: one a child o
 inline constexpr int groups = block_threads / lanes;
 inline constexpr std::uint32_t most_parts = 128;
 
-/// A point that survived a root test, in that part's frame.
+/// A point that survived some root test, in the cloud's frame.
+struct candidate {
+  vec3 x;
+  std::uint32_t point;
+};
+
+/// A point that survived a part's root test, in that part's frame.
 struct survivor {
   vec3 q;
   std::uint32_t point;
@@ -40,11 +46,11 @@ __device__ T fresh(const T& shared) {
 
 template <class PartView>
 struct block_memory {
-  static constexpr std::uint32_t survivor_capacity = 704, queue_capacity = 1408;
+  static constexpr std::uint32_t candidate_capacity = 640, queue_capacity = 1152;
   static constexpr std::uint32_t inline_parts = stream::inline_parts;
 
   std::uint32_t bound;  ///< ordered(): least of what this block and, at times, all blocks know.
-  std::uint32_t survivors;
+  std::uint32_t candidates;
   std::uint32_t queued[2];  ///< Pairs in the queue, by parity of the round.
   std::uint32_t dropped[drop_reasons];
   unsigned lock;
@@ -52,7 +58,8 @@ struct block_memory {
   record best;
   root_test roots[most_parts];
   stream_part<PartView> parts[inline_parts];
-  survivor survivor_table[survivor_capacity];
+  candidate candidate_table[candidate_capacity];
+  survivor survivor_table[block_threads];  ///< One a thread: a batch is as many pairs.
   pending queue[queue_capacity];
 
   __device__ real reach() const { return from_ordered(fresh(bound)); }

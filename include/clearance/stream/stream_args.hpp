@@ -40,6 +40,7 @@ struct frame_state {
 template <class PartView>
 struct stream_part {
   search::placement place;
+  bvh_node root;
   PartView view;
 };
 

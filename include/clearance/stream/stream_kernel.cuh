@@ -17,10 +17,11 @@ struct frame {
   using hierarchy = typename PartView::hierarchy_type;
   using traits = bounding_volume_traits<typename hierarchy::volume_type>;
   static constexpr bool has_interior = !requires { PartView::interior_type::empty; };
+  using memory = block_memory<PartView>;
   static constexpr int quad = 4;
 
   const args_type& a;
-  block_memory<PartView>& s;
+  memory& s;
   unsigned long long dropped = 0;  ///< By reason, 16 bits each.
 
   __device__ void run() {
@@ -45,7 +46,7 @@ struct frame {
         p = next;
         if (t == 0) atomicMin(&s.bound, fresh(a.state->bound));
         if (t - 32 < a.parts && t >= 32) s.sharpen(t - 32, part(t - 32).place.around);
-        if (!__syncthreads_or(s.survivors > block_memory<PartView>::survivor_capacity / 4)) continue;
+        if (!__syncthreads_or(s.candidates > memory::candidate_capacity / 4)) continue;
       }
       drain();
     }
@@ -107,7 +108,7 @@ struct frame {
     for (std::uint32_t i = t; i < inside * (sizeof(stream_part<PartView>) / 4); i += block_threads) to[i] = from[i];
     if (t < drop_reasons) s.dropped[t] = 0;
     if (t == 0) {
-      s.bound = 0xff800000u, s.survivors = s.queued[0] = s.queued[1] = s.lock = 0;
+      s.bound = 0xff800000u, s.candidates = s.queued[0] = s.queued[1] = s.lock = 0;
       s.best = {};
     }
   }
@@ -128,7 +129,7 @@ struct frame {
 
   /// No last frame: eight lanes take the most promising of their points down the tree, and all blocks wait a little for
   /// one another. Nothing depends on that wait but speed, so it gives up rather than hang.
-  __device__ void seed(const points& p) {
+  __noinline__ __device__ void seed(const points& p) {
     real nearest = infinity;
     std::uint32_t nearest_part = 0;
     vec3 position{0, 0, 0};
@@ -198,13 +199,14 @@ struct frame {
       for (int j = 0; j < quad; ++j) least[j] = min(least[j], root(p.at[j]));
     }
 #pragma unroll
-    for (int j = 0; j < quad; ++j)
-      if (least[j] <= -dot(p.at[j], p.at[j])) admit(p.at[j], index(a.source, at, j));
-  }
-  __device__ void admit(vec3 x, std::uint32_t point) {
-    const real square = dot(x, x);
-    for (std::uint32_t k = 0; k < a.parts; ++k)
-      if (s.roots[k](x) <= -square) admit(x, point, k);
+    for (int j = 0; j < quad; ++j) {
+      if (!(least[j] <= -dot(p.at[j], p.at[j]))) continue;
+      const std::uint32_t slot = atomicAdd(&s.candidates, 1u), point = index(a.source, at, j);
+      if (slot < memory::candidate_capacity)
+        s.candidate_table[slot] = {p.at[j], point};
+      else
+        alone(p.at[j], point);
+    }
   }
   __device__ void count_and_remove(points& p) {
 #pragma unroll
@@ -224,45 +226,68 @@ struct frame {
     }
   }
 
-  __device__ void admit(vec3 x, std::uint32_t point, std::uint32_t k) {
+  /// One pair of a candidate and a part: into the queue, unless it ends here. No tree is touched yet.
+  __device__ void admit(const candidate& c, std::uint32_t k) {
+    if (!(s.roots[k](c.x) <= -dot(c.x, c.x))) return;
     const auto& body = part(k);
-    const vec3 q = body.place.part_from_cloud(x);
-    if constexpr (has_interior) {
-      if (s.best_key() <= make_key(0, point) && load_relaxed(&a.state->certain) != 0) return;
-      if (body.view.interior.inside(q)) {
-        s.lower(0, *a.state);
-        s.offer({make_key(0, point), k, none, none});
-        any_within surface{body.place.error + body.view.facts.tolerance};
-        near_first{}(body.view.tree, q, surface);
-        if (!surface.found) atomicAdd(&a.state->certain, 1ull);
-        return;
-      }
-    }
-    const real lb = traits::lower_bound(body.view.tree.volumes[0], q);
-    if (!(lb <= s.reach())) return;
-    const std::uint32_t slot = atomicAdd(&s.survivors, 1u);
-    if (slot < block_memory<PartView>::survivor_capacity) {
-      s.survivor_table[slot] = {q, point, k};
-      push({lb, body.view.tree.nodes[0], slot}, q, point, k, 0);
-    } else {
-      alone(body.view.tree.nodes[0], q, point, k);
-    }
+    const vec3 q = body.place.part_from_cloud(c.x);
+    if (inside(body, q, c.point, k)) return;
+    s.survivor_table[threadIdx.x] = {q, c.point, k};
+    push({-infinity, body.root, threadIdx.x}, 0);
   }
-  __device__ void push(const pending& e, vec3 q, std::uint32_t point, std::uint32_t k, int parity) {
+
+  /// Is the point in the part's solid? Then its distance is 0, and there is nothing to look for in the tree.
+  __device__ bool inside(const stream_part<PartView>& body, vec3 q, std::uint32_t point, std::uint32_t k) {
+    if constexpr (has_interior) {
+      if (s.best_key() <= make_key(0, point) && load_relaxed(&a.state->certain) != 0) return true;
+      if (!body.view.interior.inside(q)) return false;
+      s.lower(0, *a.state);
+      s.offer({make_key(0, point), k, none, none});
+      any_within surface{body.place.error + body.view.facts.tolerance};
+      near_first{}(body.view.tree, q, surface);
+      if (!surface.found) atomicAdd(&a.state->certain, 1ull);
+      return true;
+    }
+    return false;
+  }
+  __device__ void push(const pending& e, int parity) {
     const std::uint32_t slot = atomicAdd(&s.queued[parity], 1u);
-    if (slot < block_memory<PartView>::queue_capacity)
+    if (slot < memory::queue_capacity) {
       s.queue[slot] = e;
-    else
-      alone(e.node, q, point, k);  // exact, only slower
+    } else {  // exact, only slower
+      const survivor v = s.survivor_table[e.survivor];
+      alone(e.node, v.q, v.point, v.part);
+    }
   }
   __noinline__ __device__ void alone(bvh_node top, vec3 q, std::uint32_t point, std::uint32_t k) {
     const PartView& view = part(k).view;
     block_nearest<PartView> ask{&s, a.state, &view, point, k};
     near_first{}(subtree<hierarchy>{view.tree, top}, q, ask);
   }
+  __noinline__ __device__ void alone(vec3 x, std::uint32_t point) {
+    for (std::uint32_t k = 0; k < a.parts; ++k) {
+      if (!(s.roots[k](x) <= -dot(x, x))) continue;
+      const vec3 q = part(k).place.part_from_cloud(x);
+      if (!inside(part(k), q, point, k)) alone(part(k).root, q, point, k);
+    }
+  }
+
+  /// All candidates against all parts, as many pairs at a time as there are threads.
+  __device__ void drain() {
+    __syncthreads();
+    const std::uint32_t count = s.candidates < memory::candidate_capacity ? s.candidates : memory::candidate_capacity;
+    const std::uint32_t pairs = count * a.parts;
+    for (std::uint32_t base = 0; base < pairs; base += block_threads) {
+      const std::uint32_t i = base + threadIdx.x;
+      if (i < pairs) admit(s.candidate_table[i % count], i / count);
+      walk();
+    }
+    if (threadIdx.x == 0) s.candidates = 0;
+    __syncthreads();
+  }
 
   /// Takes pairs from the queue's end, 64 at a time, until it is empty.
-  __device__ void drain() {
+  __device__ void walk() {
     const std::uint32_t group = threadIdx.x / lanes;
     for (int parity = 0;; parity ^= 1) {
       __syncthreads();
@@ -277,7 +302,7 @@ struct frame {
       __syncthreads();
       if (busy && e.bound <= s.reach()) expand(e, parity ^ 1);
     }
-    if (threadIdx.x == 0) s.survivors = s.queued[0] = s.queued[1] = 0;
+    if (threadIdx.x == 0) s.queued[0] = s.queued[1] = 0;
     __syncthreads();
   }
 
@@ -294,7 +319,7 @@ struct frame {
       } else {
         const bvh_node child = tree.nodes[place];
         const real lb = traits::lower_bound(tree.volumes[place], v.q);
-        if (lb <= s.reach()) push({lb, child, e.survivor}, v.q, v.point, v.part, parity);
+        if (lb <= s.reach()) push({lb, child, e.survivor}, parity);
       }
     }
   }
