@@ -3,18 +3,15 @@
 // The only way from the command to the library's query: plain data in, plain data out, so that each backend is one
 // translation unit and only device.cu needs nvcc.
 
-#include <clearance/part.hpp>
+#include <clearance/packing/packing.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
-#include <clearance/primitive/inner_sphere.hpp>
-#include <clearance/primitive/triangle.hpp>
 #include <clearance/result.hpp>
-#include <clearance/solid/winding.hpp>
+#include <clearance/solid/close_mesh.hpp>
 
 #include <Eigen/Geometry>
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -27,14 +24,12 @@ inline const char* to_string(volume_kind kind) {
   return kind == volume_kind::sphere ? "sphere" : kind == volume_kind::aabb ? "aabb" : "obb";
 }
 
-/// One rigid body: its spheres, or its triangles and their inside.
+/// One rigid body: what its models are built from.
 struct body {
   std::string name;
-  std::vector<clearance::inner_sphere> spheres;
-  std::vector<clearance::triangle> triangles;
-  std::optional<clearance::winding<>> interior;
-  double gap = 0;        // of the spheres, m; infinite: no certificate
-  double tolerance = 0;  // how far the true surface may be from the mesh, m
+  clearance::packing packed;      // for spheres; empty if nobody asks
+  clearance::closed_mesh closed;  // for triangles
+  double tolerance = 0;           // how far the true surface may be from the mesh, m
 };
 
 struct seen_points {
@@ -48,7 +43,7 @@ struct question {
   const std::vector<body>* bodies = nullptr;
   std::vector<Eigen::Isometry3d> poses;  // world-from-body
   std::vector<seen_points> clouds;
-  int repeat = 1;  // ask so often and report the shortest time
+  int repeat = 1;  // ask up to so often, while that takes little, and report the shortest time
 };
 
 struct answer {

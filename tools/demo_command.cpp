@@ -66,12 +66,11 @@ int run(const demo_settings& settings) {
   std::size_t triangles = 0;
   question asked;
   for (const auto& part : world.parts) {
-    made_body made = make_body(part.name, part.mesh, 0, {.spheres = count, .both = true}, shown);
+    bodies.push_back(make_body(part.name, part.mesh, 0, {.spheres = count, .both = true}, shown));
     triangles += part.mesh.triangles.size();
-    bodies.push_back(std::move(made.part));
     asked.poses.push_back(part.pose);
   }
-  shown.show("");
+  shown.clear();
   const double seconds = clock.lap();
   asked.bodies = &bodies;
   asked.clouds.push_back({depth_image<std::uint16_t>(world.depth.data(), world.width, world.height, world.camera), world.world_from_camera});
@@ -79,7 +78,7 @@ int run(const demo_settings& settings) {
 
   std::size_t spheres = 0;
   double gap = 0;
-  for (const body& b : bodies) spheres += b.spheres.size(), gap = std::max(gap, b.gap);
+  for (const body& b : bodies) spheres += b.packed.spheres.size(), gap = std::max(gap, b.packed.gap);
   std::printf("An arm of %zu parts: %zu triangles, %zu inner spheres (gap at most %.2f mm), made in %.1f s.\n", bodies.size(),
               triangles, spheres, 1e3 * gap, seconds);
   std::printf("A depth frame of %ux%u pixels from the camera on its hand. Device: %s.\n\n", world.width, world.height, gpu.says.c_str());

@@ -60,7 +60,7 @@ int run(const pack_settings& asked) {
     if (why.starts_with("clearance: ")) why.erase(0, 11);
     io::refuse(asked.mesh, why);
   }
-  shown.show("");
+  shown.clear();
   if (packed.spheres.empty()) io::refuse(asked.mesh, "no sphere fits inside: " + packed.reason());
   if (!asked.out.empty()) save_spheres(packed.spheres, asked.out);
   if (asked.json) {

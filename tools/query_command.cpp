@@ -75,14 +75,9 @@ int run(const query_options& asked) {
                                                           : asked.base * robot.link_pose(cloud.from.link, joints, limits)));
   report.load = clock.lap();
 
-  std::vector<made_body> made;
   std::vector<body> bodies;
-  for (const auto& part : robot.parts()) {
-    made.push_back(make_body(part.name, part.mesh, part.tessellation_error, {asked.model, asked.spheres}, shown));
-    bodies.push_back(std::move(made.back().part));
-    made.back().part = {.name = bodies.back().name, .spheres = {}, .triangles = {}, .interior = {}, .gap = bodies.back().gap,
-                        .tolerance = bodies.back().tolerance};
-  }
+  for (const auto& part : robot.parts())
+    bodies.push_back(make_body(part.name, part.mesh, part.tessellation_error, {asked.model, asked.spheres}, shown));
   report.pack = clock.lap();
   q.bodies = &bodies;
   shown.show("asking");
@@ -93,9 +88,9 @@ int run(const query_options& asked) {
   }
   report.asked = &asked;
   report.clouds = &clouds;
-  report.bodies = &made;
+  report.bodies = &bodies;
   if (!asked.scene.empty()) draw(report, robot, q);
-  shown.show("");
+  shown.clear();
   for (const auto& note : report.notes) std::cerr << "note: " << note << '\n';
   std::cout << (asked.json ? to_json(report) : to_text(report));
   const min_distance_result& r = report.found.result;

@@ -52,23 +52,23 @@ std::string to_json(const query_report& report) {
   if (any)
     if (const auto at = pixel((*report.clouds)[r.cloud], r.point)) out["pixel"] = {at->first, at->second};
   out["point_xyz"] = given(xyz(r.at));
-  out["part"] = any ? json((*report.bodies)[r.part].part.name) : json(nullptr);
+  out["part"] = any ? json((*report.bodies)[r.part].name) : json(nullptr);
   out["primitive"] = any && r.primitive != none ? json(r.primitive) : json(nullptr);
   out["nearest_xyz"] = given(xyz(r.nearest));
   const bool direction = any && !(r.normal == vec3{0, 0, 0});
   out["normal"] = direction ? json({r.normal.x, r.normal.y, r.normal.z}) : json(nullptr);
   out["parts"] = json::array();
   for (std::size_t k = 0; k < report.bodies->size(); ++k) {
-    const made_body& made = (*report.bodies)[k];
+    const body& made = (*report.bodies)[k];
     const part_minimum& m = report.found.parts[k];
     const bool found = m.point != none;
-    json part = {{"name", made.part.name},
+    json part = {{"name", made.name},
                  {"distance", found ? or_null(m.distance) : json(nullptr)},
                  {"cloud", found ? json(cloud_name(m.cloud)) : json(nullptr)},
                  {"point", found ? json(m.point) : json(nullptr)},
                  {"primitive", found && m.primitive != none ? json(m.primitive) : json(nullptr)},
-                 {"caps", {{"loops", made.caps.loops}, {"area", made.caps.area}}}};
-    if (report.asked->model == model_kind::spheres) part["gap"] = or_null(made.part.gap);
+                 {"caps", {{"loops", made.closed.caps.loops}, {"area", made.closed.caps.area}}}};
+    if (report.asked->model == model_kind::spheres) part["gap"] = or_null(made.packed.gap);
     out["parts"].push_back(std::move(part));
   }
   json dropped = json::object();
@@ -101,7 +101,7 @@ std::string to_text(const query_report& report) {
     out += "state     no data: there is no valid point, so nothing is known about the robot's surroundings\n";
   } else {
     const observation& cloud = (*report.clouds)[r.cloud];
-    const body& part = (*report.bodies)[r.part].part;
+    const body& part = (*report.bodies)[r.part];
     out += text("state     %s\n", r.state == state::collision ? "collision: a point is certainly inside the robot"
                                   : r.state == state::possible ? "possible: the bracket contains 0"
                                                                : "free");
@@ -126,13 +126,13 @@ std::string to_text(const query_report& report) {
                 *asked.margin, r.state != state::no_data && r.lower > *asked.margin ? "passes" : "fails");
   out += "\nparts\n";
   for (std::size_t k = 0; k < report.bodies->size(); ++k) {
-    const made_body& made = (*report.bodies)[k];
+    const body& made = (*report.bodies)[k];
     const part_minimum& m = report.found.parts[k];
-    out += "  " + made.part.name + std::string(made.part.name.size() < 28 ? 28 - made.part.name.size() : 1, ' ');
+    out += "  " + made.name + std::string(made.name.size() < 28 ? 28 - made.name.size() : 1, ' ');
     out += m.point == none ? "         -" : text("%10.6f m, point %u", double(m.distance), m.point);
     if (m.point != none && report.clouds->size() > 1) out += " of " + (*report.clouds)[m.cloud].from.file;
-    if (asked.model == model_kind::spheres) out += text(", gap %.4f m", made.part.gap);
-    if (made.caps.loops != 0) out += text(", %u holes closed (%.2g m2)", made.caps.loops, made.caps.area);
+    if (asked.model == model_kind::spheres) out += text(", gap %.4f m", made.packed.gap);
+    if (made.closed.caps.loops != 0) out += text(", %u holes closed (%.2g m2)", made.closed.caps.loops, made.closed.caps.area);
     out += '\n';
   }
   return out;

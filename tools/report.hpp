@@ -9,7 +9,7 @@
 struct query_report {
   const query_options* asked = nullptr;
   const std::vector<observation>* clouds = nullptr;
-  const std::vector<made_body>* bodies = nullptr;
+  const std::vector<body>* bodies = nullptr;
   answer found;
   double load = 0, pack = 0;  // seconds
   std::vector<std::string> notes;
