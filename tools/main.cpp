@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -50,6 +51,8 @@ void check_subcommand(int argc, char** argv, const CLI::App& app) {
 
 int fail(std::string why) {
   if (why.starts_with("clearance: ")) why.erase(0, 11);
+  for (char& c : why)  // one line, whatever a damaged file has put into it
+    if (std::uint8_t(c) < 32 || c == 127) c = '?';
   std::cerr << "clearance: " << why << '\n';
   return failure;
 }

@@ -371,6 +371,35 @@ TEST_CASE("clearance demo agrees with itself") {
   CHECK(o.err.empty());
 }
 
+TEST_CASE("a real depth image and the point cloud of the same frame give the same answer", "[data]") {
+  const std::string data = CLEARANCE_TEST_DATA;
+  if (!std::filesystem::exists(data)) {
+    WARN("SKIPPED: no folder " << data);
+    return;
+  }
+  const std::string frame = data + "/clouds/kinect_seq/frame_20121214T142255.814212";
+  const std::string png = " --intrinsics 525,525,320,240 --cloud " + frame + "_depth.png", pcd = " --cloud " + frame + ".pcd";
+  for (const std::string robot : {"kuka_lwr_kresse/kuka.urdf", "ur5e/ur5e.urdf"}) {
+    const std::string ask = "query --json --spheres 200 --camera-pose -0.8,0.6,1.5,0,0.92388,0,0.38268 --robot " + data + "/robots/" + robot;
+    double lower = 0, upper = 1e9;
+    for (const std::string model : {" --model spheres", " --model triangles"}) {
+      const auto a = parsed(run_command(ask + model + png)), b = parsed(run_command(ask + model + pcd));
+      CHECK(std::abs(a.at("distance").get<double>() - b.at("distance").get<double>()) < 1e-6);
+      CHECK(a.at("points").at("valid") == 271575);
+      CHECK(b.at("points").at("valid") == 271575);
+      CHECK(a.at("points").at("dropped").at("missing") == 35625);
+      CHECK(b.at("points").at("dropped").at("not_finite") == 35625);
+      CHECK(a.at("state") != "no_data");
+      CHECK(a.at("pixel") == nlohmann::json({a.at("point").get<int>() % 640, a.at("point").get<int>() / 640}));
+      CHECK(b.at("pixel").is_null());
+      CHECK(b.at("clouds").at(0).at("viewpoint").is_array());
+      lower = std::max(lower, a.at("lower").get<double>());
+      upper = std::min(upper, a.at("upper").get<double>());
+    }
+    CHECK(lower <= upper);
+  }
+}
+
 TEST_CASE("clearance info says what it is and what it runs on") {
   const outcome o = run_command("info --json");
   CHECK(o.code == 0);
