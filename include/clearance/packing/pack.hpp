@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/packing/ascent.hpp>
+#include <clearance/packing/gap.hpp>
+#include <clearance/packing/packing.hpp>
+#include <clearance/solid/mesh_solid.hpp>
+
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <queue>
+#include <random>
+
+namespace clearance {
+
+/// Fills a solid with spheres, the largest first: each is the largest that fits, within a quarter at the very worst. The
+/// room at a point is its distance to the surface and to the spheres so far; it changes by no more than the way between
+/// two points, so a cube's room is at most that of its middle plus half its diagonal, and the cube with the largest such
+/// bound is divided, or, once it is small against its room, climbed from (branch and bound on ProtoSphere's field, Weller
+/// & Zachmann 2010).
+template <solid S>
+class packer {
+ public:
+  packer(const S& s, const pack_options& options) : solid_(s), options_(options) {
+    const Eigen::AlignedBox3d box = s.bounds();
+    if (box.isEmpty() || !(box.diagonal().norm() > 0) || !std::isfinite(box.diagonal().norm()))
+      throw std::invalid_argument("clearance::pack: the solid's bounds are empty or not finite");
+    for (const double x : {options.smallest_radius, options.gap_target, options.seconds})
+      if (!(x >= 0)) throw std::invalid_argument("clearance::pack: smallest_radius, gap_target and seconds must not be negative");
+    if (!(options.gap_tolerance > 0)) throw std::invalid_argument("clearance::pack: gap_tolerance must be positive");
+    scale_ = box.diagonal().norm() + box.center().norm();
+    least_room_ = 1e-6 * box.diagonal().norm();
+    smallest_ = std::max(options.smallest_radius, least_room_);
+  }
+
+  packing run() {
+    const auto start = std::chrono::steady_clock::now();
+    const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+    packing out;
+    out.stopped_by = fill(seconds);
+    for (std::size_t i = 0; i < spheres_.size(); ++i) out.spheres.push_back(rounded(spheres_[i]));
+    std::stable_sort(out.spheres.begin(), out.spheres.end(), [](const auto& a, const auto& b) { return a.radius > b.radius; });
+    if (!out.spheres.empty()) out.radius_max = out.spheres.front().radius, out.radius_min = out.spheres.back().radius;
+    out.room = cells_.empty() ? smallest_ : std::max(smallest_, cells_.top().bound);
+    const gap_report gap = measure_gap(solid_, spheres_, options_.gap_tolerance);
+    out.gap = gap.certified, out.gap_mean = gap.mean, out.gap_p95 = gap.p95;
+    if constexpr (requires { solid_.volume(); })
+      for (const inner_sphere& s : out.spheres)
+        out.fill += 4.0 / 3 * std::numbers::pi * std::pow(double(s.radius), 3) / solid_.volume();
+    out.seconds = seconds();
+    return out;
+  }
+
+ private:
+  struct entry {
+    double bound;  ///< Room in the cell is at most this.
+    solid_cell cell;
+    double room;  ///< At the middle, among the first `seen` spheres.
+    std::uint32_t seen, number;
+
+    friend bool operator<(const entry& a, const entry& b) {
+      return a.bound != b.bound ? a.bound < b.bound : a.number > b.number;
+    }
+  };
+  static constexpr double climb_from = 0.25;      // a cell is small once its bound is this little above its room
+  static constexpr std::size_t batch = 256, most_cells = 1u << 24;
+
+  /// Volatile, because g++ 12 at -O2 leaves out the rounding of two neighbouring conversions to float and back.
+  static double as_float(double x) {
+    volatile real rounded = real(x);
+    return double(rounded);
+  }
+
+  static inner_sphere rounded(const sphere_field::sphere& s) {
+    return {{real(s.center.x()), real(s.center.y()), real(s.center.z())}, real(s.radius)};  // floats already: see `fit`
+  }
+
+  /// The sphere with a float centre and radius that surely fits, or radius 0.
+  sphere_field::sphere fit(const sphere_field::sphere& wanted) const {
+    const auto& [at, expected] = wanted;
+    const Eigen::Vector3d c(as_float(at.x()), as_float(at.y()), as_float(at.z()));
+    if ((c - at).norm() > 0.5 * expected) return {c, 0};
+    double r = distance_within(solid_, c, 2 * expected + (c - at).norm());
+    if (!options_.allow_overlap) r = spheres_.distance(c, r);
+    r = r * (1 - 1e-12) - 1e-13 * scale_;  // what rounding may have added
+    if (!(r > 0)) return {c, 0};
+    const double f = as_float(r);
+    return {c, f > r ? double(std::nextafter(float(f), 0.0f)) : f};
+  }
+
+  void push(const solid_cell& cell, double room, std::uint32_t seen) {
+    const double bound = room + cell.reach();
+    if (bound >= smallest_) cells_.push({bound, cell, room, seen, numbers_++});
+  }
+
+  template <class Clock>
+  pack_stop fill(Clock seconds) {
+    std::mt19937_64 random(options_.seed);
+    Eigen::Vector3d shift;
+    for (int k = 0; k < 3; ++k) shift[k] = options_.seed == 0 ? 0 : double(random() >> 11) * 0x1p-53;
+    for (const solid_cell& c : cover(solid_, 8, shift)) push(c, c.depth, 0);
+
+    std::vector<work> works;
+    std::size_t gap_asked_at = 32;
+    for (;;) {
+      if (spheres_.size() >= options_.count) return pack_stop::count;
+      if (options_.progress) options_.progress(spheres_.size(), options_.count);
+      if (options_.cancelled && options_.cancelled()) return pack_stop::cancelled;
+      if (options_.seconds > 0 && seconds() > options_.seconds) return pack_stop::time;
+      if (options_.gap_target > 0 && spheres_.size() >= gap_asked_at) {
+        gap_asked_at = spheres_.size() + spheres_.size() / 4;
+        if (measure_gap(solid_, spheres_, options_.gap_tolerance).certified <= options_.gap_target) return pack_stop::gap;
+      }
+      if (cells_.empty()) return smallest_ > least_room_ ? pack_stop::smallest_radius : pack_stop::no_room;
+      if (cells_.size() > most_cells) return pack_stop::search_limit;
+
+      works.clear();
+      const double top = cells_.top().bound;
+      while (!cells_.empty() && works.size() < batch && cells_.top().bound >= 0.98 * top)
+        works.push_back({cells_.top(), work::stale, {}}), cells_.pop();
+      const std::uint32_t seen = std::uint32_t(spheres_.size());
+      tbb::parallel_for(std::size_t(0), works.size(), [&](std::size_t i) {
+        work& w = works[i];
+        entry& e = w.from;
+        if (e.seen < seen) {
+          e.room = spheres_.update(e.seen, e.cell.middle, e.room);
+          e.seen = seen;
+          const double bound = e.room + e.cell.reach();
+          if (bound < 0.95 * e.bound) return;
+          e.bound = bound;
+        }
+        if (e.room >= (1 - climb_from) * e.bound) {
+          w.what = work::climbed;
+          w.sphere = ascend(solid_, spheres_, e.cell.middle, e.room);
+          if (options_.allow_overlap) w.grown = grow(solid_, w.sphere);
+        } else {
+          w.what = work::divided;
+          divide(w);
+        }
+      });
+      std::stable_sort(works.begin(), works.end(), [](const work& a, const work& b) {
+        return (a.what == work::climbed ? a.sphere.radius : -1) > (b.what == work::climbed ? b.sphere.radius : -1);
+      });
+      for (work& w : works) {
+        if (w.what == work::climbed) {
+          const bool untouched = spheres_.size() == seen;
+          // One of the same batch may be in the way; the cell then comes back with less room.
+          const double least = std::max(smallest_, 0.98 * w.sphere.radius);
+          if (spheres_.size() < options_.count && (untouched || spheres_.distance(w.sphere.center, least) >= least)) {
+            const sphere_field::sphere s = options_.allow_overlap ? fit(w.grown) : fit(w.sphere);
+            if (s.radius >= least) spheres_.insert(s);
+          }
+          if (untouched && spheres_.size() == seen) w.what = work::divided, divide(w);  // too small, or lost in rounding
+        }
+        if (w.what == work::divided) {
+          for (const auto& [cell, room] : w.eighths) push(cell, room, seen);
+        } else {
+          push(w.from.cell, w.from.room, w.from.seen);
+        }
+      }
+    }
+  }
+
+  struct work {
+    entry from;
+    enum { stale, divided, climbed } what;
+    std::array<std::pair<solid_cell, double>, 8> eighths;
+    sphere_field::sphere sphere = {Eigen::Vector3d::Zero(), 0}, grown = sphere;
+  };
+  void divide(work& w) const {
+    for (int k = 0; k < 8; ++k) {
+      const solid_cell c = eighth(solid_, w.from.cell, k);
+      w.eighths[k] = {c, c.depth + c.reach() < smallest_ ? c.depth : spheres_.distance(c.middle, c.depth)};
+    }
+  }
+
+  const S& solid_;
+  const pack_options& options_;
+  double scale_, least_room_, smallest_;
+  sphere_field spheres_;
+  std::priority_queue<entry> cells_;
+  std::uint32_t numbers_ = 0;
+};
+
+/// Packs spheres into a solid. The same options and seed give the same packing, on any number of threads.
+/// Throws std::invalid_argument for options or bounds that make no sense.
+template <solid S>
+packing pack(const S& s, const pack_options& options = {}) {
+  if (options.threads == 0) return packer<S>(s, options).run();
+  tbb::task_arena arena(int(options.threads), 1);
+  return arena.execute([&] { return packer<S>(s, options).run(); });
+}
+
+/// Closes the mesh first; throws std::invalid_argument if it has no inside.
+inline packing pack(const triangle_mesh& mesh, const pack_options& options = {}) { return pack(mesh_solid(mesh), options); }
+
+}  // namespace clearance

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/primitive/inner_sphere.hpp>
+
+#include <functional>
+#include <string>
+
+namespace clearance {
+
+struct pack_options {
+  std::size_t count = 2048;      ///< At most so many spheres.
+  double smallest_radius = 0;    ///< Metres; never below 1e-6 of the solid's diagonal, which is also the default.
+  double gap_target = 0;         ///< Metres: stop once the certified gap is no larger. 0: do not ask.
+  double seconds = 0;            ///< Stop after about so long. 0: take the time it takes. The only thing not repeatable.
+  std::uint64_t seed = 0;        ///< Another seed, another of many equally good packings.
+  unsigned threads = 0;          ///< 0: as many as TBB likes. The result does not depend on it.
+  bool allow_overlap = false;    ///< Spheres may overlap: fewer do for the same gap.
+  double gap_tolerance = 0.01;   ///< The certified gap is at most this part above the true one (or 10 um, if more).
+  std::function<void(std::size_t done, std::size_t of)> progress = {};  ///< Now and then, from the calling thread.
+  std::function<bool()> cancelled = {};                                 ///< Asked as often; true: stop with what there is.
+};
+
+enum class pack_stop : std::uint8_t { count, no_room, smallest_radius, gap, time, cancelled, search_limit };
+
+/// Inner spheres of a solid, and what is known of them. All lengths in metres.
+struct packing {
+  std::vector<inner_sphere> spheres;  ///< Largest first; inside the solid and apart from one another, in double.
+  /// Certified: no point of the solid, surface and interior, is farther from the spheres than this.
+  double gap = 0;
+  double gap_mean = 0, gap_p95 = 0;   ///< Mean and 95th percentile over the surface, from samples. 0 if it has none.
+  double fill = 0;                    ///< The spheres' part of the solid's volume; above 1 never, unless they overlap.
+  double radius_min = 0, radius_max = 0;
+  double room = 0;                    ///< No further sphere that fits is larger than this.
+  pack_stop stopped_by = pack_stop::count;
+  double seconds = 0;
+
+  /// One clause for a person.
+  std::string reason() const;
+};
+
+inline std::string packing::reason() const {
+  const auto mm = [](double metres) { return std::to_string(metres * 1000) + " mm"; };
+  switch (stopped_by) {
+    case pack_stop::count: return "the number of spheres was reached";
+    case pack_stop::no_room: return "no further sphere larger than 1e-6 of the solid fits";
+    case pack_stop::smallest_radius: return "no further sphere as large as the smallest radius fits";
+    case pack_stop::gap: return "the gap target was reached";
+    case pack_stop::time: return "the time was up";
+    case pack_stop::cancelled: return "it was cancelled";
+    case pack_stop::search_limit: return "the search for room grew too large; a further sphere is smaller than " + mm(room);
+  }
+  return {};
+}
+
+}  // namespace clearance

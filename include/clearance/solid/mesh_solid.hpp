@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/solid/box_tree.hpp>
+#include <clearance/solid/exact_triangle.hpp>
+#include <clearance/solid/solid.hpp>
+#include <clearance/solid/volume.hpp>
+
+#include <numeric>
+
+namespace clearance {
+
+/// A few triangles of a mesh around a place, as `near` gives them.
+class nearby_triangles {
+ public:
+  nearby_triangles(const std::vector<exact_triangle>& all, std::vector<std::uint32_t> some, double reach)
+      : all_(&all), some_(std::move(some)), reach_(reach) {}
+  double distance(const Eigen::Vector3d& p) const {
+    double best = reach_;
+    for (const std::uint32_t i : some_) best = (*all_)[i].nearer(p, best);
+    return best;
+  }
+
+ private:
+  const std::vector<exact_triangle>* all_;
+  std::vector<std::uint32_t> some_;
+  double reach_;
+};
+
+/// The solid that a closed mesh encloses, in double: exact distances to its surface, caps included, and the inside by
+/// winding number. Surfaces inside overlapping shells are surface too, so that no sphere crosses one.
+class mesh_solid {
+ public:
+  /// Throws std::invalid_argument for a mesh that is not closed, and for one that has no inside: a single sheet, or a
+  /// Moebius strip.
+  explicit mesh_solid(closed_mesh mesh) : mesh_(std::move(mesh)) {
+    if (mesh_.one_sided_area > 0.5 * mesh_.area)
+      throw std::invalid_argument("clearance: the mesh has no inside: its surface has only one side, as a Moebius strip");
+    winding_ = make_winding<double>(mesh_);
+    std::vector<Eigen::AlignedBox3d> boxes;
+    for (const auto& t : mesh_.surface.triangles) {
+      triangles_.emplace_back(mesh_.surface.vertices[t[0]], mesh_.surface.vertices[t[1]], mesh_.surface.vertices[t[2]]);
+      boxes.push_back(triangles_.back().box());
+      bounds_.extend(boxes.back());
+    }
+    enclosed_ = enclosed_volume(winding_);
+    if (!(enclosed_.volume > 1e-9 * bounds_.diagonal().norm() * mesh_.area))
+      throw std::invalid_argument("clearance: the mesh has no inside: it is a sheet, and its " +
+                                  std::to_string(mesh_.loaded) + " triangles and their caps enclose no volume");
+    tree_ = box_tree(boxes);
+  }
+  explicit mesh_solid(const triangle_mesh& mesh) : mesh_solid(close_mesh(mesh)) {}
+
+  const closed_mesh& mesh() const { return mesh_; }
+  Eigen::AlignedBox3d bounds() const { return bounds_; }
+
+  double distance(const Eigen::Vector3d& p) const { return distance(p, std::numeric_limits<double>::infinity()); }
+  /// The distance if it is below `within`, else `within`: quicker when something is known.
+  double distance(const Eigen::Vector3d& p, double within) const {
+    return tree_.nearest(p, within, [&](std::uint32_t i, double best) { return triangles_[i].nearer(p, best); });
+  }
+  bool inside(const Eigen::Vector3d& p) const { return winding_.view().inside(p.x(), p.y(), p.z()); }
+
+  double volume() const { return enclosed_.volume; }
+  /// Do shells overlap, so that some winding numbers are above 1?
+  bool overlaps() const { return enclosed_.overlaps; }
+
+  nearby_triangles near(const Eigen::Vector3d& p, double reach) const {
+    std::vector<std::uint32_t> some;
+    tree_.within(p, reach, [&](std::uint32_t i) {
+      if (triangles_[i].nearer(p, reach) < reach) some.push_back(i);
+    });
+    return {triangles_, std::move(some), reach};
+  }
+
+  const std::vector<Eigen::Vector3d>& corners() const { return mesh_.surface.vertices; }
+
+  /// Evenly spread by area, the same on every call.
+  std::vector<Eigen::Vector3d> surface_points(std::size_t count) const {
+    std::vector<double> until(triangles_.size());
+    double sum = 0;
+    for (std::size_t i = 0; i < triangles_.size(); ++i) until[i] = sum += triangles_[i].area();
+    std::vector<Eigen::Vector3d> points;
+    points.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t at = std::size_t(std::upper_bound(until.begin(), until.end(), sum * ((i + 0.5) / count)) - until.begin());
+      const exact_triangle& t = triangles_[std::min(at, triangles_.size() - 1)];
+      double u = std::fmod((i + 1) * 0.7548776662466927, 1.0), v = std::fmod((i + 1) * 0.5698402909980532, 1.0);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      points.push_back(t.corner(0) + u * (t.corner(1) - t.corner(0)) + v * (t.corner(2) - t.corner(0)));
+    }
+    return points;
+  }
+
+ private:
+  closed_mesh mesh_;
+  basic_winding<double> winding_;
+  std::vector<exact_triangle> triangles_;
+  box_tree tree_;
+  Eigen::AlignedBox3d bounds_;
+  enclosed enclosed_;
+};
+
+static_assert(solid<mesh_solid>);
+
+}  // namespace clearance
