@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One frame on a GPU, its points resident there: the prepared query warm (it remembers the last frame) and cold, beside a
+// kernel that only reads the points. Times are CUDA events around the enqueued frame.
+#include "scene.hpp"
+
+#include <clearance/min_distance_query.cuh>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/obb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+#include <benchmark/benchmark.h>
+
+namespace {
+
+using clearance::check_cuda;
+
+class events {
+ public:
+  events() { check_cuda(cudaEventCreate(&start_), "cudaEventCreate"), check_cuda(cudaEventCreate(&stop_), "cudaEventCreate"); }
+  ~events() { cudaEventDestroy(start_), cudaEventDestroy(stop_); }
+
+  template <class F>
+  double seconds(F enqueue) {
+    check_cuda(cudaDeviceSynchronize(), "cudaDeviceSynchronize");
+    check_cuda(cudaEventRecord(start_), "cudaEventRecord");
+    enqueue();
+    check_cuda(cudaEventRecord(stop_), "cudaEventRecord");
+    check_cuda(cudaEventSynchronize(stop_), "cudaEventSynchronize");
+    float ms = 0;
+    check_cuda(cudaEventElapsedTime(&ms, start_, stop_), "cudaEventElapsedTime");
+    return ms / 1e3;
+  }
+
+ private:
+  cudaEvent_t start_ = nullptr, stop_ = nullptr;
+};
+
+/// The frame, repeated with 2 mm of noise until there are `count` points.
+std::vector<clearance::vec3> repeated(const std::vector<clearance::vec3>& frame, std::size_t count) {
+  std::mt19937 bits(7);
+  std::normal_distribution<float> noise(0, 0.002f);
+  std::vector<clearance::vec3> points(frame.begin(), frame.begin() + std::ptrdiff_t(std::min(count, frame.size())));
+  while (points.size() < count) {
+    const auto p = frame[points.size() % frame.size()];
+    points.push_back({p.x + noise(bits), p.y + noise(bits), p.z + noise(bits)});
+  }
+  return points;
+}
+
+template <bool Dummy = true>
+__global__ void read_only(const float4* from, std::size_t count, float* never) {
+  float least = 0;
+  for (std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x; i < count; i += std::size_t(gridDim.x) * blockDim.x) {
+    const float4 f = from[i];
+    least = fminf(least, fminf(fminf(f.x, f.y), fminf(f.z, f.w)));
+  }
+  if (least == -1.2345e30f) *never = least;
+}
+
+bool no_device(benchmark::State& state) {
+  int devices = 0;
+  if (cudaGetDeviceCount(&devices) == cudaSuccess && devices > 0) return false;
+  static_cast<void>(cudaGetLastError());
+  state.SkipWithError("no CUDA device");
+  return true;
+}
+
+void read(benchmark::State& state) {
+  if (no_device(state)) return;
+  const clearance::device gpu;
+  const auto points = repeated(bench::the_scene().cloud, std::size_t(state.range(0)));
+  const auto there = gpu.copy_in(std::span<const clearance::vec3>(points));
+  const clearance::device_buffer<float> never(1, gpu.id);
+  events clock;
+  for (auto _ : state)
+    state.SetIterationTime(clock.seconds([&] {
+      read_only<><<<264, 512>>>(reinterpret_cast<const float4*>(there.data()), points.size() * 3 / 4, never.data());
+    }));
+}
+
+template <class Model>
+void ask(benchmark::State& state, const Model& model, bool cold, bool plain = false) {
+  const bench::scene& s = bench::the_scene();
+  const clearance::device gpu;
+  const auto points = repeated(s.cloud, std::size_t(state.range(0)));
+  const auto there = gpu.copy_in(std::span<const clearance::vec3>(points));
+  const clearance::point_span view(there.data(), points.size());
+  const auto placed_there = model.on(gpu);
+  clearance::min_distance_query query(gpu, placed_there);
+  const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
+  events clock;
+  const auto frame = [&] {
+    if (plain)
+      clearance::min_distance_async(gpu, placed_there, s.poses, clearance::placed<clearance::point_span>{view, s.world_from_camera}, result.data());
+    else
+      query.enqueue(s.poses, view, s.world_from_camera, result.data());
+  };
+  frame();
+  for (auto _ : state) {
+    if (cold) query.forget();
+    state.SetIterationTime(clock.seconds(frame));
+  }
+  state.counters["distance_mm"] = gpu.copy_out(result)[0].distance * 1e3;
+}
+
+template <class V>
+const auto& spheres() {
+  static const auto model = bench::sphere_model<V>(bench::the_scene());
+  return model;
+}
+template <class V>
+const auto& triangles() {
+  static const auto model = bench::triangle_model<V>(bench::the_scene());
+  return model;
+}
+
+template <class V>
+void spheres_warm(benchmark::State& state) {
+  if (!no_device(state)) ask(state, spheres<V>(), false);
+}
+template <class V>
+void spheres_cold(benchmark::State& state) {
+  if (!no_device(state)) ask(state, spheres<V>(), true);
+}
+template <class V>
+void spheres_plain(benchmark::State& state) {
+  if (!no_device(state)) ask(state, spheres<V>(), false, true);
+}
+template <class V>
+void triangles_warm(benchmark::State& state) {
+  if (!no_device(state)) ask(state, triangles<V>(), false);
+}
+template <class V>
+void triangles_cold(benchmark::State& state) {
+  if (!no_device(state)) ask(state, triangles<V>(), true);
+}
+
+#define FRAME ->Arg(307200)->ArgName("points")->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(200)->Repetitions(3)->ReportAggregatesOnly()
+#define MORE ->Arg(307200)->Arg(5000000)->Arg(50000000)->ArgName("points")->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(200)->Repetitions(3)->ReportAggregatesOnly()
+BENCHMARK(read) MORE;
+BENCHMARK(spheres_warm<clearance::sphere>) MORE;
+BENCHMARK(spheres_cold<clearance::sphere>) MORE;
+BENCHMARK(spheres_plain<clearance::sphere>) FRAME;
+BENCHMARK(spheres_warm<clearance::aabb>) FRAME;
+BENCHMARK(spheres_warm<clearance::obb>) FRAME;
+BENCHMARK(triangles_warm<clearance::sphere>) FRAME;
+BENCHMARK(triangles_warm<clearance::aabb>) FRAME;
+BENCHMARK(triangles_warm<clearance::obb>) FRAME;
+BENCHMARK(triangles_cold<clearance::aabb>) FRAME;
+BENCHMARK(triangles_cold<clearance::obb>) FRAME;
+
+}  // namespace
+
+BENCHMARK_MAIN();

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What the benchmarks of the minimum ask about: a KUKA LWR before a table seen by a depth camera where the real data is,
+// and the scene of `clearance demo`, made in code, everywhere.
+
+#include "../../tools/demo_scene.hpp"
+
+#include <clearance/io/cloud_file.hpp>
+#include <clearance/io/robot.hpp>
+#include <clearance/make_part.hpp>
+#include <clearance/model.hpp>
+#include <clearance/packing/pack.hpp>
+#include <clearance/solid/mesh_solid.hpp>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+namespace bench {
+
+struct scene {
+  std::string name;
+  std::vector<clearance::closed_mesh> meshes;
+  std::vector<clearance::packing> packings;  ///< 2,048 inner spheres a link.
+  std::vector<Eigen::Isometry3d> poses;
+  std::vector<clearance::vec3> cloud;  ///< One 640 x 480 frame, in the camera's frame.
+  Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
+  double packing_seconds = 0;
+};
+
+/// A camera that looks along `forward`, its x axis level.
+inline Eigen::Isometry3d looking(const Eigen::Vector3d& from, Eigen::Vector3d forward) {
+  forward.normalize();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear().col(2) = forward;
+  pose.linear().col(0) = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+  pose.linear().col(1) = forward.cross(pose.linear().col(0));
+  pose.translation() = from;
+  return pose;
+}
+
+inline void pack_all(scene& s) {
+  const auto start = std::chrono::steady_clock::now();
+  for (const auto& mesh : s.meshes) s.packings.push_back(clearance::pack(clearance::mesh_solid(mesh), {.count = 2048}));
+  s.packing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+inline scene demo() {
+  const demo_scene made = make_demo_scene(1);
+  scene s{.name = "demo"};
+  for (const auto& part : made.parts) {
+    s.meshes.push_back(clearance::close_mesh(part.mesh));
+    s.poses.push_back(part.pose);
+  }
+  const clearance::depth_image image(made.depth.data(), made.width, made.height, made.camera);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    const auto point = image[i];
+    constexpr auto nan = clearance::not_a_number;
+    s.cloud.push_back(point.valid() ? point.position : clearance::vec3{nan, nan, nan});
+  }
+  s.world_from_camera = made.world_from_camera;
+  pack_all(s);
+  return s;
+}
+
+/// The scene that all figures of this library speak of; the robot's links about 10 cm from the nearest point.
+inline scene kuka(const std::filesystem::path& data) {
+  clearance::io::robot_options options;
+  options.geometry = clearance::io::robot_geometry::visual;
+  const auto robot = clearance::io::load_robot(data / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf", options);
+  scene s{.name = "kuka"};
+  for (const auto& part : robot.parts()) s.meshes.push_back(clearance::close_mesh(part.mesh));
+  s.poses = robot.poses(std::vector<double>{0, 0.6, 0, -1.4, 0, 0.5, 0});
+  s.cloud = clearance::io::load_cloud((data / "clouds/kinect_seq/frame_20121214T142255.814212.pcd").string()).points;
+  s.world_from_camera = looking({2.18, -0.1, 1.25}, {-0.75, 0.1, -0.65});
+  pack_all(s);
+  return s;
+}
+
+/// The KUKA where its data is, else the demo.
+inline const scene& the_scene() {
+  static const scene s = [] {
+    const std::filesystem::path data = CLEARANCE_TEST_DATA;
+    const bool real = !data.empty() && std::filesystem::exists(data / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf");
+    if (!real) std::fprintf(stderr, "No real data: this is the scene of clearance demo instead of the KUKA LWR.\n");
+    scene made = real ? kuka(data) : demo();
+    std::fprintf(stderr, "%s: %zu links packed with 2,048 spheres each in %.2f s\n", made.name.c_str(), made.meshes.size(), made.packing_seconds);
+    return made;
+  }();
+  return s;
+}
+
+template <class V>
+auto sphere_model(const scene& s, clearance::build_options options = {}) {
+  std::vector<decltype(clearance::make_part<V>(s.packings[0]))> parts;
+  for (const auto& p : s.packings) parts.push_back(clearance::make_part<V>(p, {.build = options}));
+  return clearance::model(std::move(parts));
+}
+
+template <class V>
+auto triangle_model(const scene& s, clearance::build_options options = {}) {
+  std::vector<decltype(clearance::make_part<V>(s.meshes[0]))> parts;
+  for (const auto& m : s.meshes) parts.push_back(clearance::make_part<V>(m, {.build = options}));
+  return clearance::model(std::move(parts));
+}
+
+}  // namespace bench
