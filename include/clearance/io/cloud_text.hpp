@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -51,6 +52,14 @@ std::optional<T> number(std::string_view word) {
       return word.find("e-") == word.npos && word.find("E-") == word.npos ? std::numeric_limits<T>::infinity() : T(0);
   }
   return error == std::errc{} ? std::optional<T>(value) : std::nullopt;
+}
+
+/// The beginning of a word as a sentence may show it: no control characters, no bytes beyond ASCII.
+inline std::string quoted(std::string_view word) {
+  std::string text(word.substr(0, 40));
+  for (char& c : text)
+    if (c < ' ' || c > '~') c = '?';
+  return '"' + text + '"';
 }
 
 }  // namespace clearance::io

@@ -65,7 +65,7 @@ inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_h
     for (int axis = 0; axis < 3; ++axis) {
       const auto word = values[header.fields[header.xyz[std::size_t(axis)]].column];
       const auto value = number<double>(word);
-      if (!value) refuse(file, "\"" + std::string(word.substr(0, 40)) + "\" is not a number", at);
+      if (!value) refuse(file, quoted(word) + " is not a number", at);
       p[axis] = *value;
     }
     points.push_back(p);

@@ -64,7 +64,7 @@ inline pcd_header take_pcd_header(std::string_view& rest, const std::string& fil
   const auto whole = [&](std::string_view word, std::uint64_t least, std::uint64_t most, const char* what) {
     const auto value = number<std::uint64_t>(word);
     if (!value || *value < least || *value > most)
-      refuse(file, std::string(what) + " \"" + std::string(word.substr(0, 40)) + "\" is not a whole number in range",
+      refuse(file, std::string(what) + " " + quoted(word) + " is not a whole number in range",
              header.lines);
     return *value;
   };
@@ -84,12 +84,12 @@ inline pcd_header take_pcd_header(std::string_view& rest, const std::string& fil
     constexpr std::string_view known[] = {"VERSION", "FIELDS", "COLUMNS", "SIZE", "TYPE", "COUNT",
                                           "WIDTH", "HEIGHT", "POINTS", "VIEWPOINT", "DATA"};
     if (std::find(std::begin(known), std::end(known), key) == std::end(known))
-      refuse(file, "\"" + std::string(key.substr(0, 40)) + "\" is no PCD header entry", header.lines);
+      refuse(file, quoted(key) + " is no PCD header entry", header.lines);
     if (values.empty()) refuse(file, std::string(key) + " has no value", header.lines);
     if (key == "VERSION") {
       constexpr std::string_view versions[] = {".5", ".6", ".7", "0.5", "0.6", "0.7"};
       if (std::find(std::begin(versions), std::end(versions), values[0]) == std::end(versions))
-        refuse(file, "PCD version \"" + std::string(values[0].substr(0, 40)) + "\" is not .5, .6 or .7", header.lines);
+        refuse(file, "PCD version " + quoted(values[0]) + " is not .5, .6 or .7", header.lines);
     } else if (key == "FIELDS" || key == "COLUMNS") {
       if (has_fields) refuse(file, "FIELDS is given twice", header.lines);
       has_fields = true;
@@ -107,7 +107,7 @@ inline pcd_header take_pcd_header(std::string_view& rest, const std::string& fil
       has_type = true;
       for (std::size_t i = 0; i < values.size(); ++i) {
         if (values[i] != "F" && values[i] != "I" && values[i] != "U")
-          refuse(file, "TYPE \"" + std::string(values[i].substr(0, 40)) + "\" is not F, I or U", header.lines);
+          refuse(file, "TYPE " + quoted(values[i]) + " is not F, I or U", header.lines);
         header.fields[i].type = values[i][0];
       }
     } else if (key == "COUNT") {
@@ -126,7 +126,7 @@ inline pcd_header take_pcd_header(std::string_view& rest, const std::string& fil
       if (values.size() != v.size()) refuse(file, "VIEWPOINT needs 7 numbers: tx ty tz qw qx qy qz", header.lines);
       for (std::size_t i = 0; i < v.size(); ++i) {
         const auto value = number<double>(values[i]);
-        if (!value) refuse(file, "VIEWPOINT has \"" + std::string(values[i].substr(0, 40)) + "\" for a number", header.lines);
+        if (!value) refuse(file, "VIEWPOINT has " + quoted(values[i]) + " for a number", header.lines);
         v[i] = *value;
       }
       header.viewpoint = {{v[0], v[1], v[2]}, Eigen::Quaterniond(v[3], v[4], v[5], v[6])};
@@ -134,7 +134,7 @@ inline pcd_header take_pcd_header(std::string_view& rest, const std::string& fil
       if (values[0] == "ascii") header.data = pcd_header::encoding::ascii;
       else if (values[0] == "binary") header.data = pcd_header::encoding::binary;
       else if (values[0] == "binary_compressed") header.data = pcd_header::encoding::binary_compressed;
-      else refuse(file, "DATA \"" + std::string(values[0].substr(0, 40)) + "\" is not ascii, binary or binary_compressed", header.lines);
+      else refuse(file, "DATA " + quoted(values[0]) + " is not ascii, binary or binary_compressed", header.lines);
       if (!has_fields || (header.data != pcd_header::encoding::ascii && !(has_size && has_type)))
         refuse(file, "the PCD header lacks FIELDS, SIZE or TYPE");
       if (!has_width && !has_points) refuse(file, "the PCD header has neither WIDTH nor POINTS");

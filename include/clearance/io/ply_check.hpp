@@ -76,7 +76,7 @@ inline ply_vertices check_ply(std::string_view rest, const std::string& file) {
     } else if (key == "end_header") {
       ended = true;
     } else if (key != "comment" && key != "obj_info" && !key.empty()) {
-      refuse(file, "\"" + std::string(key.substr(0, 40)) + "\" is no PLY header entry", at);
+      refuse(file, quoted(key) + " is no PLY header entry", at);
     }
   }
   if (format.empty()) refuse(file, "the PLY header has no format");
@@ -96,7 +96,7 @@ inline ply_vertices check_ply(std::string_view rest, const std::string& file) {
       if (values.size() != record_words)
         refuse(file, "a vertex needs " + std::to_string(record_words) + " values, here are " + std::to_string(values.size()), at);
       for (const auto word : values) {
-        if (!number<double>(word)) refuse(file, "\"" + std::string(word.substr(0, 40)) + "\" is not a number", at);
+        if (!number<double>(word)) refuse(file, quoted(word) + " is not a number", at);
         made.bytes.append(word).push_back(' ');
       }
       made.bytes.back() = '\n';

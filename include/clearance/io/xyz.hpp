@@ -24,7 +24,7 @@ inline cloud load_xyz(const std::string& file) {
     for (int axis = 0; axis < 3; word = take_word(line, separators), ++axis) {
       if (word.empty()) refuse(file, "a point needs three numbers, here are " + std::to_string(axis), at);
       const auto value = number<double>(word);
-      if (!value) refuse(file, "\"" + std::string(word.substr(0, 40)) + "\" is not a number", at);
+      if (!value) refuse(file, quoted(word) + " is not a number", at);
       p[axis] = *value;
     }
     points.push_back(p);
