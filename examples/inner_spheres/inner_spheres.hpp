@@ -1,34 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Inner spheres in bounding spheres: a signed distance, and what it certifies about the solid.
+// From a mesh to a distance with a certificate: inner spheres in bounding spheres.
 
-#include <clearance/bvh/build.hpp>
+#include <clearance/make_part.hpp>
 #include <clearance/min_distance.hpp>
-#include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/packing/pack.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>
 
 template <clearance::backend Backend>
 int example(const Backend& on) {
-  // A rod of 2 cm by 2 cm by 40 cm, filled with the 20 largest spheres that fit side by side. Its corners are farthest
-  // from them: no point of the rod is more than 7.4 mm away.
-  std::vector<clearance::inner_sphere> spheres;
-  for (int k = 0; k < 20; ++k) spheres.push_back({{0, 0, 0.01f + 0.02f * k}, 0.01f});
-  auto rod = clearance::make_part(clearance::build<clearance::sphere>(spheres));
-  rod.facts.gap = 0.0074f;
-  const auto part = rod.on(on);
-  const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  // A box of 8 x 6 x 4 cm. Meshes of real links come from io::load_mesh and io::load_robot.
+  clearance::triangle_mesh box;
+  for (int k = 0; k < 8; ++k)
+    box.vertices.emplace_back(k & 1 ? 0.04 : -0.04, k & 2 ? 0.03 : -0.03, k & 4 ? 0.02 : -0.02);
+  box.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                   {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
 
-  // A point 20 mm beside an edge of the rod, then one inside.
-  std::vector<clearance::vec3> cloud = {{0.01f, 0.03f, 0.2f}, {5, 5, 5}};
+  // [pack]
+  const clearance::packing packed = clearance::pack(box, {.count = 200});
+  std::printf("%zu spheres fill %.0f %% of the box; no point of it is more than %.2f mm from them\n", packed.spheres.size(),
+              100 * packed.fill, 1000 * packed.gap);
+  const auto part = clearance::make_part<clearance::sphere>(packed).on(on);
+  // [pack]
+
+  // A point 5 cm above the middle of the box's upper face; then another one, inside.
+  const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  std::vector<clearance::vec3> cloud = {{0, 0, 0.07f}};
   const auto outside = clearance::min_distance(on, part, pose, cloud);
-  cloud.push_back({0, 0, 0.212f});
+  cloud.push_back({0.01f, 0, 0});
   const auto inside = clearance::min_distance(on, part, pose, cloud);
   for (const auto& r : {outside, inside})
-    std::printf("%-9s %9.6f m to the spheres; the rod is certainly %.6f m to %.6f m away\n", clearance::to_string(r.state),
+    std::printf("%-9s %9.6f m to the spheres, certainly %.6f m to %.6f m to the box\n", clearance::to_string(r.state),
                 r.distance, r.lower, r.upper);
 
-  const bool bracketed = outside.lower < 0.02f && 0.02f < outside.upper && outside.state == clearance::state::free;
-  return bracketed && inside.distance < 0 && inside.upper == 0 && inside.state == clearance::state::collision ? 0 : 1;
+  const bool certain = outside.lower <= 0.05f && 0.05f <= outside.upper && outside.state == clearance::state::free;
+  return certain && inside.distance < 0 && inside.upper == 0 && inside.state == clearance::state::collision ? 0 : 1;
 }
