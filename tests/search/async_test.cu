@@ -192,7 +192,8 @@ TEST_CASE("A recursion is refused while the stack limit is too small, leaves the
   const auto parts = gpu.copy_in(std::span<const view>(&part, 1));
   const clearance::model_view<view> model{parts.data(), {&facts, 1}, tree.view().depth(), 2};
   const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()};
-  const std::vector<vec3> points = {{57, 1, 0}, {-1, 0, 0}};
+  std::vector<vec3> points(5000, {-1, 0, 0});  // so many that every kind of kernel takes part
+  points[0] = {57, 1, 0};
   {
     const deep_stack small(1024);
     std::size_t limit = 0;
