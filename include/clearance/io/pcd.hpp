@@ -99,10 +99,8 @@ inline std::vector<Eigen::Vector3d> pcd_compressed(std::string_view rest, const 
   return pcd_records(data.data(), header, true);  // stored field by field
 }
 
-/// Reads a PCD file: ascii, binary or binary_compressed, fields in any order and of any type; other fields are skipped,
-/// bytes after the data ignored. Throws std::runtime_error naming file and line.
-inline cloud load_pcd(const std::string& file) {
-  const std::string bytes = read_bytes(file);
+/// Reads a PCD file from memory; `file` is its name in the cloud and in errors.
+inline cloud read_pcd(std::string_view bytes, const std::string& file) {
   std::string_view rest = bytes;
   const pcd_header header = take_pcd_header(rest, file);
   std::vector<Eigen::Vector3d> points;
@@ -121,5 +119,9 @@ inline cloud load_pcd(const std::string& file) {
   made.viewpoint = header.viewpoint;
   return made;
 }
+
+/// Reads a PCD file: ascii, binary or binary_compressed, fields in any order and of any type; other fields are skipped,
+/// bytes after the data ignored. Throws std::runtime_error naming file and line.
+inline cloud load_pcd(const std::string& file) { return read_pcd(read_bytes(file), file); }
 
 }  // namespace clearance::io

@@ -11,10 +11,9 @@
 
 namespace clearance::io {
 
-/// Reads the vertices of a PLY file, ascii or binary, in the file's order; faces are ignored. assimp rounds coordinates
-/// to float, so doubles farther than 1024 m from 0 are refused: PCD and XYZ files keep them. Throws std::runtime_error.
-inline cloud load_ply(const std::string& file) {
-  const ply_vertices checked = check_ply(read_bytes(file), file);
+/// Reads a PLY file from memory; `file` is its name in the cloud and in errors.
+inline cloud read_ply(std::string_view bytes, const std::string& file) {
+  const ply_vertices checked = check_ply(bytes, file);
   std::vector<Eigen::Vector3d> points;
   if (checked.count > 0) {
     Assimp::Importer importer;
@@ -34,5 +33,9 @@ inline cloud load_ply(const std::string& file) {
   }
   return make_cloud(file, points, points.size(), 1);
 }
+
+/// Reads the vertices of a PLY file, ascii or binary, in the file's order; faces are ignored. assimp rounds coordinates
+/// to float, so doubles farther than 1024 m from 0 are refused: PCD and XYZ files keep them. Throws std::runtime_error.
+inline cloud load_ply(const std::string& file) { return read_ply(read_bytes(file), file); }
 
 }  // namespace clearance::io

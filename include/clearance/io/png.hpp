@@ -81,10 +81,10 @@ namespace clearance::io::stb {
 
 namespace clearance::io {
 
-/// Reads a depth frame from a 16-bit grey PNG; any other PNG, and a damaged or truncated one, is refused with a
-/// std::runtime_error. Static, because it calls static functions: one definition in each translation unit.
-[[maybe_unused]] static depth_frame load_png(const std::string& file) {
-  const std::string bytes = read_bytes(file);
+// These are static because they call static functions: one definition in each translation unit.
+
+/// Reads a PNG file from memory; `file` is its name in the frame and in errors.
+[[maybe_unused]] static depth_frame read_png(std::string_view bytes, const std::string& file) {
   check_depth_png(bytes, file);
   if (bytes.size() > INT_MAX) refuse(file, "is larger than 2 GiB");
   int width = 0, height = 0, channels = 0;
@@ -96,5 +96,9 @@ namespace clearance::io {
   const std::size_t size = std::size_t(width) * std::size_t(height);
   return {file, {pixels.get(), pixels.get() + size}, std::size_t(width), std::size_t(height)};
 }
+
+/// Reads a depth frame from a 16-bit grey PNG; any other PNG, and a damaged or truncated one, is refused with a
+/// std::runtime_error.
+[[maybe_unused]] static depth_frame load_png(const std::string& file) { return read_png(read_bytes(file), file); }
 
 }  // namespace clearance::io
