@@ -46,10 +46,10 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
   void enqueue(std::span<const Eigen::Isometry3d> poses, const S& source, const Eigen::Isometry3d& cloud_pose,
                min_distance_result* result, std::uint32_t* done = nullptr) {
     const device_guard guard(on_.id);
-    const auto args = prepare(poses, source, rigid(cloud_pose, "the cloud"), result, done);
+    const auto args = prepare(poses, source.size(), rigid(cloud_pose, "the cloud"), result, done);
     constexpr unsigned a_block = stream::block_threads * 4;
     const unsigned blocks = std::max(1u, std::min(most_blocks_, (args.points + a_block - 1) / a_block));
-    stream::stream_kernel<<<blocks, stream::block_threads, 0, on_.stream>>>(args);
+    stream::stream_kernel<<<blocks, stream::block_threads, 0, on_.stream>>>(source, args);
     check_cuda(cudaGetLastError(), "kernel launch");
   }
 
@@ -79,19 +79,17 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
     std::uint32_t done;
   };
 
-  template <point_source S>
-  stream::frame_args<view_type, S> prepare(std::span<const Eigen::Isometry3d> poses, const S& source,
-                                           const Eigen::Isometry3d& world_from_cloud, min_distance_result* result, std::uint32_t* done) {
+  stream::frame_args<view_type> prepare(std::span<const Eigen::Isometry3d> poses, std::size_t points,
+                                        const Eigen::Isometry3d& world_from_cloud, min_distance_result* result, std::uint32_t* done) {
     if (poses.size() != parts_.size())
       throw std::invalid_argument("clearance::min_distance_query: there are " + std::to_string(parts_.size()) + " parts, but " +
                                   std::to_string(poses.size()) + " poses");
-    if (source.size() >= none - stream::block_threads * 4 * most_blocks_)
-      throw std::invalid_argument("clearance::min_distance_query: " + std::to_string(source.size()) + " points are too many for one call");
-    stream::frame_args<view_type, S> a;
-    a.source = source;
-    a.points = std::uint32_t(source.size()), a.parts = std::uint32_t(parts_.size());
+    if (points >= none - stream::block_threads * 4 * most_blocks_)
+      throw std::invalid_argument("clearance::min_distance_query: " + std::to_string(points) + " points are too many for one call");
+    stream::frame_args<view_type> a;
+    a.points = std::uint32_t(points), a.parts = std::uint32_t(parts_.size());
     const search::cloud_frame frame(facts_, poses, world_from_cloud);
-    a.origin = frame.origin, a.error = frame.error, a.slop = frame.slop, a.robot = frame.robot;
+    a.origin = frame.origin, a.error = frame.error, a.slop = frame.slop;
     a.world_from_cloud = world_transform(world_from_cloud);
     a.state = state_.data(), a.records = records_.data(), a.result = result, a.done = done, a.frame = frame_;
     std::vector<stream::stream_part<view_type>> rest;

@@ -9,7 +9,7 @@ namespace clearance {
 struct point_filter {
   real nearest = 0, farthest = infinity;
   vec3 sensor = {0, 0, 0};
-  bool zero_is_missing = false;  ///< Some lidars write (0,0,0) where nothing came back.
+  bool zero_is_missing = false;  ///< Some lidars write their own position where nothing came back.
 
   /// Only finiteness is asked: the same for all points, so a kernel asks once.
   CLEARANCE_HD bool plain() const { return !zero_is_missing && !(nearest > 0) && !(farthest < infinity); }
@@ -17,7 +17,7 @@ struct point_filter {
   CLEARANCE_HD sample operator()(vec3 p) const {
     if (!is_finite(p)) return {p, drop_reason::not_finite};
     if (plain()) return {p, drop_reason::none};
-    if (zero_is_missing && p == vec3{0, 0, 0}) return {p, drop_reason::missing};
+    if (zero_is_missing && p == sensor) return {p, drop_reason::missing};
     if (nearest > 0 || farthest < infinity) {
       const real away = length(p - sensor);
       if (!(away >= nearest && away <= farthest)) return {p, drop_reason::out_of_range};

@@ -57,7 +57,6 @@ struct cloud_frame {
   vec3 origin;
   double error = 0;  ///< The largest of all parts.
   double slop = 0;   ///< The largest gap plus tolerance of all parts.
-  ball robot;        ///< Around all parts' balls.
   std::vector<placement> places;
 
   /// Throws if a pose is not rigid. `world_from_cloud` is taken as checked.
@@ -69,14 +68,11 @@ struct cloud_frame {
       middle += clean.back().translation() / double(poses.size());
     }
     origin = origin_near(world_from_cloud.inverse() * middle);
-    std::vector<ball> balls;
     for (std::size_t k = 0; k < poses.size(); ++k) {
       places.push_back(place(facts[k], clean[k], world_from_cloud, origin));
       error = std::max(error, double(places.back().error));
       slop = std::max(slop, double(facts[k].gap) + double(facts[k].tolerance));
-      balls.push_back(places.back().around);
     }
-    robot = enclosing_ball(std::span<const ball>(balls));
   }
 };
 

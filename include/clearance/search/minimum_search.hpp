@@ -75,8 +75,11 @@ class minimum_search {
     const auto parts = std::uint32_t(model_.size());
     const auto first = std::uint32_t(seen_);
     distance_key* const part_best = minima_ == nullptr ? nullptr : part_best_.data();
-    on_.for_ranges(n, search::point_body<PartView, S, Traversal>{model_.parts, places_.data(), parts, source, frame.origin, first,
-                                                                 totals_.data(), part_best, walk_, stack_bytes_});
+    const search::point_body<PartView, S, Traversal> body{model_.parts, places_.data(), parts, source, frame.origin, first,
+                                                          totals_.data(), part_best, walk_, stack_bytes_};
+    using seeds = search::seed_body<search::point_body<PartView, S, Traversal>>;
+    if (n > 4 * seeds::samples) on_.for_each(seeds::samples, seeds{body, std::size_t(n / seeds::samples)});
+    on_.for_ranges(n, body);
     on_.for_each(parts + 1, search::resolve_body<PartView, S, Traversal>{
                                 model_.parts, places_.data(), parts, source, frame.origin, world_transform(world_from_cloud), first, cloud,
                                 totals_.data(), part_best, walk_, result_, minima_, stack_bytes_});

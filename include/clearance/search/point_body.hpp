@@ -4,6 +4,7 @@
 #include <clearance/indices.hpp>
 #include <clearance/query/any_within.hpp>
 #include <clearance/search/frame.hpp>
+#include <clearance/search/root_test.hpp>
 
 namespace clearance::search {
 
@@ -25,6 +26,12 @@ static_assert(query<shared_nearest>);
 /// What one thread met, added to the totals once.
 struct tally {
   std::uint32_t dropped[drop_reasons] = {};
+
+  /// Is there a point? If not, it is counted.
+  CLEARANCE_HD bool counts(const sample& s) {
+    for (int r = 1; r < drop_reasons; ++r) dropped[r] += int(s.dropped) == r;
+    return s.valid();
+  }
 
   CLEARANCE_HD void add_to(totals& all) const {
     for (int r = 1; r < drop_reasons; ++r) {
@@ -57,16 +64,18 @@ struct point_body {
 
   CLEARANCE_HD void operator()(indices range) const {
     tally mine;
-    for (std::size_t i = range.begin; i < range.end; i += range.step) {
-      const sample s = source[i];
-      if (!s.valid()) {
-        for (int r = 1; r < drop_reasons; ++r) mine.dropped[r] += int(s.dropped) == r;
-        continue;
-      }
-      const vec3 p = s.position - origin;
-      for (std::uint32_t k = 0; k < part_count; ++k) visit(p, first + std::uint32_t(i), k);
-    }
+#if defined(__CUDA_ARCH__)
+    for (std::size_t i = range.begin; i < range.end; i += range.step)
+      if (const sample s = source[i]; mine.counts(s)) visit(s.position - origin, i);
+#else
+    for (std::size_t i = range.begin; i < range.end; i += tile) by_tile(i, range.end - i < tile ? range.end - i : tile, mine);
+#endif
     mine.add_to(*all);
+  }
+
+  /// One point against every part. Asked beforehand about a few points, it gives all others a bound to begin with.
+  CLEARANCE_HD void visit(vec3 p, std::size_t i) const {
+    for (std::uint32_t k = 0; k < part_count; ++k) visit(p, first + std::uint32_t(i), k);
   }
 
   std::size_t device_stack() const
@@ -77,14 +86,32 @@ struct point_body {
   std::size_t stack_bytes = 0;
 
  private:
+  static constexpr std::size_t tile = 64;
+
+  /// The host's way: root tests over arrays, which compilers turn into vector code; few points need more.
+  void by_tile(std::size_t begin, std::size_t count, tally& mine) const {
+    alignas(64) real x[tile], y[tile], z[tile], least[tile];
+    for (std::size_t j = 0; j < tile; ++j) {
+      vec3 p{not_a_number, not_a_number, not_a_number};  // fails every comparison
+      if (j < count)
+        if (const sample s = source[begin + j]; mine.counts(s)) p = s.position - origin;
+      x[j] = p.x, y[j] = p.y, z[j] = p.z, least[j] = infinity;
+    }
+    for (std::uint32_t k = 0; k < part_count; ++k) {
+      const root_test root(places[k].around, key_distance(load_relaxed(bound_of(k))));
+      for (std::size_t j = 0; j < tile; ++j) least[j] = min(root.value(x[j], y[j], z[j]), least[j]);
+    }
+    for (std::size_t j = 0; j < tile; ++j) least[j] += x[j] * x[j] + y[j] * y[j] + z[j] * z[j];
+    for (std::size_t j = 0; j < tile; ++j)
+      if (least[j] <= 0) visit({x[j], y[j], z[j]}, begin + j);
+  }
+
+  CLEARANCE_HD distance_key* bound_of(std::uint32_t k) const { return part_best != nullptr ? part_best + k : &all->best; }
+
   CLEARANCE_HD void visit(vec3 p, std::uint32_t index, std::uint32_t k) const {
-    distance_key* const bound = part_best != nullptr ? part_best + k : &all->best;
+    distance_key* const bound = bound_of(k);
     const placement& place = places[k];
-    // Cheap and conservative, in the cloud's own frame: most points end here, whatever a compiler contracts.
-    const real reach = key_distance(load_relaxed(bound));
-    const vec3 d = p - place.around.center;
-    const real limit = reach + place.around.radius;
-    if (!((d.x * d.x + d.y * d.y + d.z * d.z) * (1 - 4 * slack) <= limit * absolute(limit))) return;
+    if (!root_test(place.around, key_distance(load_relaxed(bound))).passes(p)) return;
 
     const PartView& part = parts[k];
     const vec3 q = place.part_from_cloud(p);
@@ -108,6 +135,26 @@ struct point_body {
       const distance_key key = make_key(ask.best, index);
       if (key < load_relaxed(bound)) lower_to(bound, key);
     }
+  }
+};
+
+/// A few points spread over the cloud, before all others: any real pair is a valid bound, and a good one saves the rest
+/// most of the work. Without it, thousands of threads would start from infinity at once.
+template <class PointBody>
+struct seed_body {
+  static constexpr std::size_t samples = 1024;
+
+  PointBody body;
+  std::size_t stride;
+
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const sample s = body.source[i * stride];
+    if (s.valid()) body.visit(s.position - body.origin, i * stride);
+  }
+  std::size_t device_stack() const
+    requires requires { body.device_stack(); }
+  {
+    return body.device_stack();
   }
 };
 

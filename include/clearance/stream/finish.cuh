@@ -8,21 +8,16 @@
 
 namespace clearance::stream {
 
-template <class PartView, class Source>
-__device__ const stream_part<PartView>& part(const frame_args<PartView, Source>& a, const block_memory<PartView>& s, std::uint32_t k) {
-  return k < inline_parts ? s.parts[k] : a.more[k - inline_parts];
-}
-
 /// The answer from the best record: what search::resolve_body writes, without searching again.
 template <class PartView, class Source>
-__noinline__ __device__ void write_result(const frame_args<PartView, Source>& a, const block_memory<PartView>& s) {
+__noinline__ __device__ void write_result(const frame_args<PartView>& a, const Source& source, const block_memory<PartView>& s) {
   const record best = s.best;
   min_distance_result out;
   real tolerance = 0;
   if (best.key != no_key) {
     const std::uint32_t point = key_index(best.key);
     const auto& body = part(a, s, best.part);
-    const vec3 p = a.source[point].position;
+    const vec3 p = source[point].position;
     const vec3 q = body.place.part_from_cloud(p - a.origin);
     using primitive_type = typename PartView::hierarchy_type::primitive_type;
     search::nearest_primitive<primitive_type> nearest{infinity};
@@ -48,7 +43,7 @@ __noinline__ __device__ void write_result(const frame_args<PartView, Source>& a,
 
 /// Every block hands in its candidate; the last one picks the best, answers, and makes the state ready for a next frame.
 template <class PartView, class Source>
-__device__ void finish_block(const frame_args<PartView, Source>& a, block_memory<PartView>& s) {
+__device__ void finish_block(const frame_args<PartView>& a, const Source& source, block_memory<PartView>& s) {
   const std::uint32_t t = threadIdx.x;
   frame_state& state = *a.state;
   if (t < drop_reasons && s.dropped[t] != 0) {
@@ -77,7 +72,7 @@ __device__ void finish_block(const frame_args<PartView, Source>& a, block_memory
   if (mine.key == s.best.key && mine.key != no_key) s.offer(mine);
   __syncthreads();
   if (t == 0) {
-    write_result(a, s);
+    write_result(a, source, s);
     if (a.done != nullptr) {
       __threadfence_system();
       *static_cast<volatile std::uint32_t*>(a.done) = a.frame;

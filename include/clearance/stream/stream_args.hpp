@@ -2,6 +2,7 @@
 #pragma once
 // What the one kernel of a frame is told, and what it leaves behind for the next frame.
 
+#include <clearance/bvh_view.hpp>
 #include <clearance/result.hpp>
 #include <clearance/search/frame.hpp>
 
@@ -46,12 +47,11 @@ struct stream_part {
 
 inline constexpr std::uint32_t inline_parts = 12;  ///< As many as fit into 4 kB of kernel arguments.
 
-template <class PartView, class Source>
+/// All but the points.
+template <class PartView>
 struct frame_args {
-  Source source;
   vec3 origin;
   std::uint32_t points, parts;
-  ball robot;    ///< Around all parts, in the cloud's frame.
   double error;  ///< The largest `placement::error`,
   double slop;   ///< and the largest gap plus tolerance.
   frame_state* state;
@@ -61,6 +61,7 @@ struct frame_args {
   std::uint32_t frame;
   world_transform world_from_cloud;
   const stream_part<PartView>* more;  ///< Parts from inline_parts on.
-  stream_part<PartView> part[inline_parts];};
+  stream_part<PartView> part[inline_parts];
+};
 
 }  // namespace clearance::stream

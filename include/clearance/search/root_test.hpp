@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/math.hpp>
+
+namespace clearance::search {
+
+/// Cheap and conservative: may a point x be within reach of a part's ball? `value(x) <= -|x|^2` says perhaps, in the
+/// cloud's own frame, with three multiply-adds. Not part of the exact path, so compilers may contract it as they like.
+struct alignas(16) root_test {
+  vec3 m;  ///< -2 c
+  real w;  ///< |c|^2 - limit^2, less what rounding can do; rises as the reach falls.
+
+  root_test() = default;
+  CLEARANCE_HD root_test(const ball& around, real reach) {
+    const vec3 c = around.center;
+    const real limit = (reach + around.radius) * (1 + 4 * slack);
+    const real sum = 2 * length(c) + limit;
+    const real margin = 0x1p-20f * (sum * sum + limit * limit);
+    m = {-2 * c.x, -2 * c.y, -2 * c.z};
+    w = limit >= 0 ? dot(c, c) - (limit * limit + margin) : infinity;
+  }
+
+  CLEARANCE_HD real value(real x, real y, real z) const { return m.x * x + (m.y * y + (m.z * z + w)); }
+  CLEARANCE_HD real value(vec3 x) const { return value(x.x, x.y, x.z); }
+  CLEARANCE_HD bool passes(vec3 x) const { return value(x) <= -(x.x * x.x + x.y * x.y + x.z * x.z); }
+};
+
+}  // namespace clearance::search
