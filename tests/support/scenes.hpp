@@ -122,6 +122,20 @@ std::vector<scene<P>> scenes() {
     holes(s.points);
     all.push_back(s);
   }
+  {  // every distance many times over, in whatever order threads and samples come to them
+    scene<P> s{"many ties", {lattice(static_cast<const P*>(nullptr))}, {shifted(0, 0, 0)}, {}};
+    const auto seven = d.points(7, 2);
+    for (int k = 0; k < 5001; ++k) s.points.push_back(seven[(k + 3) % 7]);
+    all.push_back(s);
+  }
+  {  // each point a little nearer than the one before, to what touches the part's own ball
+    scene<P> s{"creeping nearer", {random_primitives<P>(d, 1, 1, 0.5)}, {shifted(0, 0, 0)}, {}};
+    const auto balls = s.parts[0][0].balls();
+    vec3 outward = balls.size() == 1 ? vec3{1, 0, 0} : balls[0].center - clearance::scaled(0.5f, balls[1].center + balls[balls.size() - 1].center);
+    outward = clearance::scaled(1 / clearance::length(outward), outward);
+    for (int k = 0; k < 5001; ++k) s.points.push_back(clearance::fma(balls[0].radius + 1 - real(k) * 1e-5f, outward, balls[0].center));
+    all.push_back(s);
+  }
   for (const std::size_t n : {0, 1, 31, 33}) {
     scene<P> s{"few points", {random_primitives<P>(d, 20)}, {d.pose(1)}, d.points(n, 2)};
     if (n == 31)

@@ -127,6 +127,37 @@ TEST_CASE("Every traversal of a tree of one's own volumes is the plain loop") {
   check_volume<Eigen::AlignedBox3f, inner_sphere>();
 }
 
+namespace {
+
+/// As tight as the law allows: around one ball the bound is the distance itself, to the bit, so that ties are real.
+struct tight_ball {
+  clearance::sphere around;
+  bool one;
+
+  static tight_ball fit(std::span<const ball> balls) {
+    if (balls.size() == 1) return {{balls[0].center, balls[0].radius}, true};
+    return {clearance::sphere::fit(balls), false};
+  }
+  CLEARANCE_HD real lower_bound(vec3 q) const {
+    return one ? inner_sphere{around.center, around.radius}.distance(q) : around.lower_bound(q);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("What is bounded by exactly the reach is not pruned: ties are shown") {
+  dice d(13);
+  verdict v;
+  for (auto primitives : scenes<inner_sphere>(d)) {
+    const auto points = points_for(d, primitives);
+    primitives.insert(primitives.end(), primitives.rbegin(), primitives.rend());
+    if (primitives.size() > 256) primitives.resize(256);
+    for (const std::uint32_t width : {2, 4, 8})
+      check_walks(clearance::build<tight_ball>(primitives, {.width = width, .leaf_size = 1}).view(), primitives, points, v);
+    check_walks(linked_tree<tight_ball, inner_sphere>(primitives).view(), primitives, points, v);
+  }
+}
+
 TEST_CASE("Every traversal of a flat list is the plain loop") {
   dice d(10);
   verdict v;
