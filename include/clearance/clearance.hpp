@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Everything that a plain C++ compiler takes, but for io/, which needs libraries of its own. For the impatient: a program
+// that includes only what it uses compiles faster.
+
+#include <clearance/bvh/build.hpp>
+#include <clearance/bvh/flat_list.hpp>
+#include <clearance/make_part.hpp>
+#include <clearance/min_distance.hpp>
+#include <clearance/min_distance_query.hpp>
+#include <clearance/model.hpp>
+#include <clearance/packing/pack.hpp>
+#include <clearance/points/depth_image.hpp>
+#include <clearance/points/point_span.hpp>
+#include <clearance/points/strided_points.hpp>
+#include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/primitive/triangle.hpp>
+#include <clearance/query/any_within.hpp>
+#include <clearance/query/nearest.hpp>
+#include <clearance/solid/implicit.hpp>
+#include <clearance/solid/mesh_solid.hpp>
+#include <clearance/traversal/near_first.hpp>
+#include <clearance/traversal/recursive.hpp>
+#include <clearance/traversal/stack.hpp>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/obb.hpp>
+#include <clearance/volume/sphere.hpp>
