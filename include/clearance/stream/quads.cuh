@@ -61,7 +61,8 @@ struct quad_reader {
   __device__ void report(std::uint32_t (&block)[drop_reasons]) const {
     if (!__any_sync(~0u, dropped != 0)) return;
     for (int r = 1; r < drop_reasons; ++r) {
-      const unsigned sum = __reduce_add_sync(~0u, unsigned(dropped >> 16 * (r - 1)) & 0xffffu);
+      unsigned sum = unsigned(dropped >> 16 * (r - 1)) & 0xffffu;
+      for (int lanes = 16; lanes > 0; lanes /= 2) sum += __shfl_xor_sync(~0u, sum, lanes);  // any GPU; rare, so not hot
       if ((threadIdx.x & 31) == 0 && sum != 0) atomicAdd(&block[r], sum);
     }
   }
