@@ -5,6 +5,7 @@
 #include <clearance/search/conclude.hpp>
 #include <clearance/search/point_body.hpp>
 #include <clearance/search/resolve.hpp>
+#include <clearance/search/seed_body.hpp>
 
 namespace clearance {
 

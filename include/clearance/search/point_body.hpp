@@ -73,7 +73,9 @@ struct point_body {
     mine.add_to(*all);
   }
 
-  /// One point against every part. Asked beforehand about a few points, it gives all others a bound to begin with.
+  CLEARANCE_HD distance_key* bound_of(std::uint32_t k) const { return part_best != nullptr ? part_best + k : &all->best; }
+
+  /// One point against every part.
   CLEARANCE_HD void visit(vec3 p, std::size_t i) const {
     for (std::uint32_t k = 0; k < part_count; ++k) visit(p, first + std::uint32_t(i), k);
   }
@@ -106,8 +108,6 @@ struct point_body {
       if (least[j] <= 0) visit({x[j], y[j], z[j]}, begin + j);
   }
 
-  CLEARANCE_HD distance_key* bound_of(std::uint32_t k) const { return part_best != nullptr ? part_best + k : &all->best; }
-
   CLEARANCE_HD void visit(vec3 p, std::uint32_t index, std::uint32_t k) const {
     distance_key* const bound = bound_of(k);
     const placement& place = places[k];
@@ -135,26 +135,6 @@ struct point_body {
       const distance_key key = make_key(ask.best, index);
       if (key < load_relaxed(bound)) lower_to(bound, key);
     }
-  }
-};
-
-/// A few points spread over the cloud, before all others: any real pair is a valid bound, and a good one saves the rest
-/// most of the work. Without it, thousands of threads would start from infinity at once.
-template <class PointBody>
-struct seed_body {
-  static constexpr std::size_t samples = 1024;
-
-  PointBody body;
-  std::size_t stride;
-
-  CLEARANCE_HD void operator()(std::size_t i) const {
-    const sample s = body.source[i * stride];
-    if (s.valid()) body.visit(s.position - body.origin, i * stride);
-  }
-  std::size_t device_stack() const
-    requires requires { body.device_stack(); }
-  {
-    return body.device_stack();
   }
 };
 
