@@ -54,14 +54,14 @@ find_cuda() {
 
 # The generator of a build folder is fixed when it is made, so it is only chosen for a new one.
 configure() {
-  folder=$1
+  at=$1
   shift
   generator=""
-  if [ ! -e "$folder/CMakeCache.txt" ]; then
+  if [ ! -e "$at/CMakeCache.txt" ]; then
     generator="-GNinja"
     command -v ninja >/dev/null 2>&1 || generator="-GUnix Makefiles"
   fi
-  cmake -S "$root" -B "$folder" ${generator:+"$generator"} "$@"
+  cmake -S "$root" -B "$at" ${generator:+"$generator"} "$@"
 }
 
 jobs=${CLEARANCE_JOBS:-$(nproc 2>/dev/null || echo 2)}
