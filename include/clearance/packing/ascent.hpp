@@ -43,7 +43,9 @@ class local_room {
 /// Climbs from an inside point with room `radius` to a local maximum of the room, by compass search. Every step stays in
 /// the ball that is known to be inside, so no step can leave the solid through a thin wall.
 template <solid S>
-sphere_field::sphere ascend(const S& s, const sphere_field& spheres, Eigen::Vector3d at, double radius, double precision = 1e-3) {
+sphere_field::sphere ascend(const S& s, const sphere_field& spheres, Eigen::Vector3d at, double radius,
+                            double farthest = std::numeric_limits<double>::infinity(), double precision = 1e-3) {
+  const Eigen::Vector3d from = at;
   double step = radius / 2;
   for (int round = 0; round < 8; ++round) {
     const Eigen::Vector3d start = at;
@@ -56,6 +58,7 @@ sphere_field::sphere ascend(const S& s, const sphere_field& spheres, Eigen::Vect
       double best_radius = radius;
       const auto attempt = [&](const Eigen::Vector3d& by) {
         const Eigen::Vector3d p = at + by;
+        if ((p - from).norm() > farthest) return;
         const double r = room(p);
         if (r > best_radius) best = p, best_radius = r;
       };

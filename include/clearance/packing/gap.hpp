@@ -20,17 +20,19 @@ class gap_search {
   gap_search(const S& s, const sphere_field& spheres, double least, double relative, double absolute)
       : solid_(s), spheres_(spheres), least_(least), relative_(relative), absolute_(absolute) {}
 
-  /// An upper bound of the gap over the solid's points in the cell.
-  double operator()(const solid_cell& root) {
+  /// An upper bound of the gap over the solid's points in the cell; infinite if that takes more than `visits` cubes.
+  double operator()(const solid_cell& root, std::size_t visits) {
+    left_ = visits;
     std::vector<std::uint32_t> near(spheres_.size());
     for (std::uint32_t i = 0; i < near.size(); ++i) near[i] = i;
     visit(root, near);
-    return upper_;
+    return left_ == 0 ? std::numeric_limits<double>::infinity() : upper_;
   }
 
  private:
   void visit(const solid_cell& cell, const std::vector<std::uint32_t>& near) {
     const double reach = cell.reach();
+    if (left_ == 0 || --left_ == 0) return;
     if (cell.depth < -reach * (1 + 1e-12)) return;  // no point of the solid here
     double gap = std::numeric_limits<double>::infinity();
     for (const std::uint32_t i : near) gap = std::min(gap, spheres_[i].distance(cell.middle));
@@ -50,10 +52,12 @@ class gap_search {
   const S& solid_;
   const sphere_field& spheres_;
   double least_, relative_, absolute_, upper_ = 0;
+  std::size_t left_ = 0;
 };
 
 /// The largest distance from any point of the solid to the nearest sphere, 0 if they cover it: a proven upper bound, by
-/// branch and bound in double rounded up, at most `tolerance` (relative) or 10 um or 1e-5 of the solid above the truth.
+/// branch and bound in double rounded up, at most `tolerance` (relative) or 10 um or 1e-5 of the solid above the truth;
+/// more only where the search would take too long.
 template <solid S>
 gap_report measure_gap(const S& s, const sphere_field& spheres, double tolerance = 0.01) {
   gap_report report;
@@ -77,14 +81,23 @@ gap_report measure_gap(const S& s, const sphere_field& spheres, double tolerance
     std::nth_element(gaps.begin(), at, gaps.end());
     report.p95 = *at;
   }
-  const double absolute = std::min(1e-5, 1e-5 * diagonal);
+  // Finer and finer, until it is as fine as asked or takes too long: the gap of a ball in a ball, say, is the same all over
+  // the surface, which no search can narrow down.
+  const double finest = std::min(1e-5, 1e-5 * diagonal);
   const std::vector<solid_cell> roots = cover(s, 16);
-  std::vector<double> upper(roots.size());
-  tbb::parallel_for(std::size_t(0), roots.size(), [&](std::size_t i) {
-    upper[i] = gap_search<S>(s, spheres, least, tolerance, absolute)(roots[i]);
-  });
-  report.certified = least;
-  for (const double u : upper) report.certified = std::max(report.certified, u);
+  std::vector<double> upper(roots.size(), std::numeric_limits<double>::infinity());
+  for (double absolute = 0.05 * diagonal;; absolute = std::max(finest, absolute / 4)) {
+    constexpr std::size_t visits = 10000;  // for one of about a thousand cells
+    std::vector<double> finer = upper;
+    tbb::parallel_for(std::size_t(0), roots.size(), [&](std::size_t i) {
+      if (upper[i] > least * (1 + tolerance)) finer[i] = gap_search<S>(s, spheres, least, tolerance, absolute)(roots[i], visits);
+    });
+    double bound = least;
+    for (std::size_t i = 0; i < roots.size(); ++i) bound = std::max(bound, upper[i] = std::min(upper[i], finer[i]));
+    report.certified = bound;
+    const bool gave_up = std::find(finer.begin(), finer.end(), std::numeric_limits<double>::infinity()) != finer.end();
+    if (gave_up || absolute <= std::max(finest, least * tolerance)) break;
+  }
   report.certified = report.certified * (1 + 1e-12) + 1e-12 * diagonal;
   return report;
 }

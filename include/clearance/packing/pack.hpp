@@ -8,17 +8,18 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <chrono>
-#include <queue>
 #include <random>
 
 namespace clearance {
 
-/// Fills a solid with spheres, the largest first: each is the largest that fits, within a quarter at the very worst. The
-/// room at a point is its distance to the surface and to the spheres so far; it changes by no more than the way between
-/// two points, so a cube's room is at most that of its middle plus half its diagonal, and the cube with the largest such
-/// bound is divided, or, once it is small against its room, climbed from (branch and bound on ProtoSphere's field, Weller
-/// & Zachmann 2010).
+/// Fills a solid with spheres, the largest first. The room at a point is its distance to the surface and to the spheres so
+/// far; it changes by no more than the way between two points, so a cube's room is at most that of its middle plus half
+/// its diagonal, and the cube with the largest such bound is divided, or, once it is small against its room, climbed from
+/// (branch and bound on ProtoSphere's field, Weller & Zachmann 2010). So a sphere is never smaller than three quarters of
+/// the largest that fits, except where `gap_per_radius` asks for it, and in solids whose largest room is nearly the same
+/// in a great many places, such as thin shells: there bounds are trusted less and less as cubes pile up.
 template <solid S>
 class packer {
  public:
@@ -28,6 +29,7 @@ class packer {
       throw std::invalid_argument("clearance::pack: the solid's bounds are empty or not finite");
     for (const double x : {options.smallest_radius, options.gap_target, options.seconds})
       if (!(x >= 0)) throw std::invalid_argument("clearance::pack: smallest_radius, gap_target and seconds must not be negative");
+    if (!(options.gap_per_radius > 0)) throw std::invalid_argument("clearance::pack: gap_per_radius must be positive");
     if (!(options.gap_tolerance > 0)) throw std::invalid_argument("clearance::pack: gap_tolerance must be positive");
     scale_ = box.diagonal().norm() + box.center().norm();
     least_room_ = 1e-6 * box.diagonal().norm();
@@ -42,7 +44,8 @@ class packer {
     for (std::size_t i = 0; i < spheres_.size(); ++i) out.spheres.push_back(rounded(spheres_[i]));
     std::stable_sort(out.spheres.begin(), out.spheres.end(), [](const auto& a, const auto& b) { return a.radius > b.radius; });
     if (!out.spheres.empty()) out.radius_max = out.spheres.front().radius, out.radius_min = out.spheres.back().radius;
-    out.room = cells_.empty() ? smallest_ : std::max(smallest_, cells_.top().bound);
+    out.room = smallest_;
+    for (const entry& e : cells_) out.room = std::max(out.room, e.bound());
     const gap_report gap = measure_gap(solid_, spheres_, options_.gap_tolerance);
     out.gap = gap.certified, out.gap_mean = gap.mean, out.gap_p95 = gap.p95;
     if constexpr (requires { solid_.volume(); })
@@ -54,17 +57,20 @@ class packer {
 
  private:
   struct entry {
-    double bound;  ///< Room in the cell is at most this.
     solid_cell cell;
-    double room;  ///< At the middle, among the first `seen` spheres.
-    std::uint32_t seen, number;
+    double gap;   ///< From the middle to the first `seen` spheres.
+    double key;
+    std::uint32_t seen;
+    std::uint64_t number;
 
-    friend bool operator<(const entry& a, const entry& b) {
-      return a.bound != b.bound ? a.bound < b.bound : a.number > b.number;
-    }
+    double room() const { return std::min(cell.depth, gap); }
+    double bound() const { return room() + cell.reach(); }  ///< No room in the cell is larger.
+
+    friend bool operator<(const entry& a, const entry& b) { return a.key != b.key ? a.key < b.key : a.number > b.number; }
   };
   static constexpr double climb_from = 0.25;      // a cell is small once its bound is this little above its room
-  static constexpr std::size_t batch = 256, most_cells = 1u << 24;
+  static constexpr double promotion = 8;       // a cell goes before ones with at most so much more room
+  static constexpr std::size_t batch = 256, most_cells = 1u << 22;
 
   /// Volatile, because g++ 12 at -O2 leaves out the rounding of two neighbouring conversions to float and back.
   static double as_float(double x) {
@@ -89,9 +95,28 @@ class packer {
     return {c, f > r ? double(std::nextafter(float(f), 0.0f)) : f};
   }
 
-  void push(const solid_cell& cell, double room, std::uint32_t seen) {
-    const double bound = room + cell.reach();
-    if (bound >= smallest_) cells_.push({bound, cell, room, seen, numbers_++});
+  /// What is taken first: the largest bound; but where the spheres are much farther than it is large, as in thin walls
+  /// and sharp corners, a cell may be taken before its turn.
+  double key(const solid_cell& cell, double gap) const {
+    const double bound = std::min(cell.depth, gap) + trust_ * cell.reach();
+    if (!std::isfinite(options_.gap_per_radius)) return bound;
+    return std::clamp((gap + trust_ * cell.reach()) / options_.gap_per_radius, bound, promotion * bound);
+  }
+  void push(const solid_cell& cell, double gap, std::uint32_t seen) {
+    if (!(std::min(cell.depth, gap) + cell.reach() >= smallest_)) return;
+    cells_.push_back({cell, gap, key(cell, gap), seen, numbers_++});
+    std::push_heap(cells_.begin(), cells_.end());
+  }
+  entry pop() {
+    std::pop_heap(cells_.begin(), cells_.end());
+    const entry e = cells_.back();
+    cells_.pop_back();
+    return e;
+  }
+  void trust_less() {
+    trust_ *= 0.6, pile_ += pile_ / 2;
+    for (entry& e : cells_) e.key = key(e.cell, e.gap);
+    std::make_heap(cells_.begin(), cells_.end());
   }
 
   template <class Clock>
@@ -99,7 +124,7 @@ class packer {
     std::mt19937_64 random(options_.seed);
     Eigen::Vector3d shift;
     for (int k = 0; k < 3; ++k) shift[k] = options_.seed == 0 ? 0 : double(random() >> 11) * 0x1p-53;
-    for (const solid_cell& c : cover(solid_, 8, shift)) push(c, c.depth, 0);
+    for (const solid_cell& c : cover(solid_, 8, shift)) push(c, std::numeric_limits<double>::infinity(), 0);
 
     std::vector<work> works;
     std::size_t gap_asked_at = 32;
@@ -114,25 +139,26 @@ class packer {
       }
       if (cells_.empty()) return smallest_ > least_room_ ? pack_stop::smallest_radius : pack_stop::no_room;
       if (cells_.size() > most_cells) return pack_stop::search_limit;
+      if (cells_.size() > pile_) trust_less();
 
       works.clear();
-      const double top = cells_.top().bound;
-      while (!cells_.empty() && works.size() < batch && cells_.top().bound >= 0.98 * top)
-        works.push_back({cells_.top(), work::stale, {}}), cells_.pop();
+      const double top = cells_.front().key;
+      while (!cells_.empty() && works.size() < batch && cells_.front().key >= 0.98 * top)
+        works.push_back({pop(), work::stale, {}});
       const std::uint32_t seen = std::uint32_t(spheres_.size());
       tbb::parallel_for(std::size_t(0), works.size(), [&](std::size_t i) {
         work& w = works[i];
         entry& e = w.from;
         if (e.seen < seen) {
-          e.room = spheres_.update(e.seen, e.cell.middle, e.room);
+          e.gap = spheres_.update(e.seen, e.cell.middle, e.gap);
           e.seen = seen;
-          const double bound = e.room + e.cell.reach();
-          if (bound < 0.95 * e.bound) return;
-          e.bound = bound;
+          if (key(e.cell, e.gap) < 0.95 * e.key) return;
         }
-        if (e.room >= (1 - climb_from) * e.bound) {
+        if (e.room() >= std::max(0.25, 1 - climb_from / trust_) * e.bound()) {
           w.what = work::climbed;
-          w.sphere = ascend(solid_, spheres_, e.cell.middle, e.room);
+          // Taken before its turn: stay here, there is more room elsewhere.
+          const double way = e.key > e.bound() ? e.room() / 2 : std::numeric_limits<double>::infinity();
+          w.sphere = ascend(solid_, spheres_, e.cell.middle, e.room(), way);
           if (options_.allow_overlap) w.grown = grow(solid_, w.sphere);
         } else {
           w.what = work::divided;
@@ -154,9 +180,9 @@ class packer {
           if (untouched && spheres_.size() == seen) w.what = work::divided, divide(w);  // too small, or lost in rounding
         }
         if (w.what == work::divided) {
-          for (const auto& [cell, room] : w.eighths) push(cell, room, seen);
+          for (const auto& [cell, gap] : w.eighths) push(cell, gap, seen);
         } else {
-          push(w.from.cell, w.from.room, w.from.seen);
+          push(w.from.cell, w.from.gap, w.from.seen);
         }
       }
     }
@@ -171,7 +197,9 @@ class packer {
   void divide(work& w) const {
     for (int k = 0; k < 8; ++k) {
       const solid_cell c = eighth(solid_, w.from.cell, k);
-      w.eighths[k] = {c, c.depth + c.reach() < smallest_ ? c.depth : spheres_.distance(c.middle, c.depth)};
+      const double bound = c.depth + c.reach();  // gaps so large that they change no key need not be known
+      const double enough = std::isfinite(options_.gap_per_radius) ? promotion * options_.gap_per_radius * bound : bound;
+      w.eighths[k] = {c, bound < smallest_ ? 0 : spheres_.distance(c.middle, enough)};
     }
   }
 
@@ -179,7 +207,9 @@ class packer {
   const pack_options& options_;
   double scale_, least_room_, smallest_;
   sphere_field spheres_;
-  std::priority_queue<entry> cells_;
+  std::vector<entry> cells_;  // a heap
+  double trust_ = 1;           // in a cell's bound
+  std::size_t pile_ = 1u << 20;
   std::uint32_t numbers_ = 0;
 };
 

@@ -15,6 +15,9 @@ struct pack_options {
   double seconds = 0;            ///< Stop after about so long. 0: take the time it takes. The only thing not repeatable.
   std::uint64_t seed = 0;        ///< Another seed, another of many equally good packings.
   unsigned threads = 0;          ///< 0: as many as TBB likes. The result does not depend on it.
+  /// A place farther from the spheres than so many times the radius that is next gets a smaller sphere before its turn,
+  /// so that thin walls and sharp corners do not decide the gap. Infinity: strictly the largest first.
+  double gap_per_radius = 1.6;
   bool allow_overlap = false;    ///< Spheres may overlap: fewer do for the same gap.
   double gap_tolerance = 0.01;   ///< The certified gap is at most this part above the true one (or 10 um, if more).
   std::function<void(std::size_t done, std::size_t of)> progress = {};  ///< Now and then, from the calling thread.
@@ -29,9 +32,9 @@ struct packing {
   /// Certified: no point of the solid, surface and interior, is farther from the spheres than this.
   double gap = 0;
   double gap_mean = 0, gap_p95 = 0;   ///< Mean and 95th percentile over the surface, from samples. 0 if it has none.
-  double fill = 0;                    ///< The spheres' part of the solid's volume; above 1 never, unless they overlap.
+  double fill = 0;                    ///< The spheres' part of the solid's volume; with overlaps counted as often as they are.
   double radius_min = 0, radius_max = 0;
-  double room = 0;                    ///< No further sphere that fits is larger than this.
+  double room = 0;                    ///< Certified: no further sphere that fits is larger than this.
   pack_stop stopped_by = pack_stop::count;
   double seconds = 0;
 
