@@ -2,6 +2,7 @@
 #pragma once
 // The whole contract of the library on one page. A model of a concept lives in one header and includes this one.
 
+#include <clearance/indices.hpp>
 #include <clearance/math.hpp>
 
 #include <concepts>
@@ -221,13 +222,21 @@ concept traversal = std::is_trivially_copyable_v<T> && hierarchy<H> && query<Q> 
 /// Where work runs and where its memory lives: a value, and the first argument of every operation.
 ///
 /// Law: work given to one backend value runs in the order given; `wait()` returns when all of it is done.
+/// Law: `for_ranges` calls `body(indices)` for ranges that together cover 0 .. n-1 once, `for_each` body(i) for each.
+/// Law: `stage` has taken its input when it returns, and waits for nothing; scratch memory lives until the work that was
+///      given before its end is done; `reads` says whether bodies can read an address as it is.
 template <class B>
-concept backend = requires(const B on, std::size_t n, void (*body)(std::size_t), typename B::template buffer<int> data,
-                           std::span<const int> input) {
-  on.for_each(n, body);
+concept backend = requires(const B on, std::size_t n, void (*one)(std::size_t), void (*range)(indices),
+                           typename B::template buffer<int> data, std::span<const int> input, int* there) {
+  on.for_each(n, one);
+  on.for_ranges(n, range);
   on.wait();
   { on.copy_in(input) } -> std::same_as<typename B::template buffer<int>>;
   { on.copy_out(data) } -> std::same_as<std::vector<int>>;
+  { on.copy_out(there, n) } -> std::same_as<std::vector<int>>;
+  { on.template make_scratch<int>(n) } -> std::same_as<typename B::template scratch<int>>;
+  on.stage(input, there);
+  { on.reads(there) } -> std::same_as<bool>;
 };
 
 }  // namespace clearance

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <clearance/bvh/build.hpp>
+#include <clearance/model.hpp>
 #include <clearance/packing/packing.hpp>
 #include <clearance/part.hpp>
 #include <clearance/primitive/triangle.hpp>
@@ -39,6 +40,14 @@ auto make_part(const closed_mesh& mesh, const part_options& options = {}, Fit fi
   else
     for (int k = 0; k < 3; ++k) interior.grid.low[k] = infinity, interior.grid.high[k] = -infinity;
   return part<bvh<V, triangle>, winding<>>{std::move(surface.tree), std::move(interior), surface.facts};
+}
+
+/// The parts of a robot, one a packing or one a mesh, in the order given.
+template <class V, class Source>
+auto make_model(const std::vector<Source>& sources, const part_options& options = {}) {
+  std::vector<decltype(make_part<V>(sources[0], options))> parts;
+  for (const Source& s : sources) parts.push_back(make_part<V>(s, options));
+  return model(std::move(parts));
 }
 
 }  // namespace clearance

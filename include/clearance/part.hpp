@@ -58,7 +58,28 @@ ball enclosing_ball(std::span<const P> primitives) {
   return enclosing_ball(std::span<const ball>(balls));
 }
 
-/// Owns what a part_view points to, in the memory of one backend.
+namespace detail {
+
+/// An owner's view and its copy on another backend; what owns no memory stands for itself.
+template <class T>
+auto view_or_self(const T& owner) {
+  if constexpr (requires { owner.view(); })
+    return owner.view();
+  else
+    return owner;
+}
+template <class T, class Other>
+auto copy_or_self(const T& owner, const Other& other) {
+  if constexpr (requires { owner.on(other); })
+    return owner.on(other);
+  else
+    return owner;
+}
+
+}  // namespace detail
+
+/// Owns what a part_view points to, in the memory of one backend. `Tree` is an owner with `view()`, such as bvh, or a
+/// hierarchy itself: so a tree of one's own becomes a part by `part{tree, no_interior{}, facts}`.
 template <class Tree, class Interior = no_interior>
 struct part {
   Tree tree;
@@ -66,21 +87,22 @@ struct part {
   part_facts facts;
 
   auto view() const {
-    if constexpr (requires { interior.view(); })
-      return part_view<decltype(tree.view()), decltype(interior.view())>{tree.view(), interior.view(), facts};
-    else
-      return part_view<decltype(tree.view()), Interior>{tree.view(), interior, facts};
+    const auto t = detail::view_or_self(tree);
+    const auto i = detail::view_or_self(interior);
+    return part_view<std::remove_const_t<decltype(t)>, std::remove_const_t<decltype(i)>>{t, i, facts};
   }
 
   /// A copy where `other` runs.
   template <backend Other>
   auto on(const Other& other) const {
-    if constexpr (requires { interior.on(other); })
-      return part<decltype(tree.on(other)), decltype(interior.on(other))>{tree.on(other), interior.on(other), facts};
-    else
-      return part<decltype(tree.on(other)), Interior>{tree.on(other), interior, facts};
+    using tree_there = decltype(detail::copy_or_self(tree, other));
+    using interior_there = decltype(detail::copy_or_self(interior, other));
+    return part<tree_there, interior_there>{detail::copy_or_self(tree, other), detail::copy_or_self(interior, other), facts};
   }
 };
+
+template <class Tree, class Interior>
+part(Tree, Interior, part_facts) -> part<Tree, Interior>;
 
 /// A part whose primitives are all there is of the solid; or, with a certified `gap`, all but that. Metres.
 template <bounding_volume V, primitive P>
