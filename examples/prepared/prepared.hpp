@@ -26,7 +26,7 @@ int example(const Backend& on) {
     elbow.translate(Eigen::Vector3d(0.25, 0, 0)).rotate(Eigen::AngleAxisd(1.5 - 0.1 * frame, Eigen::Vector3d::UnitZ()));
     const clearance::min_distance_result r = ask(std::vector{shoulder, elbow}, wall);
     if (!(r.lower > 0.05)) ++stops;  // also if there was no valid point
-    // [/frames]
+    // [frames]
     const auto same = clearance::min_distance(clearance::host{}, clearance::model(std::vector{link, link}), std::vector{shoulder, elbow}, wall);
     if (r.distance != same.distance || r.point != same.point || r.primitive != same.primitive) return 1;
   }

@@ -25,6 +25,11 @@ struct each_body {
   CLEARANCE_HD void operator()(indices range) const {
     for (std::size_t i = range.begin; i < range.end; i += range.step) body(i);
   }
+  std::size_t device_stack() const
+    requires requires { body.device_stack(); }
+  {
+    return body.device_stack();
+  }
 };
 
 /// Bytes that travel as kernel arguments, so that nobody waits for a copy from pageable memory.

@@ -48,7 +48,7 @@ class minimum_search {
     if (poses.size() != model.size())
       throw std::invalid_argument("clearance::min_distance: there are " + std::to_string(model.size()) + " parts, but " +
                                   std::to_string(poses.size()) + " poses");
-    poses_.assign(poses.begin(), poses.end());
+    for (std::size_t k = 0; k < poses.size(); ++k) poses_.push_back(rigid(poses[k], "part", std::int64_t(k)));
     search::check_stack<Traversal>(model.depth, model.width);
     if constexpr (requires { Traversal::device_stack(1); }) stack_bytes_ = Traversal::device_stack(model.depth);
     const search::totals start;
