@@ -40,7 +40,7 @@ inline ball enclosing_ball(std::span<const ball> balls) {
     const double c[3] = {b.center.x, b.center.y, b.center.z};
     for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], c[k] - b.radius), hi[k] = std::max(hi[k], c[k] + b.radius);
   }
-  const vec3 center{real((lo[0] + hi[0]) / 2), real((lo[1] + hi[1]) / 2), real((lo[2] + hi[2]) / 2)};
+  const vec3 center{to_float((lo[0] + hi[0]) / 2), to_float((lo[1] + hi[1]) / 2), to_float((lo[2] + hi[2]) / 2)};
   double radius = 0;
   for (const ball& b : balls) {
     const double d[3] = {double(b.center.x) - center.x, double(b.center.y) - center.y, double(b.center.z) - center.z};

@@ -72,12 +72,6 @@ class packer {
   static constexpr double promotion = 8;       // a cell goes before ones with at most so much more room
   static constexpr std::size_t batch = 256, most_cells = 1u << 22;
 
-  /// Volatile, because g++ 12 at -O2 leaves out the rounding of two neighbouring conversions to float and back.
-  static double as_float(double x) {
-    volatile real rounded = real(x);
-    return double(rounded);
-  }
-
   static inner_sphere rounded(const sphere_field::sphere& s) {
     return {{real(s.center.x()), real(s.center.y()), real(s.center.z())}, real(s.radius)};  // floats already: see `fit`
   }
@@ -85,13 +79,13 @@ class packer {
   /// The sphere with a float centre and radius that surely fits, or radius 0.
   sphere_field::sphere fit(const sphere_field::sphere& wanted) const {
     const auto& [at, expected] = wanted;
-    const Eigen::Vector3d c(as_float(at.x()), as_float(at.y()), as_float(at.z()));
+    const Eigen::Vector3d c(to_float(at.x()), to_float(at.y()), to_float(at.z()));
     if ((c - at).norm() > 0.5 * expected) return {c, 0};
     double r = distance_within(solid_, c, 2 * expected + (c - at).norm());
     if (!options_.allow_overlap) r = spheres_.distance(c, r);
     r = r * (1 - 1e-12) - 1e-13 * scale_;  // what rounding may have added
     if (!(r > 0)) return {c, 0};
-    const double f = as_float(r);
+    const double f = to_float(r);
     return {c, f > r ? double(std::nextafter(float(f), 0.0f)) : f};
   }
 

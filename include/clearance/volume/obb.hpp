@@ -59,7 +59,7 @@ struct obb {
     obb box;
     Eigen::Matrix3d axes;
     for (int k = 0; k < 3; ++k) {
-      box.axis[k] = {real(frame(0, k)), real(frame(1, k)), real(frame(2, k))};
+      box.axis[k] = {to_float(frame(0, k)), to_float(frame(1, k)), to_float(frame(2, k))};
       axes.row(k) << box.axis[k].x, box.axis[k].y, box.axis[k].z;
     }
     // Measured from a float near by: far from the origin, even a double would lose the size of something tiny.
@@ -72,7 +72,7 @@ struct obb {
       hi = hi.cwiseMax((t.array() + r).matrix());
     }
     const Eigen::Vector3d middle = near + axes.inverse() * ((lo + hi) / 2);
-    box.center = {real(middle.x()), real(middle.y()), real(middle.z())};
+    box.center = {to_float(middle.x()), to_float(middle.y()), to_float(middle.z())};
     const Eigen::Vector3d at = axes * (Eigen::Vector3d(box.center.x, box.center.y, box.center.z) - near);
     const double margin = 2.0 * slack * (hi - lo).norm();
     for (int k = 0; k < 3; ++k)

@@ -43,7 +43,7 @@ struct sphere {
       c[1] += step * (farthest->center.y - c[1]);
       c[2] += step * (farthest->center.z - c[2]);
     }
-    const vec3 center{real(c[0]), real(c[1]), real(c[2])};
+    const vec3 center{to_float(c[0]), to_float(c[1]), to_float(c[2])};
     c[0] = center.x, c[1] = center.y, c[2] = center.z;
     double radius = 0;
     for (const ball& b : balls) radius = std::max(radius, reach(b));
