@@ -47,7 +47,8 @@ inline void pack_all(scene& s) {
 
 inline scene demo() {
   const demo_scene made = make_demo_scene(1);
-  scene s{.name = "demo"};
+  scene s;
+  s.name = "demo";
   for (const auto& part : made.parts) {
     s.meshes.push_back(clearance::close_mesh(part.mesh));
     s.poses.push_back(part.pose);
@@ -68,7 +69,8 @@ inline scene kuka(const std::filesystem::path& data) {
   clearance::io::robot_options options;
   options.geometry = clearance::io::robot_geometry::visual;
   const auto robot = clearance::io::load_robot(data / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf", options);
-  scene s{.name = "kuka"};
+  scene s;
+  s.name = "kuka";
   for (const auto& part : robot.parts()) s.meshes.push_back(clearance::close_mesh(part.mesh));
   s.poses = robot.poses(std::vector<double>{0, 0.6, 0, -1.4, 0, 0.5, 0});
   s.cloud = clearance::io::load_cloud((data / "clouds/kinect_seq/frame_20121214T142255.814212.pcd").string()).points;
