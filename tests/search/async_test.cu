@@ -124,7 +124,7 @@ TEST_CASE("Part minima arrive in device memory too") {
   for (std::size_t k = 0; k < got.size(); ++k) CHECK(same_bytes(got[k], expected[k]));
 }
 
-TEST_CASE("Several streams at once, one of them held, do not disturb one another") {
+TEST_CASE("Several streams at once, one of them held, do not disturb one another", "[concurrent]") {
   const robot_and_cloud given;
   const own_stream streams[3];
   const auto model = given.on_host.on(device{});
