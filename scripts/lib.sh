@@ -5,7 +5,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 
 # Names of Debian 12; Ubuntu 24.04 has the same names (untried there).
 packages_command="g++ cmake ninja-build libeigen3-dev libtbb-dev libassimp-dev liburdfdom-dev libstb-dev liblzf-dev \
-libcli11-dev nlohmann-json3-dev"
+libyaml-cpp-dev libxxhash-dev libcli11-dev nlohmann-json3-dev"
 packages_test="$packages_command catch2 libfcl-dev libbenchmark-dev ccache python3"
 
 say() { printf '%s\n' "$*"; }

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The .ist file: packings with everything that is known of them. docs/packing-files.md has its bytes.
+
+#include <clearance/io/cloud_text.hpp>
+#include <clearance/io/packed_part.hpp>
+#include <clearance/io/png_check.hpp>
+
+#include <span>
+
+namespace clearance::io {
+
+inline constexpr std::string_view ist_magic = "\x89IST\r\n\x1a\n";  // damaged by whatever takes the file for text
+inline constexpr std::uint32_t ist_version = 1;
+
+namespace detail {
+
+/// Every member of a packing, in the file's order: `visit` is called with each. A member more than there are names here
+/// does not compile: then it belongs into the file as well, and ist_version goes up.
+template <class Packing, class Visit>
+void for_each_member(Packing& p, Visit visit) {
+  auto& [spheres, gap, gap_mean, gap_p95, fill, radius_min, radius_max, room, stopped_by, seconds] = p;
+  visit(gap), visit(gap_mean), visit(gap_p95), visit(fill), visit(radius_min), visit(radius_max), visit(room),
+      visit(seconds);
+  visit(stopped_by);
+  visit(spheres);
+}
+
+inline void put_part(byte_writer& out, const packed_part& part) {
+  out.put(std::uint32_t(part.name.size()));
+  out.put(std::string_view(part.name));
+  for (const auto& known : {part.solid, part.recipe})
+    for (const std::uint8_t byte : known.bytes) out.put(byte);
+  out.put(part.tolerance);
+  for_each_member(part.spheres, [&]<class T>(const T& member) {
+    if constexpr (std::same_as<T, double>) {
+      out.put(member);
+    } else if constexpr (std::same_as<T, pack_stop>) {
+      out.put(std::uint32_t(member));
+    } else {
+      out.put(std::uint64_t(member.size()));
+      for (const inner_sphere& s : member)
+        for (const float number : {s.center.x, s.center.y, s.center.z, s.radius}) out.put(number);
+    }
+  });
+}
+
+inline packed_part take_part(byte_reader& in, const std::string& file) {
+  packed_part part;
+  part.name = in.take(in.take<std::uint32_t>());
+  const std::string of = " of part " + io::quoted(part.name);
+  for (auto* known : {&part.solid, &part.recipe}) std::ranges::copy(in.take(known->bytes.size()), known->bytes.begin());
+  const auto length = [&] {
+    const double value = in.take<double>();
+    if (!(value >= 0)) refuse(file, "a length" + of + " is " + std::to_string(value));
+    return value;
+  };
+  part.tolerance = length();
+  for_each_member(part.spheres, [&]<class T>(T& member) {
+    if constexpr (std::same_as<T, double>) {
+      member = length();
+    } else if constexpr (std::same_as<T, pack_stop>) {
+      const auto value = in.take<std::uint32_t>();
+      if (value > std::uint32_t(pack_stop::search_limit))
+        refuse(file, "the reason" + of + " is number " + std::to_string(value));
+      member = pack_stop(value);
+    } else {
+      const auto count = in.take<std::uint64_t>();
+      if (count == 0) refuse(file, "there is no sphere" + of);
+      if (count > in.left() / 16) refuse(file, "has no room for the " + std::to_string(count) + " spheres" + of);
+      for (std::uint64_t i = 0; i < count; ++i) {
+        float n[4];
+        for (float& number : n) number = in.take<float>();
+        member.push_back(checked_sphere({n[0], n[1], n[2]}, n[3], file, "sphere " + std::to_string(i) + of));
+      }
+    }
+  });
+  const packing plain = uncertified(part.spheres.spheres);
+  if (part.spheres.radius_min != plain.radius_min || part.spheres.radius_max != plain.radius_max)
+    refuse(file, "the radii" + of + " are not what its figures say");
+  return part;
+}
+
+}  // namespace detail
+
+inline std::string ist_bytes(std::span<const packed_part> parts) {
+  byte_writer body;
+  for (const packed_part& part : parts) detail::put_part(body, part);
+  byte_writer out;
+  out.put(ist_magic);
+  out.put(ist_version);
+  out.put(std::uint32_t(parts.size()));
+  out.put(std::uint64_t(24 + body.bytes().size() + 4));
+  out.put(std::string_view(body.bytes()));
+  out.put(png_crc(out.bytes()));
+  return out.bytes();
+}
+
+/// What `ist_bytes` made; `file` is named in refusals.
+inline std::vector<packed_part> read_ist(std::string_view bytes, const std::string& file) {
+  if (!bytes.starts_with(ist_magic)) refuse(file, "is not an .ist file");
+  if (bytes.size() < 28) refuse(file, "is cut short: " + std::to_string(bytes.size()) + " bytes hold no header");
+  byte_reader in(bytes.substr(0, bytes.size() - 4), file);
+  in.take(ist_magic.size());
+  const auto version = in.take<std::uint32_t>();
+  if (version == std::uint32_t(ist_version) << 24)
+    refuse(file, "is written in big-endian byte order, and .ist files are little-endian");
+  if (version != ist_version)
+    refuse(file, "is of version " + std::to_string(version) + ", and this clearance reads version " +
+                     std::to_string(ist_version));
+  const auto count = in.take<std::uint32_t>();
+  const auto size = in.take<std::uint64_t>();
+  if (size != bytes.size())
+    refuse(file, std::string(size > bytes.size() ? "is cut short" : "has bytes after its end") + ": it should have " +
+                     std::to_string(size) + " bytes, and has " + std::to_string(bytes.size()));
+  if (byte_reader(bytes.substr(bytes.size() - 4), file).take<std::uint32_t>() !=
+      png_crc(bytes.substr(0, bytes.size() - 4)))
+    refuse(file, "is damaged (the checksum does not match)");
+  if (count == 0) refuse(file, "holds no part");
+  std::vector<packed_part> parts;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    parts.push_back(detail::take_part(in, file));
+    for (std::uint32_t k = 0; k < i; ++k)
+      if (parts[k].name == parts[i].name) refuse(file, "has two parts " + io::quoted(parts[i].name));
+  }
+  if (in.left() != 0) refuse(file, "has " + std::to_string(in.left()) + " bytes after its last part");
+  return parts;
+}
+
+/// Loads what save_ist wrote, to the bit. Throws std::runtime_error with a sentence for anything else.
+inline std::vector<packed_part> load_ist(const std::string& file) { return read_ist(read_bytes(file), file); }
+
+/// Saves packings with their certificates. Throws std::invalid_argument for what load_ist would refuse.
+inline void save_ist(std::span<const packed_part> parts, const std::string& file) {
+  const std::string bytes = ist_bytes(parts);
+  try {
+    read_ist(bytes, "clearance::save_ist");
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(error.what());
+  }
+  write_bytes(file, bytes);
+}
+
+}  // namespace clearance::io
