@@ -97,6 +97,7 @@ TEST_CASE("A distance below 0 by less than the error, or by less than the tolera
   const auto tolerated = ask(0, 0.95f, 0.1f);
   CHECK(tolerated.state == state::possible);
   CHECK(tolerated.lower == 0);
+  CHECK(tolerated.upper == Approx(0.05).epsilon(1e-3));  // so far away may the true surface be
   CHECK(ask(0, 0.85f, 0.1f).state == state::collision);
 }
 

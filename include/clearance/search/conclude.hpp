@@ -19,7 +19,8 @@ CLEARANCE_HD inline void conclude(min_distance_result& r, double lower, real win
   const bool inside = all.certain != 0 || r.distance < -(error_here + winner_tolerance);
   // A point inside leaves nothing above 0, and a missing certificate (an infinite gap) nothing below.
   r.lower = lower > 0 && !inside ? rounded_down(lower) : 0;
-  r.upper = r.distance < 0 || inside ? 0 : rounded_up(double(r.distance) + winner_tolerance + error_here);
+  const double most = double(r.distance) + winner_tolerance + error_here;  // below 0 only if it is certainly inside
+  r.upper = inside || most < 0 ? 0 : rounded_up(most);
   r.state = inside ? state::collision : (r.lower > 0 ? state::free : state::possible);
 }
 

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/io/ist.hpp>
+#include <clearance/packing/pack.hpp>
+
+#include <cstdlib>
+#include <optional>
+#include <random>
+
+namespace clearance::io {
+
+/// To be raised whenever `pack` makes other spheres of the same solid and options.
+inline constexpr std::uint32_t packing_recipe = 1;
+
+/// Of all that decides what packing makes: the mesh, the options, the algorithm. `maker` tells algorithms apart.
+inline digest packing_key(const closed_mesh& mesh, const pack_options& options, std::string_view maker = "host") {
+  // An option more than there are names here does not compile: does it change the spheres?
+  const auto& [count, smallest_radius, gap_target, seconds, seed, threads, gap_per_radius, allow_overlap, gap_tolerance, progress,
+               cancelled] = options;
+  byte_writer out;
+  out.put(std::string_view("clearance packing"));
+  for (const std::uint32_t number : {packing_recipe, ist_version, std::uint32_t(CLEARANCE_VERSION), std::uint32_t(maker.size())})
+    out.put(number);
+  out.put(maker);
+  for (const std::uint8_t byte : digest_of(mesh).bytes) out.put(byte);
+  for (const std::uint64_t number : {std::uint64_t(count), std::uint64_t(seed), std::uint64_t(allow_overlap)}) out.put(number);
+  for (const double number : {smallest_radius, gap_target, gap_per_radius, gap_tolerance}) out.put(number);
+  (void)seconds, (void)threads, (void)progress, (void)cancelled;  // whatever is stopped by these is not kept
+  return digest_of(out.bytes());
+}
+
+/// A folder of packings by packing_key, each an .ist file. Any number of programs may use it at once: a file appears under
+/// its name only when it is complete. One that is damaged, or is about something else, is as good as none. It may be
+/// emptied at any time.
+class packing_cache {
+ public:
+  packing_cache() = default;  ///< Keeps nothing, and finds nothing.
+  explicit packing_cache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// $CLEARANCE_CACHE (if that is set and empty, none), else $XDG_CACHE_HOME/clearance, else ~/.cache/clearance, else none.
+  static std::filesystem::path usual_folder() {
+    if (const char* own = std::getenv("CLEARANCE_CACHE")) return own;
+    const auto below = [](const char* variable, const char* path) {
+      const char* value = std::getenv(variable);
+      const std::filesystem::path at = value ? value : "";
+      return at.is_absolute() ? at / path : std::filesystem::path();
+    };
+    const auto standard = below("XDG_CACHE_HOME", "clearance");
+    return standard.empty() ? below("HOME", ".cache/clearance") : standard;
+  }
+
+  const std::filesystem::path& folder() const { return folder_; }
+  std::filesystem::path file(const digest& key) const { return folder_ / (key.hex() + ".ist"); }
+
+  std::optional<packing> find(const digest& key) const {
+    std::error_code none;
+    if (folder_.empty() || !std::filesystem::is_regular_file(file(key), none)) return {};
+    try {
+      auto parts = load_ist(file(key).string());
+      if (parts.size() == 1 && parts[0].recipe == key) return std::move(parts[0].spheres);
+    } catch (const std::exception&) {
+    }
+    return {};
+  }
+
+  /// Whether it is there now; not being able to write is no error.
+  bool keep(const digest& key, const digest& solid, const packing& made) const {
+    if (folder_.empty() || made.spheres.empty()) return false;
+    std::error_code failed;
+    std::filesystem::create_directories(folder_, failed);
+    std::random_device random;
+    const auto part = folder_ / ("." + key.hex() + '.' + std::to_string(random()) + std::to_string(random()));
+    try {
+      save_ist(std::vector{packed_part{.name = "", .spheres = made, .solid = solid, .recipe = key}}, part.string());
+      std::filesystem::rename(part, file(key));
+      return true;
+    } catch (const std::exception&) {
+      std::filesystem::remove(part, failed);
+      return false;
+    }
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+struct cached_packing {
+  packing made;
+  bool found = false;  ///< It was made before, and `pack` did not run.
+};
+
+/// `pack(mesh_solid(mesh), options)`, once for each mesh and options: then from the cache, the same to the bit (`seconds` is
+/// how long it took when it was made). What a time limit or a person cut short is not kept. Throws as pack does.
+inline cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options, const packing_cache& cache) {
+  if (cache.folder().empty()) return {pack(mesh_solid(mesh), options)};
+  const digest key = packing_key(mesh, options);
+  if (auto found = cache.find(key)) return {std::move(*found), true};
+  cached_packing fresh{pack(mesh_solid(mesh), options)};
+  if (fresh.made.stopped_by != pack_stop::time && fresh.made.stopped_by != pack_stop::cancelled)
+    cache.keep(key, digest_of(mesh), fresh.made);
+  return fresh;
+}
+
+}  // namespace clearance::io
