@@ -18,7 +18,8 @@ using namespace clearance;
 namespace {
 
 struct demo_settings {
-  std::string spheres = "2048", scene;
+  std::string spheres = "2048", scene, cache;
+  bool no_cache = false;
 };
 
 struct demo_row {
@@ -65,8 +66,10 @@ int run(const demo_settings& settings) {
   std::vector<body> bodies;
   std::size_t triangles = 0;
   question asked;
+  const io::packing_cache cache = chosen_cache(settings.no_cache, settings.cache);
+  body_account account;
   for (const auto& part : world.parts) {
-    bodies.push_back(make_body(part.name, part.mesh, 0, {.spheres = count, .both = true}, shown));
+    bodies.push_back(make_body(part.name, part.mesh, 0, {.pack = {.count = count}, .both = true, .cache = &cache}, shown, account));
     triangles += part.mesh.triangles.size();
     asked.poses.push_back(part.pose);
   }
@@ -79,8 +82,8 @@ int run(const demo_settings& settings) {
   std::size_t spheres = 0;
   double gap = 0;
   for (const body& b : bodies) spheres += b.packed.spheres.size(), gap = std::max(gap, b.packed.gap);
-  std::printf("An arm of %zu parts: %zu triangles, %zu inner spheres (gap at most %.2f mm), made in %.1f s.\n", bodies.size(),
-              triangles, spheres, 1e3 * gap, seconds);
+  std::printf("An arm of %zu parts: %zu triangles, %zu inner spheres (gap at most %.2f mm), made in %.1f s%s.\n", bodies.size(),
+              triangles, spheres, 1e3 * gap, seconds, account.packed == 0 ? " from those that were kept" : "");
   std::printf("A depth frame of %ux%u pixels from the camera on its hand. Device: %s.\n\n", world.width, world.height, gpu.says.c_str());
   std::printf("%-8s %-10s %-7s %10s  %-20s  %-8s %-12s %9s  %10s\n", "backend", "model", "volume", "distance m", "certainly m", "pixel",
               "part", "primitive", "time ms");
@@ -120,6 +123,8 @@ subcommand add_demo(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("demo", "A made-up arm before a made-up table; needs no file");
   auto settings = std::make_shared<demo_settings>();
   sub->add_option("--spheres", settings->spheres, "Inner spheres a part (default 2048)");
+  sub->add_flag("--no-cache", settings->no_cache, "Pack anew, and keep nothing");
+  sub->add_option("--cache", settings->cache, "Keep packings in this folder");
   sub->add_option("--scene", settings->scene, "Write arm, points and witness to this .glb file");
   return [settings] { return run(*settings); };
 }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "command_line.hpp"
-#include "progress.hpp"
+#include "robot_bodies.hpp"
 
-#include <clearance/io/error.hpp>
 #include <clearance/io/mesh.hpp>
-#include <clearance/packing/pack.hpp>
+#include <clearance/io/packing_scene.hpp>
+#include <clearance/io/robot.hpp>
+#include <clearance/io/spheres_file.hpp>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 
 using namespace clearance;
@@ -18,85 +18,208 @@ using namespace clearance;
 namespace {
 
 struct pack_settings {
-  std::string mesh, spheres, out;
-  bool json = false;
+  std::string input, spheres, gap, radius, seconds, seed, geometry, cache, joints;
+  std::vector<std::string> out, packages, excluded;
+  bool overlap = false, no_cache = false, json = false;
 };
+
+/// What is packed: the links of a robot, or a mesh alone.
+struct subject {
+  std::vector<io::robot_part> parts;
+  std::vector<Eigen::Isometry3d> poses;
+  std::vector<std::string> notes;
+  bool robot = false;
+};
+
+struct packed_subject {
+  std::vector<body> bodies;
+  std::vector<bool> cached;
+};
+
+bool ends(const std::string& file, const char* ending) { return std::filesystem::path(file).extension() == ending; }
+
+subject load(const pack_settings& asked) {
+  subject made;
+  if (!ends(asked.input, ".urdf")) {
+    for (const auto& [option, given] : {std::pair{"--geometry", !asked.geometry.empty()}, {"--package", !asked.packages.empty()},
+                                        {"--exclude-link", !asked.excluded.empty()}, {"--joints", !asked.joints.empty()}})
+      if (given) throw usage_error(option, "is for robots, and " + asked.input + " is none by its name");
+    made.parts.push_back({.name = std::filesystem::path(asked.input).stem().string(), .mesh = io::load_mesh(asked.input)});
+    made.poses.push_back(Eigen::Isometry3d::Identity());
+    return made;
+  }
+  made.robot = true;
+  io::robot_options options;
+  if (!asked.geometry.empty() && choice("--geometry", asked.geometry, {"collision", "visual"}) == 1) options.geometry = io::robot_geometry::visual;
+  for (const auto& text : asked.packages) {
+    const auto [name, folder] = assignment("--package", text);
+    options.packages[name] = folder;
+  }
+  options.exclude_links = asked.excluded;
+  const io::robot robot = io::load_robot(asked.input, options);
+  const auto& tree = robot.kinematics();
+  const auto joints = asked.joints.empty() ? tree.configuration({}, {}) : numbers("--joints", asked.joints);
+  if (joints.size() != tree.size())
+    throw usage_error("--joints", "the robot has " + std::to_string(tree.size()) + " movable joints, here are " + std::to_string(joints.size()) + " values");
+  made.poses = robot.poses(joints);
+  made.parts = robot.parts();
+  made.notes = robot.notes();
+  return made;
+}
+
+packed_subject fill(const subject& what, const pack_settings& asked, progress& shown) {
+  body_options how;
+  how.pack.count = whole_number("--spheres", asked.spheres);
+  const auto positive = [](const char* option, const std::string& text, double& to) {
+    if (text.empty()) return;
+    to = number(option, text);
+    if (!(to > 0)) throw usage_error(option, "must be above 0");
+  };
+  positive("--gap", asked.gap, how.pack.gap_target);
+  positive("--smallest-radius", asked.radius, how.pack.smallest_radius);
+  positive("--seconds", asked.seconds, how.pack.seconds);
+  if (!asked.seed.empty()) how.pack.seed = whole_number("--seed", asked.seed);
+  how.pack.allow_overlap = asked.overlap;
+  const io::packing_cache cache = chosen_cache(asked.no_cache, asked.cache);
+  how.cache = &cache;
+  packed_subject made;
+  for (const io::robot_part& part : what.parts) {
+    body_account account;
+    try {
+      made.bodies.push_back(make_body(part.name, part.mesh, part.tessellation_error, how, shown, account));
+    } catch (const std::runtime_error& error) {  // a mesh alone is known by its file's name
+      std::string why = error.what();
+      const std::string link = "link \"" + part.name + "\": ";
+      if (!what.robot && why.starts_with(link)) why.erase(0, link.size());
+      io::refuse(asked.input, why);
+    }
+    made.cached.push_back(account.from_cache > 0);
+  }
+  return made;
+}
+
+void write(const std::string& file, const subject& what, const packed_subject& made) {
+  if (ends(file, ".glb")) {
+    std::vector<io::scene_packing> parts;
+    for (std::size_t k = 0; k < made.bodies.size(); ++k)
+      parts.push_back({made.bodies[k].name, made.bodies[k].closed.surface, made.bodies[k].packed, what.poses[k]});
+    return io::save_scene(io::packing_scene(parts), file);
+  }
+  std::vector<io::packed_part> parts;
+  for (const body& b : made.bodies)
+    parts.push_back({.name = b.name, .spheres = b.packed, .tolerance = b.tolerance, .solid = io::digest_of(b.closed), .recipe = {}});
+  io::save_spheres(parts, file);
+}
 
 const char* name_of(pack_stop stop) {
   constexpr const char* names[] = {"count", "no_room", "smallest_radius", "gap", "time", "cancelled", "search_limit"};
   return names[int(stop)];
 }
 
-/// Nine digits bring each float back exactly.
-void save_spheres(const std::vector<inner_sphere>& spheres, const std::string& file) {
-  std::ofstream out(file);
-  if (!out) io::refuse(file, "cannot be opened for writing");
-  out << "x,y,z,r\n";
-  for (const inner_sphere& s : spheres) {
-    char line[128];
-    std::snprintf(line, sizeof line, "%.9g,%.9g,%.9g,%.9g\n", double(s.center.x), double(s.center.y), double(s.center.z), double(s.radius));
-    out << line;
+nlohmann::ordered_json quality(const body& b, bool cached) {
+  const packing& p = b.packed;
+  return {{"spheres", p.spheres.size()},
+          {"fill", p.fill},
+          {"gap", p.gap},
+          {"gap_mean", p.gap_mean},
+          {"gap_p95", p.gap_p95},
+          {"radius_min", p.radius_min},
+          {"radius_max", p.radius_max},
+          {"caps", {{"loops", b.closed.caps.loops}, {"area", b.closed.caps.area}}},
+          {"stopped_by", name_of(p.stopped_by)},
+          {"seconds", p.seconds},
+          {"cached", cached}};
+}
+
+std::string text(const char* format, auto... values) {
+  char line[256];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+void print_one(const body& b, bool cached) {
+  const packing& p = b.packed;
+  std::cout << text("spheres   %zu, radii %.6f to %.6f m\nfill      %.4f of the volume\n", p.spheres.size(), p.radius_min, p.radius_max, p.fill)
+            << text("gap       %.6f m at most; over the surface 95 %% within %.6f m, mean %.6f m\n", p.gap, p.gap_p95, p.gap_mean)
+            << text("caps      %u holes closed, %.3g m2\n", b.closed.caps.loops, b.closed.caps.area) << "stopped   " << p.reason() << '\n'
+            << text("seconds   %.3f%s\n", p.seconds, cached ? ", when it was packed; this is from the cache" : "");
+}
+
+void print_all(const packed_subject& made) {
+  std::size_t widest = 4, cached = 0, spheres = 0;
+  double fill = 0, mean = 0, p95 = 0, most = 0, seconds = 0;
+  for (const body& b : made.bodies) widest = std::max(widest, b.name.size());
+  const auto name = [&](const std::string& n) { return n + std::string(widest - n.size(), ' '); };
+  std::cout << name("link") << "  spheres   fill  gap mm: mean   95 %    max   radii mm        holes  seconds\n";
+  for (std::size_t k = 0; k < made.bodies.size(); ++k) {
+    const packing& p = made.bodies[k].packed;
+    std::cout << name(made.bodies[k].name)
+              << text("  %7zu  %.3f       %6.2f %6.2f %6.2f  %6.2f-%-7.2f  %5u  %7.2f%s\n", p.spheres.size(), p.fill, 1e3 * p.gap_mean, 1e3 * p.gap_p95,
+                      1e3 * p.gap, 1e3 * p.radius_min, 1e3 * p.radius_max, made.bodies[k].closed.caps.loops, p.seconds, made.cached[k] ? " (cached)" : "");
+    const double n = double(made.bodies.size());
+    fill += p.fill / n, mean += p.gap_mean / n, p95 += p.gap_p95 / n, most = std::max(most, p.gap);
+    if (!made.cached[k]) seconds += p.seconds;
+    cached += made.cached[k], spheres += p.spheres.size();
   }
-  if (!out.flush()) io::refuse(file, "cannot be written");
+  std::cout << name("all") << text("  %7zu  %.3f       %6.2f %6.2f %6.2f  %24s%7.2f\n", spheres, fill, 1e3 * mean, 1e3 * p95, 1e3 * most, "", seconds);
+  if (cached > 0) std::cout << cached << " of " << made.bodies.size() << " were in the cache\n";
 }
 
 int run(const pack_settings& asked) {
-  pack_options options;
-  options.count = whole_number("--spheres", asked.spheres);
+  for (const std::string& file : asked.out)
+    if (!ends(file, ".glb") && io::spheres_format(file).empty())
+      throw usage_error("--out", file + " is none of .ist, .csv, .yaml, .yml and .glb by its name");
   progress shown;
-  options.progress = [&](std::size_t done, std::size_t of) {
-    shown.show("packing " + asked.mesh + ' ' + std::to_string(done) + '/' + std::to_string(of));
-  };
-  shown.show("reading " + asked.mesh);
-  const triangle_mesh mesh = io::load_mesh(asked.mesh);
-  packing packed;
-  cap_report caps;
-  try {
-    const mesh_solid solid(mesh);
-    caps = solid.mesh().caps;
-    packed = pack(solid, options);
-  } catch (const std::invalid_argument& error) {
-    std::string why = error.what();
-    if (why.starts_with("clearance: ")) why.erase(0, 11);
-    io::refuse(asked.mesh, why);
+  shown.show("reading " + asked.input);
+  const subject what = load(asked);
+  const packed_subject made = fill(what, asked, shown);
+  for (const std::string& file : asked.out) {
+    shown.show("writing " + file);
+    write(file, what, made);
   }
   shown.clear();
-  if (packed.spheres.empty()) io::refuse(asked.mesh, "no sphere fits inside: " + packed.reason());
-  if (!asked.out.empty()) save_spheres(packed.spheres, asked.out);
+  for (const auto& note : what.notes) std::cerr << "note: " << note << '\n';
   if (asked.json) {
-    const nlohmann::ordered_json out = {{"mesh", asked.mesh},
-                                        {"spheres", packed.spheres.size()},
-                                        {"fill", packed.fill},
-                                        {"gap", packed.gap},
-                                        {"gap_mean", packed.gap_mean},
-                                        {"gap_p95", packed.gap_p95},
-                                        {"radius_min", packed.radius_min},
-                                        {"radius_max", packed.radius_max},
-                                        {"caps", {{"loops", caps.loops}, {"area", caps.area}}},
-                                        {"stopped_by", name_of(packed.stopped_by)},
-                                        {"seconds", packed.seconds}};
+    nlohmann::ordered_json out = {{what.robot ? "robot" : "mesh", asked.input}};
+    if (what.robot) {
+      for (std::size_t k = 0; k < made.bodies.size(); ++k) {
+        out["parts"].push_back({{"name", made.bodies[k].name}});
+        out["parts"].back().update(quality(made.bodies[k], made.cached[k]));
+      }
+    } else {
+      out.update(quality(made.bodies[0], made.cached[0]));
+    }
     std::cout << out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
-    return 0;
+  } else if (what.robot) {
+    print_all(made);
+  } else {
+    print_one(made.bodies[0], made.cached[0]);
   }
-  char text[1024];
-  std::snprintf(text, sizeof text,
-                "spheres   %zu, radii %.6f to %.6f m\nfill      %.4f of the volume\n"
-                "gap       %.6f m at most, %.6f m on average over the surface\ncaps      %u holes closed, %.3g m2\n",
-                packed.spheres.size(), packed.radius_min, packed.radius_max, packed.fill, packed.gap, packed.gap_mean, caps.loops, caps.area);
-  std::cout << text << "stopped   " << packed.reason() << '\n';
-  std::snprintf(text, sizeof text, "seconds   %.3f\n", packed.seconds);
-  std::cout << text;
   return 0;
 }
 
 }  // namespace
 
 subcommand add_pack(CLI::App& app) {
-  CLI::App* sub = app.add_subcommand("pack", "Fill a mesh with inner spheres");
+  CLI::App* sub = app.add_subcommand("pack", "Fill a mesh, or the links of a robot, with inner spheres");
   auto asked = std::make_shared<pack_settings>();
-  sub->add_option("MESH", asked->mesh, "STL, OBJ, PLY, OFF, DAE or GLB")->required();
-  sub->add_option("--spheres", asked->spheres, "How many; fewer if no more fit")->required();
+  const auto one = [&](const std::string& name, std::string& to, const std::string& says) { return sub->add_option(name, to, says); };
+  one("INPUT", asked->input, "A mesh (.stl .obj .ply .off .dae .glb) or a robot (.urdf)")->required();
+  one("--spheres", asked->spheres, "How many a part; fewer if no more fit")->required();
+  sub->add_option("--out", asked->out,
+                  "Write to this file; may be repeated. .ist: spheres with their certificates; .yaml: as for cuRobo; .csv:\n"
+                  "x,y,z,r of one part; .glb: a picture with spheres, transparent mesh and a node for each level of the tree");
+  one("--gap", asked->gap, "Stop once no point is farther from the spheres than this, m");
+  one("--smallest-radius", asked->radius, "Stop where only smaller spheres fit, m");
+  one("--seconds", asked->seconds, "Stop after about so long, a part");
+  one("--seed", asked->seed, "Another of many equally good packings: a whole number");
+  sub->add_flag("--allow-overlap", asked->overlap, "Spheres may overlap: fewer do for the same gap");
+  sub->add_flag("--no-cache", asked->no_cache, "Pack anew, and keep nothing");
+  one("--cache", asked->cache, "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
+  one("--geometry", asked->geometry, "Of a robot: visual or collision (default)");
+  sub->add_option("--package", asked->packages, "name=DIR: where package://name/ is");
+  sub->add_option("--exclude-link", asked->excluded, "Leave out this link");
+  one("--joints", asked->joints, "a,b,...: how the robot stands in the .glb (default: 0, or the nearest limit)");
   sub->add_flag("--json", asked->json, "Print one JSON object");
-  sub->add_option("--out", asked->out, "Write the spheres to this CSV file: x,y,z,r in the mesh's frame, metres");
   return [asked] { return run(*asked); };
 }

@@ -16,9 +16,9 @@ namespace {
 using texts = std::vector<std::string>;
 
 struct raw_options {
-  std::string robot, joints, geometry, base, model, volume, spheres, backend, check, scene;
+  std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene;
   texts joint, packages, excluded, clouds, poses, links, cameras, scales, ranges;
-  bool ignore_limits = false, json = false;
+  bool ignore_limits = false, json = false, no_cache = false;
 };
 
 /// An option that takes one word each time it is given, as often as wanted.
@@ -94,6 +94,10 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.volume = o.model == model_kind::spheres ? volume_kind::sphere : volume_kind::obb;
   if (!raw.volume.empty()) o.volume = volume_kind(choice("--volume", raw.volume, {"sphere", "aabb", "obb"}));
   o.spheres = whole_number("--spheres", raw.spheres);
+  o.packing = raw.packing;
+  if (!o.packing.empty() && o.model != model_kind::spheres) throw usage_error("--packing", "is for --model spheres");
+  o.no_cache = raw.no_cache;
+  o.cache = raw.cache;
   o.excluded = raw.excluded;
   const device_state gpu = find_device();
   o.on_device = raw.backend.empty() ? gpu.present : choice("--backend", raw.backend, {"host", "device"}) == 1;
@@ -131,6 +135,9 @@ std::function<query_options()> add_query_options(CLI::App& app) {
   one("--model", raw->model, "spheres (default) or triangles");
   one("--volume", raw->volume, "sphere, aabb or obb (default: sphere for spheres, obb for triangles)");
   one("--spheres", raw->spheres, "Inner spheres a link (default 2048)");
+  one("--packing", raw->packing, "The links' spheres: .ist (from clearance pack), .yaml as for cuRobo, .csv");
+  app.add_flag("--no-cache", raw->no_cache, "Pack anew, and keep nothing");
+  one("--cache", raw->cache, "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
   app.add_option("--exclude-link", raw->excluded, "Leave out this link's geometry");
   one("--backend", raw->backend, "host or device (default: device where there is one)");
   one("--check", raw->check, "Margin in m: exit code 2 unless the lower end of the bracket is above it");

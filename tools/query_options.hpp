@@ -40,6 +40,9 @@ struct query_options {
   model_kind model = model_kind::spheres;
   volume_kind volume = volume_kind::sphere;
   std::size_t spheres = 2048;
+  std::string packing;  // --packing: a file of spheres
+  bool no_cache = false;
+  std::string cache;
   std::vector<std::string> excluded;
   bool on_device = false;
   std::optional<double> margin;

@@ -1,46 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs the built command as a user does.
 #include "io/scratch_file.hpp"
-#include "support/catch.hpp"
-
-#include <nlohmann/json.hpp>
+#include "tools/run_command.hpp"
 
 #include <clearance/io/png_check.hpp>
 
-#include <cstdio>
-#include <sys/wait.h>
-
 namespace {
-
-struct outcome {
-  int code;
-  std::string out, err;
-};
-
-/// `arguments` in a shell's words.
-outcome run_command(const std::string& arguments) {
-  const scratch_file err(".txt");
-  FILE* pipe = ::popen(("\"" CLEARANCE_COMMAND "\" " + arguments + " 2>" + err.path).c_str(), "r");
-  REQUIRE(pipe);
-  outcome o;
-  char piece[4096];
-  for (std::size_t n; (n = std::fread(piece, 1, sizeof piece, pipe)) > 0;) o.out.append(piece, n);
-  const int status = ::pclose(pipe);
-  o.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  std::ifstream in(err.path);
-  o.err.assign(std::istreambuf_iterator<char>(in), {});
-  return o;
-}
-
-/// Exit code 1 and one line on stderr that says so; nothing on stdout.
-void refuses(const std::string& arguments, const std::string& sentence) {
-  const outcome o = run_command(arguments);
-  INFO("clearance " << arguments << " said: " << o.err);
-  CHECK(o.code == 1);
-  CHECK(o.out.empty());
-  CHECK(o.err.find(sentence) != std::string::npos);
-  CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
-}
 
 /// A box of 0.2 m on a table, a second one on a slide above it (z of its centre is 0.5 + the joint's value), and a
 /// camera on the second.
@@ -80,13 +45,6 @@ struct scene {
   std::string robot = "query --robot " + urdf.path;
   std::string ask = robot + " --cloud " + cloud.path;
 };
-
-nlohmann::json parsed(const outcome& o) {
-  INFO(o.err);
-  INFO(o.out);
-  REQUIRE(!o.out.empty());
-  return nlohmann::json::parse(o.out);
-}
 
 }  // namespace
 

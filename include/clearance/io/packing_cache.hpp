@@ -16,29 +16,32 @@ inline constexpr std::uint32_t packing_recipe = 1;
 /// Of all that decides what packing makes: the mesh, the options, the algorithm. `maker` tells algorithms apart.
 inline digest packing_key(const closed_mesh& mesh, const pack_options& options, std::string_view maker = "host") {
   // An option more than there are names here does not compile: does it change the spheres?
-  const auto& [count, smallest_radius, gap_target, seconds, seed, threads, gap_per_radius, allow_overlap, gap_tolerance, progress,
-               cancelled] = options;
+  const auto& [count, smallest_radius, gap_target, seconds, seed, threads, gap_per_radius, allow_overlap, gap_tolerance,
+               progress, cancelled] = options;
   byte_writer out;
   out.put(std::string_view("clearance packing"));
-  for (const std::uint32_t number : {packing_recipe, ist_version, std::uint32_t(CLEARANCE_VERSION), std::uint32_t(maker.size())})
+  for (const std::uint32_t number :
+       {packing_recipe, ist_version, std::uint32_t(CLEARANCE_VERSION), std::uint32_t(maker.size())})
     out.put(number);
   out.put(maker);
   for (const std::uint8_t byte : digest_of(mesh).bytes) out.put(byte);
-  for (const std::uint64_t number : {std::uint64_t(count), std::uint64_t(seed), std::uint64_t(allow_overlap)}) out.put(number);
+  for (const std::uint64_t number : {std::uint64_t(count), std::uint64_t(seed), std::uint64_t(allow_overlap)})
+    out.put(number);
   for (const double number : {smallest_radius, gap_target, gap_per_radius, gap_tolerance}) out.put(number);
   (void)seconds, (void)threads, (void)progress, (void)cancelled;  // whatever is stopped by these is not kept
   return digest_of(out.bytes());
 }
 
-/// A folder of packings by packing_key, each an .ist file. Any number of programs may use it at once: a file appears under
-/// its name only when it is complete. One that is damaged, or is about something else, is as good as none. It may be
-/// emptied at any time.
+/// A folder of packings by packing_key, each an .ist file. Any number of programs may use it at once: a file appears
+/// under its name only when it is complete. One that is damaged, or is about something else, is as good as none. It may
+/// be emptied at any time.
 class packing_cache {
  public:
   packing_cache() = default;  ///< Keeps nothing, and finds nothing.
   explicit packing_cache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// $CLEARANCE_CACHE (if that is set and empty, none), else $XDG_CACHE_HOME/clearance, else ~/.cache/clearance, else none.
+  /// $CLEARANCE_CACHE (if that is set and empty, none), else $XDG_CACHE_HOME/clearance, else ~/.cache/clearance, else
+  /// none.
   static std::filesystem::path usual_folder() {
     if (const char* own = std::getenv("CLEARANCE_CACHE")) return own;
     const auto below = [](const char* variable, const char* path) {
@@ -90,8 +93,9 @@ struct cached_packing {
   bool found = false;  ///< It was made before, and `pack` did not run.
 };
 
-/// `pack(mesh_solid(mesh), options)`, once for each mesh and options: then from the cache, the same to the bit (`seconds` is
-/// how long it took when it was made). What a time limit or a person cut short is not kept. Throws as pack does.
+/// `pack(mesh_solid(mesh), options)`, once for each mesh and options: then from the cache, the same to the bit
+/// (`seconds` is how long it took when it was made). What a time limit or a person cut short is not kept. Throws as
+/// pack does.
 inline cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options, const packing_cache& cache) {
   if (cache.folder().empty()) return {pack(mesh_solid(mesh), options)};
   const digest key = packing_key(mesh, options);

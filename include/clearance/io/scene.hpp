@@ -2,6 +2,7 @@
 #pragma once
 // A picture of a query for any glTF viewer: robot, points, witness.
 
+#include <clearance/io/scene_balls.hpp>
 #include <clearance/io/scene_mesh.hpp>
 
 #include <assimp/Exporter.hpp>
@@ -19,6 +20,7 @@ struct scene_body {
   triangle_mesh mesh;  // in the body's frame
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // world-from-body
   colour paint = {0.75f, 0.75f, 0.78f, 1};
+  std::string group = {};  // the name of a node for all bodies and balls of one group; empty: none
 };
 
 struct scene_points {
@@ -33,6 +35,7 @@ struct scene_balls {
   std::vector<ball> balls;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   colour paint = {0.9f, 0.7f, 0.3f, 1};
+  std::string group = {};
 };
 
 /// A thin red rod in world coordinates.
@@ -56,7 +59,9 @@ inline void save_scene(const scene& world, const std::string& file) {
   std::vector<std::unique_ptr<aiMesh>> meshes;
   std::vector<std::unique_ptr<aiMaterial>> materials;
   std::vector<std::unique_ptr<aiNode>> nodes;
-  const auto add = [&](const std::string& name, std::unique_ptr<aiMesh> mesh, const Eigen::Isometry3d& pose, colour paint) {
+  std::vector<std::pair<std::string, std::vector<std::unique_ptr<aiNode>>>> groups;
+  const auto add = [&](const std::string& name, std::unique_ptr<aiMesh> mesh, const Eigen::Isometry3d& pose, colour paint,
+                       const std::string& group = {}) {
     if (mesh->mNumVertices == 0) return;
     auto node = std::make_unique<aiNode>(name);
     Eigen::Isometry3d relative = pose;
@@ -69,11 +74,14 @@ inline void save_scene(const scene& world, const std::string& file) {
     mesh->mMaterialIndex = unsigned(materials.size());
     meshes.push_back(std::move(mesh));
     materials.push_back(scene_material(name, paint));
-    nodes.push_back(std::move(node));
+    if (group.empty()) return nodes.push_back(std::move(node));
+    auto at = std::ranges::find(groups, group, [](const auto& each) { return each.first; });
+    if (at == groups.end()) at = groups.emplace(at, group, std::vector<std::unique_ptr<aiNode>>());
+    at->second.push_back(std::move(node));
   };
-  for (const auto& body : world.bodies) add(body.name, faces_of(body.mesh), body.pose, body.paint);
+  for (const auto& body : world.bodies) add(body.name, faces_of(body.mesh), body.pose, body.paint, body.group);
   for (const auto& cloud : world.clouds) add(cloud.name, points_of(cloud.points, cloud.paint), cloud.pose, cloud.paint);
-  for (const auto& set : world.balls) add(set.name, faces_of(octahedra(set.balls)), set.pose, set.paint);
+  for (const auto& set : world.balls) add(set.name, faces_of(set.balls), set.pose, set.paint, set.group);
   for (const auto& s : world.segments) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.translation() = s.from;
@@ -89,10 +97,17 @@ inline void save_scene(const scene& world, const std::string& file) {
   };
   hand_over(meshes, &out.mMeshes, out.mNumMeshes);
   hand_over(materials, &out.mMaterials, out.mNumMaterials);
+  const auto adopt = [&](aiNode& above, std::vector<std::unique_ptr<aiNode>>& below) {
+    for (auto& node : below) node->mParent = &above;
+    hand_over(below, &above.mChildren, above.mNumChildren);
+  };
+  for (auto& [name, members] : groups) {
+    nodes.push_back(std::make_unique<aiNode>(name));
+    adopt(*nodes.back(), members);
+  }
   out.mRootNode = new aiNode("world");
   out.mRootNode->mTransformation = aiMatrix4x4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
-  for (auto& node : nodes) node->mParent = out.mRootNode;
-  hand_over(nodes, &out.mRootNode->mChildren, out.mRootNode->mNumChildren);
+  adopt(*out.mRootNode, nodes);
   Assimp::Exporter exporter;
   if (exporter.Export(&out, "glb2", file) != aiReturn_SUCCESS)
     refuse(file, std::string("the scene cannot be written: ") + exporter.GetErrorString());

@@ -6,6 +6,7 @@
 #include <clearance/math.hpp>
 #include <clearance/solid/triangle_mesh.hpp>
 
+#include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <assimp/mesh.h>
 
@@ -35,6 +36,10 @@ inline std::unique_ptr<aiMaterial> scene_material(const std::string& name, colou
   material->AddProperty(&metallic, 1, AI_MATKEY_METALLIC_FACTOR);
   material->AddProperty(&roughness, 1, AI_MATKEY_ROUGHNESS_FACTOR);
   material->AddProperty(&both, 1, AI_MATKEY_TWOSIDED);
+  if (paint.alpha < 1) {
+    const aiString blend("BLEND");
+    material->AddProperty(&blend, AI_MATKEY_GLTF_ALPHAMODE);
+  }
   return material;
 }
 
@@ -85,25 +90,6 @@ inline std::unique_ptr<aiMesh> points_of(const std::vector<vec3>& points, colour
     ++i;
   }
   return out;
-}
-
-/// Eight triangles stand for a ball: thousands of them must stay a small file.
-inline triangle_mesh octahedra(const std::vector<ball>& balls) {
-  triangle_mesh mesh;
-  for (const ball& b : balls) {
-    const auto first = std::uint32_t(mesh.vertices.size());
-    for (int k = 0; k < 6; ++k) {
-      Eigen::Vector3d corner(double(b.center.x), double(b.center.y), double(b.center.z));
-      corner[k / 2] += (k % 2 ? -1.0 : 1.0) * double(b.radius);
-      mesh.vertices.push_back(corner);
-    }
-    for (std::uint32_t octant = 0; octant < 8; ++octant) {
-      const std::uint32_t x = first + (octant & 1), y = first + 2 + (octant >> 1 & 1), z = first + 4 + (octant >> 2);
-      const bool mirrored = (octant ^ octant >> 1 ^ octant >> 2) & 1;
-      mesh.triangles.push_back({x, mirrored ? z : y, mirrored ? y : z});
-    }
-  }
-  return mesh;
 }
 
 /// A square rod along `v`, 1 % as thick as long and 1 to 10 mm: lines of one pixel are overlooked.

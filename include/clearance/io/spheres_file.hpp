@@ -26,13 +26,16 @@ inline std::vector<packed_part> load_spheres(const std::string& file) {
   return parts;
 }
 
-/// Writes what the end of the name says. Only .ist keeps certificates; a CSV file holds one part. Throws std::runtime_error.
+/// Writes what the end of the name says. Only .ist keeps certificates; a CSV file holds one part. Throws
+/// std::runtime_error.
 inline void save_spheres(std::span<const packed_part> parts, const std::string& file) {
   const std::string format = spheres_format(file);
   if (format == "ist") return save_ist(parts, file);
   if (format == "yaml") return save_spheres_yaml(parts, file);
   if (format != "csv") refuse(file, "spheres are written to .ist, .csv, .yaml and .yml files");
-  if (parts.size() != 1) refuse(file, "a CSV file holds the spheres of one part, here are " + std::to_string(parts.size()) + ": take .ist or .yaml");
+  if (parts.size() != 1)
+    refuse(file, "a CSV file holds the spheres of one part, here are " + std::to_string(parts.size()) +
+                     ": take .ist or .yaml");
   save_spheres_csv(parts[0].spheres.spheres, file);
 }
 

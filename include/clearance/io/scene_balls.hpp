@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/io/scene_mesh.hpp>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace clearance::io {
+
+/// A unit sphere: an icosahedron of which each triangle was cut into four, so many times.
+inline triangle_mesh icosphere(int cuts) {
+  constexpr double g = 1.6180339887498949;
+  triangle_mesh mesh;
+  for (const double a : {-1.0, 1.0})
+    for (const double b : {-g, g}) {
+      mesh.vertices.emplace_back(0, a, b);
+      mesh.vertices.emplace_back(a, b, 0);
+      mesh.vertices.emplace_back(b, 0, a);
+    }
+  for (auto& v : mesh.vertices) v.normalize();
+  const auto near = [&](std::uint32_t i, std::uint32_t k) { return mesh.vertices[i].dot(mesh.vertices[k]) > 0.4; };
+  for (std::uint32_t i = 0; i < 12; ++i)
+    for (std::uint32_t j = i + 1; j < 12; ++j)
+      for (std::uint32_t k = j + 1; k < 12; ++k) {
+        if (!near(i, j) || !near(j, k) || !near(k, i)) continue;
+        const bool outward = mesh.vertices[i].cross(mesh.vertices[j]).dot(mesh.vertices[k]) > 0;
+        mesh.triangles.push_back({i, outward ? j : k, outward ? k : j});
+      }
+  for (; cuts > 0; --cuts) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
+    const auto middle = [&](std::uint32_t i, std::uint32_t k) {
+      const auto [at, is_new] = known.try_emplace(std::minmax(i, k), std::uint32_t(mesh.vertices.size()));
+      if (is_new) mesh.vertices.push_back((mesh.vertices[i] + mesh.vertices[k]).normalized());
+      return at->second;
+    };
+    std::vector<std::array<std::uint32_t, 3>> finer;
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      for (const auto& t : {std::array{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}}) finer.push_back(t);
+    }
+    mesh.triangles = std::move(finer);
+  }
+  return mesh;
+}
+
+/// Balls, smoothly shaded; only the largest are fine, because thousands of them must stay a file that viewers open.
+inline std::unique_ptr<aiMesh> faces_of(const std::vector<ball>& balls) {
+  static const triangle_mesh shapes[4] = {icosphere(0), icosphere(1), icosphere(2), icosphere(3)};
+  std::vector<std::size_t> order(balls.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return balls[a].radius > balls[b].radius; });
+  const auto shape = [](std::size_t rank) -> const triangle_mesh& {
+    return shapes[rank < 2 ? 3 : rank < 16 ? 2 : rank < 128 ? 1 : 0];
+  };
+  auto out = std::make_unique<aiMesh>();
+  unsigned vertices = 0, faces = 0;
+  for (std::size_t i = 0; i < balls.size(); ++i)
+    vertices += unsigned(shape(i).vertices.size()), faces += unsigned(shape(i).triangles.size());
+  if (faces == 0) return out;
+  out->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
+  out->mNumVertices = vertices;
+  out->mVertices = new aiVector3D[vertices];
+  out->mNormals = new aiVector3D[vertices];
+  out->mNumFaces = faces;
+  out->mFaces = new aiFace[faces];
+  unsigned vertex = 0, face = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const ball& b = balls[order[i]];
+    for (const auto& [p, q, r] : shape(i).triangles) {
+      out->mFaces[face].mNumIndices = 3;
+      out->mFaces[face++].mIndices = new unsigned[3]{vertex + p, vertex + q, vertex + r};
+    }
+    for (const auto& n : shape(i).vertices) {
+      out->mNormals[vertex] = aiVector3D(ai_real(n.x()), ai_real(n.y()), ai_real(n.z()));
+      out->mVertices[vertex] =
+          aiVector3D(b.center.x, b.center.y, b.center.z) + out->mNormals[vertex] * ai_real(b.radius);
+      ++vertex;
+    }
+  }
+  return out;
+}
+
+}  // namespace clearance::io
