@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// One cloud on the GPU, the robot in one configuration, and how a method is timed, checked and counted on them.
+
+#include "kernel.cuh"
+#include "report.hpp"
+#include "scenes.hpp"
+
+#include <clearance/min_distance_query.cuh>
+#include <clearance/traversal/recursive.hpp>
+#include <clearance/traversal/stack.hpp>
+
+#include <optional>
+
+namespace bench::paper {
+
+/// CUDA events around what is enqueued on the default stream of an idle device.
+class device_clock {
+ public:
+  device_clock() {
+    check_cuda(cudaEventCreate(&start_), "cudaEventCreate"), check_cuda(cudaEventCreate(&stop_), "cudaEventCreate");
+  }
+  device_clock(const device_clock&) = delete;
+  device_clock& operator=(const device_clock&) = delete;
+  ~device_clock() { cudaEventDestroy(start_), cudaEventDestroy(stop_); }
+
+  template <class F>
+  double microseconds(F enqueue) const {
+    check_cuda(cudaDeviceSynchronize(), "cudaDeviceSynchronize");
+    check_cuda(cudaEventRecord(start_), "cudaEventRecord");
+    enqueue();
+    check_cuda(cudaEventRecord(stop_), "cudaEventRecord");
+    check_cuda(cudaEventSynchronize(stop_), "cudaEventSynchronize");
+    float ms = 0;
+    check_cuda(cudaEventElapsedTime(&ms, start_, stop_), "cudaEventElapsedTime");
+    return ms * 1e3;
+  }
+
+ private:
+  cudaEvent_t start_ = nullptr, stop_ = nullptr;
+};
+
+/// Seconds that one variant is measured for.
+inline double budget = 0.06;
+
+class lab {
+ public:
+  explicit lab(report& out) : out(out), bound_(1, gpu.id), counts_(1, gpu.id) {
+    const std::uint32_t infinite = clearance::ordered(clearance::infinity);
+    infinite_ = gpu.copy_in(std::span(&infinite, 1));
+    check_cuda(cudaDeviceSetLimit(cudaLimitStackSize, clearance::recursive::device_stack(24)), "cudaDeviceSetLimit");
+  }
+
+  report& out;
+  clearance::device gpu;
+  device_clock clock;
+  part_streams streams;
+
+  const scenario* scene = nullptr;
+  std::vector<clearance::vec3> points;
+  std::optional<clearance::device_buffer<clearance::vec3>> there;
+  std::vector<Eigen::Isometry3d> poses;
+
+  void set(const scenario& s, std::size_t count) {
+    scene = &s, points = s.points(count), poses = s.poses(0);
+    there.reset();
+    there.emplace(gpu.copy_in(std::span<const clearance::vec3>(points)));
+  }
+
+  clearance::point_span cloud() const { return {there->data(), points.size()}; }
+
+  /// min_distance on the host: what everybody must find.
+  template <class Model>
+  double reference(const Model& model) const {
+    const clearance::placed<clearance::point_span> placed{points, scene->world_from_cloud};
+    return clearance::min_distance(clearance::host{}, model, poses, placed).distance;
+  }
+
+  /// A model on the device as a kernel of the paper's gets it.
+  template <class Model>
+  auto parts(const Model& model) const {
+    return parts(model, gpu.copy_out(model.view().parts, model.size()));
+  }
+  template <class Model, class View>
+  auto parts(const Model& model, const std::vector<View>& views) const {
+    const clearance::search::cloud_frame frame(model.view().facts, poses, scene->world_from_cloud);
+    const Eigen::Isometry3d shift(Eigen::Translation3d(frame.origin.x, frame.origin.y, frame.origin.z));
+    parts_at<decltype(View::tree)> all;
+    if (model.size() > all.most) throw std::runtime_error("too many parts for this benchmark");
+    for (const auto& v : views) {
+      const auto& place = frame.places[all.count];
+      const Eigen::Isometry3d cloud_from_part =
+          (poses[all.count].inverse() * scene->world_from_cloud * shift).inverse();
+      all.part[all.count++] = {v.tree, place.part_from_cloud, clearance::to_floats(cloud_from_part), place.around};
+    }
+    all.origin = frame.origin;
+    return all;
+  }
+
+  /// Puts the bound back to `from`; kernels are timed without it.
+  void reset(real from) const {
+    const std::uint32_t start = clearance::ordered(from);
+    check_cuda(cudaMemcpy(bound_.data(), &start, sizeof start, cudaMemcpyHostToDevice), "cudaMemcpy");
+  }
+  /// To infinity, in the order of the default stream.
+  void enqueue_reset() const {
+    check_cuda(
+        cudaMemcpyAsync(bound_.data(), infinite_.data(), sizeof(std::uint32_t), cudaMemcpyDeviceToDevice, nullptr),
+        "cudaMemcpyAsync");
+  }
+  std::uint32_t* bound() const { return bound_.data(); }
+  double found() const { return clearance::from_ordered(gpu.copy_out(bound_)[0]); }
+
+  /// Times `enqueue` with the bound reset before each run, and checks what it found. Returns the median.
+  template <class F>
+  double time(const std::string& variant, F enqueue, double reference, double tolerance = 0,
+              real from = clearance::infinity) {
+    const auto once = [&] {
+      reset(from);
+      return clock.microseconds(enqueue);
+    };
+    once();
+    auto all = repeat(once, budget, 5);
+    out.expect(variant, found(), reference, tolerance);
+    out.times(variant, all);
+    std::nth_element(all.begin(), all.begin() + std::ptrdiff_t(all.size() / 2), all.end());
+    return all[all.size() / 2];
+  }
+  template <class Method, class Parts>
+  double time_method(const std::string& variant, const Method& m, const Parts& p, double reference) {
+    return time(
+        variant, [&] { m.enqueue(streams, p, cloud(), bound(), nullptr); }, reference);
+  }
+
+  /// Counts instead: node tests, leaf tests and accepted updates of the bound, a point of the cloud.
+  template <class Method, class Parts>
+  void count(const std::string& variant, const Method& m, const Parts& p, double reference,
+             real from = clearance::infinity) {
+    reset(from);
+    check_cuda(cudaMemset(counts_.data(), 0, sizeof(counts)), "cudaMemset");
+    m.enqueue(streams, p, cloud(), bound(), counts_.data());
+    const counts all = gpu.copy_out(counts_)[0];
+    out.expect(variant, found(), reference);
+    write(variant, all);
+  }
+  void write(const std::string& variant, const counts& all) {
+    const auto n = double(points.size());
+    out.row(variant, "node_tests", double(all.tests) / n);
+    out.row(variant, "leaf_tests", double(all.leaves) / n);
+    out.row(variant, "updates", double(all.accepted) / n);
+  }
+
+  /// Ours: the prepared query, cold (nothing is known of a last frame) or warm. Returns the median.
+  template <class Query, class Source>
+  double time_ours(const std::string& variant, Query& query, const Source& source, bool cold, double reference) {
+    const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
+    const auto once = [&] {
+      if (cold) query.forget();
+      return clock.microseconds([&] { query.enqueue(poses, source, scene->world_from_cloud, result.data()); });
+    };
+    once();
+    auto all = repeat(once, budget, 5);
+    out.expect(variant, gpu.copy_out(result)[0].distance, reference);
+    out.times(variant, all);
+    std::nth_element(all.begin(), all.begin() + std::ptrdiff_t(all.size() / 2), all.end());
+    return all[all.size() / 2];
+  }
+
+ private:
+  clearance::device_buffer<std::uint32_t> bound_, infinite_;
+  clearance::device_buffer<counts> counts_;
+};
+
+using paper_method = method<shared_by_all, clearance::recursive>;
+
+}  // namespace bench::paper

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The paper's competitor on the CPU: Algorithm 1, one part after another, one point after another, one bound.
+
+#include "bounds.hpp"
+
+#include <clearance/model.hpp>
+#include <clearance/search/frame.hpp>
+
+namespace bench::paper {
+
+template <class Walk, bool Count = false, class PartView, clearance::point_source Source>
+real sequential(clearance::model_view<PartView> model, const clearance::search::cloud_frame& frame, const Source& cloud,
+                Walk walk, counts* all = nullptr) {
+  own_bound bound;
+  for (std::size_t k = 0; k < model.size(); ++k)
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const clearance::sample s = cloud[i];
+      if (!s.valid()) continue;
+      const clearance::vec3 p = frame.places[k].part_from_cloud(s.position - frame.origin);
+      if constexpr (Count) {
+        unsigned tests = 0, leaves = 0;
+        walk(counted(model.parts[k].tree, &tests, &leaves), p, bound);
+        all->tests += tests, all->leaves += leaves;
+      } else {
+        walk(model.parts[k].tree, p, bound);
+      }
+    }
+  if constexpr (Count) all->accepted += bound.accepted;
+  return bound.best;
+}
+
+}  // namespace bench::paper
