@@ -40,12 +40,24 @@ class device_clock {
   cudaEvent_t start_ = nullptr, stop_ = nullptr;
 };
 
+/// The floor of everything: each byte read once, and nothing found.
+template <bool Dummy = true>
+__global__ void read_kernel(const float4* from, std::size_t count, float* never) {
+  float least = 0;
+  for (std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x; i < count;
+       i += std::size_t(gridDim.x) * blockDim.x) {
+    const float4 f = from[i];
+    least = fminf(least, fminf(fminf(f.x, f.y), fminf(f.z, f.w)));
+  }
+  if (least == -1.2345e30f) *never = least;
+}
+
 /// Seconds that one variant is measured for.
 inline double budget = 0.06;
 
 class lab {
  public:
-  explicit lab(report& out) : out(out), bound_(1, gpu.id), counts_(1, gpu.id) {
+  explicit lab(report& out) : out(out), bound_(1, gpu.id), counts_(1, gpu.id), never_(1, gpu.id) {
     const std::uint32_t infinite = clearance::ordered(clearance::infinity);
     infinite_ = gpu.copy_in(std::span(&infinite, 1));
     check_cuda(cudaDeviceSetLimit(cudaLimitStackSize, clearance::recursive::device_stack(24)), "cudaDeviceSetLimit");
@@ -132,6 +144,21 @@ class lab {
         variant, [&] { m.enqueue(streams, p, cloud(), bound(), nullptr); }, reference);
   }
 
+  /// What a kernel that only reads the points takes, and one that does nothing.
+  void floors() {
+    out.begin("floor", scene->name, points.size());
+    const auto read = [&](std::size_t n) {
+      return repeat(
+          [&] {
+            return clock.microseconds(
+                [&] { read_kernel<><<<264, 512>>>(reinterpret_cast<const float4*>(there->data()), n, never_.data()); });
+          },
+          budget);
+    };
+    out.times("empty kernel", read(0));
+    out.times("read", read(points.size() * 3 / 4));
+  }
+
   /// Counts instead: node tests, leaf tests and accepted updates of the bound, a point of the cloud.
   template <class Method, class Parts>
   void count(const std::string& variant, const Method& m, const Parts& p, double reference,
@@ -169,6 +196,7 @@ class lab {
  private:
   clearance::device_buffer<std::uint32_t> bound_, infinite_;
   clearance::device_buffer<counts> counts_;
+  clearance::device_buffer<float> never_;
 };
 
 using paper_method = method<shared_by_all, clearance::recursive>;

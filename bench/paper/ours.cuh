@@ -25,6 +25,7 @@ inline std::string name_of(const clearance::build_options& o) {
 /// it comes, cold. Returns the number of the paper's best.
 template <class Models>
 std::size_t headline(lab& l, const Models& models, double reference) {
+  l.floors();
   l.out.begin("width", l.scene->name, l.points.size());
   double least = 1e30;
   std::size_t best = 0;

@@ -28,7 +28,7 @@ class report {
     axis_ = std::move(axis), scene_ = std::move(scene), points_ = points, x_ = x;
   }
   void row(const std::string& variant, const char* metric, double value) {
-    std::fprintf(file_, "%s,%s,%zu,%.6g,%s,%s,%.7g\n", axis_.c_str(), scene_.c_str(), points_, x_, variant.c_str(),
+    std::fprintf(file_, "%s,%s,%zu,%.6g,\"%s\",%s,%.7g\n", axis_.c_str(), scene_.c_str(), points_, x_, variant.c_str(),
                  metric, value);
     std::fflush(file_);
   }
@@ -60,9 +60,11 @@ class report {
   int faults_ = 0;
 };
 
-/// Runs `once` (which returns microseconds) for about `budget` seconds: at least `least` times, at most 300.
+/// Runs `once` (which returns microseconds) for about `budget` seconds, at least `least` times, at most 300; and for a
+/// third of that before, uncounted, so that clocks and caches have settled.
 template <class F>
 std::vector<double> repeat(F once, double budget, int least = 3) {
+  for (double spent = 0; spent < budget / 3 * 1e6;) spent += once();
   std::vector<double> all;
   double spent = 0;
   while (int(all.size()) < least || (spent < budget * 1e6 && all.size() < 300)) spent += all.emplace_back(once());
