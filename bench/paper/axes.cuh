@@ -61,6 +61,12 @@ void sharing(lab& l, const Parts& parts, double reference) {
   l.time_method("near first; nobody", method<shared_by_nobody, near_first>{}, parts, reference);
   l.time_method("near first; block", method<shared_by_block, near_first>{}, parts, reference);
   l.time_method("near first; all", method<shared_by_all, near_first>{}, parts, reference);
+  // As many threads as a GTX 780 holds, the paper's: 12 multiprocessors of 2,048. They stay, and so does a block's
+  // bound.
+  l.time_method("recursive; block; few threads", method<shared_by_block, recursive>{.threads = 1024, .most_blocks = 24},
+                parts, reference);
+  l.time_method("recursive; all; few threads", method<shared_by_all, recursive>{.threads = 1024, .most_blocks = 24},
+                parts, reference);
 }
 
 template <class Walk>
@@ -156,6 +162,12 @@ void culling(lab& l, const Model& on_host, const Parts& parts, double reference)
   l.count("recursive; all", method<shared_by_all, recursive, points_into_parts, true>{}, parts, reference);
   l.count("near first; nobody", method<shared_by_nobody, near_first, points_into_parts, true>{}, parts, reference);
   l.count("near first; block", method<shared_by_block, near_first, points_into_parts, true>{}, parts, reference);
+  l.count("recursive; block; few threads",
+          method<shared_by_block, recursive, points_into_parts, true>{.threads = 1024, .most_blocks = 24}, parts,
+          reference);
+  l.count("recursive; all; few threads",
+          method<shared_by_all, recursive, points_into_parts, true>{.threads = 1024, .most_blocks = 24}, parts,
+          reference);
   const method<shared_by_all, near_first, points_into_parts, true> best;
   l.count("near first; all", best, parts, reference);
   l.count("near first; all; last witness", best, parts, reference, real(reference * 1.0001));

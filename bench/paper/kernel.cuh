@@ -33,9 +33,12 @@ __global__ void paper_kernel(const __grid_constant__ parts_at<View> parts, unsig
     if (threadIdx.x == 0) of_block = clearance::ordered(clearance::infinity);
     __syncthreads();
   }
-  const std::size_t i = (blockIdx.x * std::size_t(blockDim.x) + threadIdx.x) / lanes_of<Walk>() * stride;
-  const clearance::sample s = i < cloud.size() ? cloud[i] : clearance::sample{{}, clearance::drop_reason::missing};
-  if (s.valid()) {
+  const std::size_t all_lanes = gridDim.x * std::size_t(blockDim.x);
+  const std::size_t first = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x;
+  for (std::size_t i = first / lanes_of<Walk>() * stride; i < cloud.size();
+       i += all_lanes / lanes_of<Walk>() * stride) {
+    const clearance::sample s = cloud[i];
+    if (!s.valid()) continue;
     const clearance::vec3 p = s.position - parts.origin;
     auto ask = [&] {
       if constexpr (by_nobody)
@@ -103,6 +106,7 @@ template <class Sharing, class Walk, class Transform = points_into_parts, bool C
 struct method {
   schedule order = schedule::streams;
   unsigned threads = 128;
+  unsigned most_blocks = 0x7fffffff;  ///< Fewer than points need: blocks that stay, and take several points a thread.
 
   template <class View, class Source>
   static auto kernel() {
@@ -117,8 +121,8 @@ struct method {
     std::size_t shared = 0;
     if constexpr (lanes_of<Walk>() > 1) shared = Walk::shared_bytes(threads);
     if (n == 0) return;
-    kernel<View, Source>()<<<unsigned((n + threads - 1) / threads), threads, shared, on>>>(parts, begin, end, cloud,
-                                                                                           stride, bound, all);
+    const unsigned blocks = unsigned(std::min<std::size_t>((n + threads - 1) / threads, most_blocks));
+    kernel<View, Source>()<<<blocks, threads, shared, on>>>(parts, begin, end, cloud, stride, bound, all);
     check_cuda(cudaGetLastError(), "kernel launch");
   }
 
