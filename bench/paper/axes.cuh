@@ -61,11 +61,11 @@ void sharing(lab& l, const Parts& parts, double reference) {
   l.time_method("near first; nobody", method<shared_by_nobody, near_first>{}, parts, reference);
   l.time_method("near first; block", method<shared_by_block, near_first>{}, parts, reference);
   l.time_method("near first; all", method<shared_by_all, near_first>{}, parts, reference);
-  // As many threads as a GTX 780 holds, the paper's: 12 multiprocessors of 2,048. They stay, and so does a block's
-  // bound.
-  l.time_method("recursive; block; few threads", method<shared_by_block, recursive>{.threads = 1024, .most_blocks = 24},
+  // As many threads as the paper's GTX 780 holds (12 multiprocessors of 2,048): 3 blocks a part, that stay and take
+  // one point after another, with the block's bound.
+  l.time_method("recursive; block; few threads", method<shared_by_block, recursive>{.threads = 1024, .most_blocks = 3},
                 parts, reference);
-  l.time_method("recursive; all; few threads", method<shared_by_all, recursive>{.threads = 1024, .most_blocks = 24},
+  l.time_method("recursive; all; few threads", method<shared_by_all, recursive>{.threads = 1024, .most_blocks = 3},
                 parts, reference);
 }
 
@@ -160,13 +160,17 @@ void culling(lab& l, const Model& on_host, const Parts& parts, double reference)
   l.count("recursive; nobody", method<shared_by_nobody, recursive, points_into_parts, true>{}, parts, reference);
   l.count("recursive; block", method<shared_by_block, recursive, points_into_parts, true>{}, parts, reference);
   l.count("recursive; all", method<shared_by_all, recursive, points_into_parts, true>{}, parts, reference);
+  l.count("recursive; all; sequential parts",
+          method<shared_by_all, recursive, points_into_parts, true>{.order = schedule::sequential}, parts, reference);
+  l.count("recursive; all; fused parts",
+          method<shared_by_all, recursive, points_into_parts, true>{.order = schedule::fused}, parts, reference);
   l.count("near first; nobody", method<shared_by_nobody, near_first, points_into_parts, true>{}, parts, reference);
   l.count("near first; block", method<shared_by_block, near_first, points_into_parts, true>{}, parts, reference);
   l.count("recursive; block; few threads",
-          method<shared_by_block, recursive, points_into_parts, true>{.threads = 1024, .most_blocks = 24}, parts,
+          method<shared_by_block, recursive, points_into_parts, true>{.threads = 1024, .most_blocks = 3}, parts,
           reference);
   l.count("recursive; all; few threads",
-          method<shared_by_all, recursive, points_into_parts, true>{.threads = 1024, .most_blocks = 24}, parts,
+          method<shared_by_all, recursive, points_into_parts, true>{.threads = 1024, .most_blocks = 3}, parts,
           reference);
   const method<shared_by_all, near_first, points_into_parts, true> best;
   l.count("near first; all", best, parts, reference);
