@@ -46,6 +46,17 @@ CLEARANCE_HD inline double fma(double a, double b, double c) {
 #endif
 }
 
+/// a * b, for products that a sum elsewhere may meet: rounded, and never contracted with it.
+CLEARANCE_HD inline real product(real a, real b) {
+#if defined(__CUDA_ARCH__)
+  return __fmul_rn(a, b);
+#elif defined(__FMA__) || defined(__FP_FAST_FMAF)
+  return std::fma(a, b, -0.0f);
+#else
+  return a * b;
+#endif
+}
+
 CLEARANCE_HD inline real square_root(real a) {
 #if defined(__CUDA_ARCH__)
   return __fsqrt_rn(a);

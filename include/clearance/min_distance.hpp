@@ -2,7 +2,7 @@
 #pragma once
 
 #include <clearance/points/point_span.hpp>
-#include <clearance/search/minimum_search.hpp>
+#include <clearance/search/host_search.hpp>
 #include <clearance/traversal/near_first.hpp>
 
 namespace clearance {

@@ -9,6 +9,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 
 namespace clearance {
 
@@ -27,8 +28,12 @@ struct host {
     constexpr std::size_t grain = 1024;
     if (n <= grain || threads == 1) return body(indices{0, n, 1});
     const auto all = [&] {
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
-                        [&](const auto& r) { body(indices{r.begin(), r.end(), 1}); }, tbb::simple_partitioner{});
+      tbb::parallel_for(
+          tbb::blocked_range<std::size_t>(0, n, grain),
+          [&](const auto& r) {
+            body(indices{r.begin(), r.end(), 1});
+          },
+          tbb::simple_partitioner{});
     };
     if (threads == 0) return all();
     tbb::task_arena arena(int(threads), 1);
@@ -71,5 +76,37 @@ struct host {
 };
 
 static_assert(backend<host>);
+
+/// The threads of a `host`, kept from call to call. Each takes the next piece of work as soon as it is done with one.
+class host_workers {
+ public:
+  explicit host_workers(const host& on) : threads_(on.threads) {
+    if (threads_ > 1) arena_.initialize(int(threads_), 1);
+  }
+
+  /// Calls `body(begin, end)` for pieces of `grain` that together cover 0 .. n-1 once.
+  template <class F>
+  void for_pieces(std::size_t n, std::size_t grain, const F& body) {
+    const std::size_t pieces = (n + grain - 1) / grain;
+    const auto threads =
+        std::min<std::size_t>(threads_ == 0 ? std::size_t(tbb::this_task_arena::max_concurrency()) : threads_, pieces);
+    std::atomic<std::size_t> next = 0;
+    const auto work = [&](std::size_t) {
+      for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < pieces;)
+        body(i * grain, std::min(n, (i + 1) * grain));
+    };
+    const auto all = [&] { tbb::parallel_for(std::size_t(0), threads, work, tbb::simple_partitioner{}); };
+    if (threads < 2)
+      work(0);
+    else if (threads_ == 0)
+      all();
+    else
+      arena_.execute(all);
+  }
+
+ private:
+  unsigned threads_;
+  tbb::task_arena arena_;
+};
 
 }  // namespace clearance

@@ -51,8 +51,8 @@ struct depth_image {
 
   /// The point that pixel (u, v) shows if it holds `d`.
   CLEARANCE_HD sample deproject(Pixel d, std::uint32_t u, std::uint32_t v) const {
-    const real z = real(d) * scale;
-    const vec3 p{(real(u) - cx) * inverse_fx * z, (real(v) - cy) * inverse_fy * z, z};
+    const real z = product(real(d), scale);
+    const vec3 p{product((real(u) - cx) * inverse_fx, z), product((real(v) - cy) * inverse_fy, z), z};
     if (d == 0) return {p, drop_reason::missing};
     if constexpr (std::is_same_v<Pixel, std::uint16_t>) {
       if (d == 65535) return {p, drop_reason::saturated};

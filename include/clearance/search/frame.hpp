@@ -35,8 +35,8 @@ inline vec3 origin_near(const Eigen::Vector3d& robot_in_cloud) {
 }
 
 /// `part_from_cloud` maps positions that `origin` was subtracted from.
-inline placement place(const part_facts& facts, const Eigen::Isometry3d& world_from_part, const Eigen::Isometry3d& world_from_cloud,
-                       vec3 origin) {
+inline placement place(const part_facts& facts, const Eigen::Isometry3d& world_from_part,
+                       const Eigen::Isometry3d& world_from_cloud, vec3 origin) {
   const Eigen::Isometry3d part_from_world = world_from_part.inverse(Eigen::Isometry);
   Eigen::Isometry3d part_from_cloud = part_from_world * world_from_cloud;
   part_from_cloud.translation() = part_from_world * (world_from_cloud * Eigen::Vector3d(origin.x, origin.y, origin.z));
@@ -54,22 +54,27 @@ inline placement place(const part_facts& facts, const Eigen::Isometry3d& world_f
 
 /// All parts as seen from one cloud, made on the host for every frame.
 struct cloud_frame {
-  vec3 origin;
+  vec3 origin = {0, 0, 0};
   double error = 0;  ///< The largest of all parts.
   double slop = 0;   ///< The largest gap plus tolerance of all parts.
   std::vector<placement> places;
 
+  cloud_frame() = default;
   /// Throws if a pose is not rigid. `world_from_cloud` is taken as checked.
-  cloud_frame(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& world_from_cloud) {
-    std::vector<Eigen::Isometry3d> clean;
+  cloud_frame(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses,
+              const Eigen::Isometry3d& world_from_cloud) {
+    put(facts, poses, world_from_cloud);
+  }
+  /// The same in the memory that is there.
+  void put(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses,
+             const Eigen::Isometry3d& world_from_cloud) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < poses.size(); ++k) {
-      clean.push_back(rigid(poses[k], "part", std::int64_t(k)));
-      middle += clean.back().translation() / double(poses.size());
-    }
+    for (const Eigen::Isometry3d& pose : poses) middle += pose.translation() / double(poses.size());
     origin = origin_near(world_from_cloud.inverse() * middle);
+    error = slop = 0;
+    places.clear();
     for (std::size_t k = 0; k < poses.size(); ++k) {
-      places.push_back(place(facts[k], clean[k], world_from_cloud, origin));
+      places.push_back(place(facts[k], rigid(poses[k], "part", std::int64_t(k)), world_from_cloud, origin));
       error = std::max(error, double(places.back().error));
       slop = std::max(slop, double(facts[k].gap) + double(facts[k].tolerance));
     }

@@ -3,8 +3,7 @@
 
 #include <clearance/indices.hpp>
 #include <clearance/query/any_within.hpp>
-#include <clearance/search/frame.hpp>
-#include <clearance/search/root_test.hpp>
+#include <clearance/search/tile_scan.hpp>
 
 namespace clearance::search {
 
@@ -23,32 +22,6 @@ struct shared_nearest {
 };
 static_assert(query<shared_nearest>);
 
-/// What one thread met, added to the totals once.
-struct tally {
-  std::uint32_t dropped[drop_reasons] = {};
-
-  /// Is there a point? If not, it is counted.
-  CLEARANCE_HD bool counts(const sample& s) {
-    for (int r = 1; r < drop_reasons; ++r) dropped[r] += int(s.dropped) == r;
-    return s.valid();
-  }
-
-  CLEARANCE_HD void add_to(totals& all) const {
-    for (int r = 1; r < drop_reasons; ++r) {
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800  // older ones have no such sum
-      const unsigned together = __activemask();
-      const unsigned sum = __reduce_add_sync(together, dropped[r]);
-      if (sum != 0 && (threadIdx.x & 31) == unsigned(__ffs(int(together)) - 1)) add_to_word(&all.dropped[r], sum);
-#else
-      if (dropped[r] != 0) add_to_word(&all.dropped[r], dropped[r]);
-#endif
-    }
-  }
-
- private:
-  CLEARANCE_HD static void add_to_word(unsigned long long* word, std::uint32_t n) { clearance::add_to(word, n); }
-};
-
 /// The whole of Algorithm 3 for a range of points: every part, one shared bound, or one a part.
 template <class PartView, point_source Source, class Traversal>
 struct point_body {
@@ -57,7 +30,7 @@ struct point_body {
   std::uint32_t part_count;
   Source source;
   vec3 origin;
-  std::uint32_t first;      ///< Number of this cloud's first point among all clouds' points.
+  std::uint32_t first;  ///< Number of this cloud's first point among all clouds' points.
   totals* all;
   distance_key* part_best;  ///< One bound a part, or null: all parts share `all->best`.
   Traversal walk;
@@ -68,50 +41,29 @@ struct point_body {
     for (std::size_t i = range.begin; i < range.end; i += range.step)
       if (const sample s = source[i]; mine.counts(s)) visit(s.position - origin, i);
 #else
-    for (std::size_t i = range.begin; i < range.end; i += tile) by_tile(i, range.end - i < tile ? range.end - i : tile, mine);
+    scan_tiles(*this, range.begin, range.end, mine);
 #endif
     mine.add_to(*all);
   }
 
-  CLEARANCE_HD distance_key* bound_of(std::uint32_t k) const { return part_best != nullptr ? part_best + k : &all->best; }
+  CLEARANCE_HD distance_key* bound_of(std::uint32_t k) const {
+    return part_best != nullptr ? part_best + k : &all->best;
+  }
 
   /// One point against every part.
   CLEARANCE_HD void visit(vec3 p, std::size_t i) const {
     for (std::uint32_t k = 0; k < part_count; ++k) visit(p, first + std::uint32_t(i), k);
   }
 
-  std::size_t device_stack() const
-    requires requires { Traversal::device_stack(1); }
-  {
-    return stack_bytes;
-  }
+  std::size_t device_stack() const requires requires { Traversal::device_stack(1); }
+  { return stack_bytes; }
   std::size_t stack_bytes = 0;
 
  private:
-  static constexpr std::size_t tile = 64;
-
-  /// The host's way: root tests over arrays, which compilers turn into vector code; few points need more.
-  void by_tile(std::size_t begin, std::size_t count, tally& mine) const {
-    alignas(64) real x[tile], y[tile], z[tile], least[tile];
-    for (std::size_t j = 0; j < tile; ++j) {
-      vec3 p{not_a_number, not_a_number, not_a_number};  // fails every comparison
-      if (j < count)
-        if (const sample s = source[begin + j]; mine.counts(s)) p = s.position - origin;
-      x[j] = p.x, y[j] = p.y, z[j] = p.z, least[j] = infinity;
-    }
-    for (std::uint32_t k = 0; k < part_count; ++k) {
-      const root_test root(places[k].around, key_distance(load_relaxed(bound_of(k))));
-      for (std::size_t j = 0; j < tile; ++j) least[j] = min(root.value(x[j], y[j], z[j]), least[j]);
-    }
-    for (std::size_t j = 0; j < tile; ++j) least[j] += x[j] * x[j] + y[j] * y[j] + z[j] * z[j];
-    for (std::size_t j = 0; j < tile; ++j)
-      if (least[j] <= 0) visit({x[j], y[j], z[j]}, begin + j);
-  }
-
   CLEARANCE_HD void visit(vec3 p, std::uint32_t index, std::uint32_t k) const {
     distance_key* const bound = bound_of(k);
     const placement& place = places[k];
-    if (!root_test(place.around, key_distance(load_relaxed(bound))).passes(p)) return;
+    if (!may_reach(place.around, key_distance(load_relaxed(bound)), p)) return;
 
     const PartView& part = parts[k];
     const vec3 q = place.part_from_cloud(p);

@@ -5,6 +5,16 @@
 
 namespace clearance::search {
 
+/// How far from the middle of a part's ball a point within reach can be, and a little more than rounding can add.
+CLEARANCE_HD inline real limit(const ball& around, real reach) { return (reach + around.radius) * (1 + 4 * slack); }
+
+/// Cheap and conservative, from differences: for few points. NaN fails.
+CLEARANCE_HD inline bool may_reach(const ball& around, real reach, vec3 p) {
+  const vec3 d = p - around.center;
+  const real most = limit(around, reach);
+  return most >= 0 && d.x * d.x + d.y * d.y + d.z * d.z <= most * most;
+}
+
 /// Cheap and conservative: may a point x be within reach of a part's ball? `value(x) <= -|x|^2` says perhaps, in the
 /// cloud's own frame, with three multiply-adds. Not part of the exact path, so compilers may contract it as they like.
 struct alignas(16) root_test {
@@ -14,7 +24,7 @@ struct alignas(16) root_test {
   root_test() = default;
   CLEARANCE_HD root_test(const ball& around, real reach) {
     const vec3 c = around.center;
-    const real limit = (reach + around.radius) * (1 + 4 * slack);
+    const real limit = search::limit(around, reach);
     const real sum = 2 * length(c) + limit;
     const real margin = 0x1p-20f * (sum * sum + limit * limit);
     m = {-2 * c.x, -2 * c.y, -2 * c.z};

@@ -31,7 +31,7 @@ struct seed_body {
     if (body.part_best == nullptr) descend(p, index, nearest_part);
   }
 
- private:
+  /// One pair of a point and a part, for a bound that something attains.
   CLEARANCE_HD void descend(vec3 p, std::uint32_t index, std::uint32_t k) const {
     const auto& tree = body.parts[k].tree;
     const vec3 q = body.places[k].part_from_cloud(p);

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/search/frame.hpp>
+
+namespace clearance::search {
+
+/// What one thread met, added to the totals once.
+struct tally {
+  std::uint32_t dropped[drop_reasons] = {};
+
+  /// Is there a point? If not, it is counted.
+  CLEARANCE_HD bool counts(const sample& s) {
+    for (int r = 1; r < drop_reasons; ++r) dropped[r] += int(s.dropped) == r;
+    return s.valid();
+  }
+
+  CLEARANCE_HD void add_to(totals& all) const {
+    for (int r = 1; r < drop_reasons; ++r) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800  // older ones have no such sum
+      const unsigned together = __activemask();
+      const unsigned sum = __reduce_add_sync(together, dropped[r]);
+      if (sum != 0 && (threadIdx.x & 31) == unsigned(__ffs(int(together)) - 1)) add_to_word(&all.dropped[r], sum);
+#else
+      if (dropped[r] != 0) add_to_word(&all.dropped[r], dropped[r]);
+#endif
+    }
+  }
+
+ private:
+  CLEARANCE_HD static void add_to_word(unsigned long long* word, std::uint32_t n) { clearance::add_to(word, n); }
+};
+
+}  // namespace clearance::search

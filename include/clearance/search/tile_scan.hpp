@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// A range of points against every part on the host. `Body` is a point_body: where the parts are, what bounds them, and
+// the exact visit for the few points that are left.
+
+#include <clearance/search/root_test.hpp>
+#include <clearance/search/tile.hpp>
+
+namespace clearance::search {
+
+/// Which points of a tile may be within reach of some part.
+class tile_survivors {
+ public:
+  /// Conservative as `may_reach`; a reach below 0 can leave no point at all.
+  void add(const tile& t, const ball& around, real reach) {
+    const vec3 c = around.center;
+    const real limit = search::limit(around, reach), most = limit * limit;
+    if (!(limit >= 0)) return;
+    for (std::size_t j = 0; j < tile_points; ++j) {
+      const real dx = t.x[j] - c.x, dy = t.y[j] - c.y, dz = t.z[j] - c.z;
+      const real away = dx * dx + dy * dy + dz * dz;
+      near_[j] |= std::uint32_t(away <= most);
+    }
+  }
+  template <class Visit>
+  void for_each(Visit visit) const {
+    for (std::size_t j = 0; j < tile_points; ++j)
+      if (near_[j] != 0) visit(j);
+  }
+
+ private:
+  alignas(64) std::uint32_t near_[tile_points] = {};
+};
+
+/// Is a box within reach of a ball, up to rounding?
+inline bool may_reach(const ball& around, real reach, const tile_box& box) {
+  const auto beyond = [](real low, real high, real c) { return max(max(low - c, c - high), 0); };
+  const vec3 c = around.center;
+  const real dx = beyond(box.lower.x, box.upper.x, c.x), dy = beyond(box.lower.y, box.upper.y, c.y),
+             dz = beyond(box.lower.z, box.upper.z, c.z);
+  const real limit = search::limit(around, reach);
+  return limit >= 0 && dx * dx + dy * dy + dz * dz <= limit * limit;
+}
+
+/// Points begin .. end - 1, tile by tile; nearly all tiles are far from every part, and are not looked at again.
+template <class Body>
+void scan_tiles(const Body& body, std::size_t begin, std::size_t end, tally& mine) {
+  const auto reach = [&](std::uint32_t k) { return key_distance(load_relaxed(body.bound_of(k))); };
+  for (std::size_t i = begin; i < end; i += tile_points) {
+    const std::size_t count = std::min(tile_points, end - i);
+    tile t;
+    tile_box box;
+    bool loaded = false;
+    if (count == tile_points && survey(body.source, i, box, mine)) {
+      box = {box.lower - body.origin, box.upper - body.origin};
+    } else {
+      t.load(count, [&](std::size_t j) {
+        const sample s = body.source[i + j];
+        mine.counts(s);
+        return s;
+      });
+      t.subtract(body.origin);
+      box = box_of(t);
+      loaded = true;
+    }
+    std::uint32_t k = 0;
+    while (k < body.part_count && !may_reach(body.places[k].around, reach(k), box)) ++k;
+    if (k == body.part_count) continue;
+    if (!loaded) {
+      t.load(count, [&](std::size_t j) { return body.source[i + j]; });
+      t.subtract(body.origin);
+    }
+    tile_survivors near;
+    for (; k < body.part_count; ++k)
+      if (may_reach(body.places[k].around, reach(k), box)) near.add(t, body.places[k].around, reach(k));
+    near.for_each([&](std::size_t j) { body.visit(t[j], i + j); });
+  }
+}
+
+/// A few points spread over the cloud, each taken greedily to one leaf, before all others; `descend(p, index, part)`
+/// does it. Those nearest to each part's middle go first, for a bound that makes the others few.
+template <class Body, class Descend>
+void sample_tiles(const Body& body, std::size_t tiles, Descend descend) {
+  const std::size_t stride = body.source.size() / (tiles * tile_points);
+  const auto index = [&](std::size_t n, std::size_t j) { return (n * tile_points + j) * stride; };
+  const auto reach = [&](std::uint32_t k) { return key_distance(load_relaxed(body.bound_of(k))); };
+  tile t;
+  const auto load = [&](std::size_t n) {
+    t.load(tile_points, [&](std::size_t j) { return body.source[index(n, j)]; });
+    t.subtract(body.origin);
+  };
+  for (std::size_t n = 0; n < tiles; ++n) {
+    load(n);
+    for (std::uint32_t k = 0; k < body.part_count; ++k) {
+      const vec3 c = body.places[k].around.center;
+      alignas(64) real away[tile_points];
+      for (std::size_t j = 0; j < tile_points; ++j) {
+        const real dx = t.x[j] - c.x, dy = t.y[j] - c.y, dz = t.z[j] - c.z;
+        away[j] = dx * dx + dy * dy + dz * dz;
+      }
+      std::size_t nearest = 0;
+      real least = infinity;
+      for (std::size_t j = 0; j < tile_points; ++j)
+        if (away[j] < least) least = away[j], nearest = j;
+      if (may_reach(body.places[k].around, reach(k), t[nearest])) descend(t[nearest], index(n, nearest), k);
+    }
+  }
+}
+
+}  // namespace clearance::search
