@@ -45,7 +45,9 @@ target_compile_options(clearance_own INTERFACE
   $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Xcompiler=-Wall,-Wextra>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # False alarms of GCC 12, inside its own std::string and inside Eigen.
-  target_compile_options(clearance_own INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict -Wno-maybe-uninitialized>)
+  target_compile_options(clearance_own INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict -Wno-maybe-uninitialized>
+    $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Xcompiler=-Wno-restrict,-Wno-maybe-uninitialized>)
 endif()
 if(CLEARANCE_WARNINGS_AS_ERRORS)
   target_compile_options(clearance_own INTERFACE

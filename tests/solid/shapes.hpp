@@ -47,6 +47,20 @@ inline triangle_mesh globe(Vector3d center, double radius, int rings = 12, int s
   return m;
 }
 
+inline triangle_mesh torus(double radius, double tube, int around = 48, int across = 24) {
+  triangle_mesh m;
+  for (int i = 0; i < around; ++i)
+    for (int j = 0; j < across; ++j) {
+      const double a = 2 * std::numbers::pi * i / around, b = 2 * std::numbers::pi * j / across;
+      const double r = radius + tube * std::cos(b);
+      m.vertices.emplace_back(r * std::cos(a), r * std::sin(a), tube * std::sin(b));
+      const auto at = [&](int u, int v) { return std::uint32_t((u % around) * across + v % across); };
+      m.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      m.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return m;
+}
+
 inline triangle_mesh moebius(int steps = 40, double radius = 1, double width = 0.4) {
   triangle_mesh m;
   for (int i = 0; i < steps; ++i) {

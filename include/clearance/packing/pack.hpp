@@ -3,12 +3,12 @@
 
 #include <clearance/packing/ascent.hpp>
 #include <clearance/packing/gap.hpp>
-#include <clearance/packing/packing.hpp>
+#include <clearance/packing/limits.hpp>
+#include <clearance/packing/rules.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 
 #include <tbb/task_arena.h>
 
-#include <algorithm>
 #include <chrono>
 #include <random>
 
@@ -23,18 +23,8 @@ namespace clearance {
 template <solid S>
 class packer {
  public:
-  packer(const S& s, const pack_options& options) : solid_(s), options_(options) {
-    const Eigen::AlignedBox3d box = s.bounds();
-    if (box.isEmpty() || !(box.diagonal().norm() > 0) || !std::isfinite(box.diagonal().norm()))
-      throw std::invalid_argument("clearance::pack: the solid's bounds are empty or not finite");
-    for (const double x : {options.smallest_radius, options.gap_target, options.seconds})
-      if (!(x >= 0)) throw std::invalid_argument("clearance::pack: smallest_radius, gap_target and seconds must not be negative");
-    if (!(options.gap_per_radius > 0)) throw std::invalid_argument("clearance::pack: gap_per_radius must be positive");
-    if (!(options.gap_tolerance > 0)) throw std::invalid_argument("clearance::pack: gap_tolerance must be positive");
-    scale_ = box.diagonal().norm() + box.center().norm();
-    least_room_ = 1e-6 * box.diagonal().norm();
-    smallest_ = std::max(options.smallest_radius, least_room_);
-  }
+  packer(const S& s, const pack_options& options)
+      : solid_(s), options_(options), limits_(s.bounds(), options), rules_{options.gap_per_radius, std::isfinite(options.gap_per_radius)} {}
 
   packing run() {
     const auto start = std::chrono::steady_clock::now();
@@ -42,15 +32,13 @@ class packer {
     packing out;
     out.stopped_by = fill(seconds);
     for (std::size_t i = 0; i < spheres_.size(); ++i) out.spheres.push_back(rounded(spheres_[i]));
-    std::stable_sort(out.spheres.begin(), out.spheres.end(), [](const auto& a, const auto& b) { return a.radius > b.radius; });
-    if (!out.spheres.empty()) out.radius_max = out.spheres.front().radius, out.radius_min = out.spheres.back().radius;
-    out.room = smallest_;
+    out.room = limits_.smallest;
     for (const entry& e : cells_) out.room = std::max(out.room, e.bound());
     const gap_report gap = measure_gap(solid_, spheres_, options_.gap_tolerance);
     out.gap = gap.certified, out.gap_mean = gap.mean, out.gap_p95 = gap.p95;
-    if constexpr (requires { solid_.volume(); })
-      for (const inner_sphere& s : out.spheres)
-        out.fill += 4.0 / 3 * std::numbers::pi * std::pow(double(s.radius), 3) / solid_.volume();
+    double volume = std::numeric_limits<double>::infinity();
+    if constexpr (requires { solid_.volume(); }) volume = solid_.volume();
+    arrange(out, volume);
     out.seconds = seconds();
     return out;
   }
@@ -68,8 +56,6 @@ class packer {
 
     friend bool operator<(const entry& a, const entry& b) { return a.key != b.key ? a.key < b.key : a.number > b.number; }
   };
-  static constexpr double climb_from = 0.25;      // a cell is small once its bound is this little above its room
-  static constexpr double promotion = 8;       // a cell goes before ones with at most so much more room
   static constexpr std::size_t batch = 256, most_cells = 1u << 22;
 
   static inner_sphere rounded(const sphere_field::sphere& s) {
@@ -83,21 +69,15 @@ class packer {
     if ((c - at).norm() > 0.5 * expected) return {c, 0};
     double r = distance_within(solid_, c, 2 * expected + (c - at).norm());
     if (!options_.allow_overlap) r = spheres_.distance(c, r);
-    r = r * (1 - 1e-12) - 1e-13 * scale_;  // what rounding may have added
+    r = r * (1 - 1e-12) - 1e-13 * limits_.scale;  // what rounding may have added
     if (!(r > 0)) return {c, 0};
     const double f = to_float(r);
     return {c, f > r ? double(std::nextafter(float(f), 0.0f)) : f};
   }
 
-  /// What is taken first: the largest bound; but where the spheres are much farther than it is large, as in thin walls
-  /// and sharp corners, a cell may be taken before its turn.
-  double key(const solid_cell& cell, double gap) const {
-    const double bound = std::min(cell.depth, gap) + trust_ * cell.reach();
-    if (!std::isfinite(options_.gap_per_radius)) return bound;
-    return std::clamp((gap + trust_ * cell.reach()) / options_.gap_per_radius, bound, promotion * bound);
-  }
+  double key(const solid_cell& cell, double gap) const { return rules_.key(cell.depth, cell.reach(), gap); }
   void push(const solid_cell& cell, double gap, std::uint32_t seen) {
-    if (!(std::min(cell.depth, gap) + cell.reach() >= smallest_)) return;
+    if (!(std::min(cell.depth, gap) + cell.reach() >= limits_.smallest)) return;
     cells_.push_back({cell, gap, key(cell, gap), seen, numbers_++});
     std::push_heap(cells_.begin(), cells_.end());
   }
@@ -108,7 +88,7 @@ class packer {
     return e;
   }
   void trust_less() {
-    trust_ *= 0.6, pile_ += pile_ / 2;
+    rules_.trust *= 0.6, pile_ += pile_ / 2;
     for (entry& e : cells_) e.key = key(e.cell, e.gap);
     std::make_heap(cells_.begin(), cells_.end());
   }
@@ -131,7 +111,7 @@ class packer {
         gap_asked_at = spheres_.size() + spheres_.size() / 4;
         if (measure_gap(solid_, spheres_, options_.gap_tolerance).certified <= options_.gap_target) return pack_stop::gap;
       }
-      if (cells_.empty()) return smallest_ > least_room_ ? pack_stop::smallest_radius : pack_stop::no_room;
+      if (cells_.empty()) return limits_.exhausted();
       if (cells_.size() > most_cells) return pack_stop::search_limit;
       if (cells_.size() > pile_) trust_less();
 
@@ -148,7 +128,7 @@ class packer {
           e.seen = seen;
           if (key(e.cell, e.gap) < 0.95 * e.key) return;
         }
-        if (e.room() >= std::max(0.25, 1 - climb_from / trust_) * e.bound()) {
+        if (rules_.small(e.room(), e.cell.reach())) {
           w.what = work::climbed;
           // Taken before its turn: stay here, there is more room elsewhere.
           const double way = e.key > e.bound() ? e.room() / 2 : std::numeric_limits<double>::infinity();
@@ -166,7 +146,7 @@ class packer {
         if (w.what == work::climbed) {
           const bool untouched = spheres_.size() == seen;
           // One of the same batch may be in the way; the cell then comes back with less room.
-          const double least = std::max(smallest_, 0.98 * w.sphere.radius);
+          const double least = std::max(limits_.smallest, 0.98 * w.sphere.radius);
           if (spheres_.size() < options_.count && (untouched || spheres_.distance(w.sphere.center, least) >= least)) {
             const sphere_field::sphere s = options_.allow_overlap ? fit(w.grown) : fit(w.sphere);
             if (s.radius >= least) spheres_.insert(s);
@@ -191,18 +171,17 @@ class packer {
   void divide(work& w) const {
     for (int k = 0; k < 8; ++k) {
       const solid_cell c = eighth(solid_, w.from.cell, k);
-      const double bound = c.depth + c.reach();  // gaps so large that they change no key need not be known
-      const double enough = std::isfinite(options_.gap_per_radius) ? promotion * options_.gap_per_radius * bound : bound;
-      w.eighths[k] = {c, bound < smallest_ ? 0 : spheres_.distance(c.middle, enough)};
+      const double bound = c.depth + c.reach();
+      w.eighths[k] = {c, bound < limits_.smallest ? 0 : spheres_.distance(c.middle, rules_.farthest_gap(bound))};
     }
   }
 
   const S& solid_;
   const pack_options& options_;
-  double scale_, least_room_, smallest_;
+  pack_limits limits_;
   sphere_field spheres_;
   std::vector<entry> cells_;  // a heap
-  double trust_ = 1;           // in a cell's bound
+  pack_rules rules_;
   std::size_t pile_ = 1u << 20;
   std::uint32_t numbers_ = 0;
 };

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include <clearance/solid/box_tree_view.hpp>
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -31,39 +30,14 @@ class box_tree {
 
   std::size_t size() const { return order_.size(); }
 
-  /// Calls `visit(item, best)` for each item whose box is within `best` of p, near ones first; it returns the new best,
-  /// never above the old. Returns the last.
+  /// What searches read; the same for host and device copies of `nodes()` and `order()`.
+  box_tree_view view() const { return {nodes_.data(), order_.data(), std::uint32_t(order_.size()), root_}; }
+  std::span<const box_pair> nodes() const { return nodes_; }
+  std::span<const std::uint32_t> order() const { return order_; }
+
   template <class F>
   double nearest(const Eigen::Vector3d& p, double best, F visit) const {
-    if (order_.empty()) return best;
-    std::pair<double, std::uint32_t> stack[stack_size];
-    int top = 0;
-    std::uint32_t at = root_;
-    for (;;) {
-      if (at & leaf_bit) {
-        const std::uint32_t first = (at & ~leaf_bit) >> 3, count = (at & 7) + 1;
-        for (std::uint32_t i = first; i < first + count; ++i) best = visit(order_[i], best);
-      } else {
-        const node& n = nodes_[at];
-        double near = squared(n, 0, p), far = squared(n, 1, p);
-        std::uint32_t near_child = n.child[0], far_child = n.child[1];
-        if (far < near) std::swap(near, far), std::swap(near_child, far_child);
-        const double reach = best > 0 ? best * best : 0;
-        if (far <= reach) stack[top++] = {far, far_child};
-        if (near <= reach) {
-          at = near_child;
-          continue;
-        }
-      }
-      for (;;) {
-        if (top == 0) return best;
-        const auto [distance, child] = stack[--top];
-        if (distance <= (best > 0 ? best * best : 0)) {
-          at = child;
-          break;
-        }
-      }
-    }
+    return view().nearest(p, best, visit);
   }
 
   /// Calls `visit(item)` for each item whose box is within `reach` of p.
@@ -73,21 +47,8 @@ class box_tree {
   }
 
  private:
-  struct node {
-    float low[2][3], high[2][3];
-    std::uint32_t child[2];  ///< A node, or leaf_bit | first item << 3 | items - 1.
-  };
-  static constexpr std::uint32_t leaf_bit = 1u << 31, leaf_size = 4;
-  static constexpr int stack_size = 96, deepest = 64;
-
-  static double squared(const node& n, int k, const Eigen::Vector3d& p) {
-    double sum = 0;
-    for (int i = 0; i < 3; ++i) {
-      const double d = std::max({double(n.low[k][i]) - p[i], p[i] - double(n.high[k][i]), 0.0});
-      sum += d * d;
-    }
-    return sum;
-  }
+  static constexpr std::uint32_t leaf_bit = box_pair::leaf_bit, leaf_size = 4;
+  static constexpr int deepest = 64;
 
   std::uint32_t split(std::span<const Eigen::AlignedBox3d> boxes, const std::vector<Eigen::Vector3d>& middles,
                       std::uint32_t first, std::uint32_t last, int level = 0) {
@@ -169,7 +130,7 @@ class box_tree {
     return std::uint32_t(middle - order_.begin());
   }
 
-  std::vector<node> nodes_;
+  std::vector<box_pair> nodes_;
   std::vector<std::uint32_t> order_;
   std::uint32_t root_ = 0;
 };

@@ -1,35 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include <clearance/solid/vec3d.hpp>
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cmath>
 
 namespace clearance {
 
-/// Distances to one triangle in double, exact to rounding on slivers and degenerate ones too.
+/// Distances to one triangle in double, exact to rounding on slivers and degenerate ones too. Made on the host.
 class exact_triangle {
  public:
-  exact_triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) : v_{a, b, c} {
-    const Eigen::Vector3d n = (b - a).cross(c - a);
+  exact_triangle(const vec3d& a, const vec3d& b, const vec3d& c) : v_{a, b, c} {
+    const vec3d n = (b - a).cross(c - a);
     const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
     // Thinner than this, the normal loses digits: the segments alone are then within 1e-8 of an edge.
-    if (n.norm() > 1e-8 * longest * longest) normal_ = n.normalized();
+    if (n.norm() > 1e-8 * longest * longest) normal_ = (1 / n.norm()) * n;
     for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d edge = v_[(k + 1) % 3] - v_[k];
+      const vec3d edge = v_[(k + 1) % 3] - v_[k];
       inward_[k] = normal_.cross(edge);
-      per_square_[k] = edge.squaredNorm() > 0 ? 1 / edge.squaredNorm() : 0;
+      per_square_[k] = edge.dot(edge) > 0 ? 1 / edge.dot(edge) : 0;
       if (!std::isfinite(per_square_[k])) per_square_[k] = 0;
     }
     well_shaped_ = n.norm() > 1e-3 * longest * longest;
   }
 
   /// The distance if it is below `best`, else `best`.
-  double nearer(const Eigen::Vector3d& p, double best) const {
-    const Eigen::Vector3d q[3] = {p - v_[0], p - v_[1], p - v_[2]};
-    const double height = std::abs(normal_.dot(q[0]));
+  CLEARANCE_HD double nearer(const vec3d& p, double best) const {
+    const vec3d q[3] = {p - v_[0], p - v_[1], p - v_[2]};
+    const double height = ::fabs(normal_.dot(q[0]));
     if (well_shaped_ && height >= best) return best;
     bool beyond[3], above = true;
     for (int k = 0; k < 3; ++k) above = !(beyond[k] = !(inward_[k].dot(q[k]) > 0)) && above;
@@ -40,22 +40,23 @@ class exact_triangle {
     double least = best * best;
     for (int k = 0; k < 3; ++k) {
       if (well_shaped_ && !beyond[k]) continue;  // the nearest point lies on a side the projection is beyond
-      const Eigen::Vector3d edge = v_[(k + 1) % 3] - v_[k];
-      const double t = std::clamp(q[k].dot(edge) * per_square_[k], 0.0, 1.0);
-      least = std::min(least, (q[k] - t * edge).squaredNorm());
+      const vec3d edge = v_[(k + 1) % 3] - v_[k];
+      const double along = q[k].dot(edge) * per_square_[k], t = along < 0 ? 0 : along > 1 ? 1 : along;
+      const vec3d way = q[k] - t * edge;
+      if (way.dot(way) < least) least = way.dot(way);
     }
-    return least < best * best ? std::sqrt(least) : best;
+    return least < best * best ? ::sqrt(least) : best;
   }
 
-  const Eigen::Vector3d& corner(int k) const { return v_[k]; }
+  Eigen::Vector3d corner(int k) const { return v_[k]; }
   Eigen::AlignedBox3d box() const {
-    Eigen::AlignedBox3d b(v_[0]);
-    return b.extend(v_[1]).extend(v_[2]);
+    Eigen::AlignedBox3d b(corner(0));
+    return b.extend(corner(1)).extend(corner(2));
   }
   double area() const { return (v_[1] - v_[0]).cross(v_[2] - v_[0]).norm() / 2; }
 
  private:
-  Eigen::Vector3d v_[3], normal_ = Eigen::Vector3d::Zero(), inward_[3];
+  vec3d v_[3], normal_, inward_[3];
   double per_square_[3];
   bool well_shaped_ = false;
 };

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <clearance/solid/box_tree.hpp>
-#include <clearance/solid/exact_triangle.hpp>
+#include <clearance/solid/mesh_solid_view.hpp>
 #include <clearance/solid/solid.hpp>
 #include <clearance/solid/volume.hpp>
 
@@ -25,6 +25,21 @@ class nearby_triangles {
   const std::vector<exact_triangle>* all_;
   std::vector<std::uint32_t> some_;
   double reach_;
+};
+
+/// Owns what a mesh solid's view reads, in the memory of backend B.
+template <backend B>
+struct mesh_solid_copy {
+  template <class T>
+  using buffer = typename B::template buffer<T>;
+
+  buffer<box_pair> nodes;
+  buffer<std::uint32_t> order;
+  buffer<exact_triangle> triangles;
+  basic_winding<double, B> winding;
+  std::uint32_t items, root;
+
+  mesh_solid_view view() const { return {{nodes.data(), order.data(), items, root}, triangles.data(), winding.view()}; }
 };
 
 /// The solid that a closed mesh encloses, in double: exact distances to its surface, caps included, and the inside by
@@ -57,9 +72,17 @@ class mesh_solid {
   double distance(const Eigen::Vector3d& p) const { return distance(p, std::numeric_limits<double>::infinity()); }
   /// The distance if it is below `within`, else `within`: quicker when something is known.
   double distance(const Eigen::Vector3d& p, double within) const {
-    return tree_.nearest(p, within, [&](std::uint32_t i, double best) { return triangles_[i].nearer(p, best); });
+    return view().distance(p, within);
   }
   bool inside(const Eigen::Vector3d& p) const { return winding_.view().inside(p.x(), p.y(), p.z()); }
+
+  mesh_solid_view view() const { return {tree_.view(), triangles_.data(), winding_.view()}; }
+  /// A copy of what searches read where `other` runs.
+  template <backend Other>
+  mesh_solid_copy<Other> on(const Other& other) const {
+    return {other.copy_in(tree_.nodes()), other.copy_in(tree_.order()), other.copy_in(std::span<const exact_triangle>(triangles_)),
+            winding_.on(other), tree_.view().items, tree_.view().root};
+  }
 
   double volume() const { return enclosed_.volume; }
   /// Do shells overlap, so that some winding numbers are above 1?

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/backend/device.cuh>
+#include <clearance/backend/pinned_buffer.cuh>
+#include <clearance/packing/growing.hpp>
+
+#include <cub/device/device_reduce.cuh>
+#include <cub/device/device_select.cuh>
+#include <thrust/iterator/counting_iterator.h>
+
+namespace clearance {
+
+/// Eight neighbours in a warp that share one climb.
+struct eight_lanes {
+  __device__ int rank() const { return int(threadIdx.x) % 8; }
+  __device__ int lanes() const { return 8; }
+  /// The largest value, and of equal ones the lowest number; all eight call it.
+  __device__ void agree(double& best, int& number) const {
+    const unsigned group = 0xffu << (threadIdx.x % 32 & ~7u);
+    for (int apart = 4; apart > 0; apart /= 2) {
+      const double other = __shfl_xor_sync(group, best, apart, 8);
+      const int n = __shfl_xor_sync(group, number, apart, 8);
+      if (other > best || (other == best && n < number)) best = other, number = n;
+    }
+  }
+};
+
+namespace detail {
+
+template <class F>
+__global__ void __launch_bounds__(128) climbers_kernel(std::size_t n, F f) {
+  const std::size_t i = (blockIdx.x * std::size_t(blockDim.x) + threadIdx.x) / 8;
+  if (i < n) f(i, eight_lanes{});
+}
+
+struct larger {
+  CLEARANCE_HD double operator()(double a, double b) const { return a < b ? b : a; }
+};
+
+}  // namespace detail
+
+/// What packing in rounds needs besides a backend, by CUB. Counts are waited for: the host decides what comes next.
+class device_steps {
+ public:
+  explicit device_steps(const device& on) : on_(on), temporary_(on), count_(1, on.id), most_(1, on.id) {}
+
+  template <class F>
+  std::size_t select(std::size_t n, F f, std::uint32_t* out) {
+    if (n == 0) return 0;
+    run([&](void* memory, std::size_t& bytes) {
+      return cub::DeviceSelect::If(memory, bytes, numbers(), out, count_.data(), int(n), f, on_.stream);
+    });
+    return *count_.data();
+  }
+  template <class F>
+  double largest(std::size_t n, F f) {
+    if (n == 0) return 0;
+    run([&](void* memory, std::size_t& bytes) {
+      return cub::DeviceReduce::TransformReduce(memory, bytes, numbers(), most_.data(), int(n), detail::larger{}, f, 0.0, on_.stream);
+    });
+    return *most_.data();
+  }
+  template <class F>
+  void climbers(std::size_t n, F f) const {
+    const device_guard guard(on_.id);
+    detail::climbers_kernel<<<unsigned((n + 15) / 16), 128, 0, on_.stream>>>(n, f);
+    check_cuda(cudaGetLastError(), "kernel launch");
+  }
+
+ private:
+  static thrust::counting_iterator<std::uint32_t> numbers() { return thrust::counting_iterator<std::uint32_t>(0); }
+
+  template <class F>
+  void run(F f) {
+    const device_guard guard(on_.id);
+    std::size_t bytes = 0;
+    check_cuda(f(nullptr, bytes), "CUB");
+    check_cuda(f(temporary_.reserve(bytes), bytes), "CUB");
+    on_.wait();
+  }
+
+  device on_;
+  growing<unsigned char, device> temporary_;
+  pinned_buffer<std::uint32_t> count_;
+  pinned_buffer<double> most_;
+};
+
+}  // namespace clearance

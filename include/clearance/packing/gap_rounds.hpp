@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/packing/gap.hpp>
+#include <clearance/packing/grid.hpp>
+#include <clearance/packing/growing.hpp>
+#include <clearance/packing/room_view.hpp>
+#include <clearance/solid/mesh_solid.hpp>
+
+namespace clearance {
+
+namespace detail {
+
+struct gap_cell {
+  vec3d middle;
+  double half;
+  double depth;  ///< Signed, of the cell it was cut from; its own once visited; 0 if not known.
+};
+
+/// Bounds the gap over the solid's points in a cell.
+struct gap_visit {
+  room_view in;
+  gap_cell* cells;
+  double* met;     ///< The gap at the middle, if that is in the solid.
+  double* open;    ///< An upper bound, if it is not yet known whether it is above `target`,
+  double* closed;  ///< or if it is, but the cell is as small as it need be.
+  double target, slack;
+
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    gap_cell& c = cells[i];
+    const double reach = corner_reach(c.half);
+    met[i] = open[i] = closed[i] = 0;
+    const double gap = in.gap(c.middle, std::numeric_limits<double>::infinity(), target - reach), bound = gap + reach;
+    if (bound <= target) return;
+    c.depth = signed_depth(in.solid, c.middle, c.depth, reach);  // it lies as far from the middle of its parent
+    if (c.depth < -reach * (1 + 1e-12)) return;                  // no point of the solid here
+    if (c.depth >= 0) met[i] = gap;
+    // The solid is less than `reach` away from the middle, so a small cell is too high by twice its reach at most.
+    (4 * reach <= slack ? closed : open)[i] = bound;
+  }
+};
+
+struct gap_spread {
+  const gap_cell* from;
+  const std::uint32_t* some;
+  gap_cell* to;
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const gap_cell& c = from[some[i / 8]];
+    to[i] = {eighth_middle(c.middle, c.half, std::uint32_t(i % 8)), c.half / 2, c.depth};
+  }
+};
+
+struct gap_roots {
+  cube_grid grid;
+  gap_cell* to;
+  CLEARANCE_HD void operator()(std::size_t i) const { to[i] = {grid.middle(i), grid.half, 0}; }
+};
+
+struct gap_at {
+  room_view in;
+  const vec3d* points;
+  double* gaps;
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const double g = in.gap(points[i], std::numeric_limits<double>::infinity());
+    gaps[i] = g > 0 ? g : 0;
+  }
+};
+
+struct value_of {
+  const double* values;
+  CLEARANCE_HD double operator()(std::size_t i) const { return values[i]; }
+};
+struct is_above {
+  const double* values;
+  double least;
+  CLEARANCE_HD bool operator()(std::size_t i) const { return values[i] > least; }
+};
+
+}  // namespace detail
+
+/// `measure_gap` in rounds, for a machine that does all cells of one size at once. Of the gap met so far all cells of a
+/// round know the same, so the result does not depend on their order.
+template <backend B, class Steps>
+gap_report measure_gap(const B& on, Steps& steps, const mesh_solid& s, const room_view& in, double tolerance) {
+  constexpr std::size_t most_cells = 1u << 22;
+  gap_report report;
+  if (in.count == 0) {
+    report.certified = report.mean = report.p95 = std::numeric_limits<double>::infinity();
+    return report;
+  }
+  // Any gap that is met bounds the largest from below; the better that bound, the less is searched.
+  std::vector<vec3d> points;
+  for (const auto& p : s.surface_points(20000)) points.push_back(p);
+  const std::size_t samples = points.size();
+  for (const auto& p : s.corners()) points.push_back(p);
+  const auto there = on.copy_in(std::span<const vec3d>(points));
+  const auto gaps_there = on.template make_scratch<double>(points.size());
+  on.for_each(points.size(), detail::gap_at{in, there.data(), const_cast<double*>(gaps_there.data())});
+  std::vector<double> gaps = on.copy_out(gaps_there.data(), gaps_there.size());
+  double least = *std::max_element(gaps.begin(), gaps.end());
+  gaps.resize(samples);
+  for (const double g : gaps) report.mean += g / double(samples);
+  const auto at = gaps.begin() + std::ptrdiff_t(samples * 95 / 100);
+  std::nth_element(gaps.begin(), at, gaps.end());
+  report.p95 = *at;
+
+  const double diagonal = s.bounds().diagonal().norm(), finest = std::min(1e-5, 1e-5 * diagonal);
+  growing<detail::gap_cell, B> cells(on), next(on);
+  growing<double, B> met(on), open(on), closed(on);
+  growing<std::uint32_t, B> some(on);
+  const cube_grid grid(s.bounds(), 16);
+  std::size_t n = grid.size();
+  on.for_each(n, detail::gap_roots{grid, cells.reserve(n)});
+  double upper = 0;
+  while (n > 0) {
+    const double slack = std::max(least * tolerance, finest);
+    on.for_each(n, detail::gap_visit{in, cells.data(), met.reserve(n), open.reserve(n), closed.reserve(n), least + slack, slack});
+    least = std::max(least, steps.largest(n, detail::value_of{met.data()}));
+    upper = std::max(upper, steps.largest(n, detail::value_of{closed.data()}));
+    const double target = least + std::max(least * tolerance, finest);
+    const std::size_t split = steps.select(n, detail::is_above{open.data(), std::max(target, upper)}, some.reserve(n));
+    if (8 * split > most_cells) {  // the gap of a ball in a ball, say, is the same all over, which no search can narrow down
+      upper = std::max(upper, steps.largest(n, detail::value_of{open.data()}));
+      break;
+    }
+    on.for_each(8 * split, detail::gap_spread{cells.data(), some.data(), next.reserve(8 * split)});
+    std::swap(cells, next);
+    n = 8 * split;
+  }
+  const double bound = std::max(upper, least + std::max(least * tolerance, finest));
+  report.certified = bound * (1 + 1e-12) + 1e-12 * diagonal;
+  return report;
+}
+
+}  // namespace clearance

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/solid/mesh_solid_view.hpp>
+
+namespace clearance {
+
+/// Half the way from corner to corner of a cube, rounded up.
+CLEARANCE_HD constexpr double corner_reach(double half) { return half * 1.7320508075688774; }
+
+CLEARANCE_HD inline vec3d eighth_middle(const vec3d& middle, double half, std::uint32_t k) {
+  const double h = half / 2;
+  return middle + vec3d(k & 1 ? h : -h, k & 2 ? h : -h, k & 4 ? h : -h);
+}
+
+/// The signed distance, positive inside, where it is `known` to differ by at most `step` from that of another place;
+/// `known` is 0 if nothing is. No surface lies within |known| of the other place.
+CLEARANCE_HD inline double signed_depth(const mesh_solid_view& in, const vec3d& p, double known, double step) {
+  const double free = known < 0 ? -known : known;
+  const double within = free > 0 ? (free + step) * (1 + 1e-12) : std::numeric_limits<double>::infinity();
+  const bool inside = free > step * (1 + 1e-9) ? known > 0 : in.inside(p);
+  const double d = in.distance(p, within);
+  return inside ? d : -d;
+}
+
+/// Cubes of one size that cover a box, about `along` in a row of its longest side.
+struct cube_grid {
+  vec3d low;
+  double half;
+  std::uint32_t count[3];
+
+  cube_grid(const Eigen::AlignedBox3d& box, int along, const Eigen::Vector3d& shift = Eigen::Vector3d::Zero())
+      : half(box.sizes().maxCoeff() / (2 * along)) {
+    Eigen::Vector3d size;
+    for (int k = 0; k < 3; ++k) {
+      count[k] = std::uint32_t(std::ceil(box.sizes()[k] / (2 * half) + std::abs(shift[k]) + 1e-6));
+      size[k] = count[k];
+    }
+    low = Eigen::Vector3d(box.center() - half * size + half * shift);
+  }
+  std::size_t size() const { return std::size_t(count[0]) * count[1] * count[2]; }
+  CLEARANCE_HD vec3d middle(std::size_t i) const {
+    const std::size_t row = i / count[0];
+    return low + half * vec3d(2 * double(i % count[0]) + 1, 2 * double(row % count[1]) + 1, 2 * double(row / count[1]) + 1);
+  }
+};
+
+}  // namespace clearance

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/solid/mesh_solid_view.hpp>
+
+namespace clearance {
+
+struct solid_sphere {
+  vec3d center;
+  double radius;
+
+  CLEARANCE_HD double distance(const vec3d& p) const { return (p - center).norm() - radius; }
+};
+
+/// The room in a mesh solid that spheres leave, in double, on host and device: a tree over most spheres, a list of the rest.
+struct room_view {
+  mesh_solid_view solid;
+  const solid_sphere* spheres;
+  std::uint32_t count;
+  box_tree_view tree;  ///< Over the first `tree.items` spheres.
+
+  /// The distance to the spheres from number `first` on if it is below `within`, else `within`.
+  CLEARANCE_HD double gap_from(std::uint32_t first, const vec3d& p, double within) const {
+    for (std::uint32_t i = first; i < count; ++i) {
+      const double d = spheres[i].distance(p);
+      if (d < within) within = d;
+    }
+    return within;
+  }
+  /// The same for all; or, sooner, one that is no larger than `enough`.
+  CLEARANCE_HD double gap(const vec3d& p, double within, double enough = -std::numeric_limits<double>::infinity()) const {
+    within = tree_gap(p, within, enough);
+    return within <= enough ? within : gap_from(tree.items, p, within);
+  }
+  /// The distance to surface and spheres, as `gap`.
+  CLEARANCE_HD double room(const vec3d& p, double within, double enough = 0) const {
+    within = tree_gap(p, within, enough);
+    if (within > enough) within = solid.distance(p, within, enough);
+    return within <= enough ? within : gap_from(tree.items, p, within);
+  }
+
+ private:
+  CLEARANCE_HD double tree_gap(const vec3d& p, double within, double enough) const {
+    const solid_sphere* all = spheres;
+    return tree.nearest(p, within, [all, &p](std::uint32_t i, double best) {
+      const double d = all[i].distance(p);
+      return d < best ? d : best;
+    }, enough);
+  }
+};
+
+}  // namespace clearance

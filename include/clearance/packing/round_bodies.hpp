@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What one cell or one climber does in a round of packing, on host and device.
+
+#include <clearance/packing/climb.hpp>
+#include <clearance/packing/grid.hpp>
+#include <clearance/packing/rules.hpp>
+
+namespace clearance::rounds {
+
+/// A cube of space.
+struct cell {
+  vec3d middle;
+  double half;
+  double depth;        ///< The solid's signed distance at the middle, positive inside.
+  double gap;          ///< From the middle to the first `seen` spheres, or more than matters.
+  std::uint32_t seen;
+
+  CLEARANCE_HD double reach() const { return corner_reach(half); }
+  CLEARANCE_HD double room() const { return depth < gap ? depth : gap; }
+  CLEARANCE_HD double bound() const { return room() + reach(); }  ///< No room in the cell is larger.
+};
+
+enum class deed : std::uint8_t { none, climb, divide };
+
+/// A sphere that one climber offers; radius 0 if it has none.
+struct offer {
+  solid_sphere found, grown;  ///< Where it climbed to; the same, or what it grew to if spheres may overlap.
+};
+
+struct field {
+  room_view in;
+  pack_rules rules;
+  double smallest, scale;
+
+  CLEARANCE_HD double key(const cell& c) const {
+    return c.bound() >= smallest ? rules.key(c.depth, c.reach(), c.gap) : 0;  // 0: nothing fits
+  }
+};
+
+struct cover {
+  field f;
+  cube_grid grid;
+  cell* cells;
+  double* keys;
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const vec3d p = grid.middle(i);
+    cells[i] = {p, grid.half, signed_depth(f.in.solid, p, 0, 0), std::numeric_limits<double>::infinity(), 0};
+    keys[i] = f.key(cells[i]);
+  }
+};
+
+/// Brings a cell up to date, and says what is to be done with it if its key is still high.
+struct refresh {
+  field f;
+  const std::uint32_t* some;
+  cell* cells;
+  double* keys;
+  double least;
+  deed* deeds;
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    cell& c = cells[some[i]];
+    if (c.seen < f.in.count) {
+      c.gap = f.in.count - c.seen <= 256 ? f.in.gap_from(c.seen, c.middle, c.gap) : f.in.gap(c.middle, c.gap);
+      c.seen = f.in.count;
+    }
+    const double key = keys[some[i]] = f.key(c);
+    deeds[i] = key < least ? deed::none : f.rules.small(c.room(), c.reach()) ? deed::climb : deed::divide;
+  }
+};
+
+struct divide {
+  field f;
+  const std::uint32_t *some, *these;
+  cell* cells;
+  double* keys;
+  std::size_t first;  ///< Where eighths go.
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const std::uint32_t parent = some[these[i / 8]];
+    const cell& from = cells[parent];
+    cell c = {eighth_middle(from.middle, from.half, std::uint32_t(i % 8)), from.half / 2, 0, 0, f.in.count};
+    c.depth = signed_depth(f.in.solid, c.middle, from.depth, c.reach());
+    const double bound = c.depth + c.reach();
+    if (bound >= f.smallest) c.gap = f.in.gap(c.middle, f.rules.farthest_gap(bound), -c.reach());
+    cells[first + i] = c;
+    keys[first + i] = f.key(c);
+    if (i % 8 == 0) keys[parent] = 0;
+  }
+};
+
+/// The sphere with a float centre and radius that surely fits, or radius 0.
+CLEARANCE_HD inline solid_sphere fit(const field& f, const solid_sphere& wanted, bool overlap) {
+  const vec3d c(to_float(wanted.center.x), to_float(wanted.center.y), to_float(wanted.center.z));
+  if ((c - wanted.center).norm() > 0.5 * wanted.radius) return {c, 0};
+  const double r = overlap ? f.in.solid.distance(c, 2 * wanted.radius) : f.in.room(c, 2 * wanted.radius);
+  const double sure = r * (1 - 1e-12) - 1e-13 * f.scale;  // what rounding may have added
+  return {c, sure > 0 ? double(rounded_down(sure)) : 0};
+}
+
+struct climb_cells {
+  field f;
+  const std::uint32_t *some, *these;
+  const cell* cells;
+  const double* keys;
+  bool overlap;
+  offer* offers;
+  deed* deeds;
+  template <class Lanes>
+  CLEARANCE_HD void operator()(std::size_t i, Lanes lanes) const {
+    const cell& c = cells[some[these[i]]];
+    // Taken before its turn: stay here, there is more room elsewhere.
+    const double farthest = keys[some[these[i]]] > c.bound() ? c.room() / 2 : std::numeric_limits<double>::infinity();
+    solid_sphere found = climb(f.in, {c.middle, c.room()}, farthest, lanes);
+    const solid_sphere grown = fit(f, overlap ? grow(f.in.solid, found, lanes) : found, overlap);
+    if (lanes.rank() != 0) return;
+    const double least = 0.98 * found.radius;
+    if (!overlap) found = grown;
+    if (grown.radius < f.smallest || grown.radius < least) {  // too small, or lost in rounding
+      found.radius = 0;
+      deeds[these[i]] = deed::divide;
+    }
+    offers[i] = {found, grown};
+  }
+};
+
+/// Is an offer the largest of those it is in conflict with? Then it is taken; the others come back in a later round.
+struct judge {
+  const offer* offers;
+  std::size_t count;
+  double scale;
+  CLEARANCE_HD bool operator()(std::size_t i) const {
+    const solid_sphere& mine = offers[i].found;
+    if (!(mine.radius > 0)) return false;
+    for (std::size_t j = 0; j < count; ++j) {
+      const double r = offers[j].found.radius;
+      if (!(r > mine.radius || (r == mine.radius && j < i))) continue;
+      const double apart = (offers[j].grown.center - mine.center).norm() * (1 - 1e-12) - 1e-13 * scale;
+      if (apart < offers[j].grown.radius + mine.radius) return false;
+    }
+    return true;
+  }
+};
+
+struct append {
+  const offer* offers;
+  const std::uint32_t* taken;
+  solid_sphere* to;
+  CLEARANCE_HD void operator()(std::size_t i) const { to[i] = offers[taken[i]].grown; }
+};
+
+struct keep_cells {
+  const std::uint32_t* some;
+  const cell* cells;
+  const double* keys;
+  cell* to;
+  double* keys_to;
+  CLEARANCE_HD void operator()(std::size_t i) const { to[i] = cells[some[i]], keys_to[i] = keys[some[i]]; }
+};
+
+struct weigh_again {
+  field f;
+  const cell* cells;
+  double* keys;
+  CLEARANCE_HD void operator()(std::size_t i) const { keys[i] = keys[i] > 0 ? f.key(cells[i]) : 0; }
+};
+
+struct key_of {
+  const double* keys;
+  CLEARANCE_HD double operator()(std::size_t i) const { return keys[i]; }
+};
+struct bound_of {
+  const cell* cells;
+  const double* keys;
+  CLEARANCE_HD double operator()(std::size_t i) const { return keys[i] > 0 ? cells[i].bound() : 0; }
+};
+struct at_least {
+  const double* keys;
+  double least;
+  CLEARANCE_HD bool operator()(std::size_t i) const { return keys[i] > 0 && keys[i] >= least; }
+};
+struct is_deed {
+  const deed* deeds;
+  deed which;
+  CLEARANCE_HD bool operator()(std::size_t i) const { return deeds[i] == which; }
+};
+
+}  // namespace clearance::rounds

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/config.hpp>
+
+namespace clearance {
+
+/// Which part of a solid is looked at next, on host and device. `depth` and `gap` are the distances from a cell's middle to
+/// the surface and to the spheres, `reach` that to its corners.
+struct pack_rules {
+  double gap_per_radius;
+  bool promotes;           ///< Is it finite?
+  double trust = 1;        ///< In a cell's bound.
+
+  static constexpr double promotion = 8;  ///< A cell goes before ones with at most so much more room.
+
+  /// What is taken first: the largest bound; but where the spheres are much farther than it is large, as in thin walls
+  /// and sharp corners, a cell may be taken before its turn.
+  CLEARANCE_HD double key(double depth, double reach, double gap) const {
+    const double bound = (depth < gap ? depth : gap) + trust * reach;
+    if (!promotes) return bound;
+    const double wanted = (gap + trust * reach) / gap_per_radius;
+    return wanted < bound ? bound : wanted > promotion * bound ? promotion * bound : wanted;
+  }
+  /// Is a cell so small against its room that it is climbed from? Else it is divided.
+  CLEARANCE_HD bool small(double room, double reach) const {
+    const double least = 1 - 0.25 / trust;
+    return room >= (least > 0.25 ? least : 0.25) * (room + reach);
+  }
+  /// Gaps so large that they change no key need not be known.
+  CLEARANCE_HD double farthest_gap(double bound) const { return promotes ? promotion * gap_per_radius * bound : bound; }
+};
+
+}  // namespace clearance
