@@ -75,6 +75,13 @@ TEST_CASE("Trees of inner spheres hold every one once, enclosed by all their nod
   check<clearance::obb, inner_sphere>(clearance::layered{});
 }
 
+TEST_CASE("Every split rule gives a tree") {
+  check<clearance::sphere, inner_sphere>(clearance::wrapped{}, clearance::median_split{});
+  check<clearance::sphere, inner_sphere>(clearance::wrapped{}, clearance::principal_split{});
+  check<clearance::sphere, inner_sphere>(clearance::wrapped{}, clearance::two_means_split{});
+  check<clearance::aabb, triangle>(clearance::wrapped{}, clearance::two_means_split{});
+}
+
 TEST_CASE("Trees of triangles hold every one once, enclosed by all their nodes") {
   check<clearance::sphere, triangle>(clearance::layered{});
   check<clearance::aabb, triangle>(clearance::layered{});

@@ -5,7 +5,9 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,6 +20,27 @@ struct split_item {
 
   Eigen::Vector3f center() const { return (lower + upper) / 2; }
 };
+
+/// The order of centres along a direction.
+struct center_order {
+  Eigen::Vector3f direction;
+  bool operator()(const split_item& a, const split_item& b) const {
+    const float x = a.center().dot(direction), y = b.center().dot(direction);
+    return x < y || (x == y && a.id < b.id);
+  }
+};
+
+/// The direction in which the centres spread most, of length 1.
+inline Eigen::Vector3f principal_direction(std::span<const split_item> items) {
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+  for (const auto& i : items) mean += i.center() / float(items.size());
+  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();
+  for (const auto& i : items) covariance += (i.center() - mean) * (i.center() - mean).transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(covariance);
+  const Eigen::Vector3f principal = solver.eigenvectors().col(2);
+  return principal.allFinite() && principal.norm() > 0.5f ? principal : Eigen::Vector3f::UnitX();
+}
 
 /// Split rule: the middle along the widest axis. Gives the least depth.
 struct median_split {
@@ -35,36 +58,69 @@ struct median_split {
   }
 };
 
+/// Split rule: the middle along the direction in which the centres spread most.
+struct principal_split {
+  std::size_t operator()(std::span<split_item> items) const {
+    const auto middle = items.begin() + std::ptrdiff_t(items.size() / 2);
+    std::nth_element(items.begin(), middle, items.end(), center_order{principal_direction(items)});
+    return items.size() / 2;
+  }
+};
+
+/// Split rule: two clusters around their mean centres (Lloyd 1982), begun at the ends of the principal direction; neither
+/// side gets less than a tenth, so that the depth stays logarithmic. What batch neural gas (Weller & Zachmann 2009) does
+/// for two clusters once its neighbourhood has shrunk.
+struct two_means_split {
+  std::size_t operator()(std::span<split_item> items) const {
+    const std::size_t n = items.size(), least = std::max<std::size_t>(1, n / 10);
+    std::sort(items.begin(), items.end(), center_order{principal_direction(items)});
+    std::size_t cut = n / 2;
+    for (int round = 0; round < 16; ++round) {
+      // The clusters meet in the plane between their means, so they are a cut along the way from one to the other.
+      const Eigen::Vector3f near = mean(items.first(cut)), far = mean(items.subspan(cut)), way = far - near;
+      if (!(way.norm() > 0)) break;
+      std::sort(items.begin(), items.end(), center_order{way});
+      const float middle = (near + far).dot(way) / 2;
+      const auto beyond = std::find_if(items.begin(), items.end(), [&](const auto& i) { return i.center().dot(way) > middle; });
+      const auto now = std::clamp(std::size_t(beyond - items.begin()), least, n - least);
+      if (now == cut && round > 0) break;
+      cut = now;
+    }
+    return cut;
+  }
+
+ private:
+  static Eigen::Vector3f mean(std::span<const split_item> items) {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (const auto& i : items) sum += i.center();
+    return sum / float(items.size());
+  }
+};
+
 /// Split rule: of the three axes and the principal one, the cut with the least surface-area cost (Goldsmith & Salmon
 /// 1987); neither side gets less than a third, so that the depth stays logarithmic.
 struct surface_area_split {
   std::size_t operator()(std::span<split_item> items) const {
     const std::size_t n = items.size(), least = std::max<std::size_t>(1, n / 3);
     float best = std::numeric_limits<float>::infinity();
-    Eigen::Vector3f along = Eigen::Vector3f::UnitX();
+    Eigen::Vector3f best_direction = Eigen::Vector3f::UnitX();
     std::size_t cut = n / 2;
     std::vector<float> left(n);
     for (const Eigen::Vector3f& direction : directions(items)) {
-      sort(items, direction);
+      std::sort(items.begin(), items.end(), center_order{direction});
       sweep(items.begin(), items.end(), left.begin());
       std::vector<float> right(n);
       sweep(items.rbegin(), items.rend(), right.begin());
       for (std::size_t k = least; k + least <= n; ++k) {
         const float cost = float(k) * left[k - 1] + float(n - k) * right[n - k - 1];
-        if (cost < best) best = cost, cut = k, along = direction;
+        if (cost < best) best = cost, cut = k, best_direction = direction;
       }
     }
-    sort(items, along);
+    std::sort(items.begin(), items.end(), center_order{best_direction});
     return cut;
   }
 
  private:
-  static void sort(std::span<split_item> items, const Eigen::Vector3f& direction) {
-    std::sort(items.begin(), items.end(), [&](const split_item& a, const split_item& b) {
-      const float x = a.center().dot(direction), y = b.center().dot(direction);
-      return x < y || (x == y && a.id < b.id);
-    });
-  }
   template <class In, class Out>
   static void sweep(In first, In last, Out area) {
     Eigen::Vector3f lo = first->lower, hi = first->upper;
@@ -74,17 +130,8 @@ struct surface_area_split {
       *area = d.x() * d.y() + d.y() * d.z() + d.z() * d.x();
     }
   }
-  static std::vector<Eigen::Vector3f> directions(std::span<const split_item> items) {
-    std::vector<Eigen::Vector3f> all = {Eigen::Vector3f::UnitX(), Eigen::Vector3f::UnitY(), Eigen::Vector3f::UnitZ()};
-    Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-    for (const auto& i : items) mean += i.center() / float(items.size());
-    Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();
-    for (const auto& i : items) covariance += (i.center() - mean) * (i.center() - mean).transpose();
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-    solver.computeDirect(covariance);
-    const Eigen::Vector3f principal = solver.eigenvectors().col(2);
-    if (principal.allFinite() && principal.norm() > 0.5f) all.push_back(principal);
-    return all;
+  static std::array<Eigen::Vector3f, 4> directions(std::span<const split_item> items) {
+    return {Eigen::Vector3f::UnitX(), Eigen::Vector3f::UnitY(), Eigen::Vector3f::UnitZ(), principal_direction(items)};
   }
 };
 

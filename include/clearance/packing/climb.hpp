@@ -5,7 +5,7 @@
 
 namespace clearance {
 
-/// Who tries the directions of a climb: one lane tries all; eight share them, and agree on the best.
+/// Who tries the directions of a climb: one lane tries all; several share them, and agree on the best.
 struct one_lane {
   CLEARANCE_HD int rank() const { return 0; }
   CLEARANCE_HD int lanes() const { return 1; }

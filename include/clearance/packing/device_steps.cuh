@@ -11,16 +11,16 @@
 
 namespace clearance {
 
-/// Eight neighbours in a warp that share one climb.
-struct eight_lanes {
-  __device__ int rank() const { return int(threadIdx.x) % 8; }
-  __device__ int lanes() const { return 8; }
-  /// The largest value, and of equal ones the lowest number; all eight call it.
+/// Half a warp that shares one climb.
+struct half_warp {
+  __device__ int rank() const { return int(threadIdx.x) % 16; }
+  __device__ int lanes() const { return 16; }
+  /// The largest value, and of equal ones the lowest number; all call it.
   __device__ void agree(double& best, int& number) const {
-    const unsigned group = 0xffu << (threadIdx.x % 32 & ~7u);
-    for (int apart = 4; apart > 0; apart /= 2) {
-      const double other = __shfl_xor_sync(group, best, apart, 8);
-      const int n = __shfl_xor_sync(group, number, apart, 8);
+    const unsigned group = 0xffffu << (threadIdx.x % 32 & ~15u);
+    for (int apart = 8; apart > 0; apart /= 2) {
+      const double other = __shfl_xor_sync(group, best, apart, 16);
+      const int n = __shfl_xor_sync(group, number, apart, 16);
       if (other > best || (other == best && n < number)) best = other, number = n;
     }
   }
@@ -30,8 +30,8 @@ namespace detail {
 
 template <class F>
 __global__ void __launch_bounds__(128) climbers_kernel(std::size_t n, F f) {
-  const std::size_t i = (blockIdx.x * std::size_t(blockDim.x) + threadIdx.x) / 8;
-  if (i < n) f(i, eight_lanes{});
+  const std::size_t i = (blockIdx.x * std::size_t(blockDim.x) + threadIdx.x) / 16;
+  if (i < n) f(i, half_warp{});
 }
 
 struct larger {
@@ -64,7 +64,7 @@ class device_steps {
   template <class F>
   void climbers(std::size_t n, F f) const {
     const device_guard guard(on_.id);
-    detail::climbers_kernel<<<unsigned((n + 15) / 16), 128, 0, on_.stream>>>(n, f);
+    detail::climbers_kernel<<<unsigned((n + 7) / 8), 128, 0, on_.stream>>>(n, f);
     check_cuda(cudaGetLastError(), "kernel launch");
   }
 

@@ -10,6 +10,14 @@ struct solid_sphere {
   double radius;
 
   CLEARANCE_HD double distance(const vec3d& p) const { return (p - center).norm() - radius; }
+  /// The distance if it is below `best`, else `best`; a root is taken only of what is nearer.
+  CLEARANCE_HD double nearer(const vec3d& p, double best) const {
+    const vec3d way = p - center;
+    const double square = way.dot(way), reach = best + radius;
+    if (!(reach > 0 && square < reach * reach)) return best;
+    const double d = ::sqrt(square) - radius;
+    return d < best ? d : best;
+  }
 };
 
 /// The room in a mesh solid that spheres leave, in double, on host and device: a tree over most spheres, a list of the rest.
@@ -21,10 +29,7 @@ struct room_view {
 
   /// The distance to the spheres from number `first` on if it is below `within`, else `within`.
   CLEARANCE_HD double gap_from(std::uint32_t first, const vec3d& p, double within) const {
-    for (std::uint32_t i = first; i < count; ++i) {
-      const double d = spheres[i].distance(p);
-      if (d < within) within = d;
-    }
+    for (std::uint32_t i = first; i < count; ++i) within = spheres[i].nearer(p, within);
     return within;
   }
   /// The same for all; or, sooner, one that is no larger than `enough`.
@@ -41,11 +46,7 @@ struct room_view {
 
  private:
   CLEARANCE_HD double tree_gap(const vec3d& p, double within, double enough) const {
-    const solid_sphere* all = spheres;
-    return tree.nearest(p, within, [all, &p](std::uint32_t i, double best) {
-      const double d = all[i].distance(p);
-      return d < best ? d : best;
-    }, enough);
+    return tree.nearest(p, within, [this, &p](std::uint32_t i, double best) { return spheres[i].nearer(p, best); }, enough);
   }
 };
 

@@ -134,8 +134,9 @@ struct judge {
     for (std::size_t j = 0; j < count; ++j) {
       const double r = offers[j].found.radius;
       if (!(r > mine.radius || (r == mine.radius && j < i))) continue;
-      const double apart = (offers[j].grown.center - mine.center).norm() * (1 - 1e-12) - 1e-13 * scale;
-      if (apart < offers[j].grown.radius + mine.radius) return false;
+      const vec3d way = offers[j].grown.center - mine.center;
+      const double reach = (offers[j].grown.radius + mine.radius) * (1 + 1e-12) + 1e-13 * scale;  // with what rounding may do
+      if (way.dot(way) < reach * reach * (1 + 1e-12)) return false;
     }
     return true;
   }

@@ -90,7 +90,7 @@ class round_packer {
   }
 
   void one_round(double least) {
-    plant(512 + spheres_.size() / 16);
+    plant(128 + spheres_.size() / 16);
     const rounds::field f = field();
     const std::size_t some = steps_.select(alive_, rounds::at_least{keys_.data(), least}, some_.reserve(alive_));
     on_.for_each(some, rounds::refresh{f, some_.data(), cells_.data(), keys_.data(), least, deeds_.reserve(some)});
