@@ -52,7 +52,7 @@ inline std::unique_ptr<aiMesh> faces_of(const std::vector<ball>& balls) {
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return balls[a].radius > balls[b].radius; });
   const auto shape = [](std::size_t rank) -> const triangle_mesh& {
-    return shapes[rank < 2 ? 3 : rank < 16 ? 2 : rank < 128 ? 1 : 0];
+    return shapes[rank < 1 ? 3 : rank < 6 ? 2 : rank < 48 ? 1 : 0];
   };
   auto out = std::make_unique<aiMesh>();
   unsigned vertices = 0, faces = 0;
