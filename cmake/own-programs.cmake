@@ -100,11 +100,12 @@ endfunction()
 # clearance_needs(sources libraries missing): what the sources need besides the library, by what they include, and
 # which of that is not here.
 find_package(fcl CONFIG QUIET)
+find_package(embree 3 CONFIG QUIET)
 find_package(nlohmann_json CONFIG QUIET)
 function(clearance_needs sources libraries missing)
   set(found)
   set(absent)
-  foreach(pair "<clearance/io/=clearance::io" "<fcl/=fcl" "<nlohmann/=nlohmann_json::nlohmann_json"
+  foreach(pair "<clearance/io/=clearance::io" "<fcl/=fcl" "<embree3/=embree" "<nlohmann/=nlohmann_json::nlohmann_json"
                "CLEARANCE_COMMAND=clearance_command")
     string(REGEX MATCH "^[^=]*" sign ${pair})
     string(REGEX REPLACE "^[^=]*=" "" target ${pair})

@@ -1,97 +1,88 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One frame on the CPU: 307,200 points against the whole robot, by model and volume; and FCL on the same work.
+// One frame on the CPU: 307,200 points against the whole robot, by model and volume. *warm* is a prepared query that
+// remembers the last frame, *cold* one that does not, *plain* min_distance, *parts* warm with every part's own minimum.
 #include "scene.hpp"
 
-#include <clearance/min_distance.hpp>
+#include <clearance/min_distance_query.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <benchmark/benchmark.h>
 
-#if __has_include(<fcl/geometry/bvh/BVH_model.h>)
-#define CLEARANCE_BENCH_FCL
-#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
-#include <fcl/broadphase/default_broadphase_callbacks.h>
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/geometry/shape/sphere.h>
-#endif
-
 namespace {
 
-template <class Model>
-void ask(benchmark::State& state, const Model& model) {
+enum kind { warm, cold, plain, parts };
+
+template <class Model, class Source>
+void ask(benchmark::State& state, const Model& model, const Source& source, kind how) {
   const bench::scene& s = bench::the_scene();
   const clearance::host cpu{.threads = unsigned(state.range(0))};
-  const clearance::placed<clearance::point_span> cloud{s.cloud, s.world_from_camera};
+  const clearance::placed<Source> cloud{source, s.world_from_camera};
+  clearance::min_distance_query query(cpu, model);
+  std::vector<clearance::part_minimum> minima(how == parts ? model.size() : 0);
   clearance::min_distance_result r;
-  for (auto _ : state) r = clearance::min_distance(cpu, model, s.poses, cloud);
+  for (auto _ : state) {
+    if (how == cold) query.forget();
+    r = how == plain ? clearance::min_distance(cpu, model, s.poses, cloud) : query(s.poses, cloud, minima);
+  }
   state.counters["distance_mm"] = r.distance * 1e3;
-  state.counters["points"] = double(s.cloud.size());
+  state.counters["points"] = double(source.size());
 }
 
-template <class V>
+template <class V, kind How>
 void spheres(benchmark::State& state) {
   static const auto model = bench::sphere_model<V>(bench::the_scene());
-  ask(state, model);
+  ask(state, model, clearance::point_span(bench::the_scene().cloud), How);
 }
-template <class V>
+template <class V, kind How>
 void triangles(benchmark::State& state) {
   static const auto model = bench::triangle_model<V>(bench::the_scene());
-  ask(state, model);
+  ask(state, model, clearance::point_span(bench::the_scene().cloud), How);
+}
+
+/// The frame as a depth camera sends it: millimetres in 16 bits, deprojected while they are read.
+template <kind How>
+void depth(benchmark::State& state) {
+  static const auto model = bench::sphere_model<clearance::sphere>(bench::the_scene());
+  static const std::vector<std::uint16_t> pixels = [] {
+    std::vector<std::uint16_t> all;
+    for (const auto& p : bench::the_scene().cloud)
+      all.push_back(clearance::is_finite(p) ? std::uint16_t(p.z * 1000 + 0.5f) : 0);
+    return all;
+  }();
+  ask(state, model, clearance::depth_image<std::uint16_t>(pixels.data(), 640, 480, {525, 525, 319.5, 239.5}), How);
+}
+
+/// All that reading the points takes: their sum, in vector code.
+void read(benchmark::State& state) {
+  const auto& cloud = bench::the_scene().cloud;
+  const float* const f = &cloud[0].x;
+  constexpr std::size_t lanes = 32;
+  float sums[lanes] = {};
+  for (auto _ : state) {
+    for (std::size_t i = 0; i + lanes <= 3 * cloud.size(); i += lanes)
+      for (std::size_t j = 0; j < lanes; ++j) sums[j] += f[i + j];
+    benchmark::DoNotOptimize(sums);
+  }
 }
 
 #define ON_THREADS ->Arg(1)->Arg(2)->ArgName("threads")->UseRealTime()->Unit(benchmark::kMillisecond)
-BENCHMARK(spheres<clearance::sphere>) ON_THREADS;
-BENCHMARK(spheres<clearance::aabb>) ON_THREADS;
-BENCHMARK(spheres<clearance::obb>) ON_THREADS;
-BENCHMARK(triangles<clearance::sphere>) ON_THREADS;
-BENCHMARK(triangles<clearance::aabb>) ON_THREADS;
-BENCHMARK(triangles<clearance::obb>) ON_THREADS;
-
-#ifdef CLEARANCE_BENCH_FCL
-/// Mesh trees against a dynamic tree of radius-0 spheres: FCL's exact way to ask for a cloud. The tree is made per frame.
-void fcl_meshes(benchmark::State& state) {
-  const bench::scene& s = bench::the_scene();
-  using tree = fcl::BVHModel<fcl::OBBRSSd>;
-  std::vector<std::unique_ptr<fcl::CollisionObjectd>> links;
-  fcl::DynamicAABBTreeCollisionManagerd robot;
-  for (std::size_t k = 0; k < s.meshes.size(); ++k) {
-    const auto body = std::make_shared<tree>();
-    body->beginModel();
-    const auto& [vertices, faces] = s.meshes[k].surface;
-    for (const auto& f : faces)
-      if ((vertices[f[1]] - vertices[f[0]]).cross(vertices[f[2]] - vertices[f[0]]).norm() > 0)
-        body->addTriangle(vertices[f[0]], vertices[f[1]], vertices[f[2]]);
-    body->endModel();
-    links.push_back(std::make_unique<fcl::CollisionObjectd>(body, s.world_from_camera.inverse() * s.poses[k]));
-    robot.registerObject(links.back().get());
-  }
-  robot.setup();
-  double distance = 0, query = 0;
-  for (auto _ : state) {
-    std::vector<std::unique_ptr<fcl::CollisionObjectd>> points;
-    std::vector<fcl::CollisionObjectd*> pointers;
-    const auto dot = std::make_shared<fcl::Sphered>(0.0);
-    for (const auto& p : s.cloud) {
-      if (!clearance::is_finite(p)) continue;
-      points.push_back(std::make_unique<fcl::CollisionObjectd>(dot, Eigen::Matrix3d::Identity(), Eigen::Vector3d(p.x, p.y, p.z)));
-      pointers.push_back(points.back().get());
-    }
-    fcl::DynamicAABBTreeCollisionManagerd cloud;
-    cloud.registerObjects(pointers);
-    cloud.setup();
-    fcl::DefaultDistanceData<double> data;
-    const auto start = std::chrono::steady_clock::now();
-    robot.distance(&cloud, &data, fcl::DefaultDistanceFunction);
-    query += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    distance = data.result.min_distance;
-  }
-  state.counters["distance_mm"] = distance * 1e3;
-  state.counters["query_ms"] = benchmark::Counter(query * 1e3, benchmark::Counter::kAvgIterations);
-}
-BENCHMARK(fcl_meshes)->Iterations(1)->Unit(benchmark::kMillisecond);
-#endif
+BENCHMARK(read)->Unit(benchmark::kMillisecond);
+BENCHMARK(spheres<clearance::sphere, warm>) ON_THREADS;
+BENCHMARK(spheres<clearance::sphere, cold>) ON_THREADS;
+BENCHMARK(spheres<clearance::sphere, plain>) ON_THREADS;
+BENCHMARK(spheres<clearance::sphere, parts>) ON_THREADS;
+BENCHMARK(spheres<clearance::aabb, warm>) ON_THREADS;
+BENCHMARK(spheres<clearance::obb, warm>) ON_THREADS;
+BENCHMARK(depth<warm>) ON_THREADS;
+BENCHMARK(depth<cold>) ON_THREADS;
+BENCHMARK(triangles<clearance::sphere, warm>) ON_THREADS;
+BENCHMARK(triangles<clearance::aabb, warm>) ON_THREADS;
+BENCHMARK(triangles<clearance::aabb, cold>) ON_THREADS;
+BENCHMARK(triangles<clearance::aabb, plain>) ON_THREADS;
+BENCHMARK(triangles<clearance::aabb, parts>) ON_THREADS;
+BENCHMARK(triangles<clearance::obb, warm>) ON_THREADS;
 
 }  // namespace
 

@@ -45,7 +45,7 @@ inline void pack_all(scene& s) {
   s.packing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-inline scene demo() {
+inline scene demo(bool packed) {
   const demo_scene made = make_demo_scene(1);
   scene s;
   s.name = "demo";
@@ -60,12 +60,12 @@ inline scene demo() {
     s.cloud.push_back(point.valid() ? point.position : clearance::vec3{nan, nan, nan});
   }
   s.world_from_camera = made.world_from_camera;
-  pack_all(s);
+  if (packed) pack_all(s);
   return s;
 }
 
 /// The scene that all figures of this library speak of; the robot's links about 10 cm from the nearest point.
-inline scene kuka(const std::filesystem::path& data) {
+inline scene kuka(const std::filesystem::path& data, bool packed) {
   clearance::io::robot_options options;
   options.geometry = clearance::io::robot_geometry::visual;
   const auto robot = clearance::io::load_robot(data / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf", options);
@@ -75,18 +75,20 @@ inline scene kuka(const std::filesystem::path& data) {
   s.poses = robot.poses(std::vector<double>{0, 0.6, 0, -1.4, 0, 0.5, 0});
   s.cloud = clearance::io::load_cloud((data / "clouds/kinect_seq/frame_20121214T142255.814212.pcd").string()).points;
   s.world_from_camera = looking({2.18, -0.1, 1.25}, {-0.75, 0.1, -0.65});
-  pack_all(s);
+  if (packed) pack_all(s);
   return s;
 }
 
-/// The KUKA where its data is, else the demo.
-inline const scene& the_scene() {
+/// The KUKA where its data is, else the demo; not packed, where triangles are enough.
+template <bool Packed = true>
+const scene& the_scene() {
   static const scene s = [] {
     const std::filesystem::path data = CLEARANCE_TEST_DATA;
     const bool real = !data.empty() && std::filesystem::exists(data / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf");
     if (!real) std::fprintf(stderr, "No real data: this is the scene of clearance demo instead of the KUKA LWR.\n");
-    scene made = real ? kuka(data) : demo();
-    std::fprintf(stderr, "%s: %zu links packed with 2,048 spheres each in %.2f s\n", made.name.c_str(), made.meshes.size(), made.packing_seconds);
+    scene made = real ? kuka(data, Packed) : demo(Packed);
+    if (Packed)
+      std::fprintf(stderr, "%s: %zu links packed with 2,048 spheres each in %.2f s\n", made.name.c_str(), made.meshes.size(), made.packing_seconds);
     return made;
   }();
   return s;
