@@ -89,15 +89,14 @@ class minimum_search<host, PartView, Traversal> {
     std::uint32_t cloud, point;
   };
 
-  /// Where the last frame's minimum was, and around it: some other pixel may see the place now.
+  /// Where the last frame's minimum was, and near it: some other pixel may see the place now.
   template <class Body>
   static void recall(const Body& body, std::size_t point) {
-    const std::size_t n = body.source.size();
-    if (point >= n) return;
-    if (const sample s = body.source[point]; s.valid()) body.visit(s.position - body.origin, point);
-    const std::size_t begin = point - std::min(point, search::tile_points / 2);
-    search::tally uncounted;
-    search::scan_tiles(body, begin, std::min(n, begin + search::tile_points), uncounted);
+    for (const std::ptrdiff_t step : {0, -1, 1, -4, 4, -16, 16, -64, 64}) {
+      const std::size_t i = point + std::size_t(step);
+      if (i >= body.source.size()) continue;
+      if (const sample s = body.source[i]; s.valid()) body.visit(s.position - body.origin, i);
+    }
   }
 
   host on_;

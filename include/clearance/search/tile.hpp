@@ -103,6 +103,23 @@ inline std::uint32_t count_not_finite(const real* f) {
   return all;
 }
 
+struct surveyed {
+  tile_box box;
+  std::uint32_t not_finite;
+};
+inline surveyed survey_here(const real* f) {
+  const tile_box box = box_of(f);
+  if (sum_is_finite(f) && is_finite(box.lower) && is_finite(box.upper)) return {box, 0};
+  return {box, box.lower.x > box.upper.x ? std::uint32_t(tile_points) : count_not_finite(f)};
+}
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__)
+/// Twice as wide where the processor can, without a compiler flag; boxes and counts are the same.
+__attribute__((target("avx2"), flatten)) inline surveyed survey_avx2(const real* f) { return survey_here(f); }
+inline surveyed survey(const real* f) { return __builtin_cpu_supports("avx2") ? survey_avx2(f) : survey_here(f); }
+#else
+inline surveyed survey(const real* f) { return survey_here(f); }
+#endif
+
 /// The least and largest depth of a tile of pixels, and how many of them are none.
 template <class Pixel>
 struct depths {
@@ -155,10 +172,9 @@ bool survey(const S&, std::size_t, tile_box&, tally&) {
 
 inline bool survey(const point_span& source, std::size_t begin, tile_box& box, tally& mine) {
   if (!source.filter.plain()) return false;
-  const real* const f = &source.points[begin].x;
-  box = detail::box_of(f);
-  if (detail::sum_is_finite(f) && is_finite(box.lower) && is_finite(box.upper)) return true;
-  mine.dropped[int(drop_reason::not_finite)] += box.lower.x > box.upper.x ? tile_points : detail::count_not_finite(f);
+  const detail::surveyed seen = detail::survey(&source.points[begin].x);
+  box = seen.box;
+  mine.dropped[int(drop_reason::not_finite)] += seen.not_finite;
   return true;
 }
 
