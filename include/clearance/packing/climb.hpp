@@ -9,6 +9,7 @@ namespace clearance {
 struct one_lane {
   CLEARANCE_HD int rank() const { return 0; }
   CLEARANCE_HD int lanes() const { return 1; }
+  CLEARANCE_HD void meet() const {}
   CLEARANCE_HD void agree(double&, int&) const {}
 };
 
@@ -22,12 +23,13 @@ CLEARANCE_HD inline vec3d compass(int k) {
   return {k & 1 ? c : -c, k & 2 ? c : -c, (k - 6) & 4 ? c : -c};
 }
 
-/// Compass search for a place that `worth(p, least)` more than `from` is; it returns what p is worth, or anything not
-/// above `least`, and what is worth at most `step` more a step of that length away.
-template <class Lanes, class F>
-CLEARANCE_HD solid_sphere search(const solid_sphere& from, double precision, Lanes lanes, F worth) {
+/// Compass search for a place worth more. `worth(p, most, least)` says what p is worth, which is at most `most`, or
+/// anything not above `least`; `prepare(now)` is called before each step.
+template <class Lanes, class G, class F>
+CLEARANCE_HD solid_sphere search(const solid_sphere& from, double precision, Lanes lanes, G prepare, F worth) {
   solid_sphere now = from;
   for (double step = now.radius / 2; step > precision * now.radius;) {
+    prepare(now);
     double best = now.radius + 0.02 * step;  // less is not worth a step of this size
     int way = 14;
     for (int k = lanes.rank(); k < 14; k += lanes.lanes()) {
@@ -45,19 +47,70 @@ CLEARANCE_HD solid_sphere search(const solid_sphere& from, double precision, Lan
   return now;
 }
 
+/// The room around a place, from the few triangles and spheres that are near: exact while it is below `reach` minus the
+/// way from the place, and never too large. Where they are too many, all are asked.
+template <class Lanes>
+class local_list {
+ public:
+  static constexpr std::uint32_t capacity = 256;
+
+  CLEARANCE_HD local_list(const room_view& all, std::uint32_t* items, Lanes lanes) : all_(all), items_(items), lanes_(lanes) {}
+
+  CLEARANCE_HD void prepare(const solid_sphere& now) {
+    if (reach_ >= 1.5 * now.radius && (now.center - place_).norm() <= 0.25 * reach_) return;
+    place_ = now.center, reach_ = 2 * now.radius, count_ = 0;
+    const auto triangle = [this](std::uint32_t i, double best) {
+      return take(i, all_.solid.triangles[i].nearer(place_, best) < best), best;
+    };
+    const auto sphere = [this](std::uint32_t i, double best) {
+      return take(i, all_.spheres[i].nearer(place_, best) < best), best;
+    };
+    lanes_.meet();  // all have read what was there
+    all_.solid.tree.nearest(place_, reach_, triangle);
+    triangles_ = count_;
+    all_.tree.nearest(place_, reach_, sphere);
+    for (std::uint32_t i = all_.tree.items; i < all_.count; ++i) sphere(i, reach_);
+    lanes_.meet();
+  }
+  CLEARANCE_HD double room(const vec3d& p, double within, double enough) const {
+    if (count_ > capacity) return all_.room(p, within, enough);
+    const double known = reach_ - (p - place_).norm();
+    if (known < within) within = known;
+    for (std::uint32_t k = 0; k < count_ && within > enough; ++k)
+      within = k < triangles_ ? all_.solid.triangles[items_[k]].nearer(p, within) : all_.spheres[items_[k]].nearer(p, within);
+    return within;
+  }
+
+ private:
+  CLEARANCE_HD void take(std::uint32_t item, bool near) {
+    if (!near) return;
+    if (count_ < capacity && lanes_.rank() == 0) items_[count_] = item;
+    ++count_;
+  }
+
+  const room_view& all_;
+  std::uint32_t* items_;
+  Lanes lanes_;
+  vec3d place_;
+  double reach_ = 0;
+  std::uint32_t triangles_ = 0, count_ = 0;
+};
+
 /// Moves an inside sphere, which no other may touch, to a local maximum of the room, not farther than `farthest`. Each
 /// step stays in the ball that is known to be inside, so none can leave the solid through a thin wall.
 template <class Lanes>
-CLEARANCE_HD solid_sphere climb(const room_view& in, const solid_sphere& from, double farthest, Lanes lanes) {
-  return search(from, 1e-3, lanes, [&](const vec3d& p, double most, double least) {
-    return (p - from.center).norm() > farthest ? 0 : in.room(p, most * (1 + 1e-12), least);
+CLEARANCE_HD solid_sphere climb(const room_view& in, std::uint32_t* memory, const solid_sphere& from, double farthest, Lanes lanes) {
+  local_list<Lanes> around(in, memory, lanes);
+  return search(from, 1e-3, lanes, [&](const solid_sphere& now) { around.prepare(now); },
+                [&](const vec3d& p, double most, double least) {
+    return (p - from.center).norm() > farthest ? 0 : around.room(p, most * (1 + 1e-12), least);
   });
 }
 
 /// Moves and grows an inside sphere, whatever spheres are in the way, while it covers the middle of what it was.
 template <class Lanes>
 CLEARANCE_HD solid_sphere grow(const mesh_solid_view& in, const solid_sphere& from, Lanes lanes) {
-  return search(from, 1e-2, lanes, [&](const vec3d& p, double most, double least) {
+  return search(from, 1e-2, lanes, [](const solid_sphere&) {}, [&](const vec3d& p, double most, double least) {
     const double r = in.distance(p, most * (1 + 1e-12), least);
     return (p - from.center).norm() <= r - from.radius / 2 ? r : 0;
   });

@@ -15,15 +15,18 @@ namespace clearance {
 struct half_warp {
   __device__ int rank() const { return int(threadIdx.x) % 16; }
   __device__ int lanes() const { return 16; }
+  __device__ void meet() const { __syncwarp(group()); }
   /// The largest value, and of equal ones the lowest number; all call it.
   __device__ void agree(double& best, int& number) const {
-    const unsigned group = 0xffffu << (threadIdx.x % 32 & ~15u);
     for (int apart = 8; apart > 0; apart /= 2) {
-      const double other = __shfl_xor_sync(group, best, apart, 16);
-      const int n = __shfl_xor_sync(group, number, apart, 16);
+      const double other = __shfl_xor_sync(group(), best, apart, 16);
+      const int n = __shfl_xor_sync(group(), number, apart, 16);
       if (other > best || (other == best && n < number)) best = other, number = n;
     }
   }
+
+ private:
+  __device__ static unsigned group() { return 0xffffu << (threadIdx.x % 32 & ~15u); }
 };
 
 namespace detail {

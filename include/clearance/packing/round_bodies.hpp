@@ -105,12 +105,13 @@ struct climb_cells {
   bool overlap;
   offer* offers;
   deed* deeds;
+  std::uint32_t* memory;  ///< `capacity` a climber.
   template <class Lanes>
   CLEARANCE_HD void operator()(std::size_t i, Lanes lanes) const {
     const cell& c = cells[some[these[i]]];
     // Taken before its turn: stay here, there is more room elsewhere.
     const double farthest = keys[some[these[i]]] > c.bound() ? c.room() / 2 : std::numeric_limits<double>::infinity();
-    solid_sphere found = climb(f.in, {c.middle, c.room()}, farthest, lanes);
+    solid_sphere found = climb(f.in, memory + i * local_list<Lanes>::capacity, {c.middle, c.room()}, farthest, lanes);
     const solid_sphere grown = fit(f, overlap ? grow(f.in.solid, found, lanes) : found, overlap);
     if (lanes.rank() != 0) return;
     const double least = 0.98 * found.radius;
@@ -128,18 +129,23 @@ struct judge {
   const offer* offers;
   std::size_t count;
   double scale;
-  CLEARANCE_HD bool operator()(std::size_t i) const {
+  unsigned char* taken;
+  CLEARANCE_HD void operator()(std::size_t i) const {
     const solid_sphere& mine = offers[i].found;
-    if (!(mine.radius > 0)) return false;
-    for (std::size_t j = 0; j < count; ++j) {
-      const double r = offers[j].found.radius;
-      if (!(r > mine.radius || (r == mine.radius && j < i))) continue;
-      const vec3d way = offers[j].grown.center - mine.center;
-      const double reach = (offers[j].grown.radius + mine.radius) * (1 + 1e-12) + 1e-13 * scale;  // with what rounding may do
-      if (way.dot(way) < reach * reach * (1 + 1e-12)) return false;
+    bool yes = mine.radius > 0;
+    for (std::size_t j = 0; j < count && yes; ++j) {
+      const solid_sphere &theirs = offers[j].grown, &found = offers[j].found;
+      if (!(found.radius > mine.radius || (found.radius == mine.radius && j < i))) continue;
+      const vec3d way = theirs.center - mine.center;
+      const double reach = (theirs.radius + mine.radius) * (1 + 1e-12) + 1e-13 * scale;  // with what rounding may do
+      yes = way.dot(way) >= reach * reach * (1 + 1e-12);
     }
-    return true;
+    taken[i] = yes;
   }
+};
+struct is_taken {
+  const unsigned char* taken;
+  CLEARANCE_HD bool operator()(std::size_t i) const { return taken[i] != 0; }
 };
 
 struct append {

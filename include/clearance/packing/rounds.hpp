@@ -21,7 +21,6 @@ class round_packer {
  public:
   round_packer(const B& on, Steps& steps, const mesh_solid& s, const pack_options& options)
       : on_(on), steps_(steps), solid_(s), options_(options), limits_(s.bounds(), options), there_(s.on(on)),
-        nodes_(on.copy_in(std::span<const box_pair>())), order_(on.copy_in(std::span<const std::uint32_t>())),
         rules_{options.gap_per_radius, std::isfinite(options.gap_per_radius)} {}
 
   packing run() {
@@ -60,7 +59,8 @@ class round_packer {
       boxes.emplace_back(c - r, c + r);
     }
     tree_ = box_tree(boxes);
-    nodes_ = on_.copy_in(tree_.nodes()), order_ = on_.copy_in(tree_.order());
+    on_.stage(tree_.nodes(), nodes_.reserve(tree_.nodes().size()));
+    on_.stage(tree_.order(), order_.reserve(tree_.order().size()));
   }
 
   pack_stop fill() {
@@ -98,7 +98,8 @@ class round_packer {
     const std::size_t climbers = std::min(most_climbers, steps_.select(some, climbing, these_.reserve(some)));
     if (climbers != 0) {
       steps_.climbers(climbers, rounds::climb_cells{f, some_.data(), these_.data(), cells_.data(), keys_.data(),
-                                                    options_.allow_overlap, offers_.reserve(climbers), deeds_.data()});
+                                                    options_.allow_overlap, offers_.reserve(climbers), deeds_.data(),
+                                                    memory_.reserve(climbers * local_list<one_lane>::capacity)});
       take(climbers);
     }
     const std::size_t divided = steps_.select(some, dividing, these_.data());
@@ -108,7 +109,8 @@ class round_packer {
   }
 
   void take(std::size_t climbers) {
-    const std::size_t taken = steps_.select(climbers, rounds::judge{offers_.data(), climbers, limits_.scale}, taken_.reserve(climbers));
+    on_.for_each(climbers, rounds::judge{offers_.data(), climbers, limits_.scale, verdicts_.reserve(climbers)});
+    const std::size_t taken = steps_.select(climbers, rounds::is_taken{verdicts_.data()}, taken_.reserve(climbers));
     on_.for_each(taken, rounds::append{offers_.data(), taken_.data(), spheres_there_.reserve(spheres_.size() + taken, spheres_.size()) + spheres_.size()});
     auto added = on_.copy_out(spheres_there_.data() + spheres_.size(), taken);
     if (spheres_.size() + taken > options_.count) {  // the last round: the largest
@@ -140,15 +142,15 @@ class round_packer {
   pack_limits limits_;
   mesh_solid_copy<B> there_;
   box_tree tree_;
-  typename B::template buffer<box_pair> nodes_;
-  typename B::template buffer<std::uint32_t> order_;
+  growing<box_pair, B> nodes_{on_};
   std::vector<solid_sphere> spheres_;
   growing<solid_sphere, B> spheres_there_{on_};
   growing<rounds::cell, B> cells_{on_};
   growing<double, B> keys_{on_};
-  growing<std::uint32_t, B> some_{on_}, these_{on_}, taken_{on_};
+  growing<std::uint32_t, B> order_{on_}, some_{on_}, these_{on_}, taken_{on_}, memory_{on_};
   growing<rounds::deed, B> deeds_{on_};
   growing<rounds::offer, B> offers_{on_};
+  growing<unsigned char, B> verdicts_{on_};
   std::size_t alive_ = 0;
   pack_rules rules_;
 };
