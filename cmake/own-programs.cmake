@@ -105,8 +105,8 @@ find_package(nlohmann_json CONFIG QUIET)
 function(clearance_needs sources libraries missing)
   set(found)
   set(absent)
-  foreach(pair "<clearance/io/=clearance::io" "<fcl/=fcl" "<embree3/=embree" "<nlohmann/=nlohmann_json::nlohmann_json"
-               "CLEARANCE_COMMAND=clearance_command")
+  foreach(pair "<clearance/io/=clearance::io" "<fcl/=fcl" "<embree3/=embree" "<openvdb/=openvdb"
+               "<nlohmann/=nlohmann_json::nlohmann_json" "CLEARANCE_COMMAND=clearance_command")
     string(REGEX MATCH "^[^=]*" sign ${pair})
     string(REGEX REPLACE "^[^=]*=" "" target ${pair})
     foreach(source ${sources})

@@ -18,7 +18,7 @@ struct solid_cell {
   double reach() const { return half * 1.7320508075688774; }  ///< From the middle to a corner, rounded up.
 };
 
-template <solid S>
+template <class S>
 double distance_within(const S& s, const Eigen::Vector3d& p, double within) {
   if constexpr (requires { { s.distance(p, within) } -> std::same_as<double>; })
     return s.distance(p, within);

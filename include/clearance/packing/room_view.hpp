@@ -1,24 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/packing/compass.hpp>
 #include <clearance/solid/mesh_solid_view.hpp>
 
 namespace clearance {
-
-struct solid_sphere {
-  vec3d center;
-  double radius;
-
-  CLEARANCE_HD double distance(const vec3d& p) const { return (p - center).norm() - radius; }
-  /// The distance if it is below `best`, else `best`; a root is taken only of what is nearer.
-  CLEARANCE_HD double nearer(const vec3d& p, double best) const {
-    const vec3d way = p - center;
-    const double square = way.dot(way), reach = best + radius;
-    if (!(reach > 0 && square < reach * reach)) return best;
-    const double d = ::sqrt(square) - radius;
-    return d < best ? d : best;
-  }
-};
 
 /// The room in a mesh solid that spheres leave, in double, on host and device: a tree over most spheres, a list of the rest.
 struct room_view {

@@ -15,10 +15,10 @@ class nearby_triangles {
  public:
   nearby_triangles(const std::vector<exact_triangle>& all, std::vector<std::uint32_t> some, double reach)
       : all_(&all), some_(std::move(some)), reach_(reach) {}
-  double distance(const Eigen::Vector3d& p) const {
-    double best = reach_;
-    for (const std::uint32_t i : some_) best = (*all_)[i].nearer(p, best);
-    return best;
+  double distance(const Eigen::Vector3d& p) const { return distance(p, reach_); }
+  double distance(const Eigen::Vector3d& p, double within) const {
+    for (const std::uint32_t i : some_) within = (*all_)[i].nearer(p, within);
+    return within;
   }
 
  private:

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/solid/vec3d.hpp>
+
+namespace clearance {
+
+struct solid_sphere {
+  vec3d center;
+  double radius;
+
+  CLEARANCE_HD double distance(const vec3d& p) const { return (p - center).norm() - radius; }
+  /// The distance if it is below `best`, else `best`; a root is taken only of what is nearer.
+  CLEARANCE_HD double nearer(const vec3d& p, double best) const {
+    const vec3d way = p - center;
+    const double square = way.dot(way), reach = best + radius;
+    if (!(reach > 0 && square < reach * reach)) return best;
+    const double d = ::sqrt(square) - radius;
+    return d < best ? d : best;
+  }
+};
+
+/// Who tries the directions of a climb: one lane tries all; several share them, and agree on the best.
+struct one_lane {
+  CLEARANCE_HD int rank() const { return 0; }
+  CLEARANCE_HD int lanes() const { return 1; }
+  CLEARANCE_HD void meet() const {}
+  CLEARANCE_HD void agree(double&, int&) const {}
+};
+
+/// The six axes and eight diagonals.
+CLEARANCE_HD inline vec3d compass(int k) {
+  if (k < 6) {
+    const double s = k & 1 ? 1 : -1;
+    return {k / 2 == 0 ? s : 0, k / 2 == 1 ? s : 0, k / 2 == 2 ? s : 0};
+  }
+  constexpr double c = 0.5773502691896258;
+  return {k & 1 ? c : -c, k & 2 ? c : -c, (k - 6) & 4 ? c : -c};
+}
+
+/// Compass search for a place worth more. `worth(p, most, least)` says what p is worth, which is at most `most`, or
+/// anything not above `least`; `prepare(now)` is called before each step.
+template <class Lanes, class G, class F>
+CLEARANCE_HD solid_sphere search(const solid_sphere& from, double precision, Lanes lanes, G prepare, F worth) {
+  solid_sphere now = from;
+  for (double step = now.radius / 2; step > precision * now.radius;) {
+    prepare(now);
+    double best = now.radius + 0.02 * step;  // less is not worth a step of this size
+    int way = 14;
+    for (int k = lanes.rank(); k < 14; k += lanes.lanes()) {
+      const double r = worth(now.center + step * compass(k), now.radius + step, best);
+      if (r > best) best = r, way = k;
+    }
+    lanes.agree(best, way);
+    if (way < 14) {
+      now = {now.center + step * compass(way), best};
+      step = 1.5 * step < 0.9 * best ? 1.5 * step : 0.9 * best;
+    } else {
+      step /= 2;
+    }
+  }
+  return now;
+}
+
+}  // namespace clearance
