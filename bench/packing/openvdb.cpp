@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenVDB's fillWithSpheres on the links of the KUKA LWR 4+, at the same count, judged by our measures: fill, certified gap,
-// and how many of its spheres stick out of the mesh or into one another. --benchmark_format=json.
+// OpenVDB's fillWithSpheres on the links of the KUKA LWR 4+, at the same count, judged by our measures: fill, certified
+// gap, and how many of its spheres stick out of the mesh or into one another. --benchmark_format=json.
 
 #include "packing/links.hpp"
 
@@ -21,7 +21,8 @@ packing fill(const mesh_solid& s, int finest, int instances, double& out, double
   std::vector<openvdb::Vec3I> triangles;
   for (const auto& c : s.corners()) points.emplace_back(float(c.x()), float(c.y()), float(c.z()));
   for (const auto& t : s.mesh().surface.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-  const auto grid = openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*openvdb::math::Transform::createLinearTransform(voxel), points, triangles);
+  const auto grid = openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
+      *openvdb::math::Transform::createLinearTransform(voxel), points, triangles);
   std::vector<openvdb::Vec4s> found;
   openvdb::tools::fillWithSpheres(*grid, found, openvdb::Vec2i(int(sphere_count), int(sphere_count)), false, 0.1f,
                                   std::numeric_limits<float>::max(), 0, instances);
@@ -54,16 +55,20 @@ int main(int argc, char** argv) {
   std::vector<mesh_solid> solids;
   for (const auto& file : files) solids.emplace_back(io::load_mesh(file));
   for (const auto& [finest, instances] : {std::pair{100, 10000}, {200, 100000}})
-    benchmark::RegisterBenchmark(("openvdb/all/voxels:" + std::to_string(finest) + "/instances:" + std::to_string(instances)).c_str(),
-                                 [&solids, finest = finest, instances = instances](benchmark::State& state) {
-      double out = 0, overlapping = 0;
-      std::vector<packing> packings;
-      for (auto _ : state) {
-        packings.clear(), out = overlapping = 0;
-        for (const auto& s : solids) packings.push_back(fill(s, finest, instances, out, overlapping));
-      }
-      report(state, packings);
-      state.counters["out"] = out, state.counters["overlapping"] = overlapping;
-    })->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+    benchmark::RegisterBenchmark(
+        ("openvdb/all/voxels:" + std::to_string(finest) + "/instances:" + std::to_string(instances)).c_str(),
+        [&solids, finest = finest, instances = instances](benchmark::State& state) {
+          double out = 0, overlapping = 0;
+          std::vector<packing> packings;
+          for (auto _ : state) {
+            packings.clear(), out = overlapping = 0;
+            for (const auto& s : solids) packings.push_back(fill(s, finest, instances, out, overlapping));
+          }
+          report(state, packings);
+          state.counters["out"] = out, state.counters["overlapping"] = overlapping;
+        })
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime()
+        ->Iterations(1);
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -31,9 +31,11 @@ int main(int argc, char** argv) {
   std::vector<triangle_mesh> meshes;
   for (const auto& file : files) meshes.push_back(io::load_mesh(file));
   for (std::size_t i = 0; i < files.size(); ++i)
-    benchmark::RegisterBenchmark(("pack/" + files[i].stem().string()).c_str(), [&, i](benchmark::State& state) {
-      run(state, {meshes[i]}, {.count = sphere_count});
-    })->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+    benchmark::RegisterBenchmark(("pack/" + files[i].stem().string()).c_str(),
+                                 [&, i](benchmark::State& state) { run(state, {meshes[i]}, {.count = sphere_count}); })
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime()
+        ->Iterations(1);
   const struct {
     const char* name;
     pack_options options;
@@ -42,8 +44,10 @@ int main(int argc, char** argv) {
              {"pack/all/overlapping", {.count = sphere_count, .allow_overlap = true}},
              {"pack/all/one_thread", {.count = sphere_count, .threads = 1}}};
   for (const auto& variant : all)
-    benchmark::RegisterBenchmark(variant.name, [&, variant](benchmark::State& state) {
-      run(state, meshes, variant.options);
-    })->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+    benchmark::RegisterBenchmark(variant.name,
+                                 [&, variant](benchmark::State& state) { run(state, meshes, variant.options); })
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime()
+        ->Iterations(1);
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Packs meshes with inner spheres on a GPU: time, fill, gaps. Mesh files are arguments; without any, the eight links of the
-// KUKA LWR 4+ from the data folder. "all" packs them on a stream each, closing the meshes included; "one_by_one" on one
-// stream; "solids" from solids made beforehand. --benchmark_format=json.
+// Packs meshes with inner spheres on a GPU: time, fill, gaps. Mesh files are arguments; without any, the eight links of
+// the KUKA LWR 4+ from the data folder. "all" packs them on a stream each, closing the meshes included; "one_by_one" on
+// one stream; "solids" from solids made beforehand. --benchmark_format=json.
 
 #include "packing/links.hpp"
 
@@ -21,7 +21,8 @@ struct own_stream {
 };
 
 template <class M>
-std::vector<packing> at_once(const std::vector<M>& what, const pack_options& options, const std::vector<own_stream>& streams) {
+std::vector<packing> at_once(const std::vector<M>& what, const pack_options& options,
+                             const std::vector<own_stream>& streams) {
   std::vector<packing> packings(what.size());
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < what.size(); ++i)
@@ -32,11 +33,15 @@ std::vector<packing> at_once(const std::vector<M>& what, const pack_options& opt
 
 template <class F>
 void measure(const char* name, int times, F f) {
-  benchmark::RegisterBenchmark(name, [f](benchmark::State& state) {
-    std::vector<packing> packings;
-    for (auto _ : state) packings = f();
-    report(state, packings);
-  })->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(times);
+  benchmark::RegisterBenchmark(name,
+                               [f](benchmark::State& state) {
+                                 std::vector<packing> packings;
+                                 for (auto _ : state) packings = f();
+                                 report(state, packings);
+                               })
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime()
+      ->Iterations(times);
 }
 
 }  // namespace
@@ -61,13 +66,16 @@ int main(int argc, char** argv) {
     for (const auto& m : meshes) packings.push_back(pack(device{}, m, usual));
     return packings;
   });
-  measure("pack_gpu/all/strictly_largest_first", 1, [&] { return at_once(meshes, {.count = sphere_count, .gap_per_radius = infinity}, streams); });
-  measure("pack_gpu/all/overlapping", 1, [&] { return at_once(meshes, {.count = sphere_count, .allow_overlap = true}, streams); });
+  measure("pack_gpu/all/strictly_largest_first", 1,
+          [&] { return at_once(meshes, {.count = sphere_count, .gap_per_radius = infinity}, streams); });
+  measure("pack_gpu/all/overlapping", 1,
+          [&] { return at_once(meshes, {.count = sphere_count, .allow_overlap = true}, streams); });
   for (std::size_t i = 0; i < files.size(); ++i)
     for (const std::size_t count : {sphere_count, std::size_t(100000)}) {
       if (count != sphere_count && i != 2 % files.size()) continue;
       const std::string name = "pack_gpu/" + files[i].stem().string() + "/spheres:" + std::to_string(count);
-      measure(name.c_str(), 1, [&, i, count] { return std::vector<packing>{pack(device{}, meshes[i], {.count = count})}; });
+      measure(name.c_str(), 1,
+              [&, i, count] { return std::vector<packing>{pack(device{}, meshes[i], {.count = count})}; });
     }
   benchmark::RunSpecifiedBenchmarks();
 }

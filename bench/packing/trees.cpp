@@ -58,7 +58,8 @@ struct robot_and_points {
 
 robot_and_points load() {
   robot_and_points r;
-  const auto arm = io::load_robot(std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf");
+  const auto arm =
+      io::load_robot(std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf");
   const std::vector<double> bent = {0.3, 0.7, -0.2, -1.2, 0.4, 0.9, 0};
   const auto poses = arm.poses(bent);
   Eigen::AlignedBox3d bounds;
@@ -76,10 +77,13 @@ robot_and_points load() {
     while (r.points[k].size() < 3000) {  // from far away towards the robot, until so near
       Eigen::Vector3d at(normal(random), normal(random), normal(random));
       at = bounds.center() + far * at.normalized();
-      const Eigen::Vector3d target = bounds.center() + Eigen::Vector3d(normal(random), normal(random), normal(random)).cwiseProduct(bounds.sizes()) / 4;
+      const Eigen::Vector3d target =
+          bounds.center() +
+          Eigen::Vector3d(normal(random), normal(random), normal(random)).cwiseProduct(bounds.sizes()) / 4;
       const Eigen::Vector3d way = (target - at).normalized();
       double d = r.to_solids(at);
-      for (double gone = 0; d > r.away[k] + 1e-9 && gone < 2 * far; d = r.to_solids(at)) at += (d - r.away[k]) * way, gone += d - r.away[k];
+      for (double gone = 0; d > r.away[k] + 1e-9 && gone < 2 * far; d = r.to_solids(at))
+        at += (d - r.away[k]) * way, gone += d - r.away[k];
       if (d > r.away[k] + 1e-6) continue;
       const Eigen::Vector3d rounded = at.cast<float>().cast<double>();
       r.points[k].push_back(rounded), r.exact[k].push_back(r.to_solids(rounded));
@@ -114,7 +118,8 @@ void tests(benchmark::State& state, const robot_and_points& r, std::uint32_t wid
   const double points = double(r.points[0].size() + r.points[1].size() + r.points[2].size());
   state.counters["bounds"] = double(bounds_tested) / points;
   state.counters["spheres"] = double(primitives_tested) / points;
-  state.counters["us_a_point"] = benchmark::Counter(points * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["us_a_point"] =
+      benchmark::Counter(points * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   for (int k = 0; k < 3; ++k) {
     const std::string at = std::to_string(int(100 * r.away[k])) + "cm";
     state.counters["error_mm_" + at] = error[k];
@@ -126,8 +131,9 @@ void tests(benchmark::State& state, const robot_and_points& r, std::uint32_t wid
 template <class Fit, class Split>
 void add(const robot_and_points& r, const char* fit_name, Fit fit, const char* split_name, Split split) {
   for (const std::uint32_t width : {2, 4, 8})
-    benchmark::RegisterBenchmark((std::string("tree/") + split_name + "/" + fit_name + "/width:" + std::to_string(width)).c_str(),
-                                 [&r, fit, split, width](benchmark::State& state) { tests(state, r, width, fit, split); })
+    benchmark::RegisterBenchmark(
+        (std::string("tree/") + split_name + "/" + fit_name + "/width:" + std::to_string(width)).c_str(),
+        [&r, fit, split, width](benchmark::State& state) { tests(state, r, width, fit, split); })
         ->Unit(benchmark::kMillisecond);
 }
 
@@ -149,11 +155,15 @@ int main(int argc, char** argv) {
     std::vector<inner_sphere> spheres;
     for (const auto& l : r.links)
       for (const auto& s : l.spheres)
-        if (spheres.size() < 14000) spheres.push_back({{s.s.center.x + real(spheres.size() / sphere_count), s.s.center.y, s.s.center.z}, s.s.radius});
+        if (spheres.size() < 14000)
+          spheres.push_back(
+              {{s.s.center.x + real(spheres.size() / sphere_count), s.s.center.y, s.s.center.z}, s.s.radius});
     for (auto _ : state) {
       const auto tree = build<sphere>(spheres);
-      state.counters["kB"] = double(tree.volumes.size() * sizeof(sphere) + tree.nodes.size() * sizeof(bvh_node) +
-                                    tree.primitives.size() * sizeof(inner_sphere) + tree.ids.size() * sizeof(std::uint32_t)) / 1000;
+      state.counters["kB"] =
+          double(tree.volumes.size() * sizeof(sphere) + tree.nodes.size() * sizeof(bvh_node) +
+                 tree.primitives.size() * sizeof(inner_sphere) + tree.ids.size() * sizeof(std::uint32_t)) /
+          1000;
     }
   })->Unit(benchmark::kMillisecond);
   benchmark::RunSpecifiedBenchmarks();

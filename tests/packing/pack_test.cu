@@ -19,13 +19,17 @@ TEST_CASE("a GPU's packing is the same bits on every run") { repeats_itself(on_g
 TEST_CASE("a GPU stops packing for each reason") { stops_for_each_reason(on_gpu); }
 TEST_CASE("a GPU lets spheres overlap if asked to") { lets_spheres_overlap(on_gpu); }
 TEST_CASE("a GPU refuses to pack what makes no sense") { refuses_what_makes_no_sense(on_gpu); }
-TEST_CASE("a GPU packs real links", "[data]") { packs_real_links(on_gpu, 2048, {"base.STL", "link_2.STL", "link_7.STL"}); }
+TEST_CASE("a GPU packs real links", "[data]") {
+  packs_real_links(on_gpu, 2048, {"base.STL", "link_2.STL", "link_7.STL"});
+}
 
 TEST_CASE("solids are packed on several streams at once, each as if it were alone") {
-  const triangle_mesh meshes[] = {shapes::box({0, 0, 0}, {1, 0.7, 0.9}), shapes::globe({0, 0, 0}, 1), shapes::torus(1, 0.25)};
+  const triangle_mesh meshes[] = {shapes::box({0, 0, 0}, {1, 0.7, 0.9}), shapes::globe({0, 0, 0}, 1),
+                                  shapes::torus(1, 0.25)};
   packing alone[3], together[3];
   std::thread threads[3];
   for (int i = 0; i < 3; ++i) alone[i] = on_gpu(meshes[i], {.count = 500});
+  // [streams]
   for (int i = 0; i < 3; ++i)
     threads[i] = std::thread([&, i] {
       cudaStream_t stream;
@@ -34,5 +38,6 @@ TEST_CASE("solids are packed on several streams at once, each as if it were alon
       cudaStreamDestroy(stream);
     });
   for (auto& t : threads) t.join();
+  // [streams]
   for (int i = 0; i < 3; ++i) CHECK(same(alone[i], together[i]));
 }

@@ -24,13 +24,13 @@ void keeps_the_laws(Pack pack) {
       {cube, 700},
       {inverted(cube), 50},
       {globe({5, -3, 2}, 0.02), 200},
-      {box({0, 0, 0}, {1, 1, 0.01}), 300},                                   // a thin plate
-      {merged(cube, globe({1, 0.5, 0.5}, 0.6)), 200},                        // overlapping shells
-      {merged(cube, inverted(globe({0.5, 0.5, 0.5}, 0.3))), 200},            // a cavity
-      {merged(box({-1, -1, -1}, {2, 2, 2}), cube), 100},                     // nested shells of one orientation
-      {merged(cube, box({3, 0, 0}, {4, 2, 1})), 100},                        // two pieces
-      {box({0, 0, 0}, {1000, 800, 50}), 100},                                // millimetres
-      {box({1000, 1000, 1000}, {1000.1, 1000.1, 1000.1}), 50},               // far from its origin
+      {box({0, 0, 0}, {1, 1, 0.01}), 300},                         // a thin plate
+      {merged(cube, globe({1, 0.5, 0.5}, 0.6)), 200},              // overlapping shells
+      {merged(cube, inverted(globe({0.5, 0.5, 0.5}, 0.3))), 200},  // a cavity
+      {merged(box({-1, -1, -1}, {2, 2, 2}), cube), 100},           // nested shells of one orientation
+      {merged(cube, box({3, 0, 0}, {4, 2, 1})), 100},              // two pieces
+      {box({0, 0, 0}, {1000, 800, 50}), 100},                      // millimetres
+      {box({1000, 1000, 1000}, {1000.1, 1000.1, 1000.1}), 50},     // far from its origin
       {torus(1, 0.25), 200},
   };
   for (const auto& c : cases) {
@@ -45,7 +45,8 @@ void keeps_the_laws(Pack pack) {
 /// Within a few per cent of the host's packer, which looks at one cell after another; it may be better.
 template <class Pack>
 void is_as_good_as_one_by_one(Pack pack) {
-  for (const auto& mesh : {shapes::box({0, 0, 0}, {1, 0.7, 0.9}), shapes::merged(shapes::box({0, 0, 0}, {1, 2, 1}), shapes::globe({0.5, 2, 0.5}, 0.7))}) {
+  for (const auto& mesh : {shapes::box({0, 0, 0}, {1, 0.7, 0.9}),
+                           shapes::merged(shapes::box({0, 0, 0}, {1, 2, 1}), shapes::globe({0.5, 2, 0.5}, 0.7))}) {
     const packing here = pack(mesh, {.count = 600}), there = clearance::pack(mesh, {.count = 600});
     CHECK(here.fill > 0.98 * there.fill);
     CHECK(here.gap < 1.1 * there.gap);
@@ -86,10 +87,10 @@ void stops_for_each_reason(Pack pack) {
   check_laws(cube, p, 500);
   std::size_t last = 0;
   p = pack(cube, {.count = 10000000, .seconds = 0.2, .progress = [&](std::size_t done, std::size_t of) {
-    CHECK(done >= last);
-    CHECK(of == 10000000);
-    last = done;
-  }});
+                    CHECK(done >= last);
+                    CHECK(of == 10000000);
+                    last = done;
+                  }});
   CHECK(p.stopped_by == pack_stop::time);
   CHECK(last > 0);
   const packing none = pack(cube, {.count = 0});

@@ -9,14 +9,15 @@
 
 namespace clearance {
 
-/// Free room around a place, from a few triangles and spheres: distance to the surface and to the spheres, exact while it
-/// is below `reach` minus the way from the place, and never too large.
+/// Free room around a place, from a few triangles and spheres: distance to the surface and to the spheres, exact while
+/// it is below `reach` minus the way from the place, and never too large.
 template <solid S>
 class local_room {
  public:
   local_room(const S& s, const sphere_field& spheres, const Eigen::Vector3d& place, double reach)
       : solid_(near(s, place, reach)), place_(place), reach_(reach) {
-    for (const std::uint32_t i : spheres.within(place, reach)) spheres_.push_back({spheres[i].center, spheres[i].radius});
+    for (const std::uint32_t i : spheres.within(place, reach))
+      spheres_.push_back({spheres[i].center, spheres[i].radius});
   }
   /// Anything not above `least` if it is not.
   double operator()(const Eigen::Vector3d& p, double within, double least) const {
@@ -49,8 +50,8 @@ class local_room {
   double reach_;
 };
 
-/// Climbs from an inside point with room `radius` to a local maximum of the room, by compass search. Every step stays in
-/// the ball that is known to be inside, so no step can leave the solid through a thin wall.
+/// Climbs from an inside point with room `radius` to a local maximum of the room, by compass search. Every step stays
+/// in the ball that is known to be inside, so no step can leave the solid through a thin wall.
 template <solid S>
 sphere_field::sphere ascend(const S& s, const sphere_field& spheres, const Eigen::Vector3d& from, double radius,
                             double farthest = std::numeric_limits<double>::infinity(), double precision = 1e-3) {
@@ -58,20 +59,22 @@ sphere_field::sphere ascend(const S& s, const sphere_field& spheres, const Eigen
   const auto prepare = [&](const solid_sphere& now) {
     if (!room || !room->serves(now)) room.emplace(s, spheres, now.center, 2.5 * now.radius);
   };
-  const solid_sphere top = search(solid_sphere{from, radius}, precision, one_lane{}, prepare, [&](const Eigen::Vector3d& p, double most, double least) {
-    return (p - from).norm() > farthest ? 0 : (*room)(p, most * (1 + 1e-12), least);
-  });
+  const solid_sphere top = search(solid_sphere{from, radius}, precision, one_lane{}, prepare,
+                                  [&](const Eigen::Vector3d& p, double most, double least) {
+                                    return (p - from).norm() > farthest ? 0 : (*room)(p, most * (1 + 1e-12), least);
+                                  });
   return {top.center, top.radius};
 }
 
 /// Moves and grows an inside sphere, whatever spheres are in the way, while it covers the middle of what it was.
 template <solid S>
 sphere_field::sphere grow(const S& s, const sphere_field::sphere& from) {
-  const solid_sphere top = search(solid_sphere{from.center, from.radius}, 1e-2, one_lane{}, [](const solid_sphere&) {},
-                                  [&](const Eigen::Vector3d& p, double most, double) {
-    const double r = distance_within(s, p, most * (1 + 1e-12));
-    return (p - from.center).norm() <= r - from.radius / 2 ? r : 0;
-  });
+  const solid_sphere top = search(
+      solid_sphere{from.center, from.radius}, 1e-2, one_lane{}, [](const solid_sphere&) {},
+      [&](const Eigen::Vector3d& p, double most, double) {
+        const double r = distance_within(s, p, most * (1 + 1e-12));
+        return (p - from.center).norm() <= r - from.radius / 2 ? r : 0;
+      });
   return {top.center, top.radius};
 }
 

@@ -12,7 +12,8 @@ class local_list {
  public:
   static constexpr std::uint32_t capacity = 256;
 
-  CLEARANCE_HD local_list(const room_view& all, std::uint32_t* items, Lanes lanes) : all_(all), items_(items), lanes_(lanes) {}
+  CLEARANCE_HD local_list(const room_view& all, std::uint32_t* items, Lanes lanes)
+      : all_(all), items_(items), lanes_(lanes) {}
 
   CLEARANCE_HD void prepare(const solid_sphere& now) {
     if (reach_ >= 1.5 * now.radius && (now.center - place_).norm() <= 0.25 * reach_) return;
@@ -35,7 +36,8 @@ class local_list {
     const double known = reach_ - (p - place_).norm();
     if (known < within) within = known;
     for (std::uint32_t k = 0; k < count_ && within > enough; ++k)
-      within = k < triangles_ ? all_.solid.triangles[items_[k]].nearer(p, within) : all_.spheres[items_[k]].nearer(p, within);
+      within = k < triangles_ ? all_.solid.triangles[items_[k]].nearer(p, within)
+                              : all_.spheres[items_[k]].nearer(p, within);
     return within;
   }
 
@@ -57,21 +59,25 @@ class local_list {
 /// Moves an inside sphere, which no other may touch, to a local maximum of the room, not farther than `farthest`. Each
 /// step stays in the ball that is known to be inside, so none can leave the solid through a thin wall.
 template <class Lanes>
-CLEARANCE_HD solid_sphere climb(const room_view& in, std::uint32_t* memory, const solid_sphere& from, double farthest, Lanes lanes) {
+CLEARANCE_HD solid_sphere climb(const room_view& in, std::uint32_t* memory, const solid_sphere& from, double farthest,
+                                Lanes lanes) {
   local_list<Lanes> around(in, memory, lanes);
-  return search(from, 1e-3, lanes, [&](const solid_sphere& now) { around.prepare(now); },
-                [&](const vec3d& p, double most, double least) {
-    return (p - from.center).norm() > farthest ? 0 : around.room(p, most * (1 + 1e-12), least);
-  });
+  return search(
+      from, 1e-3, lanes, [&](const solid_sphere& now) { around.prepare(now); },
+      [&](const vec3d& p, double most, double least) {
+        return (p - from.center).norm() > farthest ? 0 : around.room(p, most * (1 + 1e-12), least);
+      });
 }
 
 /// Moves and grows an inside sphere, whatever spheres are in the way, while it covers the middle of what it was.
 template <class Lanes>
 CLEARANCE_HD solid_sphere grow(const mesh_solid_view& in, const solid_sphere& from, Lanes lanes) {
-  return search(from, 1e-2, lanes, [](const solid_sphere&) {}, [&](const vec3d& p, double most, double least) {
-    const double r = in.distance(p, most * (1 + 1e-12), least);
-    return (p - from.center).norm() <= r - from.radius / 2 ? r : 0;
-  });
+  return search(
+      from, 1e-2, lanes, [](const solid_sphere&) {},
+      [&](const vec3d& p, double most, double least) {
+        const double r = in.distance(p, most * (1 + 1e-12), least);
+        return (p - from.center).norm() <= r - from.radius / 2 ? r : 0;
+      });
 }
 
 }  // namespace clearance

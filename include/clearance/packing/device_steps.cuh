@@ -5,9 +5,9 @@
 #include <clearance/backend/pinned_buffer.cuh>
 #include <clearance/packing/growing.hpp>
 
+#include <thrust/iterator/counting_iterator.h>
 #include <cub/device/device_reduce.cuh>
 #include <cub/device/device_select.cuh>
-#include <thrust/iterator/counting_iterator.h>
 
 namespace clearance {
 
@@ -60,7 +60,8 @@ class device_steps {
   double largest(std::size_t n, F f) {
     if (n == 0) return 0;
     run([&](void* memory, std::size_t& bytes) {
-      return cub::DeviceReduce::TransformReduce(memory, bytes, numbers(), most_.data(), int(n), detail::larger{}, f, 0.0, on_.stream);
+      return cub::DeviceReduce::TransformReduce(memory, bytes, numbers(), most_.data(), int(n), detail::larger{}, f,
+                                                0.0, on_.stream);
     });
     return *most_.data();
   }

@@ -114,12 +114,14 @@ gap_report measure_gap(const B& on, Steps& steps, const mesh_solid& s, const roo
   double upper = 0;
   while (n > 0) {
     const double slack = std::max(least * tolerance, finest);
-    on.for_each(n, detail::gap_visit{in, cells.data(), met.reserve(n), open.reserve(n), closed.reserve(n), least + slack, slack});
+    on.for_each(n, detail::gap_visit{in, cells.data(), met.reserve(n), open.reserve(n), closed.reserve(n),
+                                     least + slack, slack});
     least = std::max(least, steps.largest(n, detail::value_of{met.data()}));
     upper = std::max(upper, steps.largest(n, detail::value_of{closed.data()}));
     const double target = least + std::max(least * tolerance, finest);
     const std::size_t split = steps.select(n, detail::is_above{open.data(), std::max(target, upper)}, some.reserve(n));
-    if (8 * split > most_cells) {  // the gap of a ball in a ball, say, is the same all over, which no search can narrow down
+    if (8 * split >
+        most_cells) {  // the gap of a ball in a ball, say, is the same all over, which no search can narrow down
       upper = std::max(upper, steps.largest(n, detail::value_of{open.data()}));
       break;
     }

@@ -41,7 +41,8 @@ struct cube_grid {
   std::size_t size() const { return std::size_t(count[0]) * count[1] * count[2]; }
   CLEARANCE_HD vec3d middle(std::size_t i) const {
     const std::size_t row = i / count[0];
-    return low + half * vec3d(2 * double(i % count[0]) + 1, 2 * double(row % count[1]) + 1, 2 * double(row / count[1]) + 1);
+    return low +
+           half * vec3d(2 * double(i % count[0]) + 1, 2 * double(row % count[1]) + 1, 2 * double(row / count[1]) + 1);
   }
 };
 

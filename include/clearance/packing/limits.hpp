@@ -23,7 +23,8 @@ struct pack_limits {
     if (box.isEmpty() || !(box.diagonal().norm() > 0) || !std::isfinite(box.diagonal().norm()))
       throw std::invalid_argument("clearance::pack: the solid's bounds are empty or not finite");
     for (const double x : {options.smallest_radius, options.gap_target, options.seconds})
-      if (!(x >= 0)) throw std::invalid_argument("clearance::pack: smallest_radius, gap_target and seconds must not be negative");
+      if (!(x >= 0))
+        throw std::invalid_argument("clearance::pack: smallest_radius, gap_target and seconds must not be negative");
     if (!(options.gap_per_radius > 0)) throw std::invalid_argument("clearance::pack: gap_per_radius must be positive");
     if (!(options.gap_tolerance > 0)) throw std::invalid_argument("clearance::pack: gap_tolerance must be positive");
     scale = box.diagonal().norm() + box.center().norm();
@@ -37,7 +38,8 @@ struct pack_limits {
 
 /// Puts the spheres in order and sums them up.
 inline void arrange(packing& p, double volume) {
-  std::stable_sort(p.spheres.begin(), p.spheres.end(), [](const auto& a, const auto& b) { return a.radius > b.radius; });
+  std::stable_sort(p.spheres.begin(), p.spheres.end(),
+                   [](const auto& a, const auto& b) { return a.radius > b.radius; });
   if (!p.spheres.empty()) p.radius_max = p.spheres.front().radius, p.radius_min = p.spheres.back().radius;
   for (const inner_sphere& s : p.spheres) p.fill += 4.0 / 3 * std::numbers::pi * std::pow(double(s.radius), 3) / volume;
 }

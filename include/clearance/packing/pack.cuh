@@ -22,7 +22,8 @@ inline packing pack(const device& on, const triangle_mesh& mesh, const pack_opti
 
 template <solid S>
 packing pack(const device&, const S&, const pack_options& = {}) {
-  static_assert(sizeof(S) == 0, "on a device only mesh solids can be packed; pack others on the host: pack(solid, options)");
+  static_assert(sizeof(S) == 0,
+                "on a device only mesh solids can be packed; pack others on the host: pack(solid, options)");
   return {};
 }
 

@@ -24,7 +24,8 @@ template <solid S>
 class packer {
  public:
   packer(const S& s, const pack_options& options)
-      : solid_(s), options_(options), limits_(s.bounds(), options), rules_{options.gap_per_radius, std::isfinite(options.gap_per_radius)} {}
+      : solid_(s), options_(options), limits_(s.bounds(), options),
+        rules_{options.gap_per_radius, std::isfinite(options.gap_per_radius)} {}
 
   packing run() {
     const auto start = std::chrono::steady_clock::now();

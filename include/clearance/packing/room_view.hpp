@@ -6,7 +6,8 @@
 
 namespace clearance {
 
-/// The room in a mesh solid that spheres leave, in double, on host and device: a tree over most spheres, a list of the rest.
+/// The room in a mesh solid that spheres leave, in double, on host and device: a tree over most spheres, a list of the
+/// rest.
 struct room_view {
   mesh_solid_view solid;
   const solid_sphere* spheres;
@@ -19,7 +20,8 @@ struct room_view {
     return within;
   }
   /// The same for all; or, sooner, one that is no larger than `enough`.
-  CLEARANCE_HD double gap(const vec3d& p, double within, double enough = -std::numeric_limits<double>::infinity()) const {
+  CLEARANCE_HD double gap(const vec3d& p, double within,
+                          double enough = -std::numeric_limits<double>::infinity()) const {
     within = tree_gap(p, within, enough);
     return within <= enough ? within : gap_from(tree.items, p, within);
   }
@@ -32,7 +34,8 @@ struct room_view {
 
  private:
   CLEARANCE_HD double tree_gap(const vec3d& p, double within, double enough) const {
-    return tree.nearest(p, within, [this, &p](std::uint32_t i, double best) { return spheres[i].nearer(p, best); }, enough);
+    return tree.nearest(
+        p, within, [this, &p](std::uint32_t i, double best) { return spheres[i].nearer(p, best); }, enough);
   }
 };
 

@@ -12,8 +12,8 @@ namespace clearance::rounds {
 struct cell {
   vec3d middle;
   double half;
-  double depth;        ///< The solid's signed distance at the middle, positive inside.
-  double gap;          ///< From the middle to the first `seen` spheres, or more than matters.
+  double depth;  ///< The solid's signed distance at the middle, positive inside.
+  double gap;    ///< From the middle to the first `seen` spheres, or more than matters.
   std::uint32_t seen;
 
   CLEARANCE_HD double reach() const { return corner_reach(half); }

@@ -11,16 +11,21 @@
 
 namespace clearance {
 
-/// Packs a mesh solid as `packer` does, but in rounds, for a machine that does much at once: of all cells with nearly the
-/// largest key those that are small are climbed from (ProtoSphere's prototypes, Weller & Zachmann 2010), of the spheres
-/// found those are taken that conflict with none larger, and the other cells are divided. `Steps` are what a backend
-/// does not offer: select(n, f, out), numbers of those for which f holds, in order; largest(n, f), at least 0; and
-/// climbers(n, f), which calls f(i, lanes).
+/// Packs a mesh solid as `packer` does, but in rounds, for a machine that does much at once: of all cells with nearly
+/// the largest key those that are small are climbed from (ProtoSphere's prototypes, Weller & Zachmann 2010), of the
+/// spheres found those are taken that conflict with none larger, and the other cells are divided. `Steps` are what a
+/// backend does not offer: select(n, f, out), numbers of those for which f holds, in order; largest(n, f), at least 0;
+/// and climbers(n, f), which calls f(i, lanes).
 template <backend B, class Steps>
 class round_packer {
  public:
   round_packer(const B& on, Steps& steps, const mesh_solid& s, const pack_options& options)
-      : on_(on), steps_(steps), solid_(s), options_(options), limits_(s.bounds(), options), there_(s.on(on)),
+      : on_(on),
+        steps_(steps),
+        solid_(s),
+        options_(options),
+        limits_(s.bounds(), options),
+        there_(s.on(on)),
         rules_{options.gap_per_radius, std::isfinite(options.gap_per_radius)} {}
 
   packing run() {
@@ -30,20 +35,24 @@ class round_packer {
     const gap_report gap = certify();
     out.gap = gap.certified, out.gap_mean = gap.mean, out.gap_p95 = gap.p95;
     for (const solid_sphere& s : spheres_)
-      out.spheres.push_back({{real(s.center.x), real(s.center.y), real(s.center.z)}, real(s.radius)});  // floats: see `fit`
+      out.spheres.push_back(
+          {{real(s.center.x), real(s.center.y), real(s.center.z)}, real(s.radius)});  // floats: see `fit`
     arrange(out, solid_.volume());
     out.seconds = seconds();
     return out;
   }
 
  private:
-  static constexpr double nearly = 0.9;                   // of the largest key; how much is done in a round
+  static constexpr double nearly = 0.9;  // of the largest key; how much is done in a round
   static constexpr std::size_t most_climbers = 8192, most_cells = 1u << 25;
 
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
   rounds::field field() {
     const box_tree_view tree = {nodes_.data(), order_.data(), tree_.view().items, tree_.view().root};
-    return {{there_.view(), spheres_there_.data(), std::uint32_t(spheres_.size()), tree}, rules_, limits_.smallest, limits_.scale};
+    return {{there_.view(), spheres_there_.data(), std::uint32_t(spheres_.size()), tree},
+            rules_,
+            limits_.smallest,
+            limits_.scale};
   }
   gap_report certify() {
     plant(0);
@@ -104,14 +113,17 @@ class round_packer {
     }
     const std::size_t divided = steps_.select(some, dividing, these_.data());
     cells_.reserve(alive_ + 8 * divided, alive_), keys_.reserve(alive_ + 8 * divided, alive_);
-    on_.for_each(8 * divided, rounds::divide{field(), some_.data(), these_.data(), cells_.data(), keys_.data(), alive_});
+    on_.for_each(8 * divided,
+                 rounds::divide{field(), some_.data(), these_.data(), cells_.data(), keys_.data(), alive_});
     alive_ += 8 * divided;
   }
 
   void take(std::size_t climbers) {
     on_.for_each(climbers, rounds::judge{offers_.data(), climbers, limits_.scale, verdicts_.reserve(climbers)});
     const std::size_t taken = steps_.select(climbers, rounds::is_taken{verdicts_.data()}, taken_.reserve(climbers));
-    on_.for_each(taken, rounds::append{offers_.data(), taken_.data(), spheres_there_.reserve(spheres_.size() + taken, spheres_.size()) + spheres_.size()});
+    on_.for_each(taken,
+                 rounds::append{offers_.data(), taken_.data(),
+                                spheres_there_.reserve(spheres_.size() + taken, spheres_.size()) + spheres_.size()});
     auto added = on_.copy_out(spheres_there_.data() + spheres_.size(), taken);
     if (spheres_.size() + taken > options_.count) {  // the last round: the largest
       std::stable_sort(added.begin(), added.end(), [](const auto& a, const auto& b) { return a.radius > b.radius; });
@@ -125,7 +137,8 @@ class round_packer {
     const std::size_t kept = steps_.select(alive_, rounds::at_least{keys_.data(), 0}, some_.reserve(alive_));
     growing<rounds::cell, B> cells(on_);
     growing<double, B> keys(on_);
-    on_.for_each(kept, rounds::keep_cells{some_.data(), cells_.data(), keys_.data(), cells.reserve(2 * kept), keys.reserve(2 * kept)});
+    on_.for_each(kept, rounds::keep_cells{some_.data(), cells_.data(), keys_.data(), cells.reserve(2 * kept),
+                                          keys.reserve(2 * kept)});
     std::swap(cells, cells_), std::swap(keys, keys_);
     alive_ = kept;
   }

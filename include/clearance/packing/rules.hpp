@@ -5,12 +5,12 @@
 
 namespace clearance {
 
-/// Which part of a solid is looked at next, on host and device. `depth` and `gap` are the distances from a cell's middle to
-/// the surface and to the spheres, `reach` that to its corners.
+/// Which part of a solid is looked at next, on host and device. `depth` and `gap` are the distances from a cell's
+/// middle to the surface and to the spheres, `reach` that to its corners.
 struct pack_rules {
   double gap_per_radius;
-  bool promotes;           ///< Is it finite?
-  double trust = 1;        ///< In a cell's bound.
+  bool promotes;     ///< Is it finite?
+  double trust = 1;  ///< In a cell's bound.
 
   static constexpr double promotion = 8;  ///< A cell goes before ones with at most so much more room.
 

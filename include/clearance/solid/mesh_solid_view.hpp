@@ -13,9 +13,11 @@ struct mesh_solid_view {
   const exact_triangle* triangles;
   basic_winding_view<double> winding;
 
-  /// The distance to the surface if it is below `within`, else `within`; or, sooner, one that is no larger than `enough`.
+  /// The distance to the surface if it is below `within`, else `within`; or, sooner, one that is no larger than
+  /// `enough`.
   CLEARANCE_HD double distance(const vec3d& p, double within, double enough = 0) const {
-    return tree.nearest(p, within, [this, &p](std::uint32_t i, double best) { return triangles[i].nearer(p, best); }, enough);
+    return tree.nearest(
+        p, within, [this, &p](std::uint32_t i, double best) { return triangles[i].nearer(p, best); }, enough);
   }
   CLEARANCE_HD bool inside(const vec3d& p) const { return winding.inside(p.x, p.y, p.z); }
 };

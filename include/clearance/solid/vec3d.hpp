@@ -9,7 +9,8 @@
 
 namespace clearance {
 
-/// A point in double that device code may use, which cannot be said of Eigen's; it comes from those and turns into them.
+/// A point in double that device code may use, which cannot be said of Eigen's; it comes from those and turns into
+/// them.
 struct vec3d {
   double x = 0, y = 0, z = 0;
 
@@ -18,11 +19,17 @@ struct vec3d {
   vec3d(const Eigen::Vector3d& v) : x(v.x()), y(v.y()), z(v.z()) {}
   operator Eigen::Vector3d() const { return {x, y, z}; }
 
-  CLEARANCE_HD friend constexpr vec3d operator+(const vec3d& a, const vec3d& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  CLEARANCE_HD friend constexpr vec3d operator-(const vec3d& a, const vec3d& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  CLEARANCE_HD friend constexpr vec3d operator+(const vec3d& a, const vec3d& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  CLEARANCE_HD friend constexpr vec3d operator-(const vec3d& a, const vec3d& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
   CLEARANCE_HD friend constexpr vec3d operator*(double s, const vec3d& a) { return {s * a.x, s * a.y, s * a.z}; }
   CLEARANCE_HD constexpr double dot(const vec3d& b) const { return x * b.x + y * b.y + z * b.z; }
-  CLEARANCE_HD constexpr vec3d cross(const vec3d& b) const { return {y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x}; }
+  CLEARANCE_HD constexpr vec3d cross(const vec3d& b) const {
+    return {y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x};
+  }
   CLEARANCE_HD double norm() const { return ::sqrt(dot(*this)); }
 };
 
