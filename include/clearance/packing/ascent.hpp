@@ -59,7 +59,7 @@ sphere_field::sphere ascend(const S& s, const sphere_field& spheres, const Eigen
   const auto prepare = [&](const solid_sphere& now) {
     if (!room || !room->serves(now)) room.emplace(s, spheres, now.center, 2.5 * now.radius);
   };
-  const solid_sphere top = search(solid_sphere{from, radius}, precision, one_lane{}, prepare,
+  const solid_sphere top = compass_search(solid_sphere{from, radius}, precision, one_lane{}, prepare,
                                   [&](const Eigen::Vector3d& p, double most, double least) {
                                     return (p - from).norm() > farthest ? 0 : (*room)(p, most * (1 + 1e-12), least);
                                   });
@@ -69,7 +69,7 @@ sphere_field::sphere ascend(const S& s, const sphere_field& spheres, const Eigen
 /// Moves and grows an inside sphere, whatever spheres are in the way, while it covers the middle of what it was.
 template <solid S>
 sphere_field::sphere grow(const S& s, const sphere_field::sphere& from) {
-  const solid_sphere top = search(
+  const solid_sphere top = compass_search(
       solid_sphere{from.center, from.radius}, 1e-2, one_lane{}, [](const solid_sphere&) {},
       [&](const Eigen::Vector3d& p, double most, double) {
         const double r = distance_within(s, p, most * (1 + 1e-12));

@@ -62,7 +62,7 @@ template <class Lanes>
 CLEARANCE_HD solid_sphere climb(const room_view& in, std::uint32_t* memory, const solid_sphere& from, double farthest,
                                 Lanes lanes) {
   local_list<Lanes> around(in, memory, lanes);
-  return search(
+  return compass_search(
       from, 1e-3, lanes, [&](const solid_sphere& now) { around.prepare(now); },
       [&](const vec3d& p, double most, double least) {
         return (p - from.center).norm() > farthest ? 0 : around.room(p, most * (1 + 1e-12), least);
@@ -72,7 +72,7 @@ CLEARANCE_HD solid_sphere climb(const room_view& in, std::uint32_t* memory, cons
 /// Moves and grows an inside sphere, whatever spheres are in the way, while it covers the middle of what it was.
 template <class Lanes>
 CLEARANCE_HD solid_sphere grow(const mesh_solid_view& in, const solid_sphere& from, Lanes lanes) {
-  return search(
+  return compass_search(
       from, 1e-2, lanes, [](const solid_sphere&) {},
       [&](const vec3d& p, double most, double least) {
         const double r = in.distance(p, most * (1 + 1e-12), least);

@@ -41,7 +41,7 @@ CLEARANCE_HD inline vec3d compass(int k) {
 /// Compass search for a place worth more. `worth(p, most, least)` says what p is worth, which is at most `most`, or
 /// anything not above `least`; `prepare(now)` is called before each step.
 template <class Lanes, class G, class F>
-CLEARANCE_HD solid_sphere search(const solid_sphere& from, double precision, Lanes lanes, G prepare, F worth) {
+CLEARANCE_HD solid_sphere compass_search(const solid_sphere& from, double precision, Lanes lanes, G prepare, F worth) {
   solid_sphere now = from;
   for (double step = now.radius / 2; step > precision * now.radius;) {
     prepare(now);
