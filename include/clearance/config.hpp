@@ -14,6 +14,13 @@
 #define CLEARANCE_HD
 #endif
 
+/// Before a short loop whose arrays shall live in registers.
+#if defined(__CUDA_ARCH__)
+#define CLEARANCE_UNROLL _Pragma("unroll")
+#else
+#define CLEARANCE_UNROLL
+#endif
+
 #if defined(__FAST_MATH__)
 #error "clearance: -ffast-math breaks NaN handling and the certified bracket; compile this file without it"
 #endif

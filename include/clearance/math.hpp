@@ -91,8 +91,14 @@ CLEARANCE_HD constexpr real clamp01(real t) { return t < 0 ? 0 : (t > 1 ? 1 : t)
 CLEARANCE_HD constexpr real absolute(real a) { return a < 0 ? -a : a; }
 
 /// False for NaN, infinities and coordinates whose square would overflow (beyond 1e18 m).
-CLEARANCE_HD constexpr bool is_finite(real a) { return absolute(a) <= 1e18f; }
-CLEARANCE_HD constexpr bool is_finite(vec3 a) { return is_finite(a.x) && is_finite(a.y) && is_finite(a.z); }
+CLEARANCE_HD constexpr bool is_finite(real a) { return -1e18f <= a && a <= 1e18f; }
+CLEARANCE_HD inline bool is_finite(vec3 a) {
+#if defined(__CUDA_ARCH__)
+  return fabsf(a.x) <= 1e18f & fabsf(a.y) <= 1e18f & fabsf(a.z) <= 1e18f;  // no branches
+#else
+  return is_finite(a.x) && is_finite(a.y) && is_finite(a.z);
+#endif
+}
 
 /// Rounds, and lets the compiler know no more than that: g++ 12 at -O2 leaves out the rounding of neighbouring conversions
 /// to float and back, and a proof that measures from the rounded number would measure from another.

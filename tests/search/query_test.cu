@@ -13,6 +13,10 @@ using clearance::device, clearance::host, clearance::min_distance;
 
 namespace {
 
+bool same_minimum(const clearance::part_minimum& a, const clearance::part_minimum& b) {
+  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
+}
+
 /// Cold, warm, moved, and moved back; `source` is in host memory.
 template <class Model, class S>
 void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const S& source, const Eigen::Isometry3d& pose, verdict& v,
@@ -20,9 +24,14 @@ void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const
   const device gpu;
   const auto model = on_host.on(gpu);
   clearance::min_distance_query query(gpu, model);
+  const clearance::placed<S> cloud{source, pose};
   const auto same = [&](const std::string& when) {
-    const auto expected = min_distance(host{}, on_host, poses, clearance::placed<S>{source, pose});
+    const auto expected = min_distance(host{}, on_host, poses, cloud);
     v.require(same_result(query(poses, source, pose), expected), what + ", " + when, ": differs from the host's result");
+    const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, cloud);
+    std::vector<clearance::part_minimum> minima;
+    v.require(same_result(query(poses, cloud, &minima), robot), what + ", " + when, ": differs from the host's result by parts");
+    v.require(std::ranges::equal(minima, each, same_minimum), what + ", " + when, ": some part's minimum differs");
   };
   same("cold");
   same("warm");
@@ -75,11 +84,12 @@ TEST_CASE("The prepared query equals the plain one: triangles in boxes") { ask_a
 TEST_CASE("Any number of parts and points is exact, even one and none") {
   dice d(5);
   verdict v;
-  for (const int parts : {1, 7, 12, 13, 40}) {
-    const auto model = robot_of<clearance::sphere>(d, parts, 50);
+  for (const int parts : {1, 7, 12, 13, 64, 128}) {
+    const auto model = robot_of<clearance::sphere>(d, parts, parts > 13 ? 9 : 50);
     std::vector<Eigen::Isometry3d> poses;
     for (int k = 0; k < parts; ++k) poses.push_back(d.pose(1));
-    for (const int points : {0, 1, 31, 33, 127, 129, 2047, 2049, 30011}) {
+    for (const int points : {0, 1, 15, 17, 31, 33, 2047, 2049, 30011}) {
+      if (parts > 13 && points % 16 != 1) continue;
       const auto cloud = d.points(std::size_t(points), 2);
       ask_often(model, poses, clearance::point_span(cloud), d.pose(0.1), v, std::to_string(parts) + " parts, " + std::to_string(points) + " points");
       if (points > 1)  // an odd address: no wide loads
@@ -117,6 +127,120 @@ TEST_CASE("Points inside triangle parts are found by the prepared query too") {
   }
 }
 
+TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are counted") {
+  dice d(9);
+  verdict v;
+  const device gpu;
+  const auto on_host = robot_of<clearance::sphere>(d, 5, 60);
+  const auto model = on_host.on(gpu);
+  clearance::min_distance_query query(gpu, model);
+  std::vector<Eigen::Isometry3d> poses;
+  for (int k = 0; k < 5; ++k) poses.push_back(d.pose(1));
+  const std::vector<vec3> blind(300, vec3{clearance::not_a_number, 0, 0}), none;
+  std::vector<std::vector<vec3>> data = {d.points(5000, 3), none, blind, d.points(20000, 2), d.points(1, 2)};
+  std::vector<clearance::placed<clearance::point_span>> clouds;
+  for (const auto& points : data) clouds.push_back({clearance::point_span(points), d.pose(0.2)});
+  for (int rotation = 0; rotation < 5; ++rotation, std::rotate(clouds.begin(), clouds.begin() + 1, clouds.end()))
+    for (const char* when : {"first", "again"}) {
+      const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, clouds);
+      std::vector<clearance::part_minimum> minima;
+      v.require(same_result(query(poses, clouds), min_distance(host{}, on_host, poses, clouds)), std::to_string(rotation) + when, ": differs");
+      v.require(same_result(query(poses, clouds, &minima), robot), std::to_string(rotation) + when, ": differs by parts");
+      v.require(std::ranges::equal(minima, each, same_minimum), std::to_string(rotation) + when, ": some part's minimum differs");
+    }
+  REQUIRE_THROWS_AS(query(poses, std::vector<clearance::placed<clearance::point_span>>()), std::invalid_argument);
+}
+
+TEST_CASE("A frame in the caller's graph reads poses from memory when it runs, and is the frame of those poses in every bit") {
+  dice d(10);
+  verdict v;
+  cudaStream_t stream = nullptr;
+  clearance::check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
+  {
+    const device gpu{.stream = stream};
+    const auto on_host = robot_of<clearance::sphere>(d, 14, 60);
+    const auto model = on_host.on(gpu);
+    clearance::min_distance_query query(gpu, model);
+    const auto points = d.points(30000, 2);
+    const auto there = gpu.copy_in(std::span<const vec3>(points));
+    const clearance::point_span view(there.data(), points.size());
+    const clearance::pinned_buffer<clearance::world_transform> poses(15, gpu.id);
+    const clearance::pinned_buffer<clearance::min_distance_result> result(1, gpu.id);
+    const clearance::pinned_buffer<clearance::part_minimum> minima(14, gpu.id);
+    cudaGraph_t graph = nullptr;
+    cudaGraphExec_t frame = nullptr;
+    clearance::check_cuda(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal), "cudaStreamBeginCapture");
+    query.enqueue(poses.data(), view, poses.data() + 14, result.data(), minima.data());
+    clearance::check_cuda(cudaStreamEndCapture(stream, &graph), "cudaStreamEndCapture");
+    clearance::check_cuda(cudaGraphInstantiate(&frame, graph, 0), "cudaGraphInstantiate");
+    const auto run = [&] {
+      clearance::check_cuda(cudaGraphLaunch(frame, stream), "cudaGraphLaunch");
+      gpu.wait();
+    };
+    for (int k = 0; k < 10; ++k) {
+      std::vector<Eigen::Isometry3d> at;
+      for (int part = 0; part < 15; ++part) {
+        at.push_back(d.pose(1));
+        if (k > 4) at.back().linear() *= 1 + 1e-6;  // rigid enough; both sides make the same of it
+        poses.data()[part] = clearance::world_transform(at.back());
+      }
+      run();
+      const clearance::placed cloud{clearance::point_span(points), at[14]};
+      const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, std::span(at).first(14), cloud);
+      v.require(same_result(*result.data(), robot), "replay " + std::to_string(k), ": differs from the host's result");
+      v.require(std::ranges::equal(std::span(minima.data(), 14), each, same_minimum), "replay " + std::to_string(k), ": some part's minimum differs");
+    }
+    poses.data()[3].m[1][1] = 2;
+    run();
+    CHECK(result.data()->state == clearance::state::possible);
+    CHECK(std::isnan(result.data()->distance));
+    CHECK(result.data()->lower == 0);
+    CHECK(minima.data()[0].point == clearance::none);
+    clearance::check_cuda(cudaGraphExecDestroy(frame), "cudaGraphExecDestroy");
+    clearance::check_cuda(cudaGraphDestroy(graph), "cudaGraphDestroy");
+  }
+  clearance::check_cuda(cudaStreamDestroy(stream), "cudaStreamDestroy");
+}
+
+namespace {
+
+/// Device memory that is counted.
+class counting_resource : public std::pmr::memory_resource {
+ public:
+  std::size_t held = 0, most = 0;
+
+ private:
+  void* do_allocate(std::size_t bytes, std::size_t) override {
+    void* p = nullptr;
+    clearance::check_cuda(cudaMalloc(&p, bytes), "cudaMalloc");
+    held += bytes, most = std::max(most, held);
+    return p;
+  }
+  void do_deallocate(void* p, std::size_t bytes, std::size_t) override { cudaFree(p), held -= bytes; }
+  bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
+};
+
+}  // namespace
+
+TEST_CASE("A prepared query takes its memory from the caller's resource, and none after its first frame") {
+  dice d(11);
+  const device gpu;
+  const auto on_host = robot_of<clearance::sphere>(d, 3, 20);
+  const auto model = on_host.on(gpu);
+  const auto cloud = d.points(3000, 2);
+  const std::vector<Eigen::Isometry3d> poses = {d.pose(1), d.pose(1), d.pose(1)};
+  counting_resource memory;
+  {
+    clearance::min_distance_query query(gpu, model, &memory);
+    REQUIRE(same_result(query(poses, cloud), min_distance(host{}, on_host, poses, cloud)));
+    REQUIRE(memory.held > 3000 * sizeof(vec3));  // the cloud's copy too
+    const std::size_t first = memory.most;
+    for (int k = 0; k < 3; ++k) REQUIRE(same_result(query(poses, cloud), min_distance(host{}, on_host, poses, cloud)));
+    REQUIRE(memory.most == first);
+  }
+  REQUIRE(memory.held == 0);
+}
+
 TEST_CASE("A query in a stream of its own leaves the caller's device alone, and refuses what does not fit") {
   dice d(8);
   const device gpu;
@@ -130,4 +254,7 @@ TEST_CASE("A query in a stream of its own leaves the caller's device alone, and 
   skewed.linear() *= 1.01;
   REQUIRE_THROWS_AS(query(std::vector{skewed, poses[1]}, clearance::point_span(cloud)), std::invalid_argument);
   REQUIRE(same_result(query(poses, clearance::point_span(cloud)), min_distance(host{}, on_host, poses, clearance::point_span(cloud))));
+  const auto crowd = robot_of<clearance::sphere>(d, 129, 2);
+  const auto crowd_there = crowd.on(gpu);
+  REQUIRE_THROWS_AS(clearance::min_distance_query(gpu, crowd_there), std::invalid_argument);
 }

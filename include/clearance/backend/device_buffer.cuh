@@ -4,6 +4,7 @@
 #include <clearance/backend/cuda_error.cuh>
 
 #include <cstddef>
+#include <memory_resource>
 #include <utility>
 
 namespace clearance {
@@ -18,33 +19,46 @@ void on_device(int device, F action) {
   if (before != device) cudaSetDevice(before);
 }
 
-/// Owns an array in the memory of one device. Giving it back waits until no stream can still be reading it.
+/// Owns an array in the memory of one device, its own or that of a caller's resource (which hands out device memory and
+/// outlives it). Giving it back waits until no stream can still be reading it; a resource has to see to that itself.
 template <class T>
 class device_buffer {
  public:
   using value_type = T;
 
   device_buffer() = default;
-  device_buffer(std::size_t n, int device) : size_(n), device_(device) {
+  device_buffer(std::size_t n, int device, std::pmr::memory_resource* from = nullptr) : size_(n), device_(device), from_(from) {
     const device_guard guard(device);
-    if (n != 0) check_cuda(cudaMalloc(reinterpret_cast<void**>(&data_), n * sizeof(T)), "cudaMalloc");
+    if (n == 0) return;
+    if (from != nullptr)
+      data_ = static_cast<T*>(from->allocate(n * sizeof(T), alignment));
+    else
+      check_cuda(cudaMalloc(reinterpret_cast<void**>(&data_), n * sizeof(T)), "cudaMalloc");
   }
   device_buffer(device_buffer&& other) noexcept { *this = std::move(other); }
   device_buffer& operator=(device_buffer&& other) noexcept {
-    std::swap(data_, other.data_), std::swap(size_, other.size_), std::swap(device_, other.device_);
+    std::swap(data_, other.data_), std::swap(size_, other.size_), std::swap(device_, other.device_), std::swap(from_, other.from_);
     return *this;
   }
   ~device_buffer() {
-    if (data_ != nullptr) on_device(device_, [this] { return cudaFree(data_); });
+    if (data_ != nullptr) on_device(device_, [this] {
+      if (from_ != nullptr)
+        from_->deallocate(data_, size_ * sizeof(T), alignment);
+      else
+        cudaFree(data_);
+    });
   }
 
   T* data() const { return data_; }
   std::size_t size() const { return size_; }
 
  private:
+  static constexpr std::size_t alignment = 256;  // what cudaMalloc promises
+
   T* data_ = nullptr;
   std::size_t size_ = 0;
   int device_ = 0;
+  std::pmr::memory_resource* from_ = nullptr;
 };
 
 /// Device memory for one call: taken and given back in the order of the stream, so that the host never waits for it.

@@ -49,6 +49,20 @@ struct depth_image {
     for (std::uint32_t j = 0; j < 4; ++j) out[j] = deproject(four.d[j], u + j, v);
   }
 
+  /// Four pixels as they lie in memory, which a kernel may fetch before it looks at them: an array of these, or null.
+  struct alignas(4 * sizeof(Pixel)) raw4 {
+    Pixel d[4];
+  };
+  CLEARANCE_HD const raw4* fours() const {
+    const bool packed = row == width && width % 4 == 0 && reinterpret_cast<std::uintptr_t>(pixels) % 16 == 0;
+    return packed ? reinterpret_cast<const raw4*>(pixels) : nullptr;
+  }
+  CLEARANCE_HD void look4(const raw4& r, std::size_t i, sample (&out)[4]) const {
+    const std::uint32_t v = std::uint32_t(i) / width, u = std::uint32_t(i) - v * width;
+    CLEARANCE_UNROLL
+    for (std::uint32_t j = 0; j < 4; ++j) out[j] = deproject(r.d[j], u + j, v);
+  }
+
   /// The point that pixel (u, v) shows if it holds `d`.
   CLEARANCE_HD sample deproject(Pixel d, std::uint32_t u, std::uint32_t v) const {
     const real z = product(real(d), scale);

@@ -34,6 +34,22 @@ struct point_span {
       for (int j = 0; j < 4; ++j) out[j] = filter(p[j]);
   }
 
+  /// Four points as they lie in memory, which a kernel may fetch before it looks at them: an array of these, or null.
+  struct alignas(16) raw4 {
+    real f[12];
+  };
+  CLEARANCE_HD const raw4* fours() const { return loads4() ? reinterpret_cast<const raw4*>(points) : nullptr; }
+  CLEARANCE_HD void look4(const raw4& r, std::size_t, sample (&out)[4]) const {
+    const auto point = [&](int j) { return vec3{r.f[3 * j], r.f[3 * j + 1], r.f[3 * j + 2]}; };
+    if (filter.plain()) {
+      CLEARANCE_UNROLL
+      for (int j = 0; j < 4; ++j) out[j] = {point(j), is_finite(point(j)) ? drop_reason::none : drop_reason::not_finite};
+    } else {
+      CLEARANCE_UNROLL
+      for (int j = 0; j < 4; ++j) out[j] = filter(point(j));
+    }
+  }
+
   /// The memory it reads, and the same view of a copy elsewhere.
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(points, count)); }
   point_span at(const std::byte* copy) const { return {reinterpret_cast<const vec3*>(copy), count, filter}; }

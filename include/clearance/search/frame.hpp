@@ -29,54 +29,90 @@ inline constexpr double unit_error = 0x1p-20;
 
 /// Where the cloud's coordinates start to be subtracted: near the robot, in steps of 64 m, so that ordinary scenes lose
 /// nothing and clouds in world coordinates of 1e6 m no more than their own coordinates have lost.
-inline vec3 origin_near(const Eigen::Vector3d& robot_in_cloud) {
-  const auto step = [](double x) { return real(std::round(x / 64) * 64); };
-  return {step(robot_in_cloud.x()), step(robot_in_cloud.y()), step(robot_in_cloud.z())};
+CLEARANCE_HD inline vec3 origin_near(position robot_in_cloud) {
+  const auto step = [](double x) { return real(round(x / 64) * 64); };
+  return {step(robot_in_cloud.x), step(robot_in_cloud.y), step(robot_in_cloud.z)};
 }
 
-/// `part_from_cloud` maps positions that `origin` was subtracted from.
-inline placement place(const part_facts& facts, const Eigen::Isometry3d& world_from_part,
-                       const Eigen::Isometry3d& world_from_cloud, vec3 origin) {
-  const Eigen::Isometry3d part_from_world = world_from_part.inverse(Eigen::Isometry);
-  Eigen::Isometry3d part_from_cloud = part_from_world * world_from_cloud;
-  part_from_cloud.translation() = part_from_world * (world_from_cloud * Eigen::Vector3d(origin.x, origin.y, origin.z));
-  const Eigen::Vector3d part_center(facts.center.x, facts.center.y, facts.center.z);
-  const Eigen::Vector3d center = part_from_cloud.linear().transpose() * (part_center - part_from_cloud.translation());
-  const double size = part_center.norm() + facts.radius, away = part_from_cloud.translation().norm();
+/// The mean of the parts' origins, in the cloud's frame.
+CLEARANCE_HD inline position middle_of(const world_transform& world_from_cloud, const world_transform* world_from_part, std::size_t parts) {
+  position sum{0, 0, 0};
+  for (std::size_t k = 0; k < parts; ++k) {
+    const position at = world_from_part[k].translation();
+    sum = {sum.x + at.x, sum.y + at.y, sum.z + at.z};
+  }
+  return world_from_cloud.inverse()(position{sum.x / double(parts), sum.y / double(parts), sum.z / double(parts)});
+}
+
+/// `part_from_cloud` maps positions that `origin` was subtracted from. Both transforms have passed make_rigid.
+CLEARANCE_HD inline placement place(const part_facts& facts, const world_transform& world_from_part, const world_transform& world_from_cloud,
+                                    vec3 origin) {
+  const world_transform part_from_world = world_from_part.inverse();
+  world_transform part_from_cloud = part_from_world * world_from_cloud;
+  const position start = part_from_world(world_from_cloud(origin));
+  part_from_cloud.m[0][3] = start.x, part_from_cloud.m[1][3] = start.y, part_from_cloud.m[2][3] = start.z;
+  const auto norm = [](position p) { return sqrt(fma(p.x, p.x, fma(p.y, p.y, p.z * p.z))); };
+  const position center = part_from_cloud.inverse()(facts.center);
+  const double size = norm({facts.center.x, facts.center.y, facts.center.z}) + facts.radius, away = norm(start);
   const double error = unit_error * 2 * (size + away);
   placement p;
   p.part_from_cloud = to_floats(part_from_cloud);
-  p.around = {{real(center.x()), real(center.y()), real(center.z())}, rounded_up(facts.radius + 2 * error)};
+  p.around = {{real(center.x), real(center.y), real(center.z)}, rounded_up(facts.radius + 2 * error)};
   p.error = rounded_up(error);
-  p.world_from_part = world_transform(world_from_part);
+  p.world_from_part = world_from_part;
   return p;
 }
 
-/// All parts as seen from one cloud, made on the host for every frame.
-struct cloud_frame {
+/// What all parts of a frame have in common.
+struct frame_facts {
+  world_transform world_from_cloud;
   vec3 origin = {0, 0, 0};
-  double error = 0;  ///< The largest of all parts.
-  double slop = 0;   ///< The largest gap plus tolerance of all parts.
-  std::vector<placement> places;
+  double error = 0;  ///< The largest `placement::error`,
+  double slop = 0;   ///< and the largest gap plus tolerance, of all parts.
 
-  cloud_frame() = default;
-  /// Throws if a pose is not rigid. `world_from_cloud` is taken as checked.
-  cloud_frame(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses,
-              const Eigen::Isometry3d& world_from_cloud) {
-    put(facts, poses, world_from_cloud);
+  CLEARANCE_HD void add(const part_facts& facts, const placement& place) {
+    const double its = double(facts.gap) + double(facts.tolerance);
+    error = place.error > error ? place.error : error;
+    slop = its > slop ? its : slop;
   }
-  /// The same in the memory that is there.
-  void put(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses,
-             const Eigen::Isometry3d& world_from_cloud) {
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (const Eigen::Isometry3d& pose : poses) middle += pose.translation() / double(poses.size());
-    origin = origin_near(world_from_cloud.inverse() * middle);
-    error = slop = 0;
-    places.clear();
-    for (std::size_t k = 0; k < poses.size(); ++k) {
-      places.push_back(place(facts[k], rigid(poses[k], "part", std::int64_t(k)), world_from_cloud, origin));
-      error = std::max(error, double(places.back().error));
-      slop = std::max(slop, double(facts[k].gap) + double(facts[k].tolerance));
+};
+
+/// All parts as seen from one cloud, made on the host for every frame; kept, it allocates only once.
+struct cloud_frame : frame_facts {
+  std::vector<placement> places;
+  std::vector<world_transform> poses;
+
+  /// Throws if a pose is not rigid. `world_from_cloud` is taken as checked.
+  void put(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const world_transform& cloud) {
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__FMA__)
+    // Without -mfma each fma is a call, which makes a frame's poses cost microseconds. Same bits, either way.
+    if (__builtin_cpu_supports("fma")) return put_with_fma(facts, parts, cloud);
+#endif
+    put_plain(facts, parts, cloud);
+  }
+  void put(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const Eigen::Isometry3d& cloud) {
+    put(facts, parts, world_transform(cloud));
+  }
+  cloud_frame() = default;
+  cloud_frame(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const Eigen::Isometry3d& cloud) {
+    put(facts, parts, world_transform(cloud));
+  }
+
+ private:
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__FMA__)
+  __attribute__((target("fma"), flatten)) void put_with_fma(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts,
+                                                            const world_transform& cloud) {
+    put_plain(facts, parts, cloud);
+  }
+#endif
+  void put_plain(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const world_transform& cloud) {
+    world_from_cloud = cloud, error = slop = 0;
+    poses.clear(), places.clear();
+    for (std::size_t k = 0; k < parts.size(); ++k) poses.push_back(rigid_transform_of(parts[k], "part", std::int64_t(k)));
+    origin = origin_near(middle_of(world_from_cloud, poses.data(), poses.size()));
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      places.push_back(place(facts[k], poses[k], world_from_cloud, origin));
+      add(facts[k], places.back());
     }
   }
 };

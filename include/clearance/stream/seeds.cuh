@@ -2,30 +2,36 @@
 #pragma once
 // A bound before the first test. Any real pair of a point and a primitive is a valid one, so nothing can be lost.
 
-#include <clearance/stream/block.cuh>
-#include <clearance/stream/quads.cuh>
+#include <clearance/stream/reader.cuh>
 
 namespace clearance::stream {
 
-/// Last frame's minima and their neighbours, looked at anew; false if this thread has found none.
-template <class PartView, class Source>
-__device__ bool seed_from_last_frame(const frame_args<PartView>& a, const Source& source, block_memory<PartView>& s) {
-  const std::uint32_t t = threadIdx.x, each = block_threads / frame_state::kept;
-  if (t >= a.state->witnesses * each) return false;
-  const record w = a.state->witness[t / each];
-  const std::uint32_t point = key_index(w.key) + t % each - (t % each == 0 ? 0 : each / 2);
-  if (w.part >= a.parts || w.primitive == none || point >= a.points) return false;
-  const sample p = source[point];
-  if (!p.valid()) return false;
-  const auto& body = part(a, s, w.part);
-  const real d = body.view.tree.primitives[w.primitive].distance(body.place.part_from_cloud(p.position - a.origin));
-  if (d < infinity) atomicMin(&s.bound, ordered(d));
-  return d < infinity;
-}
+/// Last frame's minima and their neighbours, looked at anew: sixteen threads a minimum, or four where each part has one.
+template <class PartView, bool Each>
+class last_frame {
+ public:
+  /// Reads what there is; nothing waits for it yet.
+  explicit __device__ last_frame(const frame_state& state) : w_(state.witness[threadIdx.x / each]), known_(state.witnesses) {}
+
+  template <class Source>
+  __device__ void seed(const frame_args<PartView>& a, const Source& source, block_memory<PartView, Each>& s) const {
+    const std::uint32_t n = threadIdx.x % each, point = key_index(w_.key) - a.first + n - (n == 0 ? 0 : each / 2);
+    if (threadIdx.x / each >= known_ || w_.part >= a.parts || w_.primitive == none || point >= a.points) return;
+    const auto& body = part(a, s, w_.part);
+    const sample p = source[point];
+    const real d = body.view.tree.primitives[w_.primitive].distance(body.place.part_from_cloud(p.position - s.frame.origin));
+    if (p.valid() && d < infinity) atomicMin(&s.bound[s.slot(w_.part)], ordered(d));
+  }
+
+ private:
+  static constexpr std::uint32_t each = block_threads / (Each ? most_parts : 32);
+  record w_;
+  std::uint32_t known_;
+};
 
 /// Greedily to one leaf, eight lanes together, and the distance to what is there.
 template <class PartView>
-__device__ void descend(const PartView& view, bvh_node n, vec3 q, unsigned mine, block_memory<PartView>& s) {
+__device__ void descend(const PartView& view, bvh_node n, vec3 q, unsigned mine, std::uint32_t& bound) {
   const auto& tree = view.tree;
   using traits = bounding_volume_traits<typename PartView::hierarchy_type::volume_type>;
   const std::uint32_t lane = threadIdx.x & (lanes - 1);
@@ -43,44 +49,53 @@ __device__ void descend(const PartView& view, bvh_node n, vec3 q, unsigned mine,
   }
   real d = infinity;
   for (std::uint32_t k = lane; k < n.count(); k += lanes) d = min(d, tree.primitives[n.first + k].distance(q));
-  if (d < infinity) atomicMin(&s.bound, ordered(d));
+  if (d < infinity) atomicMin(&bound, ordered(d));
 }
 
-/// No last frame: eight lanes take the most promising of their points down the tree, and all blocks wait a little for one
-/// another. Nothing depends on that wait but speed, so it gives up rather than hang.
-template <class PartView>
-__device__ void seed_cold(const frame_args<PartView>& a, const quad_points& p, block_memory<PartView>& s) {
-  real nearest = infinity;
-  std::uint32_t k_nearest = 0;
-  vec3 x{0, 0, 0};
-  for (int j = 0; j < quad; ++j)
-    for (std::uint32_t k = 0; k < a.parts; ++k) {
-      const ball& around = part(a, s, k).place.around;
-      const real lb = length(p.at[j] - around.center) - around.radius;
-      if (lb < nearest) nearest = lb, k_nearest = k, x = p.at[j];
+/// No last frame: eight lanes take the most promising of their points down the tree (each eight lanes another part, where
+/// every part needs a bound), and all blocks wait a little for one another. Nothing depends on that wait but speed, so it
+/// gives up rather than hang.
+template <class PartView, bool Each>
+__device__ void seed_cold(const frame_args<PartView>& a, const quad_points& p, block_memory<PartView, Each>& s) {
+  // By power: the square of the distance to a ball's centre less the square of its radius. No root, and good enough.
+  real least_power = infinity;
+  std::uint32_t k_least = 0;
+  int j_least = 0;
+  const std::uint32_t first = Each ? (threadIdx.x / lanes + blockIdx.x) % a.parts : 0, end = Each ? first + 1 : a.parts;
+  for (std::uint32_t k = first; k < end; ++k) {
+    const ball around = part(a, s, k).place.around;
+#pragma unroll
+    for (int j = 0; j < quad; ++j) {
+      const vec3 d = p.at[j] - around.center;
+      const real power = fma(-around.radius, around.radius, dot(d, d));
+      if (power < least_power) least_power = power, k_least = k, j_least = j;
     }
-  real least = nearest;
-  for (int step = 1; step < lanes; step *= 2) least = min(least, __shfl_xor_sync(~0u, least, step));
+  }
+  real least = least_power;
+  for (int step = 1; step < lanes; step *= 2) least = min(least, __shfl_xor_sync(all_lanes, least, step));
   const unsigned mine = 0xffu << (threadIdx.x & 24);
-  const unsigned winners = __ballot_sync(~0u, nearest == least && least < infinity) & mine;
+  const unsigned winners = __ballot_sync(all_lanes, least_power == least && least < infinity) & mine;
   if (winners != 0) {
     const int from = __ffs(int(winners)) - 1;
-    k_nearest = __shfl_sync(mine, k_nearest, from);
-    x = {__shfl_sync(mine, x.x, from), __shfl_sync(mine, x.y, from), __shfl_sync(mine, x.z, from)};
-    const auto& body = part(a, s, k_nearest);
-    descend(body.view, body.root, body.place.part_from_cloud(x), mine, s);
+    const vec3 own = j_least == 0 ? p.at[0] : j_least == 1 ? p.at[1] : j_least == 2 ? p.at[2] : p.at[3];
+    k_least = __shfl_sync(mine, k_least, from);
+    const vec3 x{__shfl_sync(mine, own.x, from), __shfl_sync(mine, own.y, from), __shfl_sync(mine, own.z, from)};
+    const auto& body = part(a, s, k_least);
+    descend(body.view, body.root, body.place.part_from_cloud(x), mine, s.bound[s.slot(k_least)]);
   }
   __syncthreads();
+  const std::uint32_t bounds = Each ? a.parts : 1;
+  for (std::uint32_t k = threadIdx.x; k < bounds; k += block_threads) atomicMin(&a.state->bound[k], s.bound[k]);
+  __syncthreads();
   if (threadIdx.x == 0) {
-    atomicMin(&a.state->bound, s.bound);
     __threadfence();
     atomicAdd(&a.state->seeded, 1u);
     const long long start = clock64();
     while (fresh(a.state->seeded) < gridDim.x && clock64() - start < 20000) {
     }
-    atomicMin(&s.bound, fresh(a.state->bound));
   }
   __syncthreads();
+  for (std::uint32_t k = threadIdx.x; k < bounds; k += block_threads) atomicMin(&s.bound[k], fresh(a.state->bound[k]));
 }
 
 }  // namespace clearance::stream

@@ -1,77 +1,81 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The whole frame in one kernel: a first bound, every point read once and tested against all parts' balls in its own
-// frame, the few survivors against the trees. The last block to finish writes the answer.
+// A cloud in one kernel: a first bound, every point read once and tested against the parts' balls in its own frame, the few
+// near ones against the trees. The last block to finish writes the answer.
 
+#include <clearance/stream/filter.cuh>
 #include <clearance/stream/finish.cuh>
-#include <clearance/stream/pairs.cuh>
 #include <clearance/stream/seeds.cuh>
 
 namespace clearance::stream {
 
-/// Parts go to shared memory: kernel arguments live behind the constant cache, a miss of which costs more than a round.
-template <class PartView>
-__device__ void prepare(const frame_args<PartView>& a, block_memory<PartView>& s) {
-  static_assert(sizeof(stream_part<PartView>) % sizeof(std::uint32_t) == 0);
-  const std::uint32_t t = threadIdx.x, inside = a.parts < inline_parts ? a.parts : inline_parts;
-  const auto* from = reinterpret_cast<const std::uint32_t*>(a.part);
-  auto* to = reinterpret_cast<std::uint32_t*>(s.parts);
-  for (std::uint32_t i = t; i < inside * (sizeof(stream_part<PartView>) / 4); i += block_threads) to[i] = from[i];
-  if (t < drop_reasons) s.dropped[t] = 0;
-  if (t == 0) {
-    s.bound = 0xff800000u, s.candidates = s.queued[0] = s.queued[1] = s.lock = 0;
-    s.best = {};
-  }
+inline constexpr std::uint32_t batch = 8;  ///< Rounds between two looks at what others have found.
+
+template <class PartView, bool Each, class Source>
+constexpr std::size_t shared_bytes(bool ring) {
+  constexpr std::size_t fixed = (sizeof(block_memory<PartView, Each>) + 15) / 16 * 16;
+  return fixed + (ring ? ring_bytes<Source>() : 0);
 }
 
-/// Three multiply-adds and a minimum for each point and part: which points pass any test, a bit each.
-template <class PartView>
-__device__ unsigned filter(const block_memory<PartView>& s, std::uint32_t parts, const quad_points& p) {
-  real least[quad];
-#pragma unroll
-  for (int j = 0; j < quad; ++j) least[j] = infinity;
-#pragma unroll 4
-  for (std::uint32_t k = 0; k < parts; ++k) {
-    const search::root_test root = s.roots[k];
-#pragma unroll
-    for (int j = 0; j < quad; ++j) least[j] = min(root.value(p.at[j]), least[j]);
+/// Points that found no room before a drain are read again, which is rare.
+template <class PartView, bool Each, class Source>
+__noinline__ __device__ unsigned hand_over_again(pair_search<PartView, Each> pairs, const point_reader<Source> reader, const Source& source,
+                                                 std::uint32_t round, unsigned missed) {
+  unsigned still = 0;
+  for (std::uint32_t r = 0; r < batch; ++r) {
+    const unsigned which = missed >> quad * r & 0xf;
+    if (!__any_sync(all_lanes, which != 0)) continue;
+    const std::uint32_t first = reader.index(round + r);
+    quad_points p;
+    for (std::uint32_t j = 0; j < quad; ++j)
+      p.at[j] = which >> j & 1 ? source[first + j].position - pairs.s.frame.origin : vec3{not_a_number, 0, 0};
+    still |= hand_over(pairs, p, [=] { return first; }) << quad * r;
   }
-  unsigned passed = 0;
-#pragma unroll
-  for (int j = 0; j < quad; ++j) passed |= unsigned(least[j] <= -dot(p.at[j], p.at[j])) << j;
-  return passed;
+  return still;
 }
 
-template <class PartView, class Source>
+template <class PartView, bool Each, class Source>
 __global__ void __launch_bounds__(block_threads, 2) stream_kernel(const __grid_constant__ Source source,
                                                                   const __grid_constant__ frame_args<PartView> a) {
-  __shared__ block_memory<PartView> s;
-  pair_search<PartView> pairs{a, s};
-  quad_reader<Source> reader(source, a.origin, a.points);
-  const std::uint32_t t = threadIdx.x;
-  // Neighbouring points share their fate: the chunks of 128 are dealt out, so that they meet in no block.
-  constexpr std::uint32_t chunk = 32 * quad, warps = block_threads / 32;
-  const std::uint32_t stride = chunk * warps * gridDim.x;
-  std::uint32_t at = (t / 32 * gridDim.x + blockIdx.x) * chunk;
-  quad_points p = reader.load(at);
+  extern __shared__ __align__(16) std::byte memory[];
+  auto& s = *reinterpret_cast<block_memory<PartView, Each>*>(memory);
+  using reader_type = point_reader<Source>;
+  auto* const ring = reinterpret_cast<typename reader_type::raw4*>(memory + shared_bytes<PartView, Each, Source>(false));
+  reader_type reader(source, a.points, a.ring ? ring : nullptr);
+  pair_search<PartView, Each> pairs{a, s};
+  const std::uint32_t t = threadIdx.x, rounds = reader.rounds();
+  const last_frame<PartView, Each> before(*a.state);
+  reader.fetch(0);
   prepare(a, s);
   __syncthreads();
-  if (!__syncthreads_or(seed_from_last_frame(a, source, s))) seed_cold(a, p, s);
-  for (std::uint32_t k = t; k < a.parts; k += block_threads) s.sharpen(k, part(a, s, k).place.around);
+  const top_level top(a, s);
+  before.seed(a, source, s);
+  for (std::uint32_t r = 1; r + 1 < stages; ++r) reader.fetch(r);  // not before the seeds, which would wait behind them
+  top.put(s);
   __syncthreads();
-  for (std::uint32_t left = (a.points + stride - 1) / stride; left > 0; --left, at += stride) {
-    quad_points next = p;
-    if (left > 1) next = reader.load(at + stride);
-    unsigned passed = filter(s, a.parts, p);
-    do {
-#pragma unroll
-      for (int j = 0; j < quad; ++j)
-        if (passed >> j & 1 && pairs.add(p.at[j], reader.index(at, j))) passed &= ~(1u << j);
-      if (left == 1 || __syncthreads_or(pairs.crowded())) pairs.drain();
-    } while (__syncthreads_or(passed != 0));
-    p = next;
-    if (t == 0) atomicMin(&s.bound, fresh(a.state->bound));
-    if (t >= 32 && t - 32 < a.parts) s.sharpen(t - 32, part(a, s, t - 32).place.around);
+  if (__syncthreads_or(t < (Each ? a.parts : 1) && s.bound[t] == no_bound) && rounds > 0) {
+    reader.fetch(stages - 1);
+    seed_cold(a, reader.take(0, s.frame.origin), s);
+    reader.forget_counts();
+    __syncthreads();
+  }
+  sharpen(a, s, t);
+  __syncthreads();
+  for (std::uint32_t first = 0; first < rounds; first += batch) {
+    const std::uint32_t end = first + batch < rounds ? first + batch : rounds;
+    unsigned missed = 0;
+    for (std::uint32_t r = first; r < end; ++r) {
+      reader.fetch(r + stages - 1);
+      const quad_points p = reader.take(r, s.frame.origin);
+      missed |= hand_over(pairs, p, [&] { return reader.index(r); }) << quad * (r - first);
+    }
+    if (first / batch % 7 == 6) reader.report(s.dropped);
+    for (bool left = true; left;) {
+      left = __syncthreads_or(missed != 0);
+      if (left || end == rounds || pairs.crowded()) pairs.drain();
+      if (left || end != rounds) refresh(a, s);
+      if (left) missed = hand_over_again(pairs, reader, source, first, missed);
+    }
   }
   reader.report(s.dropped);
   __syncthreads();
