@@ -135,4 +135,7 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
   pinned_buffer<part_minimum> minima_;
 };
 
+template <class Model>
+min_distance_query(const device&, const Model&, std::pmr::memory_resource*) -> min_distance_query<device, typename Model::view_type>;
+
 }  // namespace clearance
