@@ -95,6 +95,7 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
     auto a = launch_.first(result, minima, done, frame_number_);
     for (const auto& cloud : clouds) {
       frame_.put(facts_, poses, rigid_transform_of(cloud.pose, "cloud", a.cloud));
+      frame_.error = std::max(frame_.error, a.frame.error);  // the bracket is over all clouds
       a.frame = frame_;
       for (std::size_t k = 0; k < own_.size(); ++k) own_[k].place = frame_.places[k];
       for (std::size_t k = 0; k < own_.size(); k += stream::cluster)

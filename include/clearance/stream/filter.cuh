@@ -20,15 +20,16 @@ __device__ void sharpen(const frame_args<PartView>& a, block_memory<PartView, Ea
   set(s.near_cluster[c], search::root_test({part(a, s, first).middle, 0}, reach + 4 * slack * absolute(reach)));
 }
 
-/// Hands four points to the search, pair by pair; says which (a bit each) have a pair that found no room.
+/// Hands four points to the search, pair by pair, with the parts of the clusters from `begin` to `end`; says which (a bit
+/// each) have a pair that found no room.
 template <class PartView, bool Each, class Index>
-__device__ unsigned hand_over(pair_search<PartView, Each> pairs, const quad_points& p, Index first) {
+__device__ unsigned hand_over(pair_search<PartView, Each> pairs, const quad_points& p, Index first, std::uint32_t begin, std::uint32_t end) {
   const auto& s = pairs.s;
   real square[quad];
 #pragma unroll
   for (int j = 0; j < quad; ++j) square[j] = -dot(p.at[j], p.at[j]);
   unsigned missed = 0;
-  for (std::uint32_t c = 0; c * cluster < pairs.a.parts; ++c) {
+  for (std::uint32_t c = begin; c < end; ++c) {
     const search::root_test together = s.near_cluster[c];
     bool near = false;
 #pragma unroll

@@ -49,7 +49,7 @@ struct pair_search {
     slot = __shfl_sync(all_lanes, slot, 31) + sum - mine;
     for (; those != 0 && slot < memory::pair_capacity; those &= those - 1, ++slot) {
       const unsigned bit = unsigned(__ffs(int(those))) - 1, j = bit % quad;
-      s.pair_table[slot] = {j < 2 ? (j == 0 ? p.at[0] : p.at[1]) : (j == 2 ? p.at[2] : p.at[3]), first + j, first_part + bit / quad};
+      s.pair_table[slot] = {j < 2 ? (j == 0 ? p.at[0] : p.at[1]) : (j == 2 ? p.at[2] : p.at[3]), a.first + first + j, first_part + bit / quad};
     }
     unsigned missed = 0;  // what is left, by point
     for (; those != 0; those >>= quad) missed |= those & ((1u << quad) - 1);
@@ -63,7 +63,7 @@ struct pair_search {
     const std::uint32_t count = s.pairs < memory::pair_capacity ? s.pairs : memory::pair_capacity;
     for (std::uint32_t i = threadIdx.x; i < count; i += block_threads) admit(i);
     if (count > 0) walk();
-    if (threadIdx.x == 0) s.pairs = s.children = 0;
+    if (threadIdx.x == 0 && count > 0) s.pairs = s.children = 0;
     __syncthreads();
   }
 
@@ -109,7 +109,8 @@ struct pair_search {
     const bool messenger = threadIdx.x >= block_threads - memory::slots && threadIdx.x - (block_threads - memory::slots) < (Each ? a.parts : 1);
     const std::uint32_t its = threadIdx.x - (block_threads - memory::slots);
     std::uint32_t elsewhere = no_bound;  // what other blocks knew a round ago: nobody waits for it
-    for (int parity = 0;; parity ^= 1) {
+    int parity = 0;
+    for (;; parity ^= 1) {
       if (messenger && elsewhere < fresh(s.bound[its])) atomicMin(&s.bound[its], elsewhere);
       __syncthreads();
       if (messenger) elsewhere = fresh(a.state->bound[its]);
@@ -125,7 +126,7 @@ struct pair_search {
       __syncthreads();
       offer(expand(e, parity ^ 1));
     }
-    if (threadIdx.x == 0) s.queued[0] = s.queued[1] = 0;
+    if (threadIdx.x == 0) s.queued[parity ^ 1] = 0;
     __syncthreads();
   }
 

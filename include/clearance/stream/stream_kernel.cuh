@@ -17,10 +17,11 @@ constexpr std::size_t shared_bytes(bool ring) {
   return fixed + (ring ? ring_bytes<Source>() : 0);
 }
 
-/// Points that found no room before a drain are read again, which is rare.
+/// Points that found no room before a drain are read again, for one cluster of parts at a time: that is little enough for
+/// some always to find room. It is rare.
 template <class PartView, bool Each, class Source>
 __noinline__ __device__ unsigned hand_over_again(pair_search<PartView, Each> pairs, const point_reader<Source> reader, const Source& source,
-                                                 std::uint32_t round, unsigned missed) {
+                                                 std::uint32_t round, unsigned missed, std::uint32_t c) {
   unsigned still = 0;
   for (std::uint32_t r = 0; r < batch; ++r) {
     const unsigned which = missed >> quad * r & 0xf;
@@ -29,7 +30,7 @@ __noinline__ __device__ unsigned hand_over_again(pair_search<PartView, Each> pai
     quad_points p;
     for (std::uint32_t j = 0; j < quad; ++j)
       p.at[j] = which >> j & 1 ? source[first + j].position - pairs.s.frame.origin : vec3{not_a_number, 0, 0};
-    still |= hand_over(pairs, p, [=] { return first; }) << quad * r;
+    still |= hand_over(pairs, p, [=] { return first; }, c, c + 1) << quad * r;
   }
   return still;
 }
@@ -43,7 +44,7 @@ __global__ void __launch_bounds__(block_threads, 2) stream_kernel(const __grid_c
   auto* const ring = reinterpret_cast<typename reader_type::raw4*>(memory + shared_bytes<PartView, Each, Source>(false));
   reader_type reader(source, a.points, a.ring ? ring : nullptr);
   pair_search<PartView, Each> pairs{a, s};
-  const std::uint32_t t = threadIdx.x, rounds = reader.rounds();
+  const std::uint32_t t = threadIdx.x, rounds = reader.rounds(), clusters = (a.parts + cluster - 1) / cluster;
   const last_frame<PartView, Each> before(*a.state);
   reader.fetch(0);
   prepare(a, s);
@@ -67,15 +68,18 @@ __global__ void __launch_bounds__(block_threads, 2) stream_kernel(const __grid_c
     for (std::uint32_t r = first; r < end; ++r) {
       reader.fetch(r + stages - 1);
       const quad_points p = reader.take(r, s.frame.origin);
-      missed |= hand_over(pairs, p, [&] { return reader.index(r); }) << quad * (r - first);
+      missed |= hand_over(pairs, p, [&] { return reader.index(r); }, 0, clusters) << quad * (r - first);
     }
     if (first / batch % 7 == 6) reader.report(s.dropped);
-    for (bool left = true; left;) {
-      left = __syncthreads_or(missed != 0);
-      if (left || end == rounds || pairs.crowded()) pairs.drain();
-      if (left || end != rounds) refresh(a, s);
-      if (left) missed = hand_over_again(pairs, reader, source, first, missed);
-    }
+    if (__syncthreads_or(missed != 0))
+      for (std::uint32_t c = 0; c < clusters; ++c)
+        for (unsigned left = missed; __syncthreads_or(left != 0);) {
+          pairs.drain();
+          refresh(a, s);
+          left = hand_over_again(pairs, reader, source, first, left, c);
+        }
+    if (end == rounds || pairs.crowded()) pairs.drain();
+    if (end != rounds) refresh(a, s);
   }
   reader.report(s.dropped);
   __syncthreads();
