@@ -63,6 +63,24 @@ TEST_CASE("what was packed once is not packed again, and is the same to the bit"
   CHECK(files_in(cache) == 2);
 }
 
+TEST_CASE("packings of different makers are kept apart") {
+  const robot_folder folder;
+  const io::packing_cache cache(folder.path);
+  int made = 0;
+  const auto other = [&] {
+    return io::pack_cached(box, {.count = 20}, cache, "mine", [&](const mesh_solid& s, pack_options o) {
+      ++made;
+      o.count = 7;
+      return pack(s, o);
+    });
+  };
+  CHECK(io::pack_cached(box, {.count = 20}, cache).made.spheres.size() == 20);
+  CHECK(other().made.spheres.size() == 7);
+  CHECK(other().made.spheres.size() == 7);
+  CHECK(made == 1);
+  CHECK(io::pack_cached(box, {.count = 20}, cache).made.spheres.size() == 20);
+}
+
 TEST_CASE("without a folder nothing is kept") {
   CHECK(through({}).ran);
   CHECK(through({}).ran);

@@ -225,3 +225,25 @@ TEST_CASE("packing stops where it is told to") {
   CHECK(radius.at("radius_min").get<double>() >= 0.02);
   CHECK(first("--spheres 40 --seed 3").at("spheres") == 40);
 }
+
+TEST_CASE("real robots answer from their files as they do when they are packed", "[data]") {
+  const std::string data = CLEARANCE_TEST_DATA;
+  if (!std::filesystem::exists(data)) {
+    WARN("SKIPPED: no folder " << data);
+    return;
+  }
+  const robot_folder folder;
+  const std::string file = (folder.path / "robot.ist").string(), yaml = (folder.path / "robot.yaml").string();
+  const std::string frame = data + "/clouds/kinect_seq/frame_20121214T142255.814212.pcd";
+  for (const std::string robot : {"kuka_lwr_kresse/kuka.urdf", "ur5e/ur5e.urdf", "jvrc1/jvrc1.urdf"}) {
+    INFO(robot);
+    const std::string urdf = data + "/robots/" + robot, ask = "query --backend host --json --robot " + urdf + " --cloud " + frame + " --camera-pose -0.8,0.6,1.5,0,0.92388,0,0.38268";
+    CHECK(run_command("pack " + urdf + " --spheres 100 --out " + file + " --out " + yaml).code == 0);
+    const auto direct = answer(ask + " --spheres 100"), loaded = answer(ask + " --packing " + file), measured = answer(ask + " --packing " + yaml);
+    CHECK(loaded == direct);
+    CHECK(measured.at("distance") == direct.at("distance"));
+    CHECK(measured.at("lower").get<double>() == Approx(direct.at("lower").get<double>()).margin(2e-3));
+    const auto inside = parsed(run_command("info --json " + file));
+    for (const auto& part : inside.at("parts")) CHECK(part.at("certified") == true);
+  }
+}

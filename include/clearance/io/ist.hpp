@@ -6,6 +6,7 @@
 #include <clearance/io/packed_part.hpp>
 #include <clearance/io/png_check.hpp>
 
+#include <set>
 #include <span>
 
 namespace clearance::io {
@@ -118,10 +119,10 @@ inline std::vector<packed_part> read_ist(std::string_view bytes, const std::stri
     refuse(file, "is damaged (the checksum does not match)");
   if (count == 0) refuse(file, "holds no part");
   std::vector<packed_part> parts;
+  std::set<std::string> names;
   for (std::uint32_t i = 0; i < count; ++i) {
     parts.push_back(detail::take_part(in, file));
-    for (std::uint32_t k = 0; k < i; ++k)
-      if (parts[k].name == parts[i].name) refuse(file, "has two parts " + io::quoted(parts[i].name));
+    if (!names.insert(parts[i].name).second) refuse(file, "has two parts " + io::quoted(parts[i].name));
   }
   if (in.left() != 0) refuse(file, "has " + std::to_string(in.left()) + " bytes after its last part");
   return parts;

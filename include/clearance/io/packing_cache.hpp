@@ -93,17 +93,25 @@ struct cached_packing {
   bool found = false;  ///< It was made before, and `pack` did not run.
 };
 
-/// `pack(mesh_solid(mesh), options)`, once for each mesh and options: then from the cache, the same to the bit
-/// (`seconds` is how long it took when it was made). What a time limit or a person cut short is not kept. Throws as
-/// pack does.
-inline cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options, const packing_cache& cache) {
-  if (cache.folder().empty()) return {pack(mesh_solid(mesh), options)};
-  const digest key = packing_key(mesh, options);
+/// `make(mesh_solid(mesh), options)`, once for each mesh and options: then from the cache, the same to the bit
+/// (`seconds` is how long it took when it was made). What a time limit or a person cut short is not kept. `maker` names
+/// the algorithm, for one on a device makes other spheres than the host's. Throws as `make` does.
+template <class Make>
+cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options, const packing_cache& cache,
+                           std::string_view maker, Make make) {
+  if (cache.folder().empty()) return {make(mesh_solid(mesh), options)};
+  const digest key = packing_key(mesh, options, maker);
   if (auto found = cache.find(key)) return {std::move(*found), true};
-  cached_packing fresh{pack(mesh_solid(mesh), options)};
+  cached_packing fresh{make(mesh_solid(mesh), options)};
   if (fresh.made.stopped_by != pack_stop::time && fresh.made.stopped_by != pack_stop::cancelled)
     cache.keep(key, digest_of(mesh), fresh.made);
   return fresh;
+}
+
+/// By `pack` on the host.
+inline cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options, const packing_cache& cache) {
+  return pack_cached(mesh, options, cache, "host",
+                     [](const mesh_solid& s, const pack_options& o) { return pack(s, o); });
 }
 
 }  // namespace clearance::io

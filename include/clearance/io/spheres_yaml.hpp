@@ -12,6 +12,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <set>
 #include <span>
 
 namespace clearance::io {
@@ -55,6 +56,7 @@ inline packed_part yaml_link(const YAML::Node& key, const YAML::Node& list, cons
 inline std::vector<packed_part> load_spheres_yaml(const std::string& file) {
   const std::string bytes = read_bytes(file);
   std::vector<packed_part> parts;
+  std::set<std::string> names;
   try {
     YAML::Node at = YAML::Load(bytes);
     for (const char* above : {"robot_cfg", "kinematics"})
@@ -67,8 +69,7 @@ inline std::vector<packed_part> load_spheres_yaml(const std::string& file) {
     for (const auto& link : links) {
       if (!link.first.IsScalar()) refuse(file, "a link's name is no word");
       const std::string name = link.first.Scalar();
-      for (const packed_part& before : parts)
-        if (before.name == name) refuse(file, "has link " + io::quoted(name) + " twice");
+      if (!names.insert(name).second) refuse(file, "has link " + io::quoted(name) + " twice");
       parts.push_back(detail::yaml_link(link.first, link.second, file));
     }
   } catch (const YAML::Exception& error) {
