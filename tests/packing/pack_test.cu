@@ -9,7 +9,11 @@ using namespace packing_rounds;
 
 namespace {
 
-packing on_gpu(const triangle_mesh& mesh, const pack_options& options) { return pack(device{}, mesh, options); }
+// [on_gpu]
+packing on_gpu(const triangle_mesh& mesh, const pack_options& options = {.count = 2048}) {
+  return pack(device{}, mesh, options);
+}
+// [on_gpu]
 
 }  // namespace
 

@@ -11,7 +11,7 @@
 namespace clearance::io {
 
 /// To be raised whenever `pack` makes other spheres of the same solid and options.
-inline constexpr std::uint32_t packing_recipe = 1;
+inline constexpr std::uint32_t packing_recipe = 2;
 
 /// Of all that decides what packing makes: the mesh, the options, the algorithm. `maker` tells algorithms apart.
 inline digest packing_key(const closed_mesh& mesh, const pack_options& options, std::string_view maker = "host") {
