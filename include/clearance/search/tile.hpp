@@ -20,21 +20,44 @@ struct tile_box {
 struct tile {
   alignas(64) real x[tile_points], y[tile_points], z[tile_points];
 
-  /// `at(j)` gives the sample at place j < count.
-  template <class At>
-  void load(std::size_t count, At at) {
-    for (std::size_t j = 0; j < tile_points; ++j) {
-      vec3 p{not_a_number, not_a_number, not_a_number};
-      if (j < count)
-        if (const sample s = at(j); s.valid()) p = s.position;
-      x[j] = p.x, y[j] = p.y, z[j] = p.z;
+  void put(std::size_t j, vec3 p) { x[j] = p.x, y[j] = p.y, z[j] = p.z; }
+  vec3 operator[](std::size_t j) const { return {x[j], y[j], z[j]}; }
+
+  /// Points begin, begin + stride, ..., `count` of them; what is dropped is counted. The source is a copy, which no
+  /// write here can change, and is read in this loop alone, so that compilers take it apart.
+  template <point_source S>
+  [[gnu::flatten]] void load(const S source, std::size_t begin, std::size_t count, std::size_t stride, tally& mine) {
+    constexpr vec3 nowhere{not_a_number, not_a_number, not_a_number};
+    for (std::size_t j = count; j < tile_points; ++j) put(j, nowhere);
+    if constexpr (requires { source.filter.plain(); }) {
+      if (source.filter.plain()) {  // only finiteness is asked, and in vectors
+        for (std::size_t j = 0; j < count; ++j) put(j, source[begin + j * stride].position);
+        mine.dropped[int(drop_reason::not_finite)] += drop_not_finite() - std::uint32_t(tile_points - count);
+        return;
+      }
+    }
+    for (std::size_t j = 0; j < count; ++j) {
+      const sample s = source[begin + j * stride];
+      if (!s.valid()) ++mine.dropped[int(s.dropped)];
+      put(j, s.valid() ? s.position : nowhere);
     }
   }
   void subtract(vec3 origin) {
     if (origin == vec3{0, 0, 0}) return;
     for (std::size_t j = 0; j < tile_points; ++j) x[j] -= origin.x, y[j] -= origin.y, z[j] -= origin.z;
   }
-  vec3 operator[](std::size_t j) const { return {x[j], y[j], z[j]}; }
+
+ private:
+  std::uint32_t drop_not_finite() {
+    std::uint32_t bad = 0;
+    for (std::size_t j = 0; j < tile_points; ++j) {
+      const bool good =
+          (std::abs(x[j]) <= 1e18f) & (std::abs(y[j]) <= 1e18f) & (std::abs(z[j]) <= 1e18f);  // as is_finite
+      bad += !good;
+      x[j] = good ? x[j] : not_a_number;
+    }
+    return bad;
+  }
 };
 
 namespace detail {
@@ -124,8 +147,8 @@ inline surveyed survey(const real* f) { return survey_here(f); }
 template <class Pixel>
 struct depths {
   Pixel ends[2];
-  std::uint32_t missing = 0, saturated = 0;
-  bool strange = false;  ///< Some are not finite; the rest is not known.
+  std::uint32_t missing = 0, saturated = 0, not_finite = 0;
+  bool strange = false;  ///< Some are too large to say what becomes of them.
 
   explicit depths(const std::uint16_t* pixels) {
     // 0 and 65535 are no depths: one less and one more takes them to the far end.
@@ -140,14 +163,14 @@ struct depths {
     ends[0] = std::uint16_t(low + 1), ends[1] = std::uint16_t(high - 1);
   }
   explicit depths(const real* pixels) {
-    std::uint32_t odd = 0;
+    std::uint32_t huge = 0;
     alignas(64) real depth[tile_points];
     for (std::size_t j = 0; j < tile_points; ++j) {
-      const real d = pixels[j];
-      missing += d == 0, odd += !(std::abs(d) <= 1e18f);
-      depth[j] = d == 0 ? not_a_number : d;
+      const real d = pixels[j], size = std::abs(d);
+      missing += d == 0, not_finite += !(size < infinity), huge += !(size <= 1e18f);
+      depth[j] = d == 0 || !(size < infinity) ? not_a_number : d;
     }
-    strange = odd != 0;
+    strange = huge != not_finite;
     ends[0] = infinity, ends[1] = -infinity;
     spread(depth, ends[0], ends[1]);
   }
@@ -189,7 +212,7 @@ bool survey(const depth_image<Pixel>& image, std::size_t begin, tile_box& box, t
   const detail::depths<Pixel> seen(image.pixels + std::size_t(v[0]) * image.row + begin % image.width);
   if (seen.strange) return false;
   box = {};
-  if (seen.missing + seen.saturated < tile_points)
+  if (seen.missing + seen.saturated + seen.not_finite < tile_points)
     for (const Pixel d : seen.ends)
       for (const std::uint32_t column : u)
         for (const std::uint32_t line : v) {
@@ -201,6 +224,7 @@ bool survey(const depth_image<Pixel>& image, std::size_t begin, tile_box& box, t
         }
   mine.dropped[int(drop_reason::missing)] += seen.missing;
   mine.dropped[int(drop_reason::saturated)] += seen.saturated;
+  mine.dropped[int(drop_reason::not_finite)] += seen.not_finite;
   return true;
 }
 

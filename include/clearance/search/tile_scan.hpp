@@ -8,24 +8,44 @@
 
 namespace clearance::search {
 
+namespace detail {
+
+inline void mark_here(const tile& t, vec3 c, real most, std::uint32_t* near) {
+  for (std::size_t j = 0; j < tile_points; ++j) {
+    const real dx = t.x[j] - c.x, dy = t.y[j] - c.y, dz = t.z[j] - c.z;
+    near[j] |= std::uint32_t(dx * dx + dy * dy + dz * dz <= most);
+  }
+}
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__)
+__attribute__((target("avx2"), flatten)) inline void mark_avx2(const tile& t, vec3 c, real most, std::uint32_t* near) {
+  mark_here(t, c, most, near);
+}
+inline void mark(const tile& t, vec3 c, real most, std::uint32_t* near) {
+  __builtin_cpu_supports("avx2") ? mark_avx2(t, c, most, near) : mark_here(t, c, most, near);
+}
+#else
+inline void mark(const tile& t, vec3 c, real most, std::uint32_t* near) { mark_here(t, c, most, near); }
+#endif
+
+}  // namespace detail
+
 /// Which points of a tile may be within reach of some part.
 class tile_survivors {
  public:
   /// Conservative as `may_reach`; a reach below 0 can leave no point at all.
   void add(const tile& t, const ball& around, real reach) {
-    const vec3 c = around.center;
-    const real limit = search::limit(around, reach), most = limit * limit;
-    if (!(limit >= 0)) return;
-    for (std::size_t j = 0; j < tile_points; ++j) {
-      const real dx = t.x[j] - c.x, dy = t.y[j] - c.y, dz = t.z[j] - c.z;
-      const real away = dx * dx + dy * dy + dz * dz;
-      near_[j] |= std::uint32_t(away <= most);
-    }
+    const real most = limit(around, reach);
+    if (most >= 0) detail::mark(t, around.center, most * most, near_);
   }
   template <class Visit>
   void for_each(Visit visit) const {
-    for (std::size_t j = 0; j < tile_points; ++j)
-      if (near_[j] != 0) visit(j);
+    constexpr std::size_t group = 16;
+    for (std::size_t i = 0; i < tile_points; i += group) {
+      std::uint32_t any = 0;
+      for (std::size_t j = 0; j < group; ++j) any |= near_[i + j];
+      for (std::size_t j = 0; any != 0 && j < group; ++j)
+        if (near_[i + j] != 0) visit(i + j);
+    }
   }
 
  private:
@@ -54,11 +74,7 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, tally& min
     if (count == tile_points && survey(body.source, i, box, mine)) {
       box = {box.lower - body.origin, box.upper - body.origin};
     } else {
-      t.load(count, [&](std::size_t j) {
-        const sample s = body.source[i + j];
-        mine.counts(s);
-        return s;
-      });
+      t.load(body.source, i, count, 1, mine);
       t.subtract(body.origin);
       box = box_of(t);
       loaded = true;
@@ -67,7 +83,8 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, tally& min
     while (k < body.part_count && !may_reach(body.places[k].around, reach(k), box)) ++k;
     if (k == body.part_count) continue;
     if (!loaded) {
-      t.load(count, [&](std::size_t j) { return body.source[i + j]; });
+      tally uncounted;
+      t.load(body.source, i, count, 1, uncounted);
       t.subtract(body.origin);
     }
     tile_survivors near;
@@ -85,12 +102,10 @@ void sample_tiles(const Body& body, std::size_t tiles, Descend descend) {
   const auto index = [&](std::size_t n, std::size_t j) { return (n * tile_points + j) * stride; };
   const auto reach = [&](std::uint32_t k) { return key_distance(load_relaxed(body.bound_of(k))); };
   tile t;
-  const auto load = [&](std::size_t n) {
-    t.load(tile_points, [&](std::size_t j) { return body.source[index(n, j)]; });
-    t.subtract(body.origin);
-  };
+  tally uncounted;
   for (std::size_t n = 0; n < tiles; ++n) {
-    load(n);
+    t.load(body.source, index(n, 0), tile_points, stride, uncounted);
+    t.subtract(body.origin);
     for (std::uint32_t k = 0; k < body.part_count; ++k) {
       const vec3 c = body.places[k].around.center;
       alignas(64) real away[tile_points];
