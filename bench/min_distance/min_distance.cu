@@ -1,69 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One frame on a GPU, its points resident there: the prepared query warm (it remembers the last frame) and cold, beside a
 // kernel that only reads the points. Times are CUDA events around the enqueued frame.
-#include "scene.hpp"
+#include "device.cuh"
 
-#include <clearance/min_distance_query.cuh>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
-#include <benchmark/benchmark.h>
-
 namespace {
 
-using clearance::check_cuda;
-
-class events {
- public:
-  events() { check_cuda(cudaEventCreate(&start_), "cudaEventCreate"), check_cuda(cudaEventCreate(&stop_), "cudaEventCreate"); }
-  ~events() { cudaEventDestroy(start_), cudaEventDestroy(stop_); }
-
-  template <class F>
-  double seconds(F enqueue) {
-    check_cuda(cudaDeviceSynchronize(), "cudaDeviceSynchronize");
-    check_cuda(cudaEventRecord(start_), "cudaEventRecord");
-    enqueue();
-    check_cuda(cudaEventRecord(stop_), "cudaEventRecord");
-    check_cuda(cudaEventSynchronize(stop_), "cudaEventSynchronize");
-    float ms = 0;
-    check_cuda(cudaEventElapsedTime(&ms, start_, stop_), "cudaEventElapsedTime");
-    return ms / 1e3;
-  }
-
- private:
-  cudaEvent_t start_ = nullptr, stop_ = nullptr;
-};
-
-/// The frame, repeated with 2 mm of noise until there are `count` points.
-std::vector<clearance::vec3> repeated(const std::vector<clearance::vec3>& frame, std::size_t count) {
-  std::mt19937 bits(7);
-  std::normal_distribution<float> noise(0, 0.002f);
-  std::vector<clearance::vec3> points(frame.begin(), frame.begin() + std::ptrdiff_t(std::min(count, frame.size())));
-  while (points.size() < count) {
-    const auto p = frame[points.size() % frame.size()];
-    points.push_back({p.x + noise(bits), p.y + noise(bits), p.z + noise(bits)});
-  }
-  return points;
-}
-
-template <bool Dummy = true>
-__global__ void read_only(const float4* from, std::size_t count, float* never) {
-  float least = 0;
-  for (std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x; i < count; i += std::size_t(gridDim.x) * blockDim.x) {
-    const float4 f = from[i];
-    least = fminf(least, fminf(fminf(f.x, f.y), fminf(f.z, f.w)));
-  }
-  if (least == -1.2345e30f) *never = least;
-}
-
-bool no_device(benchmark::State& state) {
-  int devices = 0;
-  if (cudaGetDeviceCount(&devices) == cudaSuccess && devices > 0) return false;
-  static_cast<void>(cudaGetLastError());
-  state.SkipWithError("no CUDA device");
-  return true;
-}
+using namespace bench;
 
 void read(benchmark::State& state) {
   if (no_device(state)) return;
@@ -79,7 +25,7 @@ void read(benchmark::State& state) {
 }
 
 template <class Model>
-void ask(benchmark::State& state, const Model& model, bool cold, bool plain = false) {
+void ask(benchmark::State& state, const Model& model, bool cold, bool plain = false, bool each = false) {
   const bench::scene& s = bench::the_scene();
   const clearance::device gpu;
   const auto points = repeated(s.cloud, std::size_t(state.range(0)));
@@ -88,12 +34,13 @@ void ask(benchmark::State& state, const Model& model, bool cold, bool plain = fa
   const auto placed_there = model.on(gpu);
   clearance::min_distance_query query(gpu, placed_there);
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
+  const clearance::device_buffer<clearance::part_minimum> minima(s.poses.size(), gpu.id);
   events clock;
   const auto frame = [&] {
     if (plain)
       clearance::min_distance_async(gpu, placed_there, s.poses, clearance::placed<clearance::point_span>{view, s.world_from_camera}, result.data());
     else
-      query.enqueue(s.poses, view, s.world_from_camera, result.data());
+      query.enqueue(s.poses, view, s.world_from_camera, result.data(), each ? minima.data() : nullptr);
   };
   frame();
   for (auto _ : state) {
@@ -127,6 +74,14 @@ void spheres_plain(benchmark::State& state) {
   if (!no_device(state)) ask(state, spheres<V>(), false, true);
 }
 template <class V>
+void every_part_warm(benchmark::State& state) {
+  if (!no_device(state)) ask(state, spheres<V>(), false, false, true);
+}
+template <class V>
+void every_part_cold(benchmark::State& state) {
+  if (!no_device(state)) ask(state, spheres<V>(), true, false, true);
+}
+template <class V>
 void triangles_warm(benchmark::State& state) {
   if (!no_device(state)) ask(state, triangles<V>(), false);
 }
@@ -140,6 +95,8 @@ void triangles_cold(benchmark::State& state) {
 BENCHMARK(read) MORE;
 BENCHMARK(spheres_warm<clearance::sphere>) MORE;
 BENCHMARK(spheres_cold<clearance::sphere>) MORE;
+BENCHMARK(every_part_warm<clearance::sphere>) MORE;
+BENCHMARK(every_part_cold<clearance::sphere>) MORE;
 BENCHMARK(spheres_plain<clearance::sphere>) FRAME;
 BENCHMARK(spheres_warm<clearance::aabb>) FRAME;
 BENCHMARK(spheres_warm<clearance::obb>) FRAME;

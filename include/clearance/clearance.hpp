@@ -12,6 +12,7 @@
 #include <clearance/packing/pack.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
+#include <clearance/points/ray_image.hpp>
 #include <clearance/points/strided_points.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/primitive/triangle.hpp>

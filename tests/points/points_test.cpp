@@ -3,6 +3,7 @@
 
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
+#include <clearance/points/ray_image.hpp>
 #include <clearance/points/strided_points.hpp>
 
 #include <limits>
@@ -184,11 +185,11 @@ namespace {
 
 template <class S>
 void check_fours(const S& source) {
-  REQUIRE(source.loads4());
+  REQUIRE(source.fours() != nullptr);
   verdict v;
   for (std::size_t i = 0; i + 4 <= source.size(); i += 4) {
     clearance::sample four[4];
-    source.load4(i, four);
+    source.look4(source.fours()[i / 4], i, four);
     for (int j = 0; j < 4; ++j) {
       const clearance::sample one = source[i + j];
       v.require(four[j].dropped == one.dropped && same_bytes(four[j].position, one.position), "sample", i + j, " of four differs");
@@ -204,16 +205,38 @@ TEST_CASE("Four samples at once are the same four") {
   const auto holes = with_holes(d, points.size());
   std::copy(holes.begin(), holes.end(), points.begin());
   check_fours(point_span(points.data(), points.size(), {.nearest = 1, .farthest = 6, .zero_is_missing = true}));
-  CHECK_FALSE(point_span(points.data() + 1, 8).loads4());
+  CHECK(point_span(points.data() + 1, 8).fours() == nullptr);
   alignas(16) std::array<std::uint16_t, 64 * 12> raw;
   alignas(16) std::array<float, 64 * 12> metres;
   for (std::size_t k = 0; k < raw.size(); ++k) raw[k] = std::uint16_t(d.below(65536)), metres[k] = k % 5 ? d.number(-1, 5) : missing;
   raw[5] = 0, raw[9] = 65535;
-  depth_image<std::uint16_t> a(raw.data(), 60, 12, {525, 525, 30, 6});
-  depth_image<float> b(metres.data(), 60, 12, {525, 525, 30, 6});
-  a.row = b.row = 64;
+  depth_image<std::uint16_t> a(raw.data(), 64, 12, {525, 525, 30, 6});
   check_fours(a);
-  check_fours(b);
-  a.width = 58;
-  CHECK_FALSE(a.loads4());
+  check_fours(depth_image<float>(metres.data(), 64, 12, {525, 525, 30, 6}));
+  a.width = 60;  // rows with padding are not one array
+  CHECK(a.fours() == nullptr);
+}
+
+TEST_CASE("A table of a pinhole's rays is that pinhole, bit for bit; a bent ray bends its point alone") {
+  dice d(7);
+  const depth_image<std::uint16_t> pinhole(nullptr, 60, 12, {525, 520, 30.5, 6.25});
+  std::vector<clearance::ray> rays;
+  for (std::uint32_t i = 0; i < 60 * 12; ++i) {
+    const vec3 at_one{(float(i % 60) - pinhole.cx) * pinhole.inverse_fx, (float(i / 60) - pinhole.cy) * pinhole.inverse_fy, 1};
+    rays.push_back({at_one.x, at_one.y});
+  }
+  std::vector<std::uint16_t> pixels(64 * 12);
+  for (auto& p : pixels) p = std::uint16_t(d.below(65536));
+  pixels[3] = 0, pixels[70] = 65535;
+  depth_image<std::uint16_t> a = pinhole;
+  clearance::ray_image<std::uint16_t> b(pixels.data(), rays.data(), 60, 12);
+  a.pixels = pixels.data(), a.row = b.row = 64, a.farthest = b.farthest = 50;
+  verdict v;
+  const auto same = [](const clearance::sample& x, const clearance::sample& y) { return x.dropped == y.dropped && same_bytes(x.position, y.position); };
+  for (std::size_t i = 0; i < a.size(); ++i) v.require(same(a[i], b[i]), "pixel", i, " differs");
+  const std::vector<std::uint16_t> moved = pixels;
+  v.require(same(b.at(reinterpret_cast<const std::byte*>(moved.data()))[100], a[100]), "a copy", 100, " differs");
+  rays[100].x += 0.01f;
+  CHECK(b[100].position.x > a[100].position.x);
+  CHECK(same(a[101], b[101]));
 }

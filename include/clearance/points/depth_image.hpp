@@ -10,6 +10,18 @@ struct intrinsics {
   double fx, fy, cx, cy;
 };
 
+/// What a pixel that holds `d` says, if its point is `p`: 0 is missing, 65535 in 16 bits saturated; z is bounded, in metres.
+template <class Pixel>
+CLEARANCE_HD sample depth_sample(Pixel d, vec3 p, real nearest, real farthest) {
+  if (d == 0) return {p, drop_reason::missing};
+  if constexpr (std::is_same_v<Pixel, std::uint16_t>) {
+    if (d == 65535) return {p, drop_reason::saturated};
+  }
+  if (!is_finite(p)) return {p, drop_reason::not_finite};
+  if (!(p.z >= nearest && p.z <= farthest)) return {p, drop_reason::out_of_range};
+  return {p, drop_reason::none};
+}
+
 /// A depth image, deprojected while it is read: `std::uint16_t` pixels times `scale`, or `float` metres (REP 118).
 ///
 /// 0 is missing, 65535 in 16 bits saturated, NaN and Inf not finite; `nearest` and `farthest` bound z, in metres.
@@ -36,19 +48,6 @@ struct depth_image {
     return deproject(pixels[std::size_t(v) * row + u], u, v);
   }
 
-  /// Four pixels of one row at once, where width and address allow.
-  CLEARANCE_HD bool loads4() const {
-    return width % 4 == 0 && row % 4 == 0 && reinterpret_cast<std::uintptr_t>(pixels) % (4 * sizeof(Pixel)) == 0;
-  }
-  CLEARANCE_HD void load4(std::size_t i, sample (&out)[4]) const {
-    struct alignas(4 * sizeof(Pixel)) wide {
-      Pixel d[4];
-    };
-    const std::uint32_t v = std::uint32_t(i) / width, u = std::uint32_t(i) - v * width;
-    const wide four = *reinterpret_cast<const wide*>(pixels + std::size_t(v) * row + u);
-    for (std::uint32_t j = 0; j < 4; ++j) out[j] = deproject(four.d[j], u + j, v);
-  }
-
   /// Four pixels as they lie in memory, which a kernel may fetch before it looks at them: an array of these, or null.
   struct alignas(4 * sizeof(Pixel)) raw4 {
     Pixel d[4];
@@ -66,14 +65,7 @@ struct depth_image {
   /// The point that pixel (u, v) shows if it holds `d`.
   CLEARANCE_HD sample deproject(Pixel d, std::uint32_t u, std::uint32_t v) const {
     const real z = product(real(d), scale);
-    const vec3 p{product((real(u) - cx) * inverse_fx, z), product((real(v) - cy) * inverse_fy, z), z};
-    if (d == 0) return {p, drop_reason::missing};
-    if constexpr (std::is_same_v<Pixel, std::uint16_t>) {
-      if (d == 65535) return {p, drop_reason::saturated};
-    }
-    if (!is_finite(p)) return {p, drop_reason::not_finite};
-    if (!(z >= nearest && z <= farthest)) return {p, drop_reason::out_of_range};
-    return {p, drop_reason::none};
+    return depth_sample(d, {product((real(u) - cx) * inverse_fx, z), product((real(v) - cy) * inverse_fy, z), z}, nearest, farthest);
   }
 
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(pixels, std::size_t(row) * height)); }

@@ -19,26 +19,11 @@ struct point_span {
   CLEARANCE_HD std::size_t size() const { return count; }
   CLEARANCE_HD sample operator[](std::size_t i) const { return filter(points[i]); }
 
-  /// Four at once through three 16-byte loads, where the address allows.
-  CLEARANCE_HD bool loads4() const { return reinterpret_cast<std::uintptr_t>(points) % 16 == 0; }
-  CLEARANCE_HD void load4(std::size_t i, sample (&out)[4]) const {
-    struct alignas(16) wide {
-      real f[4];
-    };
-    const wide* const from = reinterpret_cast<const wide*>(points + i);
-    const wide a = from[0], b = from[1], c = from[2];
-    const vec3 p[4] = {{a.f[0], a.f[1], a.f[2]}, {a.f[3], b.f[0], b.f[1]}, {b.f[2], b.f[3], c.f[0]}, {c.f[1], c.f[2], c.f[3]}};
-    if (filter.plain())
-      for (int j = 0; j < 4; ++j) out[j] = {p[j], is_finite(p[j]) ? drop_reason::none : drop_reason::not_finite};
-    else
-      for (int j = 0; j < 4; ++j) out[j] = filter(p[j]);
-  }
-
   /// Four points as they lie in memory, which a kernel may fetch before it looks at them: an array of these, or null.
   struct alignas(16) raw4 {
     real f[12];
   };
-  CLEARANCE_HD const raw4* fours() const { return loads4() ? reinterpret_cast<const raw4*>(points) : nullptr; }
+  CLEARANCE_HD const raw4* fours() const { return reinterpret_cast<std::uintptr_t>(points) % 16 == 0 ? reinterpret_cast<const raw4*>(points) : nullptr; }
   CLEARANCE_HD void look4(const raw4& r, std::size_t, sample (&out)[4]) const {
     const auto point = [&](int j) { return vec3{r.f[3 * j], r.f[3 * j + 1], r.f[3 * j + 2]}; };
     if (filter.plain()) {

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a control loop sees: from points in pinned memory to the answer on the host, a new pose against points that stay,
+// frames back to back on one stream, and the worst cloud there is. Percentiles are counters, in microseconds.
+#include "device.cuh"
+
+#include <clearance/points/depth_image.hpp>
+#include <clearance/query/any_within.hpp>
+#include <clearance/traversal/near_first.hpp>
+#include <clearance/volume/sphere.hpp>
+
+#include <algorithm>
+
+namespace {
+
+using namespace bench;
+using clearance::device, clearance::vec3;
+
+const auto& robot() {
+  static const auto model = sphere_model<clearance::sphere>(the_scene());
+  return model;
+}
+
+/// Times `calls` calls by the host's clock, after a hundred that do not count.
+template <class F>
+void percentiles(benchmark::State& state, std::size_t calls, F call) {
+  std::vector<double> us;
+  for (auto _ : state) {
+    for (std::size_t k = 0; k < calls + 100; ++k) {
+      const auto start = std::chrono::steady_clock::now();
+      call(k);
+      if (k >= 100) us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
+    }
+  }
+  std::sort(us.begin(), us.end());
+  state.SetIterationTime(us[us.size() / 2] * 1e-6);
+  state.counters["p99_9_us"] = us[us.size() * 999 / 1000];
+  state.counters["max_us"] = us.back();
+}
+
+template <class T>
+clearance::pinned_buffer<T> pinned(const std::vector<T>& data, const device& gpu) {
+  clearance::pinned_buffer<T> copy(data.size(), gpu.id);
+  std::copy(data.begin(), data.end(), copy.data());
+  return copy;
+}
+
+enum class way { in_place, copied, copy_alone };
+
+/// From pinned memory to the answer on the host: read over the bus by the kernel itself, or copied first.
+template <class T, class Make>
+void from_pinned(benchmark::State& state, const std::vector<T>& data, way by, std::size_t calls, Make make) {
+  const scene& s = the_scene();
+  const device gpu;
+  const auto model = robot().on(gpu);
+  clearance::min_distance_query query(gpu, model);
+  const auto source = pinned(data, gpu);
+  const clearance::device_buffer<T> there(data.size(), gpu.id);
+  clearance::min_distance_result r;
+  percentiles(state, calls, [&](std::size_t) {
+    if (by == way::in_place) {
+      r = query(s.poses, make(source.data()), s.world_from_camera);
+      return;
+    }
+    clearance::check_cuda(cudaMemcpyAsync(there.data(), source.data(), data.size() * sizeof(T), cudaMemcpyHostToDevice, gpu.stream), "cudaMemcpyAsync");
+    if (by == way::copied)
+      r = query(s.poses, make(there.data()), s.world_from_camera);
+    else
+      gpu.wait();
+  });
+  if (by != way::copy_alone) state.counters["distance_mm"] = r.distance * 1e3;
+}
+
+void pinned_depth(benchmark::State& state, way by) {
+  if (no_device(state)) return;
+  // The frame's own depths; the pinhole that fits it is near enough, as only time is asked here.
+  std::vector<std::uint16_t> depth;
+  for (const vec3& p : the_scene().cloud) depth.push_back(clearance::is_finite(p) ? std::uint16_t(p.z * 1000) : 0);
+  depth.resize(640 * 480);
+  from_pinned(state, depth, by, 10000, [](const std::uint16_t* d) {
+    return clearance::depth_image<std::uint16_t>(d, 640, 480, {525, 525, 319.5, 239.5});
+  });
+}
+void pinned_points(benchmark::State& state, way by) {
+  if (no_device(state)) return;
+  const auto points = repeated(the_scene().cloud, std::size_t(state.range(0)));
+  from_pinned(state, points, by, points.size() > 1000000 ? 300 : 10000, [&](const vec3* p) { return clearance::point_span(p, points.size()); });
+}
+
+/// 1 kHz haptics: points stay where they are, the robot has moved a little.
+void new_pose(benchmark::State& state) {
+  if (no_device(state)) return;
+  const scene& s = the_scene();
+  const device gpu;
+  const auto model = robot().on(gpu);
+  clearance::min_distance_query query(gpu, model);
+  const auto there = gpu.copy_in(std::span<const vec3>(s.cloud));
+  const clearance::point_span view(there.data(), s.cloud.size());
+  auto poses = s.poses;
+  percentiles(state, 100000, [&](std::size_t k) {
+    for (std::size_t part = 0; part < poses.size(); ++part) poses[part].translation() = s.poses[part].translation() + Eigen::Vector3d(0, 0, 0.01 * std::sin(0.01 * double(k)));
+    benchmark::DoNotOptimize(query(poses, view, s.world_from_camera));
+  });
+}
+
+/// A hundred frames enqueued at once; the time of one.
+void back_to_back(benchmark::State& state) {
+  if (no_device(state)) return;
+  const scene& s = the_scene();
+  const device gpu;
+  const auto model = robot().on(gpu);
+  clearance::min_distance_query query(gpu, model);
+  const auto points = repeated(s.cloud, std::size_t(state.range(0)));
+  const auto there = gpu.copy_in(std::span<const vec3>(points));
+  const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
+  events clock;
+  for (auto _ : state)
+    state.SetIterationTime(clock.seconds([&] {
+      for (int k = 0; k < 100; ++k) query.enqueue(s.poses, clearance::point_span(there.data(), points.size()), s.world_from_camera, result.data());
+    }) / 100);
+}
+
+/// Every point 0.3 m from the robot, to the rounding: no bound culls anything.
+void shell(benchmark::State& state, bool cold) {
+  if (no_device(state)) return;
+  const scene& s = the_scene();
+  const auto& model = robot();
+  const auto view = model.view();
+  constexpr float away = 0.3f;
+  std::vector<vec3> points(static_cast<std::size_t>(state.range(0)));
+  clearance::host{}.for_ranges(points.size(), [&](clearance::indices range) {
+    for (std::size_t i = range.begin; i < range.end; i += range.step) {
+      std::mt19937 bits{unsigned(i)};
+      std::normal_distribution<double> axis;
+      for (bool outside = false; !outside;) {
+        const std::size_t k = bits() % s.poses.size();
+        const auto& ball = s.packings[k].spheres[bits() % s.packings[k].spheres.size()];
+        const Eigen::Vector3d out = Eigen::Vector3d(axis(bits), axis(bits), axis(bits)).normalized();
+        const Eigen::Vector3d world = s.poses[k] * (Eigen::Vector3d(ball.center.x, ball.center.y, ball.center.z) + (ball.radius + double(away)) * out);
+        outside = true;
+        for (std::size_t other = 0; other < s.poses.size() && outside; ++other) {
+          const Eigen::Vector3f q = (s.poses[other].inverse() * world).cast<float>();
+          clearance::any_within nearer{away - 1e-5f};
+          clearance::near_first{}(view.parts[other].tree, vec3{q.x(), q.y(), q.z()}, nearer);
+          outside = !nearer.found;
+        }
+        points[i] = {float(world.x()), float(world.y()), float(world.z())};
+      }
+    }
+  });
+  const device gpu;
+  const auto there_model = model.on(gpu);
+  clearance::min_distance_query query(gpu, there_model);
+  const auto there = gpu.copy_in(std::span<const vec3>(points));
+  const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
+  events clock;
+  for (auto _ : state) {
+    if (cold) query.forget();
+    state.SetIterationTime(clock.seconds([&] {
+      query.enqueue(s.poses, clearance::point_span(there.data(), points.size()), Eigen::Isometry3d::Identity(), result.data());
+    }));
+  }
+  state.counters["distance_mm"] = gpu.copy_out(result)[0].distance * 1e3;
+}
+
+#define ONCE ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(1)
+BENCHMARK_CAPTURE(pinned_depth, in_place, way::in_place) ONCE;
+BENCHMARK_CAPTURE(pinned_depth, copied, way::copied) ONCE;
+BENCHMARK_CAPTURE(pinned_depth, copy_alone, way::copy_alone) ONCE;
+BENCHMARK_CAPTURE(pinned_points, in_place, way::in_place)->Arg(307200)->Arg(5000000) ONCE;
+BENCHMARK_CAPTURE(pinned_points, copied, way::copied)->Arg(307200)->Arg(5000000) ONCE;
+BENCHMARK_CAPTURE(pinned_points, copy_alone, way::copy_alone)->Arg(307200)->Arg(5000000) ONCE;
+BENCHMARK(new_pose) ONCE;
+BENCHMARK(back_to_back)->Arg(307200)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
+BENCHMARK_CAPTURE(shell, warm, false)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(50);
+BENCHMARK_CAPTURE(shell, cold, true)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(50);
+
+}  // namespace
+
+BENCHMARK_MAIN();

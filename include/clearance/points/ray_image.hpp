@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/points/depth_image.hpp>
+
+namespace clearance {
+
+/// Where a pixel looks: x and y at z = 1, in the camera's frame.
+struct ray {
+  real x, y;
+};
+
+/// A depth image of a lens with distortion: each pixel has its ray, from a table made once (one a pixel, row by row, in
+/// memory that the query's backend can read; the pixels may be anywhere). Otherwise as depth_image.
+template <class Pixel>
+struct ray_image {
+  static_assert(std::is_same_v<Pixel, std::uint16_t> || std::is_same_v<Pixel, float>, "depth pixels are 16-bit integers or floats");
+
+  const Pixel* pixels = nullptr;
+  const ray* rays = nullptr;
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t row = 0;  ///< Pixels from one row to the next; the table has no padding.
+  real scale = 1;         ///< Metres a unit.
+  real nearest = 0, farthest = infinity;
+
+  ray_image() = default;
+  ray_image(const Pixel* pixels, const ray* rays, std::uint32_t width, std::uint32_t height,
+            double scale = std::is_same_v<Pixel, float> ? 1.0 : 0.001)
+      : pixels(pixels), rays(rays), width(width), height(height), row(width), scale(real(scale)) {}
+
+  CLEARANCE_HD std::size_t size() const { return std::size_t(width) * height; }
+  CLEARANCE_HD sample operator[](std::size_t i) const {
+    const Pixel d = pixels[row == width ? i : i / width * row + i % width];
+    const real z = product(real(d), scale);
+    return depth_sample(d, {product(rays[i].x, z), product(rays[i].y, z), z}, nearest, farthest);
+  }
+
+  std::span<const std::byte> bytes() const { return std::as_bytes(std::span(pixels, std::size_t(row) * height)); }
+  ray_image at(const std::byte* copy) const {
+    ray_image moved = *this;
+    moved.pixels = reinterpret_cast<const Pixel*>(copy);
+    return moved;
+  }
+};
+
+static_assert(point_source<ray_image<std::uint16_t>> && point_source<ray_image<float>>);
+
+}  // namespace clearance
