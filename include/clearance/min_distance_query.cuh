@@ -59,18 +59,21 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
     launch_(source, a);
   }
 
-  /// One frame, waited for. Points in memory that the device cannot read are copied into buffers that are kept.
+  /// One frame, waited for; `minima`, if not empty, one a part, are every part's own. Points in memory that the device cannot read are copied into buffers that are kept.
   template <class Clouds>
-  min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::vector<part_minimum>* minima = nullptr) {
+  min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<part_minimum> minima = {}) {
+    if (!minima.empty() && minima.size() != facts_.size())
+      throw std::invalid_argument("clearance::min_distance_query: there are " + std::to_string(facts_.size()) + " parts, but room for " +
+                                  std::to_string(minima.size()) + " minima");
     const auto all = detail::as_clouds(clouds);
     std::vector<std::remove_cvref_t<decltype(all[0])>> there(all.begin(), all.end());
     for (std::size_t k = 0; k < there.size(); ++k) there[k].source = readable(there[k].source, k);
     const std::uint32_t number = ++frame_number_;
-    enqueue_all(poses, there, &answer_.data()->result, minima == nullptr ? nullptr : minima_.data(), &answer_.data()->done);
+    enqueue_all(poses, there, &answer_.data()->result, minima.empty() ? nullptr : minima_.data(), &answer_.data()->done);
     const volatile std::uint32_t& done = answer_.data()->done;
     for (unsigned spins = 1; done != number; ++spins)
       if (spins % 4096 == 0 && cudaStreamQuery(on_.stream) != cudaErrorNotReady && done != number) on_.wait();
-    if (minima != nullptr) minima->assign(minima_.data(), minima_.data() + minima_.size());
+    std::copy_n(minima_.data(), minima.size(), minima.begin());
     return answer_.data()->result;
   }
   template <point_source S>

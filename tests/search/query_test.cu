@@ -29,8 +29,8 @@ void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const
     const auto expected = min_distance(host{}, on_host, poses, cloud);
     v.require(same_result(query(poses, source, pose), expected), what + ", " + when, ": differs from the host's result");
     const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, cloud);
-    std::vector<clearance::part_minimum> minima;
-    v.require(same_result(query(poses, cloud, &minima), robot), what + ", " + when, ": differs from the host's result by parts");
+    std::vector<clearance::part_minimum> minima(poses.size());
+    v.require(same_result(query(poses, cloud, minima), robot), what + ", " + when, ": differs from the host's result by parts");
     v.require(std::ranges::equal(minima, each, same_minimum), what + ", " + when, ": some part's minimum differs");
   };
   same("cold");
@@ -143,9 +143,9 @@ TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are cou
   for (int rotation = 0; rotation < 5; ++rotation, std::rotate(clouds.begin(), clouds.begin() + 1, clouds.end()))
     for (const char* when : {"first", "again"}) {
       const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, clouds);
-      std::vector<clearance::part_minimum> minima;
+      std::vector<clearance::part_minimum> minima(5);
       v.require(same_result(query(poses, clouds), min_distance(host{}, on_host, poses, clouds)), std::to_string(rotation) + when, ": differs");
-      v.require(same_result(query(poses, clouds, &minima), robot), std::to_string(rotation) + when, ": differs by parts");
+      v.require(same_result(query(poses, clouds, minima), robot), std::to_string(rotation) + when, ": differs by parts");
       v.require(std::ranges::equal(minima, each, same_minimum), std::to_string(rotation) + when, ": some part's minimum differs");
     }
   REQUIRE_THROWS_AS(query(poses, std::vector<clearance::placed<clearance::point_span>>()), std::invalid_argument);
@@ -250,6 +250,8 @@ TEST_CASE("A query in a stream of its own leaves the caller's device alone, and 
   const std::vector<Eigen::Isometry3d> poses = {d.pose(1), d.pose(1)};
   const auto cloud = d.points(100, 2);
   REQUIRE_THROWS_AS(query(std::span(poses).first(1), clearance::point_span(cloud)), std::invalid_argument);
+  std::vector<clearance::part_minimum> three(3);
+  REQUIRE_THROWS_AS(query(poses, cloud, three), std::invalid_argument);
   Eigen::Isometry3d skewed = poses[0];
   skewed.linear() *= 1.01;
   REQUIRE_THROWS_AS(query(std::vector{skewed, poses[1]}, clearance::point_span(cloud)), std::invalid_argument);
