@@ -59,7 +59,8 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
     launch_(source, a);
   }
 
-  /// One frame, waited for; `minima`, if not empty, one a part, are every part's own. Points in memory that the device cannot read are copied into buffers that are kept.
+  /// One frame, waited for; `minima`, if not empty, one a part, are every part's own. Points in memory that the device cannot
+  /// read are copied into buffers that are kept.
   template <class Clouds>
   min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<part_minimum> minima = {}) {
     if (!minima.empty() && minima.size() != facts_.size())

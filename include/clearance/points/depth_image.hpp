@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/concepts.hpp>
+#include <clearance/point_filter.hpp>
 
 namespace clearance {
 
@@ -9,18 +9,6 @@ namespace clearance {
 struct intrinsics {
   double fx, fy, cx, cy;
 };
-
-/// What a pixel that holds `d` says, if its point is `p`: 0 is missing, 65535 in 16 bits saturated; z is bounded, in metres.
-template <class Pixel>
-CLEARANCE_HD sample depth_sample(Pixel d, vec3 p, real nearest, real farthest) {
-  if (d == 0) return {p, drop_reason::missing};
-  if constexpr (std::is_same_v<Pixel, std::uint16_t>) {
-    if (d == 65535) return {p, drop_reason::saturated};
-  }
-  if (!is_finite(p)) return {p, drop_reason::not_finite};
-  if (!(p.z >= nearest && p.z <= farthest)) return {p, drop_reason::out_of_range};
-  return {p, drop_reason::none};
-}
 
 /// A depth image, deprojected while it is read: `std::uint16_t` pixels times `scale`, or `float` metres (REP 118).
 ///

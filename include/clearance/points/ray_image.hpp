@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/points/depth_image.hpp>
+#include <clearance/point_filter.hpp>
 
 namespace clearance {
 
