@@ -60,7 +60,7 @@ inline void check_laws(const triangle_mesh& mesh, const packing& p, int points =
   // The certificate: the exact distance to the solid, 0 inside, is in [d - gap, d], and not above 0 if d is not.
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
-  int broken = 0;
+  int broken = 0, roomier = 0;  // places with more room than there is said to be
   const auto law = [&](const Vector3d& at, double exact) {
     const double d = sphere_distance(p, at);
     broken += !(exact >= std::max(0.0, d - p.gap) && exact <= std::max(0.0, d));
@@ -69,10 +69,12 @@ inline void check_laws(const triangle_mesh& mesh, const packing& p, int points =
     const Vector3d u(unit(random), unit(random), unit(random));
     const Vector3d at = s.bounds().min() + (1.5 * u - Vector3d::Constant(0.25)).cwiseProduct(s.bounds().sizes());
     law(at, s.inside(at) ? 0 : to_surface(at));
+    roomier += s.inside(at) && std::min(to_surface(at), sphere_distance(p, at)) > p.room;
   }
   for (const Vector3d& at : s.surface_points(std::size_t(points))) law(at, 0);
   for (const Vector3d& at : s.corners()) law(at, 0);
   CHECK(broken == 0);
+  CHECK(roomier == 0);
   CHECK(p.gap_mean <= p.gap_p95 + p.gap);
   CHECK(p.gap_p95 <= p.gap);
 }

@@ -94,8 +94,8 @@ gap_report measure_gap(const B& on, Steps& steps, const mesh_solid& s, const roo
   const std::size_t samples = points.size();
   for (const auto& p : s.corners()) points.push_back(p);
   const auto there = on.copy_in(std::span<const vec3d>(points));
-  const auto gaps_there = on.template make_scratch<double>(points.size());
-  on.for_each(points.size(), detail::gap_at{in, there.data(), const_cast<double*>(gaps_there.data())});
+  auto gaps_there = on.template make_scratch<double>(points.size());
+  on.for_each(points.size(), detail::gap_at{in, there.data(), gaps_there.data()});
   std::vector<double> gaps = on.copy_out(gaps_there.data(), gaps_there.size());
   double least = *std::max_element(gaps.begin(), gaps.end());
   gaps.resize(samples);

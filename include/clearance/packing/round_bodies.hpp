@@ -34,7 +34,9 @@ struct field {
   double smallest, scale;
 
   CLEARANCE_HD double key(const cell& c) const {
-    return c.bound() >= smallest ? rules.key(c.depth, c.reach(), c.gap) : 0;  // 0: nothing fits
+    if (!(c.bound() >= smallest)) return 0;  // nothing fits
+    const double key = rules.key(c.depth, c.reach(), c.gap), last = 1e-3 * smallest;
+    return key > last ? key : last;  // with little trust in bounds a key may be negative
   }
 };
 
