@@ -41,7 +41,7 @@ struct word_bound {
 #if defined(__CUDA_ARCH__)
     atomicMin(word, clearance::ordered(distance));
 #else
-    *word = clearance::min(*word, clearance::ordered(distance));
+    *word = clearance::ordered(distance);  // nearer than what is there; one thread
 #endif
   }
   CLEARANCE_HD real result() const { return reach(); }

@@ -22,7 +22,7 @@ std::string stamp(const char* given) {
          std::to_string(driver % 1000 / 10) + (given == nullptr ? "" : std::string("; ") + given);
 }
 
-/// The whole design space for one scenario. `quick`: the smallest cloud alone, to see that all is right.
+/// The whole design space for one scenario. `quick`: one small cloud and few runs, to see that all is right.
 void explore(lab& l, const bench::scene& robot, const scenario& s, bool quick) {
   using model = decltype(bench::sphere_model<clearance::sphere>(robot));
   std::vector<model> on_host;
@@ -33,15 +33,15 @@ void explore(lab& l, const bench::scene& robot, const scenario& s, bool quick) {
   }
 
   // The headline's sizes first: they say which width is the paper's best.
+  const std::vector<std::size_t> one = {20'000}, most = {5'000'000, 307'200};
   std::size_t best = 0;
-  for (const std::size_t n :
-       quick ? std::vector<std::size_t>{s.sizes[0]} : std::vector<std::size_t>{5'000'000, 307'200}) {
+  for (const std::size_t n : quick ? one : most) {
     l.set(s, n);
     best = headline(l, models, l.reference(on_host.back()));
   }
   const auto& paper_model = models[best];
 
-  for (const std::size_t n : s.sizes) {
+  for (const std::size_t n : quick ? one : s.sizes) {
     l.set(s, n);
     const double reference = l.reference(on_host.back());
     const auto parts = l.parts(paper_model);
@@ -54,7 +54,7 @@ void explore(lab& l, const bench::scene& robot, const scenario& s, bool quick) {
     sharing(l, parts, reference);
     caches(l, parts, reference);
     seeds(l, parts, reference);
-    if (n == s.sizes.front() || n == s.sizes.back()) culling(l, on_host[best], parts, reference);
+    if (n == s.sizes.front() || n == s.sizes.back() || quick) culling(l, on_host[best], parts, reference);
     if (n == 307'200 || quick) {
       block_sizes(l, parts, reference);
       layouts(l, on_host.back());
@@ -63,9 +63,8 @@ void explore(lab& l, const bench::scene& robot, const scenario& s, bool quick) {
     }
     device_competitors(l, on_host.back(), models.back(), paper_model, reference);
     host_competitors(l.out, s, n, on_host.back(), on_host[best]);
-    if (quick) break;
   }
-  l.set(s, quick ? s.sizes[0] : s.along_motion);
+  l.set(s, quick ? one[0] : s.along_motion);
   along_motion(l, on_host.back(), models.back(), paper_model, quick ? 5 : 41, quick ? 2 : 15);
 }
 
