@@ -10,8 +10,11 @@
 
 #if defined(__CUDACC__)
 #define CLEARANCE_HD __host__ __device__
+/// Before a template that calls what it is given, which may be for the host alone.
+#define CLEARANCE_CALLS_ANYTHING _Pragma("nv_exec_check_disable")
 #else
 #define CLEARANCE_HD
+#define CLEARANCE_CALLS_ANYTHING
 #endif
 
 /// Before a short loop whose arrays shall live in registers.

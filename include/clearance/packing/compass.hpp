@@ -40,6 +40,7 @@ CLEARANCE_HD inline vec3d compass(int k) {
 
 /// Compass search for a place worth more. `worth(p, most, least)` says what p is worth, which is at most `most`, or
 /// anything not above `least`; `prepare(now)` is called before each step.
+CLEARANCE_CALLS_ANYTHING
 template <class Lanes, class G, class F>
 CLEARANCE_HD solid_sphere compass_search(const solid_sphere& from, double precision, Lanes lanes, G prepare, F worth) {
   solid_sphere now = from;
