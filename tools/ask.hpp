@@ -6,7 +6,7 @@
 #include "stopwatch.hpp"
 
 #include <clearance/make_part.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/min_distance_query.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -45,28 +45,79 @@ answer ask_model(const Backend& on, const question& asked, const clearance::mode
   return out;
 }
 
-template <class V, class Backend>
-answer ask_volume(const Backend& on, const question& asked) {
-  stopwatch clock;
+/// The library's prepared query over a model of its own.
+template <class Backend, class Model>
+class prepared final : public prepared_question {
+ public:
+  prepared(const Backend& on, Model model) : on_(on), model_(std::move(model)), query_(on_, model_) {}
+
+  double see(const seen_points& cloud) override {
+    stopwatch clock;
+    cloud_ = cloud;
+    std::visit(
+        [&](auto& source) {
+          if (source.size() == 0 || on_.reads(source.bytes().data())) return;
+          copy_ = on_.copy_in(source.bytes());
+          source = source.at(copy_.data());
+        },
+        cloud_.points);
+    on_.wait();
+    return clock.lap();
+  }
+
+  answer ask(const std::vector<Eigen::Isometry3d>& poses) override {
+    answer out;
+    stopwatch clock;
+    out.result = std::visit([&](const auto& source) { return query_(poses, source, cloud_.pose); }, cloud_.points);
+    out.query = clock.lap();
+    return out;
+  }
+
+ private:
+  Backend on_;
+  Model model_;
+  decltype(clearance::min_distance_query(std::declval<const Backend&>(), std::declval<const Model&>())) query_;
+  seen_points cloud_;
+  typename Backend::template buffer<std::byte> copy_;
+};
+
+/// Calls `use` with the model that is asked for, in host memory.
+template <class V, class Use>
+auto with_volume(const question& asked, Use use) {
   const auto with = [&](auto make) {
     std::vector<decltype(make((*asked.bodies)[0]))> parts;
     for (const body& b : *asked.bodies) parts.push_back(make(b));
-    const clearance::model built(std::move(parts));
-    const double seconds = clock.lap();
-    answer out = ask_model(on, asked, built);
-    out.build = seconds;
-    return out;
+    return use(clearance::model(std::move(parts)));
   };
   if (asked.model == model_kind::spheres)
     return with([](const body& b) { return clearance::make_part<V>(b.packed, {.tolerance = b.tolerance}); });
   return with([](const body& b) { return clearance::make_part<V>(b.closed, {.tolerance = b.tolerance}); });
 }
 
+template <class Use>
+auto with_model(const question& asked, Use use) {
+  switch (asked.volume) {
+    case volume_kind::sphere: return with_volume<clearance::sphere>(asked, use);
+    case volume_kind::aabb: return with_volume<clearance::aabb>(asked, use);
+    default: return with_volume<clearance::obb>(asked, use);
+  }
+}
+
 template <class Backend>
 answer ask(const Backend& on, const question& asked) {
-  switch (asked.volume) {
-    case volume_kind::sphere: return ask_volume<clearance::sphere>(on, asked);
-    case volume_kind::aabb: return ask_volume<clearance::aabb>(on, asked);
-    default: return ask_volume<clearance::obb>(on, asked);
-  }
+  stopwatch clock;
+  return with_model(asked, [&](const auto& built) {
+    const double seconds = clock.lap();
+    answer out = ask_model(on, asked, built);
+    out.build = seconds;
+    return out;
+  });
+}
+
+template <class Backend>
+std::unique_ptr<prepared_question> prepare(const Backend& on, const question& asked) {
+  return with_model(asked, [&](const auto& built) -> std::unique_ptr<prepared_question> {
+    auto model = built.on(on);
+    return std::make_unique<prepared<Backend, decltype(model)>>(on, std::move(model));
+  });
 }

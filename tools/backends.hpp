@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -56,6 +57,22 @@ answer ask_host(const question& asked);
 
 /// Throws std::runtime_error if no device is compiled in.
 answer ask_device(const question& asked);
+
+/// A question that is asked again and again, of the same bodies: the library's prepared query.
+class prepared_question {
+ public:
+  virtual ~prepared_question() = default;
+
+  /// Takes the points to where the backend reads them; they and what they view stay until the next ones. Seconds spent.
+  virtual double see(const seen_points& cloud) = 0;
+
+  /// The minimum over what was seen last; .query is the time of that alone, and no .parts are told.
+  virtual answer ask(const std::vector<Eigen::Isometry3d>& poses) = 0;
+};
+
+/// Builds the models that are asked for; poses and clouds come later.
+std::unique_ptr<prepared_question> prepare_host(const question& asked);
+std::unique_ptr<prepared_question> prepare_device(const question& asked);
 
 struct device_state {
   bool compiled = false, present = false;

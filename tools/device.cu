@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ask.hpp"
+#include <clearance/min_distance_query.cuh>  // the device's own prepared query
 
-#include <clearance/backend/device.cuh>
+#include "ask.hpp"
 
 namespace {
 
@@ -12,6 +12,8 @@ __global__ void probe() {}
 }  // namespace
 
 answer ask_device(const question& asked) { return ask(clearance::device{}, asked); }
+
+std::unique_ptr<prepared_question> prepare_device(const question& asked) { return prepare(clearance::device{}, asked); }
 
 device_state find_device() {
   int count = 0;

@@ -2,3 +2,5 @@
 #include "ask.hpp"
 
 answer ask_host(const question& asked) { return ask(clearance::host{}, asked); }
+
+std::unique_ptr<prepared_question> prepare_host(const question& asked) { return prepare(clearance::host{}, asked); }

@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("Exit codes: 0 done; 1 an error, wrong usage included; 2 --check fails; 3 no valid point.");
   std::vector<subcommand> run;
-  for (const auto add : {add_query, add_pack, add_demo, add_info}) run.push_back(add(app));
+  for (const auto add : {add_query, add_run, add_pack, add_demo, add_info}) run.push_back(add(app));
   try {
     check_subcommand(argc, argv, app);
     app.parse(with_negative_values(argc, argv, app));

@@ -65,6 +65,11 @@ seen_points observation::seen(const Eigen::Isometry3d& carrier) const {
   return {source, world};
 }
 
+void observation::recount(min_distance_result& r) const {
+  r.dropped[int(drop_reason::not_finite)] -= zeros;
+  r.dropped[int(drop_reason::missing)] += zeros;
+}
+
 std::vector<vec3> valid_points(const seen_points& seen) {
   std::vector<vec3> valid;
   std::visit(

@@ -23,6 +23,9 @@ struct observation {
 
   /// What the query reads, in place. `carrier`: world-from-link of the link that --camera-link names, else the identity.
   seen_points seen(const Eigen::Isometry3d& carrier) const;
+
+  /// Counts what was turned into NaN as missing.
+  void recount(clearance::min_distance_result& r) const;
 };
 
 /// Reads the file. Throws if it is damaged.

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "asked_robot.hpp"
 #include "command_line.hpp"
 #include "observations.hpp"
-#include "query_options.hpp"
 #include "report.hpp"
-#include "robot_bodies.hpp"
 #include "stopwatch.hpp"
 
-#include <clearance/io/robot.hpp>
 #include <clearance/io/scene.hpp>
-#include <clearance/io/spheres_file.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -17,14 +14,6 @@
 using namespace clearance;
 
 namespace {
-
-io::robot load(const query_options& asked) {
-  io::robot_options options;
-  options.geometry = asked.visual.value_or(false) ? io::robot_geometry::visual : io::robot_geometry::collision;
-  for (const auto& [name, folder] : asked.packages) options.packages[name] = folder;
-  options.exclude_links = asked.excluded;
-  return io::load_robot(asked.robot, options);
-}
 
 std::vector<double> configuration(const query_options& asked, const io::kinematic_tree& tree) {
   if (!asked.joints.empty()) {
@@ -35,37 +24,6 @@ std::vector<double> configuration(const query_options& asked, const io::kinemati
                                       std::to_string(asked.joints.size()) + " values");
   }
   return tree.configuration({asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits});
-}
-
-/// The spheres of --packing by the number of their link; nullptr for links that it does not name.
-std::vector<const io::packed_part*> assigned(const std::vector<io::packed_part>& given, const io::robot& robot, const query_options& asked) {
-  const auto& parts = robot.parts();
-  std::vector<const io::packed_part*> to(parts.size(), nullptr);
-  if (given.size() == 1 && parts.size() == 1) return {&given[0]};  // whatever it is called
-  for (const io::packed_part& each : given) {
-    const auto at = std::find_if(parts.begin(), parts.end(), [&](const auto& part) { return part.name == each.name; });
-    if (at != parts.end())
-      to[std::size_t(at - parts.begin())] = &each;
-    else if (std::find(asked.excluded.begin(), asked.excluded.end(), each.name) == asked.excluded.end())
-      throw usage_error("--packing", asked.packing + " has spheres for \"" + each.name +
-                                         "\", which is no link with geometry (--exclude-link leaves a link out)");
-  }
-  return to;
-}
-
-void note_packing(const query_options& asked, const body_account& account, std::vector<std::string>& notes) {
-  if (asked.packing.empty()) return;
-  const auto mm = [](double metres) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2f mm", 1e3 * metres);
-    return std::string(text);
-  };
-  if (account.proven > 0)
-    notes.push_back(asked.packing + ": the spheres of " + std::to_string(account.proven) +
-                    " links have no certificate for these meshes, and were measured: the meshes are nowhere farther from them than " +
-                    mm(account.largest_gap) + ", and they stick out by at most " + mm(account.largest_excess));
-  if (const std::size_t rest = account.packed + account.from_cache; rest > 0)
-    notes.push_back(asked.packing + ": has no spheres for " + std::to_string(rest) + " links, which were packed");
 }
 
 void draw(const query_report& report, const io::robot& robot, const question& asked) {
@@ -89,7 +47,7 @@ int run(const query_options& asked) {
   stopwatch clock;
   progress shown;
   shown.show("reading " + asked.robot);
-  const io::robot robot = load(asked);
+  const io::robot robot = load_robot(asked);
   const auto joints = configuration(asked, robot.kinematics());
   const io::joint_options limits{asked.ignore_limits};
   query_report report;
@@ -107,26 +65,12 @@ int run(const query_options& asked) {
                                                           : asked.base * robot.link_pose(cloud.from.link, joints, limits)));
   report.load = clock.lap();
 
-  std::vector<body> bodies;
-  std::vector<io::packed_part> given;
-  if (!asked.packing.empty()) given = io::load_spheres(asked.packing);
-  const auto spheres_of = assigned(given, robot, asked);
-  const io::packing_cache cache = chosen_cache(asked.no_cache, asked.cache);
-  body_account account;
-  for (std::size_t k = 0; k < robot.parts().size(); ++k) {
-    const io::robot_part& part = robot.parts()[k];
-    const body_options how{.model = asked.model, .pack = {.count = asked.spheres}, .cache = &cache, .given = spheres_of[k]};
-    bodies.push_back(make_body(part.name, part.mesh, part.tessellation_error, how, shown, account));
-  }
-  note_packing(asked, account, report.notes);
+  const std::vector<body> bodies = make_bodies(asked, robot, shown, report.notes);
   report.pack = clock.lap();
   q.bodies = &bodies;
   shown.show("asking");
   report.found = asked.on_device ? ask_device(q) : ask_host(q);
-  for (const observation& cloud : clouds) {  // what was turned into NaN was missing
-    report.found.result.dropped[int(drop_reason::not_finite)] -= cloud.zeros;
-    report.found.result.dropped[int(drop_reason::missing)] += cloud.zeros;
-  }
+  for (const observation& cloud : clouds) cloud.recount(report.found.result);
   report.asked = &asked;
   report.clouds = &clouds;
   report.bodies = &bodies;
@@ -143,5 +87,5 @@ int run(const query_options& asked) {
 
 subcommand add_query(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("query", "The least distance between a robot and what a sensor saw");
-  return [options = add_query_options(*sub)] { return run(options()); };
+  return [options = add_query_options(*sub, asking::query)] { return run(options()); };
 }

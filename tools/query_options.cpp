@@ -11,14 +11,18 @@
 
 bool cloud_options::is_image() const { return clearance::io::extension(file) == ".png"; }
 
+void cloud_options::check(const std::string& option) const {
+  if (is_image() && !camera) throw usage_error(option, file + " is a depth image, which needs --intrinsics fx,fy,cx,cy");
+}
+
 namespace {
 
 using texts = std::vector<std::string>;
 
 struct raw_options {
-  std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene;
+  std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames, trajectory;
   texts joint, packages, excluded, clouds, poses, links, cameras, scales, ranges;
-  bool ignore_limits = false, json = false, no_cache = false;
+  bool ignore_limits = false, json = false, no_cache = false, merge = false;
 };
 
 /// An option that takes one word each time it is given, as often as wanted.
@@ -53,10 +57,9 @@ void set(cloud_options& cloud, const std::string& option, const std::string& tex
     throw usage_error(option, "is for point clouds, and " + cloud.file + " is a depth image");
 }
 
-/// The clouds in their order; an option before the first is for all, one after a cloud for that one.
-std::vector<cloud_options> clouds_of(const CLI::App& app) {
+/// The clouds in their order; an option before the first goes to `all`, one after a cloud to that one.
+std::vector<cloud_options> clouds_of(const CLI::App& app, cloud_options& all) {
   std::vector<cloud_options> clouds;
-  cloud_options all;
   std::map<const CLI::Option*, std::size_t> taken;
   for (const CLI::Option* option : app.parse_order()) {
     const std::string name = option->get_name();
@@ -68,9 +71,7 @@ std::vector<cloud_options> clouds_of(const CLI::App& app) {
       set(clouds.empty() ? all : clouds.back(), name, text);
     }
   }
-  for (const auto& cloud : clouds)
-    if (cloud.is_image() && !cloud.camera)
-      throw usage_error("--cloud", cloud.file + " is a depth image, which needs --intrinsics fx,fy,cx,cy");
+  for (const auto& cloud : clouds) cloud.check("--cloud");
   return clouds;
 }
 
@@ -89,7 +90,10 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   if (!raw.geometry.empty()) o.visual = choice("--geometry", raw.geometry, {"collision", "visual"}) == 1;
   for (const auto& text : raw.packages) o.packages.push_back(assignment("--package", text));
   if (!raw.base.empty()) o.base = pose("--base-pose", raw.base);
-  o.clouds = clouds_of(app);
+  o.clouds = clouds_of(app, o.recording.camera);
+  o.recording.frames = raw.frames;
+  o.recording.trajectory = raw.trajectory;
+  o.recording.merge = raw.merge;
   o.model = model_kind(choice("--model", raw.model, {"spheres", "triangles"}));
   o.volume = o.model == model_kind::spheres ? volume_kind::sphere : volume_kind::obb;
   if (!raw.volume.empty()) o.volume = volume_kind(choice("--volume", raw.volume, {"sphere", "aabb", "obb"}));
@@ -110,7 +114,8 @@ query_options read(const CLI::App& app, const raw_options& raw) {
 
 }  // namespace
 
-std::function<query_options()> add_query_options(CLI::App& app) {
+std::function<query_options()> add_query_options(CLI::App& app, asking how) {
+  const bool recorded = how == asking::run;
   auto raw = std::make_shared<raw_options>();
   raw->model = "spheres";
   raw->spheres = "2048";
@@ -118,13 +123,25 @@ std::function<query_options()> add_query_options(CLI::App& app) {
     return app.add_option(name, to, says);
   };
   one("--robot", raw->robot, "Robot description, URDF")->required();
-  one("--joints", raw->joints, "a,b,...: joint positions (rad, m) in the file's order of movable, non-mimic joints");
-  app.add_option("--joint", raw->joint, "name=value: the position of one joint; others are 0 or their nearest limit");
+  if (recorded) {
+    one("--frames", raw->frames,
+        "Point clouds (.pcd .ply .xyz .txt) or 16-bit depth images (.png): a folder, in the order of their names, or a text file with one path a "
+        "line, relative to that file")->required();
+    one("--trajectory", raw->trajectory,
+        "CSV: a line with the names of the joints, then one row a frame, or one row for all (rad, m)")->required();
+    app.add_flag("--merge", raw->merge,
+                 "Ask every frame about the clouds of all frames, merged in the world: each frame's cloud is put there by --camera-pose, with "
+                 "--camera-link by that link's pose in the frame's row of the trajectory");
+    app.add_option("--joint", raw->joint, "name=value: a joint that has no column in the trajectory");
+  } else {
+    one("--joints", raw->joints, "a,b,...: joint positions (rad, m) in the file's order of movable, non-mimic joints");
+    app.add_option("--joint", raw->joint, "name=value: the position of one joint; others are 0 or their nearest limit");
+  }
   app.add_flag("--ignore-limits", raw->ignore_limits, "Accept joint positions outside their limits");
   one("--geometry", raw->geometry, "visual or collision (default; visual where a link has no collision)");
   app.add_option("--package", raw->packages, "name=DIR: where package://name/ is");
   one("--base-pose", raw->base, "x,y,z,qx,qy,qz,qw: world-from-base (m; default: the base is at the world's origin)");
-  app.add_option("--cloud", raw->clouds, "Point cloud (.pcd .ply .xyz) or 16-bit depth image (.png); may be repeated")->required();
+  if (!recorded) app.add_option("--cloud", raw->clouds, "Point cloud (.pcd .ply .xyz) or 16-bit depth image (.png); may be repeated")->required();
   repeatable(app, "--camera-pose", raw->poses, "x,y,z,qx,qy,qz,qw: world-from-cloud, or link-from-cloud with --camera-link");
   repeatable(app, "--camera-link", raw->links, "The link that carries the camera");
   repeatable(app, "--intrinsics", raw->cameras, "fx,fy,cx,cy of a depth image, pixels");
@@ -140,7 +157,12 @@ std::function<query_options()> add_query_options(CLI::App& app) {
   one("--cache", raw->cache, "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
   app.add_option("--exclude-link", raw->excluded, "Leave out this link's geometry");
   one("--backend", raw->backend, "host or device (default: device where there is one)");
-  one("--check", raw->check, "Margin in m: exit code 2 unless the lower end of the bracket is above it");
+  one("--check", raw->check, std::string("Margin in m: exit code 2 unless the lower end of the bracket is above it") + (recorded ? " in every frame" : ""));
+  if (recorded) {
+    app.footer("Prints one JSON object a line and frame. latency_us is the time of the query alone, on the host's clock; a frame's points\n"
+               "are read before. The exit code is 3 if a frame has no valid point, also with --check.");
+    return [raw, &app] { return read(app, *raw); };
+  }
   app.add_flag("--json", raw->json, "Print one JSON object");
   one("--scene", raw->scene, "Write robot, clouds and witness to this .glb file");
   app.footer(

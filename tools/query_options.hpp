@@ -26,6 +26,16 @@ struct cloud_options {
   bool use_viewpoint = false, zero_is_missing = false;
 
   bool is_image() const;
+
+  /// Throws usage_error, about `option`, if something is missing.
+  void check(const std::string& option) const;
+};
+
+/// What `clearance run` plays.
+struct recording_options {
+  std::string frames, trajectory;
+  cloud_options camera;  // holds for every frame; .file is empty
+  bool merge = false;
 };
 
 struct query_options {
@@ -48,7 +58,10 @@ struct query_options {
   std::optional<double> margin;
   bool json = false;
   std::string scene;
+  recording_options recording;  // of `clearance run`, which has no .joints, .clouds, .json and .scene
 };
 
-/// Declares the options of `clearance query`; what it returns reads them once they are parsed. Throws usage_error.
-std::function<query_options()> add_query_options(CLI::App& app);
+enum class asking { query, run };
+
+/// Declares the options of a subcommand; what it returns reads them once they are parsed. Throws usage_error.
+std::function<query_options()> add_query_options(CLI::App& app, asking how);

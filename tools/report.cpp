@@ -34,29 +34,51 @@ json xyz(const position& p) { return {p.x, p.y, p.z}; }
 /// What a number is when there is none: infinity and NaN have no place in JSON.
 json or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
-}  // namespace
-
-std::string to_json(const query_report& report) {
-  const min_distance_result& r = report.found.result;
+/// State, distance, bracket and witness, which is `point` of `cloud`.
+json witness(const min_distance_result& r, const observation* cloud, std::uint32_t point, const std::vector<body>& bodies) {
   const bool any = r.state != state::no_data;
   const auto given = [&](json value) { return any ? value : json(nullptr); };
-  const auto cloud_name = [&](std::uint32_t cloud) { return (*report.clouds)[cloud].from.file; };
   json out;
   out["state"] = to_string(r.state);
   out["distance"] = given(any ? or_null(r.distance) : nullptr);
   out["lower"] = given(or_null(r.lower));
   out["upper"] = given(or_null(r.upper));
-  out["cloud"] = any ? json(cloud_name(r.cloud)) : json(nullptr);
-  out["point"] = given(r.point);
+  out["cloud"] = any ? json(cloud->from.file) : json(nullptr);
+  out["point"] = given(point);
   out["pixel"] = nullptr;
   if (any)
-    if (const auto at = pixel((*report.clouds)[r.cloud], r.point)) out["pixel"] = {at->first, at->second};
+    if (const auto at = pixel(*cloud, point)) out["pixel"] = {at->first, at->second};
   out["point_xyz"] = given(xyz(r.at));
-  out["part"] = any ? json((*report.bodies)[r.part].name) : json(nullptr);
+  out["part"] = any ? json(bodies[r.part].name) : json(nullptr);
   out["primitive"] = any && r.primitive != none ? json(r.primitive) : json(nullptr);
   out["nearest_xyz"] = given(xyz(r.nearest));
   const bool direction = any && !(r.normal == vec3{0, 0, 0});
   out["normal"] = direction ? json({r.normal.x, r.normal.y, r.normal.z}) : json(nullptr);
+  return out;
+}
+
+json counts(const min_distance_result& r) {
+  json dropped = json::object();
+  for (int k = 1; k < drop_reasons; ++k) dropped[reasons[k]] = r.dropped[k];
+  return {{"seen", r.seen}, {"valid", r.valid}, {"dropped", dropped}};
+}
+
+}  // namespace
+
+std::string to_json(const frame_report& report) {
+  json out = {{"frame", report.frame}, {"file", report.file}};
+  out.update(witness(report.found.result, report.cloud, report.point, *report.bodies));
+  out["points"] = counts(report.found.result);
+  out["upload_us"] = 1e6 * report.found.upload;
+  out["latency_us"] = 1e6 * report.found.query;
+  return out.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
+}
+
+std::string to_json(const query_report& report) {
+  const min_distance_result& r = report.found.result;
+  const bool any = r.state != state::no_data;
+  const auto cloud_name = [&](std::uint32_t cloud) { return (*report.clouds)[cloud].from.file; };
+  json out = witness(r, any ? &(*report.clouds)[r.cloud] : nullptr, r.point, *report.bodies);
   out["parts"] = json::array();
   for (std::size_t k = 0; k < report.bodies->size(); ++k) {
     const body& made = (*report.bodies)[k];
@@ -71,9 +93,7 @@ std::string to_json(const query_report& report) {
     if (report.asked->model == model_kind::spheres) part["gap"] = or_null(made.packed.gap);
     out["parts"].push_back(std::move(part));
   }
-  json dropped = json::object();
-  for (int k = 1; k < drop_reasons; ++k) dropped[reasons[k]] = r.dropped[k];
-  out["points"] = {{"seen", r.seen}, {"valid", r.valid}, {"dropped", dropped}};
+  out["points"] = counts(r);
   out["model"] = to_string(report.asked->model);
   out["volume"] = to_string(report.asked->volume);
   out["backend"] = report.asked->on_device ? "device" : "host";

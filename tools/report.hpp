@@ -15,6 +15,19 @@ struct query_report {
   std::vector<std::string> notes;
 };
 
+/// What `clearance run` has to say of a frame.
+struct frame_report {
+  std::size_t frame = 0;  // from 0
+  std::string file;
+  answer found;
+  const observation* cloud = nullptr;  // the witness's, and its number there; null if there is no valid point
+  std::uint32_t point = 0;
+  const std::vector<body>* bodies = nullptr;
+};
+
+/// One JSON object in one line.
+std::string to_json(const frame_report& report);
+
 /// One JSON object, and a line end.
 std::string to_json(const query_report& report);
 

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `clearance run`: a recording, frame after frame, against `clearance query` on each frame alone.
+#include "tools/run_command.hpp"
+#include "io/scratch_file.hpp"
+
+#include <sstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A box of 0.2 m, a second one on a slide above it, and a camera on the second; a claw that nothing hangs on.
+const char* const robot_text = R"(<robot name="two">
+  <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="tool"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="eye"/>
+  <link name="claw"/>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="tool"/><origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
+    <limit lower="-0.1" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="mount" type="fixed"><parent link="tool"/><child link="eye"/><origin xyz="0 0 0.1"/></joint>
+  <joint name="turn" type="continuous"><parent link="tool"/><child link="claw"/><axis xyz="1 0 0"/></joint>
+</robot>
+)";
+
+/// Three frames in a folder of their own, and a trajectory for them.
+struct recording {
+  scratch_file urdf{".urdf", robot_text};
+  scratch_file trajectory{".csv", "turn, slide\n0,0\n0.5,0.1\r\n-1,3e-1\n"};
+  fs::path folder = fs::path(scratch_file("").path + "_frames");
+  std::string slides[3] = {"0", "0.1", "0.3"}, turns[3] = {"0", "0.5", "-1"};
+
+  recording() {
+    fs::create_directory(folder);
+    put("2.xyz", "0.31 0.02 0.1\n1 1 1\n");
+    put("1.xyz", "5 5 5\nnan 0 0\n0.01 0.03 1.0\n");
+    put("3.xyz", "3 0 0\n0 0.7 0.21\n");
+    put("notes.md", "no frame\n");
+  }
+  ~recording() { fs::remove_all(folder); }
+
+  void put(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+  }
+  std::string frame(int k) const { return (folder / (std::to_string(k + 1) + ".xyz")).string(); }
+  std::string run(const std::string& frames, const std::string& csv) const {
+    return "run --backend host --model triangles --robot " + urdf.path + " --frames " + frames + " --trajectory " + csv;
+  }
+  std::string run() const { return run(folder.string(), trajectory.path); }
+  nlohmann::json query(int k, const std::string& cloud, const std::string& more = {}) const {
+    return parsed(run_command("query --backend host --model triangles --json --robot " + urdf.path + " --joint slide=" +
+                              slides[k] + " --joint turn=" + turns[k] + " --cloud " + cloud + ' ' + more));
+  }
+};
+
+std::vector<nlohmann::json> lines(const outcome& o) {
+  INFO(o.err);
+  std::vector<nlohmann::json> all;
+  std::istringstream in(o.out);
+  for (std::string line; std::getline(in, line);) all.push_back(nlohmann::json::parse(line));
+  return all;
+}
+
+const char* const answered[] = {"state",     "distance", "lower",     "upper",       "cloud",  "point",
+                                "point_xyz", "part",     "primitive", "nearest_xyz", "normal", "points"};
+
+}  // namespace
+
+TEST_CASE("clearance run answers each frame as clearance query does") {
+  const recording r;
+  for (const std::string more : {"", "--camera-link eye --camera-pose 0.1,0,0.2,0,0,0,1"}) {
+    const outcome o = run_command(r.run() + ' ' + more);
+    CHECK(o.code == 0);
+    const auto all = lines(o);
+    REQUIRE(all.size() == 3);
+    for (int k = 0; k < 3; ++k) {
+      INFO(more << " frame " << k);
+      CHECK(all[k].at("frame") == k);
+      CHECK(all[k].at("file") == r.frame(k));
+      CHECK(all[k].at("latency_us").get<double>() > 0);
+      const auto alone = r.query(k, r.frame(k), more);
+      for (const char* key : answered) CHECK(all[k].at(key) == alone.at(key));
+    }
+    CHECK(all[0].at("distance") != all[1].at("distance"));
+  }
+}
+
+TEST_CASE("a list names frames relative to itself, and one row holds for all") {
+  const recording r;
+  r.put("list", "3.xyz\n\n  1.xyz \r\n" + r.frame(2));
+  const scratch_file row(".csv", "slide\n0.3\n");
+  const auto all = lines(run_command(r.run((r.folder / "list").string(), row.path) + " --joint turn=-1"));
+  REQUIRE(all.size() == 3);
+  CHECK(all[0].at("file") == r.frame(2));
+  CHECK(all[1].at("distance") == r.query(2, r.frame(0)).at("distance"));
+  CHECK(all[2].at("distance") == all[0].at("distance"));
+}
+
+TEST_CASE("--merge asks every frame about the clouds of all, each where its camera was") {
+  const recording r;
+  // The camera is on the tool, so the clouds of the frames are apart by the slide.
+  for (const bool carried : {false, true}) {
+    const auto all = lines(run_command(r.run() + " --merge" + (carried ? " --camera-link eye" : "")));
+    REQUIRE(all.size() == 3);
+    for (int k = 0; k < 3; ++k) {
+      nlohmann::json best;
+      for (int other = 0; other < 3; ++other) {
+        const std::string z = std::to_string(0.6 + std::stod(r.slides[other]));  // where the eye was
+        const auto alone = r.query(k, r.frame(other), carried ? "--camera-pose 0,0," + z + ",0,0,0,1" : "");
+        if (best.is_null() || alone.at("distance") < best.at("distance")) best = alone;
+      }
+      INFO("frame " << k << ", carried " << carried);
+      CHECK(all[k].at("distance").get<double>() == Approx(best.at("distance").get<double>()).margin(1e-6));
+      for (const char* key : {"cloud", "point", "part"}) CHECK(all[k].at(key) == best.at(key));
+      CHECK(all[k].at("points").at("seen") == 7);
+      CHECK(all[k].at("points").at("valid") == 6);
+      CHECK(all[k].at("points").at("dropped").at("not_finite") == 1);
+    }
+  }
+}
+
+TEST_CASE("the exit code of a recording is its worst frame's") {
+  const recording r;
+  double least = 1e9;
+  for (const auto& line : lines(run_command(r.run()))) least = std::min(least, line.at("lower").get<double>());
+  CHECK(run_command(r.run() + " --check " + std::to_string(least - 1e-3)).code == 0);
+  CHECK(run_command(r.run() + " --check " + std::to_string(least + 1e-3)).code == 2);
+  r.put("2.xyz", "nan nan nan\n");
+  const outcome blind = run_command(r.run() + " --check -1");
+  CHECK(blind.code == 3);
+  REQUIRE(lines(blind).size() == 3);
+  CHECK(lines(blind)[1].at("state") == "no_data");
+  CHECK(lines(blind)[1].at("cloud").is_null());
+}
+
+TEST_CASE("what is wrong with a recording is one sentence and exit code 1") {
+  const recording r;
+  const auto with = [&](const std::string& csv, const std::string& sentence) {
+    const scratch_file file(".csv", csv);
+    refuses(r.run(r.folder.string(), file.path), sentence);
+  };
+  with("slide\n0\n", ":1: has no column for joint \"turn\" (--joint turn=value fixes it)");
+  with("slide,turn,elbow\n0,0,0\n", ":1: the robot has no joint \"elbow\"");
+  with("slide,turn,mount\n0,0,0\n", "mount");
+  with("slide,turn,\n0,0,0\n", ":1: ");
+  with("slide,turn,slide\n0,0,0\n", ":1: has two columns for joint \"slide\"");
+  with("slide,turn\n", "has no row");
+  with("", "is empty (0 bytes)");
+  with("slide,turn\n0,0\n0\n0,0\n", ":3: needs 2 numbers, one a column; here are 1");
+  with("slide,turn\n0,0\n\n0,0\n", ":3: \"\" is not a number");
+  with("slide,turn\n0,up\n", ":2: \"up\" is not a number");
+  with("slide,turn\n0,nan\n", ":2: \"nan\" is not a finite number");
+  with("slide,turn\n0,0\n0,0\n2,0\n", ":4: joint \"slide\" at 2.000000 is outside its limits");
+  with("slide,turn\n0,0\n0,0\n", "has 2 rows, but there are 3 frames");
+  refuses(r.run() + " --joint slide=0", "has a column for joint \"slide\", which --joint gives too");
+  refuses(r.run(r.folder.string(), "nowhere.csv"), "nowhere.csv: there is no such file");
+  refuses(r.run("nowhere", r.trajectory.path), "nowhere: there is no such file");
+  refuses(r.run() + " --camera-link elbow", "the robot has no link \"elbow\"");
+  refuses("run --frames x --trajectory y", "--robot is required");
+  refuses(r.run() + " --cloud x.pcd", "--cloud");
+
+  const fs::path empty = r.folder / "empty";
+  fs::create_directory(empty);
+  refuses(r.run(empty.string(), r.trajectory.path), "empty: has no frame");
+  r.put("list", "\n \n");
+  refuses(r.run((r.folder / "list").string(), r.trajectory.path), "lists no frame");
+  r.put("list", "1.xyz\nx.las\n3.xyz\n");
+  refuses(r.run((r.folder / "list").string(), r.trajectory.path) + " --merge", "x.las: is no point cloud by its name");
+  r.put("0.png", "damaged");
+  refuses(r.run(), "0.png is a depth image, which needs --intrinsics");
+  fs::remove(r.folder / "0.png");
+
+  r.put("2.xyz", "0 0 zero\n");  // the frames before it are answered
+  const outcome o = run_command(r.run());
+  CHECK(o.code == 1);
+  CHECK(lines(o).size() == 1);
+  CHECK(o.err.find("2.xyz:1: ") != std::string::npos);
+  CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+  refuses(r.run() + " --merge", "2.xyz:1: ");
+}

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recording.hpp"
+
+#include "command_line.hpp"
+
+#include <clearance/io/cloud_file.hpp>
+#include <clearance/io/cloud_text.hpp>
+#include <clearance/io/error.hpp>
+
+#include <algorithm>
+#include <filesystem>
+
+using namespace clearance;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+/// The names in the first line; each is a joint that takes a value, and none is there twice or in `fixed`.
+std::vector<std::string> columns(const std::string& file, std::string_view line, const io::kinematic_tree& tree,
+                                 const std::map<std::string, double>& fixed) {
+  std::vector<std::string> names;
+  std::map<std::string, double> values = fixed;
+  for (bool more = true; more;) {
+    const std::size_t comma = line.find(',');
+    const std::string name(trimmed(line.substr(0, comma)));
+    more = comma != line.npos;
+    line.remove_prefix(more ? comma + 1 : line.size());
+    if (fixed.contains(name))
+      io::refuse(file, "has a column for joint " + io::quoted(name) + ", which --joint gives too", 1);
+    if (!values.emplace(name, 0).second) io::refuse(file, "has two columns for joint " + io::quoted(name), 1);
+    names.push_back(name);
+  }
+  try {
+    tree.configuration(values, {.ignore_limits = true});  // knows all names, or says which not
+  } catch (const std::invalid_argument& error) {
+    io::refuse(file, error.what(), 1);
+  }
+  for (std::size_t i = 0; i < tree.size(); ++i)
+    if (const std::string& name = tree.movable(i).name; !values.contains(name))
+      io::refuse(file, "has no column for joint " + io::quoted(name) + " (--joint " + name + "=value fixes it)", 1);
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> list_frames(const std::string& where) {
+  std::vector<std::string> files;
+  if (fs::is_directory(where)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(where)) {
+      const std::string end = io::extension(entry.path().string());
+      const bool known = end == ".pcd" || end == ".ply" || end == ".xyz" || end == ".txt" || end == ".png";
+      if (known && entry.is_regular_file()) files.push_back(entry.path().string());
+    }
+    std::sort(files.begin(), files.end());
+    if (files.empty()) io::refuse(where, "has no frame: no file .pcd, .ply, .xyz, .txt or .png");
+    return files;
+  }
+  const std::string bytes = io::read_bytes(where);
+  for (std::string_view rest = bytes; !rest.empty();)
+    if (const std::string_view path = trimmed(io::take_line(rest)); !path.empty())
+      files.push_back((fs::path(where).parent_path() / path).string());
+  if (files.empty()) io::refuse(where, "lists no frame");
+  return files;
+}
+
+std::vector<std::vector<double>> read_trajectory(const std::string& file, const io::kinematic_tree& tree,
+                                                 const std::map<std::string, double>& fixed, io::joint_options limits) {
+  const std::string bytes = io::read_bytes(file);
+  std::string_view rest = bytes;
+  const std::vector<std::string> names = columns(file, io::take_line(rest), tree, fixed);
+  std::vector<std::vector<double>> rows;
+  for (std::size_t line = 2; !rest.empty(); ++line) {
+    const std::string text(io::take_line(rest));
+    const std::string where = file + ':' + std::to_string(line);
+    const auto row = numbers(where, text, names.size(), "one a column");
+    std::map<std::string, double> values = fixed;
+    for (std::size_t i = 0; i < names.size(); ++i) values[names[i]] = row[i];
+    try {
+      rows.push_back(tree.configuration(values, limits));
+    } catch (const std::invalid_argument& error) {
+      io::refuse(file, error.what(), line);
+    }
+  }
+  if (rows.empty()) io::refuse(file, "has no row");
+  return rows;
+}
+
+void merged_cloud::add(observation frame, const Eigen::Isometry3d& carrier) {
+  const seen_points seen = frame.seen(carrier);
+  first_.push_back(points_.size());
+  std::visit(
+      [&](const auto& source) {
+        for (std::size_t i = 0; i < source.size(); ++i) {
+          const sample s = source[i];
+          ++dropped_[int(s.dropped)];
+          points_.push_back(s.valid() ? seen.pose * Eigen::Vector3d(s.position.x, s.position.y, s.position.z)
+                                      : Eigen::Vector3d::Constant(not_a_number));
+        }
+      },
+      seen.points);
+  dropped_[int(drop_reason::not_finite)] -= frame.zeros;  // what was turned into NaN was missing
+  dropped_[int(drop_reason::missing)] += frame.zeros;
+  if (auto* cloud = std::get_if<io::cloud>(&frame.data)) cloud->points = {};
+  if (auto* image = std::get_if<io::depth_frame>(&frame.data)) image->pixels = {};
+  frames_.push_back(std::move(frame));
+}
+
+seen_points merged_cloud::finish() {
+  cloud_ = io::make_cloud("merged", points_, points_.size(), 1);
+  points_ = {};
+  Eigen::Isometry3d world = Eigen::Isometry3d::Identity();
+  world.translation() = cloud_.origin;
+  return {point_span(cloud_.points), world};
+}
+
+std::pair<const observation*, std::uint32_t> merged_cloud::origin(std::uint32_t i) const {
+  const auto after = std::upper_bound(first_.begin(), first_.end(), i);
+  const std::size_t frame = std::size_t(after - first_.begin()) - 1;  // frames without points are passed over
+  return {&frames_[frame], std::uint32_t(i - first_[frame])};
+}
+
+void merged_cloud::recount(min_distance_result& r) const {
+  for (int k = 1; k < drop_reasons; ++k) r.dropped[k] = dropped_[k];
+}

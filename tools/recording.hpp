@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What `clearance run` plays: the files of its frames and the robot's configuration in each.
+
+#include "observations.hpp"
+
+#include <clearance/io/kinematics.hpp>
+
+#include <map>
+#include <string>
+#include <vector>
+
+/// The frames of a folder in the order of their names, or those that a text file lists, relative to it. At least one.
+std::vector<std::string> list_frames(const std::string& where);
+
+/// One configuration a row. Every movable joint has either a column or a value in `fixed`.
+std::vector<std::vector<double>> read_trajectory(const std::string& file, const clearance::io::kinematic_tree& tree,
+                                                 const std::map<std::string, double>& fixed,
+                                                 clearance::io::joint_options limits);
+
+/// The clouds of many frames as one, in the world. Points that do not count keep their places, as NaN.
+class merged_cloud {
+ public:
+  /// Adds what `frame` shows, which needs not stay.
+  void add(observation frame, const Eigen::Isometry3d& carrier);
+
+  /// To be called once, after the last frame.
+  seen_points finish();
+
+  /// The frame in which point `i` of the merged cloud was seen, and the point's number there.
+  std::pair<const observation*, std::uint32_t> origin(std::uint32_t i) const;
+
+  /// Counts the points that do not count by why they did not in their frames.
+  void recount(clearance::min_distance_result& r) const;
+
+ private:
+  std::vector<observation> frames_;  // without their points
+  std::vector<std::size_t> first_;   // the number of each frame's first point
+  std::vector<Eigen::Vector3d> points_;
+  std::uint64_t dropped_[clearance::drop_reasons] = {};
+  clearance::io::cloud cloud_;
+};

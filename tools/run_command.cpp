@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "asked_robot.hpp"
+#include "command_line.hpp"
+#include "recording.hpp"
+#include "report.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+
+using namespace clearance;
+
+namespace {
+
+void print(const std::vector<std::string>& notes, progress& shown) {
+  shown.clear();
+  for (const auto& note : notes) std::cerr << "note: " << note << '\n';
+}
+
+/// The robot along its trajectory, and the camera with it.
+class motion {
+ public:
+  motion(const query_options& asked, const io::robot& robot)
+      : asked_(asked),
+        robot_(robot),
+        rows_(read_trajectory(asked.recording.trajectory, robot.kinematics(), {asked.joint.begin(), asked.joint.end()},
+                              limits())) {}
+
+  std::size_t size() const { return rows_.size(); }
+
+  std::vector<Eigen::Isometry3d> poses(std::size_t frame) const {
+    auto poses = robot_.poses(row(frame), limits());
+    for (auto& pose : poses) pose = asked_.base * pose;
+    return poses;
+  }
+  Eigen::Isometry3d carrier(std::size_t frame) const {
+    const std::string& link = asked_.recording.camera.link;
+    if (link.empty()) return Eigen::Isometry3d::Identity();
+    return asked_.base * robot_.link_pose(link, row(frame), limits());
+  }
+
+ private:
+  const std::vector<double>& row(std::size_t frame) const { return rows_.size() == 1 ? rows_[0] : rows_[frame]; }
+  io::joint_options limits() const { return {asked_.ignore_limits}; }
+
+  const query_options& asked_;
+  const io::robot& robot_;
+  std::vector<std::vector<double>> rows_;
+};
+
+int run(const query_options& asked) {
+  progress shown;
+  shown.show("reading " + asked.robot);
+  const io::robot robot = load_robot(asked);
+  std::vector<cloud_options> frames;
+  for (const std::string& file : list_frames(asked.recording.frames)) {
+    frames.push_back(asked.recording.camera);
+    frames.back().file = file;
+    frames.back().check("--frames");
+  }
+  const motion moves(asked, robot);
+  if (moves.size() != 1 && moves.size() != frames.size())
+    throw usage_error("--trajectory", asked.recording.trajectory + " has " + std::to_string(moves.size()) +
+                                          " rows, but there are " + std::to_string(frames.size()) +
+                                          " frames (one row would hold for all)");
+  const auto load = [&](std::size_t k) {
+    shown.show("frame " + std::to_string(k + 1) + '/' + std::to_string(frames.size()));
+    observation frame = observe(frames[k]);
+    print(frame.notes, shown);
+    return frame;
+  };
+  merged_cloud merged;
+  if (asked.recording.merge)
+    for (std::size_t k = 0; k < frames.size(); ++k) merged.add(load(k), moves.carrier(k));
+  else
+    moves.carrier(0);  // a wrong --camera-link is known before the robot is packed
+
+  std::vector<std::string> notes = robot.notes();
+  const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
+  print(notes, shown);
+  const question q{asked.model, asked.volume, &bodies, {}, {}};
+  const auto prepared = asked.on_device ? prepare_device(q) : prepare_host(q);
+  int code = 0;
+  double upload = asked.recording.merge ? prepared->see(merged.finish()) : 0;
+  std::optional<observation> frame;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    if (!asked.recording.merge) {
+      observation next = load(k);
+      frame.emplace(std::move(next));  // it stays while it is asked about
+      upload = prepared->see(frame->seen(moves.carrier(k)));
+    }
+    frame_report report{.frame = k, .file = frames[k].file, .found = prepared->ask(moves.poses(k)), .bodies = &bodies};
+    report.found.upload = std::exchange(upload, 0);
+    min_distance_result& r = report.found.result;
+    if (r.state != state::no_data)
+      std::tie(report.cloud, report.point) =
+          frame ? std::pair<const observation*, std::uint32_t>(&*frame, r.point) : merged.origin(r.point);
+    frame ? frame->recount(r) : merged.recount(r);
+    std::cout << to_json(report);
+    if (!std::cout) break;  // main says so
+    const int each = r.state == state::no_data ? 3 : asked.margin && !(r.lower > *asked.margin) ? 2 : 0;
+    code = std::max(code, each);
+  }
+  return code;
+}
+
+}  // namespace
+
+subcommand add_run(CLI::App& app) {
+  CLI::App* sub = app.add_subcommand("run", "The least distance in every frame of a recording");
+  return [options = add_query_options(*sub, asking::run)] { return run(options()); };
+}
