@@ -2,6 +2,7 @@
 // `clearance run`: a recording, frame after frame, against `clearance query` on each frame alone.
 #include "tools/run_command.hpp"
 #include "io/scratch_file.hpp"
+#include "tools/small_png.hpp"
 
 #include <sstream>
 
@@ -116,6 +117,36 @@ TEST_CASE("--merge asks every frame about the clouds of all, each where its came
       CHECK(all[k].at("points").at("dropped").at("not_finite") == 1);
     }
   }
+}
+
+TEST_CASE("depth images are frames too, and keep their pixels when merged") {
+  const recording r;
+  for (const char* name : {"1.xyz", "2.xyz", "3.xyz"}) fs::remove(r.folder / name);
+  r.put("a.png", png(700, 0));
+  r.put("b.png", png(65535, 900));
+  r.put("c.png", png(0, 500));
+  const std::string camera = "--intrinsics 500,500,0,0 --range 0,0.8 --camera-link eye";
+  const auto all = lines(run_command(r.run() + ' ' + camera));
+  REQUIRE(all.size() == 3);
+  for (int k = 0; k < 3; ++k) {
+    const auto alone = r.query(k, all[k].at("file"), camera);
+    for (const char* key : answered) CHECK(all[k].at(key) == alone.at(key));
+  }
+  CHECK(all[1].at("state") == "no_data");
+  CHECK(all[2].at("pixel") == nlohmann::json({1, 0}));
+  const auto merged = lines(run_command(r.run() + " --merge " + camera));
+  REQUIRE(merged.size() == 3);
+  for (const auto& line : merged) {  // at heights 0.6 + 0.7 and 0.6 + 0.3 + 0.5 above the base
+    const auto& counts = line.at("points");
+    CHECK(counts.at("seen") == 6);
+    CHECK(counts.at("valid") == 2);
+    CHECK(counts.at("dropped").at("missing") == 2);
+    CHECK(counts.at("dropped").at("saturated") == 1);
+    CHECK(counts.at("dropped").at("out_of_range") == 1);
+    CHECK(line.at("cloud") == (r.folder / "a.png").string());
+    CHECK(line.at("pixel") == nlohmann::json({0, 0}));
+  }
+  CHECK(merged[2].at("distance").get<double>() == Approx(0.4));
 }
 
 TEST_CASE("the exit code of a recording is its worst frame's") {
