@@ -69,8 +69,8 @@ std::string to_json(const frame_report& report) {
   json out = {{"frame", report.frame}, {"file", report.file}};
   out.update(witness(report.found.result, report.cloud, report.point, *report.bodies));
   out["points"] = counts(report.found.result);
-  out["upload_us"] = 1e6 * report.found.upload;
-  out["latency_us"] = 1e6 * report.found.query;
+  out["upload_us"] = std::round(1e9 * report.found.upload) / 1e3;  // the clock's nanoseconds
+  out["latency_us"] = std::round(1e9 * report.found.query) / 1e3;
   return out.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
 }
 
