@@ -30,7 +30,7 @@ struct gap_visit {
     gap_cell& c = cells[i];
     const double reach = corner_reach(c.half);
     met[i] = open[i] = closed[i] = 0;
-    const double gap = in.gap(c.middle, std::numeric_limits<double>::infinity(), target - reach), bound = gap + reach;
+    const double gap = in.gap(c.middle, double(infinity), target - reach), bound = gap + reach;
     if (bound <= target) return;
     c.depth = signed_depth(in.solid, c.middle, c.depth, reach);  // it lies as far from the middle of its parent
     if (c.depth < -reach * (1 + 1e-12)) return;                  // no point of the solid here
@@ -61,7 +61,7 @@ struct gap_at {
   const vec3d* points;
   double* gaps;
   CLEARANCE_HD void operator()(std::size_t i) const {
-    const double g = in.gap(points[i], std::numeric_limits<double>::infinity());
+    const double g = in.gap(points[i], double(infinity));
     gaps[i] = g > 0 ? g : 0;
   }
 };
@@ -85,7 +85,7 @@ gap_report measure_gap(const B& on, Steps& steps, const mesh_solid& s, const roo
   constexpr std::size_t most_cells = 1u << 22;
   gap_report report;
   if (in.count == 0) {
-    report.certified = report.mean = report.p95 = std::numeric_limits<double>::infinity();
+    report.certified = report.mean = report.p95 = double(infinity);
     return report;
   }
   // Any gap that is met bounds the largest from below; the better that bound, the less is searched.

@@ -17,7 +17,7 @@ CLEARANCE_HD inline vec3d eighth_middle(const vec3d& middle, double half, std::u
 /// `known` is 0 if nothing is. No surface lies within |known| of the other place.
 CLEARANCE_HD inline double signed_depth(const mesh_solid_view& in, const vec3d& p, double known, double step) {
   const double free = known < 0 ? -known : known;
-  const double within = free > 0 ? (free + step) * (1 + 1e-12) : std::numeric_limits<double>::infinity();
+  const double within = free > 0 ? (free + step) * (1 + 1e-12) : double(infinity);
   const bool inside = free > step * (1 + 1e-9) ? known > 0 : in.inside(p);
   const double d = in.distance(p, within);
   return inside ? d : -d;

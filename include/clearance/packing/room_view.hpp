@@ -21,7 +21,7 @@ struct room_view {
   }
   /// The same for all; or, sooner, one that is no larger than `enough`.
   CLEARANCE_HD double gap(const vec3d& p, double within,
-                          double enough = -std::numeric_limits<double>::infinity()) const {
+                          double enough = -double(infinity)) const {
     within = tree_gap(p, within, enough);
     return within <= enough ? within : gap_from(tree.items, p, within);
   }

@@ -47,7 +47,7 @@ struct cover {
   double* keys;
   CLEARANCE_HD void operator()(std::size_t i) const {
     const vec3d p = grid.middle(i);
-    cells[i] = {p, grid.half, signed_depth(f.in.solid, p, 0, 0), std::numeric_limits<double>::infinity(), 0};
+    cells[i] = {p, grid.half, signed_depth(f.in.solid, p, 0, 0), double(infinity), 0};
     keys[i] = f.key(cells[i]);
   }
 };
@@ -112,7 +112,7 @@ struct climb_cells {
   CLEARANCE_HD void operator()(std::size_t i, Lanes lanes) const {
     const cell& c = cells[some[these[i]]];
     // Taken before its turn: stay here, there is more room elsewhere.
-    const double farthest = keys[some[these[i]]] > c.bound() ? c.room() / 2 : std::numeric_limits<double>::infinity();
+    const double farthest = keys[some[these[i]]] > c.bound() ? c.room() / 2 : double(infinity);
     solid_sphere found = climb(f.in, memory + i * local_list<Lanes>::capacity, {c.middle, c.room()}, farthest, lanes);
     const solid_sphere grown = fit(f, overlap ? grow(f.in.solid, found, lanes) : found, overlap);
     if (lanes.rank() != 0) return;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/math.hpp>
 #include <clearance/solid/vec3d.hpp>
 
 #include <cstdint>
-#include <limits>
 
 namespace clearance {
 
@@ -36,9 +36,10 @@ struct box_tree_view {
 
   /// Calls `visit(item, best)` for each item whose box is within `best` of p, near ones first; it returns the new best,
   /// never above the old. Returns the last, or the first that is no larger than `enough`.
+  CLEARANCE_CALLS_ANYTHING
   template <class F>
   CLEARANCE_HD double nearest(const vec3d& p, double best, F visit,
-                              double enough = -std::numeric_limits<double>::infinity()) const {
+                              double enough = -double(infinity)) const {
     if (items == 0) return best;
     struct {
       double distance;
