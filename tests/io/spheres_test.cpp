@@ -161,7 +161,7 @@ TEST_CASE("YAML that holds no spheres is refused with its line") {
   CHECK(yaml_refusal("collision_spheres:\n" + a + a) == ": has link \"a\" twice");
   CHECK(!yaml_refusal(std::string(200000, '[')).empty());
   CHECK(!yaml_refusal("collision_spheres: &x {a: *x}\n").empty());
-  CHECK(!yaml_refusal(std::string("\0\xff\xfe\x80 a: 1", 12)).empty());
+  CHECK(!yaml_refusal(std::string("\0\xff\xfe\x80 a: 1", 9)).empty());
 }
 
 TEST_CASE(
