@@ -1,38 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "packing/laws.hpp"
+#include "packing/packers.hpp"
 
 #include <clearance/packing/pack.hpp>
 #include <clearance/solid/implicit.hpp>
 
-#include <filesystem>
+using namespace packer_laws;
 
-using namespace packing_laws;
+namespace {
 
-TEST_CASE("spheres lie inside, apart, in order, and the gap is certified") {
-  using namespace shapes;
-  const auto cube = box({0, 0, 0}, {1, 1, 1});
-  const struct {
-    triangle_mesh mesh;
-    std::size_t count;
-  } cases[] = {
-      {cube, 300},
-      {inverted(cube), 50},
-      {globe({5, -3, 2}, 0.02), 200},
-      {box({0, 0, 0}, {1, 1, 0.01}), 300},                                   // a thin plate
-      {merged(cube, globe({1, 0.5, 0.5}, 0.6)), 200},                        // overlapping shells
-      {merged(cube, inverted(globe({0.5, 0.5, 0.5}, 0.3))), 200},            // a cavity
-      {merged(box({-1, -1, -1}, {2, 2, 2}), cube), 100},                     // nested shells of one orientation
-      {merged(cube, box({3, 0, 0}, {4, 2, 1})), 100},                        // two pieces
-      {box({0, 0, 0}, {1000, 800, 50}), 100},                                // millimetres
-      {box({1000, 1000, 1000}, {1000.1, 1000.1, 1000.1}), 50},               // far from its origin
-  };
-  for (const auto& c : cases) {
-    const packing p = pack(soup(c.mesh), {.count = c.count});
-    CHECK(p.spheres.size() == c.count);
-    CHECK(p.stopped_by == pack_stop::count);
-    check_laws(c.mesh, p);
-  }
-}
+packing one_by_one(const triangle_mesh& mesh, const pack_options& options) { return pack(mesh, options); }
+
+}  // namespace
+
+TEST_CASE("spheres lie inside, apart, in order, and the gap is certified") { keeps_the_laws(one_by_one, 5e-5); }
 
 TEST_CASE("the first sphere of a cube is its inscribed one, the next sit in its corners") {
   const packing p = pack(shapes::box({0, 0, 0}, {1, 1, 1}), {.count = 9, .gap_per_radius = std::numeric_limits<double>::infinity()});
@@ -61,40 +41,9 @@ TEST_CASE("a packing depends on its seed, and not on the number of threads") {
   CHECK(one.fill == Approx(other.fill).epsilon(0.03));
 }
 
-TEST_CASE("packing stops for each of its reasons") {
-  const auto cube = shapes::box({0, 0, 0}, {1, 1, 1});
-  packing p = pack(cube, {.count = 100000, .smallest_radius = 0.05});
-  CHECK(p.stopped_by == pack_stop::smallest_radius);
-  CHECK(p.spheres.size() > 9);
-  CHECK(p.radius_min >= 0.05 - 1e-8);
-  CHECK(p.room == 0.05);
-  p = pack(cube, {.count = 100000, .gap_target = 0.1});
-  CHECK(p.stopped_by == pack_stop::gap);
-  CHECK(p.gap <= 0.1);
-  int asked = 0;
-  p = pack(cube, {.count = 100000, .cancelled = [&] { return ++asked > 20; }});
-  CHECK(p.stopped_by == pack_stop::cancelled);
-  CHECK(!p.spheres.empty());
-  std::size_t last = 0;
-  p = pack(cube, {.count = 10000000, .seconds = 0.2, .progress = [&](std::size_t done, std::size_t of) {
-    CHECK(done >= last);
-    CHECK(of == 10000000);
-    last = done;
-  }});
-  CHECK(p.stopped_by == pack_stop::time);
-  CHECK(last > 0);
-  CHECK(!p.reason().empty());
-  const packing none = pack(cube, {.count = 0});
-  CHECK(none.spheres.empty());
-  CHECK(std::isinf(none.gap));
-}
+TEST_CASE("packing stops for each of its reasons") { stops_for_each_reason(one_by_one); }
 
-TEST_CASE("spheres that may overlap leave a smaller gap") {
-  const auto mesh = shapes::box({0, 0, 0}, {1, 0.5, 0.25});
-  const packing apart = pack(mesh, {.count = 200}), overlapping = pack(mesh, {.count = 200, .allow_overlap = true});
-  check_laws(mesh, overlapping, 1000, true);
-  CHECK(overlapping.gap < apart.gap);
-}
+TEST_CASE("spheres that may overlap leave a smaller gap") { lets_spheres_overlap(one_by_one); }
 
 TEST_CASE("an implicit solid is packed by the same code") {
   const auto torus = [](const Vector3d& p) { return std::hypot(std::hypot(p.x(), p.y()) - 1, p.z()) - 0.25; };
@@ -122,27 +71,8 @@ TEST_CASE("a ball is full after one sphere, and packing says so") {
   CHECK(p.stopped_by == pack_stop::smallest_radius);
 }
 
-TEST_CASE("options and solids that make no sense are refused") {
-  const auto cube = shapes::box({0, 0, 0}, {1, 1, 1});
-  CHECK_THROWS_AS(pack(cube, {.smallest_radius = -1}), std::invalid_argument);
-  CHECK_THROWS_AS(pack(cube, {.gap_target = std::nan("")}), std::invalid_argument);
-  CHECK_THROWS_AS(pack(cube, {.seconds = -1}), std::invalid_argument);
-  CHECK_THROWS_AS(pack(cube, {.gap_per_radius = 0}), std::invalid_argument);
-  CHECK_THROWS_AS(pack(triangle_mesh{}), std::invalid_argument);
-  CHECK_THROWS_AS(pack(shapes::moebius()), std::invalid_argument);
-}
+TEST_CASE("options and solids that make no sense are refused") { refuses_what_makes_no_sense(one_by_one); }
 
 TEST_CASE("real robots are packed within the laws", "[data]") {
-  const std::filesystem::path folder = std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/meshes";
-  if (!std::filesystem::exists(folder)) {
-    WARN("SKIPPED: no folder " << folder);
-    return;
-  }
-  for (const char* name : {"base.STL", "link_2.STL", "link_7.STL"}) {
-    const auto mesh = shapes::binary_stl((folder / name).string());
-    REQUIRE(!mesh.triangles.empty());
-    const packing p = pack(mesh, {.count = 500});
-    CHECK(p.spheres.size() == 500);
-    check_laws(mesh, p, 300);
-  }
+  packs_real_links(one_by_one, 500, {"base.STL", "link_2.STL", "link_7.STL"});
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "packing/rounds.hpp"
+#include "packing/packers.hpp"
 
 #include <clearance/packing/pack.cuh>
 
 #include <thread>
 
-using namespace packing_rounds;
+using namespace packer_laws;
 
 namespace {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The algorithm of the GPU packing, run on the host.
-#include "packing/rounds.hpp"
+#include "packing/packers.hpp"
 #include "support/host_steps.hpp"
 
 #include <clearance/packing/rounds.hpp>
 
-using namespace packing_rounds;
+using namespace packer_laws;
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 namespace clearance {
@@ -34,6 +35,29 @@ struct pack_limits {
 
   /// Why there is nothing left to divide.
   pack_stop exhausted() const { return smallest > least_room ? pack_stop::smallest_radius : pack_stop::no_room; }
+};
+
+/// Asked between spheres: reports progress, and says why to stop, if there is a reason. The certified gap takes long, so it
+/// is only asked for when there are a quarter more spheres than the last time.
+class stop_check {
+ public:
+  explicit stop_check(const pack_options& options) : options_(options) {}
+
+  template <class Seconds, class Gap>
+  std::optional<pack_stop> operator()(std::size_t spheres, Seconds seconds, Gap certified) {
+    if (spheres >= options_.count) return pack_stop::count;
+    if (options_.progress) options_.progress(spheres, options_.count);
+    if (options_.cancelled && options_.cancelled()) return pack_stop::cancelled;
+    if (options_.seconds > 0 && seconds() > options_.seconds) return pack_stop::time;
+    if (!(options_.gap_target > 0) || spheres < gap_asked_at_) return {};
+    gap_asked_at_ = spheres + spheres / 4;
+    if (certified() <= options_.gap_target) return pack_stop::gap;
+    return {};
+  }
+
+ private:
+  const pack_options& options_;
+  std::size_t gap_asked_at_ = 32;
 };
 
 /// Puts the spheres in order and sums them up.

@@ -102,16 +102,10 @@ class packer {
     for (const solid_cell& c : cover(solid_, 8, shift)) push(c, std::numeric_limits<double>::infinity(), 0);
 
     std::vector<work> works;
-    std::size_t gap_asked_at = 32;
+    stop_check check(options_);
+    const auto certified = [this] { return measure_gap(solid_, spheres_, options_.gap_tolerance).certified; };
     for (;;) {
-      if (spheres_.size() >= options_.count) return pack_stop::count;
-      if (options_.progress) options_.progress(spheres_.size(), options_.count);
-      if (options_.cancelled && options_.cancelled()) return pack_stop::cancelled;
-      if (options_.seconds > 0 && seconds() > options_.seconds) return pack_stop::time;
-      if (options_.gap_target > 0 && spheres_.size() >= gap_asked_at) {
-        gap_asked_at = spheres_.size() + spheres_.size() / 4;
-        if (measure_gap(solid_, spheres_, options_.gap_tolerance).certified <= options_.gap_target) return pack_stop::gap;
-      }
+      if (const auto why = check(spheres_.size(), seconds, certified)) return *why;
       if (cells_.empty()) return limits_.exhausted();
       if (cells_.size() > most_cells) return pack_stop::search_limit;
       if (cells_.size() > pile_) trust_less();

@@ -79,16 +79,10 @@ class round_packer {
     const cube_grid grid(solid_.bounds(), 8, shift);
     alive_ = grid.size();
     on_.for_each(alive_, rounds::cover{field(), grid, cells_.reserve(alive_), keys_.reserve(alive_)});
-    std::size_t gap_asked_at = 32, tidy_at = 1u << 16, pile = 1u << 22;
+    std::size_t tidy_at = 1u << 16, pile = 1u << 22;
+    stop_check check(options_);
     for (;;) {
-      if (spheres_.size() >= options_.count) return pack_stop::count;
-      if (options_.progress) options_.progress(spheres_.size(), options_.count);
-      if (options_.cancelled && options_.cancelled()) return pack_stop::cancelled;
-      if (options_.seconds > 0 && seconds() > options_.seconds) return pack_stop::time;
-      if (options_.gap_target > 0 && spheres_.size() >= gap_asked_at) {
-        gap_asked_at = spheres_.size() + spheres_.size() / 4;
-        if (certify().certified <= options_.gap_target) return pack_stop::gap;
-      }
+      if (const auto why = check(spheres_.size(), [this] { return seconds(); }, [this] { return certify().certified; })) return *why;
       if (alive_ > tidy_at) tidy(), tidy_at = std::max(tidy_at, 2 * alive_);
       if (alive_ > most_cells) return pack_stop::search_limit;
       if (alive_ > pile) trust_less(), pile += pile / 2;
