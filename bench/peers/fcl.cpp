@@ -48,6 +48,16 @@ class stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+/// The least distance from the robot to a manager or an object; the time is added to `query`.
+template <class Cloud>
+double least(links& all, Cloud* cloud, double& query) {
+  fcl::DefaultDistanceData<double> data;
+  stopwatch watch;
+  all.robot.distance(cloud, &data, fcl::DefaultDistanceFunction);
+  query += watch.lap();
+  return data.result.min_distance;
+}
+
 void say(benchmark::State& state, double distance, double query) {
   state.counters["distance_mm"] = distance * 1e3;
   state.counters["query_ms"] = benchmark::Counter(query, benchmark::Counter::kAvgIterations);
@@ -69,11 +79,7 @@ void fcl_exact(benchmark::State& state) {
     manager cloud;
     cloud.registerObjects(pointers);
     cloud.setup();
-    fcl::DefaultDistanceData<double> data;
-    stopwatch watch;
-    all.robot.distance(&cloud, &data, fcl::DefaultDistanceFunction);
-    query += watch.lap();
-    distance = data.result.min_distance;
+    distance = least(all, &cloud, query);
   }
   say(state, distance, query);
 }
@@ -88,11 +94,7 @@ void fcl_octree(benchmark::State& state) {
       if (clearance::is_finite(p)) cells->updateNode(octomap::point3d(p.x, p.y, p.z), true, true);
     cells->updateInnerOccupancy();
     fcl::CollisionObjectd cloud(std::make_shared<fcl::OcTreed>(cells));
-    fcl::DefaultDistanceData<double> data;
-    stopwatch watch;
-    all.robot.distance(&cloud, &data, fcl::DefaultDistanceFunction);
-    query += watch.lap();
-    distance = data.result.min_distance;
+    distance = least(all, &cloud, query);
   }
   say(state, distance, query);
 }
