@@ -38,7 +38,7 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
   /// a part, or null), in device or pinned memory. A graph that captures this keeps the poses of now.
   template <class Clouds>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result, part_minimum* minima = nullptr) {
-    enqueue_all(poses, detail::as_clouds(clouds), result, minima, nullptr);
+    enqueue_all(poses, detail::as_clouds(clouds), result, minima, nullptr, [](const auto& source, std::uint32_t) { return source; });
   }
   template <point_source S>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const S& source, const Eigen::Isometry3d& cloud_pose, min_distance_result* result,
@@ -66,11 +66,9 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
     if (!minima.empty() && minima.size() != facts_.size())
       throw std::invalid_argument("clearance::min_distance_query: there are " + std::to_string(facts_.size()) + " parts, but room for " +
                                   std::to_string(minima.size()) + " minima");
-    const auto all = detail::as_clouds(clouds);
-    std::vector<std::remove_cvref_t<decltype(all[0])>> there(all.begin(), all.end());
-    for (std::size_t k = 0; k < there.size(); ++k) there[k].source = readable(there[k].source, k);
     const std::uint32_t number = ++frame_number_;
-    enqueue_all(poses, there, &answer_.data()->result, minima.empty() ? nullptr : minima_.data(), &answer_.data()->done);
+    enqueue_all(poses, detail::as_clouds(clouds), &answer_.data()->result, minima.empty() ? nullptr : minima_.data(), &answer_.data()->done,
+                [this](const auto& source, std::uint32_t cloud) { return readable(source, cloud); });
     const volatile std::uint32_t& done = answer_.data()->done;
     for (unsigned spins = 1; done != number; ++spins)
       if (spins % 4096 == 0 && cudaStreamQuery(on_.stream) != cudaErrorNotReady && done != number) on_.wait();
@@ -88,9 +86,10 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
     std::uint32_t done;
   };
 
-  template <class Clouds>
+  /// `here(source, cloud)` gives a source that the device can read.
+  template <class Clouds, class Here>
   void enqueue_all(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result, part_minimum* minima,
-                   std::uint32_t* done) {
+                   std::uint32_t* done, Here here) {
     if (poses.size() != facts_.size())
       throw std::invalid_argument("clearance::min_distance_query: there are " + std::to_string(facts_.size()) + " parts, but " +
                                   std::to_string(poses.size()) + " poses");
@@ -107,13 +106,13 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
       launch_.put(own_, a);
       a.points = launch_.checked(std::uint64_t(cloud.source.size()) + a.first) - a.first;
       a.last = a.cloud + 1 == clouds.size();
-      launch_(cloud.source, a);
+      launch_(here(cloud.source, a.cloud), a);
       a.first += a.points, ++a.cloud;
     }
   }
 
   template <point_source S>
-  S readable(const S& source, std::size_t cloud) {
+  S readable(const S& source, std::uint32_t cloud) {
     if constexpr (requires { source.at(source.bytes().data()); }) {
       const auto bytes = source.bytes();
       if (bytes.empty() || on_.reads(bytes.data())) return source;
