@@ -112,7 +112,7 @@ void back_to_back(benchmark::State& state) {
   const auto points = repeated(s.cloud, std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const vec3>(points));
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
-  events clock;
+  const device_clock clock;
   for (auto _ : state)
     state.SetIterationTime(clock.seconds([&] {
       for (int k = 0; k < 100; ++k) query.enqueue(s.poses, clearance::point_span(there.data(), points.size()), s.world_from_camera, result.data());
@@ -152,7 +152,7 @@ void shell(benchmark::State& state, bool cold) {
   clearance::min_distance_query query(gpu, there_model);
   const auto there = gpu.copy_in(std::span<const vec3>(points));
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
-  events clock;
+  const device_clock clock;
   for (auto _ : state) {
     if (cold) query.forget();
     state.SetIterationTime(clock.seconds([&] {

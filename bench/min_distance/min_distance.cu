@@ -11,21 +11,33 @@ namespace {
 
 using namespace bench;
 
-void read(benchmark::State& state) {
+/// Writes more than the L2 cache holds, so that the next kernel finds nothing there.
+class cache_flush {
+ public:
+  void operator()() const { clearance::check_cuda(cudaMemsetAsync(dirt_.data(), 1, dirt_.size()), "cudaMemsetAsync"); }
+
+ private:
+  clearance::device_buffer<std::byte> dirt_{256u << 20, 0};
+};
+
+void read(benchmark::State& state, bool flushed) {
   if (no_device(state)) return;
   const clearance::device gpu;
   const auto points = repeated(bench::the_scene().cloud, std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const clearance::vec3>(points));
   const clearance::device_buffer<float> never(1, gpu.id);
-  events clock;
-  for (auto _ : state)
+  const device_clock clock;
+  const cache_flush flush;
+  for (auto _ : state) {
+    if (flushed) flush();
     state.SetIterationTime(clock.seconds([&] {
-      read_only<><<<264, 512>>>(reinterpret_cast<const float4*>(there.data()), points.size() * 3 / 4, never.data());
+      read_kernel<><<<264, 512>>>(reinterpret_cast<const float4*>(there.data()), points.size() * 3 / 4, never.data());
     }));
+  }
 }
 
 template <class Model>
-void ask(benchmark::State& state, const Model& model, bool cold, bool plain = false, bool each = false) {
+void ask(benchmark::State& state, const Model& model, bool cold, bool plain = false, bool each = false, bool flushed = false) {
   const bench::scene& s = bench::the_scene();
   const clearance::device gpu;
   const auto points = repeated(s.cloud, std::size_t(state.range(0)));
@@ -35,7 +47,8 @@ void ask(benchmark::State& state, const Model& model, bool cold, bool plain = fa
   clearance::min_distance_query query(gpu, placed_there);
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
   const clearance::device_buffer<clearance::part_minimum> minima(s.poses.size(), gpu.id);
-  events clock;
+  const device_clock clock;
+  const cache_flush flush;
   const auto frame = [&] {
     if (plain)
       clearance::min_distance_async(gpu, placed_there, s.poses, clearance::placed<clearance::point_span>{view, s.world_from_camera}, result.data());
@@ -45,6 +58,7 @@ void ask(benchmark::State& state, const Model& model, bool cold, bool plain = fa
   frame();
   for (auto _ : state) {
     if (cold) query.forget();
+    if (flushed) flush();
     state.SetIterationTime(clock.seconds(frame));
   }
   state.counters["distance_mm"] = gpu.copy_out(result)[0].distance * 1e3;
@@ -74,6 +88,10 @@ void spheres_plain(benchmark::State& state) {
   if (!no_device(state)) ask(state, spheres<V>(), false, true);
 }
 template <class V>
+void spheres_warm_flushed(benchmark::State& state) {
+  if (!no_device(state)) ask(state, spheres<V>(), false, false, false, true);
+}
+template <class V>
 void every_part_warm(benchmark::State& state) {
   if (!no_device(state)) ask(state, spheres<V>(), false, false, true);
 }
@@ -92,9 +110,11 @@ void triangles_cold(benchmark::State& state) {
 
 #define FRAME ->Arg(307200)->ArgName("points")->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(200)->Repetitions(3)->ReportAggregatesOnly()
 #define MORE ->Arg(307200)->Arg(5000000)->Arg(50000000)->ArgName("points")->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(200)->Repetitions(3)->ReportAggregatesOnly()
-BENCHMARK(read) MORE;
+BENCHMARK_CAPTURE(read, warm, false) MORE;
+BENCHMARK_CAPTURE(read, flushed, true) MORE;
 BENCHMARK(spheres_warm<clearance::sphere>) MORE;
 BENCHMARK(spheres_cold<clearance::sphere>) MORE;
+BENCHMARK(spheres_warm_flushed<clearance::sphere>) MORE;
 BENCHMARK(every_part_warm<clearance::sphere>) MORE;
 BENCHMARK(every_part_cold<clearance::sphere>) MORE;
 BENCHMARK(spheres_plain<clearance::sphere>) FRAME;

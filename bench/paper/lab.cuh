@@ -2,6 +2,7 @@
 #pragma once
 // One cloud on the GPU, the robot in one configuration, and how a method is timed, checked and counted on them.
 
+#include "device_clock.cuh"
 #include "kernel.cuh"
 #include "report.hpp"
 #include "scenes.hpp"
@@ -13,44 +14,6 @@
 #include <optional>
 
 namespace bench::paper {
-
-/// CUDA events around what is enqueued on the default stream of an idle device.
-class device_clock {
- public:
-  device_clock() {
-    check_cuda(cudaEventCreate(&start_), "cudaEventCreate"), check_cuda(cudaEventCreate(&stop_), "cudaEventCreate");
-  }
-  device_clock(const device_clock&) = delete;
-  device_clock& operator=(const device_clock&) = delete;
-  ~device_clock() { cudaEventDestroy(start_), cudaEventDestroy(stop_); }
-
-  template <class F>
-  double microseconds(F enqueue) const {
-    check_cuda(cudaDeviceSynchronize(), "cudaDeviceSynchronize");
-    check_cuda(cudaEventRecord(start_), "cudaEventRecord");
-    enqueue();
-    check_cuda(cudaEventRecord(stop_), "cudaEventRecord");
-    check_cuda(cudaEventSynchronize(stop_), "cudaEventSynchronize");
-    float ms = 0;
-    check_cuda(cudaEventElapsedTime(&ms, start_, stop_), "cudaEventElapsedTime");
-    return ms * 1e3;
-  }
-
- private:
-  cudaEvent_t start_ = nullptr, stop_ = nullptr;
-};
-
-/// The floor of everything: each byte read once, and nothing found.
-template <bool Dummy = true>
-__global__ void read_kernel(const float4* from, std::size_t count, float* never) {
-  float least = 0;
-  for (std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x; i < count;
-       i += std::size_t(gridDim.x) * blockDim.x) {
-    const float4 f = from[i];
-    least = fminf(least, fminf(fminf(f.x, f.y), fminf(f.z, f.w)));
-  }
-  if (least == -1.2345e30f) *never = least;
-}
 
 /// Seconds that one variant is measured for.
 inline double budget = 0.06;
