@@ -57,18 +57,18 @@ io::robot load_robot(const query_options& asked) {
 
 std::vector<body> make_bodies(const query_options& asked, const io::robot& robot, progress& shown,
                               std::vector<std::string>& notes) {
-  std::vector<body> bodies;
   std::vector<io::packed_part> given;
   if (!asked.packing.empty()) given = io::load_spheres(asked.packing);
   const auto spheres_of = assigned(given, robot, asked);
-  const io::packing_cache cache = chosen_cache(asked.no_cache, asked.cache);
-  body_account account;
+  std::vector<body_source> sources;
   for (std::size_t k = 0; k < robot.parts().size(); ++k) {
     const io::robot_part& part = robot.parts()[k];
-    const body_options how{
-        .model = asked.model, .pack = {.count = asked.spheres}, .cache = &cache, .given = spheres_of[k]};
-    bodies.push_back(make_body(part.name, part.mesh, part.tessellation_error, how, shown, account));
+    sources.push_back({part.name, &part.mesh, part.tessellation_error, spheres_of[k]});
   }
+  const body_options how{
+      .model = asked.model, .pack = {.count = asked.spheres}, .cache = chosen_cache(asked.no_cache, asked.cache)};
+  body_account account;
+  std::vector<body> bodies = make_bodies(sources, how, shown, account);
   note_packing(asked, account, notes);
   return bodies;
 }

@@ -63,16 +63,17 @@ int run(const demo_settings& settings) {
   progress shown;
   stopwatch clock;
   const demo_scene world = make_demo_scene();
-  std::vector<body> bodies;
+  std::vector<body_source> sources;
   std::size_t triangles = 0;
   question asked;
-  const io::packing_cache cache = chosen_cache(settings.no_cache, settings.cache);
-  body_account account;
   for (const auto& part : world.parts) {
-    bodies.push_back(make_body(part.name, part.mesh, 0, {.pack = {.count = count}, .both = true, .cache = &cache}, shown, account));
+    sources.push_back({part.name, &part.mesh});
     triangles += part.mesh.triangles.size();
     asked.poses.push_back(part.pose);
   }
+  body_account account;
+  const body_options how{.pack = {.count = count}, .both = true, .cache = chosen_cache(settings.no_cache, settings.cache)};
+  const std::vector<body> bodies = make_bodies(sources, how, shown, account);
   shown.clear();
   const double seconds = clock.lap();
   asked.bodies = &bodies;

@@ -34,6 +34,7 @@ struct subject {
 struct packed_subject {
   std::vector<body> bodies;
   std::vector<bool> cached;
+  double seconds = 0;  // of all, beside one another
 };
 
 bool ends(const std::string& file, const char* ending) { return std::filesystem::path(file).extension() == ending; }
@@ -80,21 +81,22 @@ packed_subject fill(const subject& what, const pack_settings& asked, progress& s
   positive("--seconds", asked.seconds, how.pack.seconds);
   if (!asked.seed.empty()) how.pack.seed = whole_number("--seed", asked.seed);
   how.pack.allow_overlap = asked.overlap;
-  const io::packing_cache cache = chosen_cache(asked.no_cache, asked.cache);
-  how.cache = &cache;
+  how.cache = chosen_cache(asked.no_cache, asked.cache);
+  std::vector<body_source> sources;
+  for (const io::robot_part& part : what.parts) sources.push_back({part.name, &part.mesh, part.tessellation_error});
   packed_subject made;
-  for (const io::robot_part& part : what.parts) {
+  stopwatch clock;
+  try {
     body_account account;
-    try {
-      made.bodies.push_back(make_body(part.name, part.mesh, part.tessellation_error, how, shown, account));
-    } catch (const std::runtime_error& error) {  // a mesh alone is known by its file's name
-      std::string why = error.what();
-      const std::string link = "link \"" + part.name + "\": ";
-      if (!what.robot && why.starts_with(link)) why.erase(0, link.size());
-      io::refuse(asked.input, why);
-    }
-    made.cached.push_back(account.from_cache > 0);
+    made.bodies = make_bodies(sources, how, shown, account);
+    made.cached = account.cached;
+  } catch (const std::runtime_error& error) {  // a mesh alone is known by its file's name
+    std::string why = error.what();
+    const std::string link = "link \"" + what.parts[0].name + "\": ";
+    if (!what.robot && why.starts_with(link)) why.erase(0, link.size());
+    io::refuse(asked.input, why);
   }
+  made.seconds = clock.lap();
   return made;
 }
 
@@ -147,7 +149,7 @@ void print_one(const body& b, bool cached) {
 
 void print_all(const packed_subject& made) {
   std::size_t widest = 4, cached = 0, spheres = 0;
-  double fill = 0, mean = 0, p95 = 0, most = 0, seconds = 0;
+  double fill = 0, mean = 0, p95 = 0, most = 0;
   for (const body& b : made.bodies) widest = std::max(widest, b.name.size());
   const auto name = [&](const std::string& n) { return n + std::string(widest - n.size(), ' '); };
   std::cout << name("link") << "  spheres   fill  gap mm: mean   95 %    max   radii mm        holes  seconds\n";
@@ -158,10 +160,9 @@ void print_all(const packed_subject& made) {
                       1e3 * p.gap, 1e3 * p.radius_min, 1e3 * p.radius_max, made.bodies[k].closed.caps.loops, p.seconds, made.cached[k] ? " (cached)" : "");
     const double n = double(made.bodies.size());
     fill += p.fill / n, mean += p.gap_mean / n, p95 += p.gap_p95 / n, most = std::max(most, p.gap);
-    if (!made.cached[k]) seconds += p.seconds;
     cached += made.cached[k], spheres += p.spheres.size();
   }
-  std::cout << name("all") << text("  %7zu  %.3f       %6.2f %6.2f %6.2f  %24s%7.2f\n", spheres, fill, 1e3 * mean, 1e3 * p95, 1e3 * most, "", seconds);
+  std::cout << name("all") << text("  %7zu  %.3f       %6.2f %6.2f %6.2f  %24s%7.2f\n", spheres, fill, 1e3 * mean, 1e3 * p95, 1e3 * most, "", made.seconds);
   if (cached > 0) std::cout << cached << " of " << made.bodies.size() << " were in the cache\n";
 }
 

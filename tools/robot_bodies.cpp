@@ -5,21 +5,17 @@
 
 #include <clearance/io/certify.hpp>
 
+#include <ranges>
 #include <stdexcept>
 
 using namespace clearance;
 
 namespace {
 
-void fill(body& made, const body_options& options, progress& shown, body_account& account) {
-  pack_options wanted = options.pack;
-  wanted.progress = [&](std::size_t done, std::size_t of) {
-    shown.show("packing " + made.name + ' ' + std::to_string(done) + '/' + std::to_string(of));
-  };
-  const auto [packed, found] = io::pack_cached(made.closed, wanted, options.cache ? *options.cache : io::packing_cache());
-  if (packed.spheres.empty()) throw std::invalid_argument("no sphere fits inside: " + packed.reason());
-  made.packed = packed;
-  ++(found ? account.from_cache : account.packed);
+[[noreturn]] void refuse(const std::string& name, const std::invalid_argument& error) {
+  std::string why = error.what();
+  if (why.starts_with("clearance: ")) why.erase(0, 11);
+  throw std::runtime_error("link \"" + name + "\": " + why);
 }
 
 /// The part's tolerance holds either way; what sticks out of the solid goes there.
@@ -39,23 +35,53 @@ void take(body& made, const io::packed_part& given, progress& shown, body_accoun
   made.packed.gap = proven.part_gap();
 }
 
+/// Packs the bodies with these numbers, beside one another.
+void fill(std::vector<body>& bodies, const std::vector<std::size_t>& which, const body_options& options, progress& shown,
+          body_account& account) {
+  pack_options wanted = options.pack;
+  const std::string what = which.size() == 1 ? bodies[which[0]].name : std::to_string(which.size()) + " links";
+  wanted.progress = [&](std::size_t done, std::size_t of) {
+    shown.show("packing " + what + ' ' + std::to_string(done) + '/' + std::to_string(of));
+  };
+  const auto closed = [&](std::size_t k) -> const closed_mesh& { return bodies[k].closed; };
+  std::vector<io::cached_packing> packings;
+  try {
+    packings = io::pack_cached(which | std::views::transform(closed), wanted, options.cache);
+  } catch (const solid_error& error) {
+    refuse(bodies[which[error.index]].name, error);
+  }
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    auto& [packed, found] = packings[i];
+    body& made = bodies[which[i]];
+    if (packed.spheres.empty())
+      refuse(made.name, std::invalid_argument("no sphere fits inside: " + packed.reason()));
+    made.packed = std::move(packed);
+    account.cached[which[i]] = found;
+    ++(found ? account.from_cache : account.packed);
+  }
+}
+
 }  // namespace
 
-body make_body(const std::string& name, const triangle_mesh& mesh, double tolerance, const body_options& options,
-               progress& shown, body_account& account) {
-  body made{name, {}, {}, tolerance};
-  try {
-    shown.show("closing " + name);
-    made.closed = close_mesh(mesh);
-    if (options.given)
-      take(made, *options.given, shown, account);
-    else if (options.model == model_kind::spheres || options.both)
-      fill(made, options, shown, account);
-  } catch (const std::invalid_argument& error) {
-    std::string why = error.what();
-    if (why.starts_with("clearance: ")) why.erase(0, 11);
-    throw std::runtime_error("link \"" + name + "\": " + why);
+std::vector<body> make_bodies(const std::vector<body_source>& sources, const body_options& options, progress& shown,
+                              body_account& account) {
+  std::vector<body> made;
+  std::vector<std::size_t> to_pack;
+  account.cached.assign(sources.size(), false);
+  for (const body_source& source : sources) {
+    made.push_back({source.name, {}, {}, source.tolerance});
+    try {
+      shown.show("closing " + source.name);
+      made.back().closed = close_mesh(*source.mesh);
+      if (source.given)
+        take(made.back(), *source.given, shown, account);
+      else if (options.model == model_kind::spheres || options.both)
+        to_pack.push_back(made.size() - 1);
+    } catch (const std::invalid_argument& error) {
+      refuse(source.name, error);
+    }
   }
+  fill(made, to_pack, options, shown, account);
   return made;
 }
 

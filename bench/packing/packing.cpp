@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Packs meshes with inner spheres: time, fill, gaps. Mesh files are arguments; without any, the eight links of the KUKA
-// LWR 4+ from the data folder. "all" packs one after another, closing the meshes included. --benchmark_format=json.
+// LWR 4+ from the data folder. "all" packs them beside one another, as a robot's links are, "one_by_one" one after
+// another; closing the meshes included. --benchmark_format=json.
 
 #include "packing/links.hpp"
 
@@ -10,13 +11,28 @@ namespace {
 
 using namespace packing_bench;
 
-void run(benchmark::State& state, const std::vector<triangle_mesh>& meshes, pack_options options) {
+std::vector<packing> together(const std::vector<triangle_mesh>& meshes, const pack_options& options) {
+  return pack(meshes, options);
+}
+
+std::vector<packing> one_by_one(const std::vector<triangle_mesh>& meshes, const pack_options& options) {
   std::vector<packing> packings;
-  for (auto _ : state) {
-    packings.clear();
-    for (const triangle_mesh& m : meshes) packings.push_back(pack(m, options));
-  }
-  report(state, packings);
+  for (const triangle_mesh& m : meshes) packings.push_back(pack(m, options));
+  return packings;
+}
+
+template <class Pack>
+void measure(const std::string& name, Pack pack) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [pack](benchmark::State& state) {
+                                 std::vector<packing> packings;
+                                 for (auto _ : state) packings = pack();
+                                 report(state, packings);
+                               })
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime()
+      ->MeasureProcessCPUTime()
+      ->Iterations(1);
 }
 
 }  // namespace
@@ -30,24 +46,18 @@ int main(int argc, char** argv) {
   }
   std::vector<triangle_mesh> meshes;
   for (const auto& file : files) meshes.push_back(io::load_mesh(file));
+  const pack_options usual = {.count = sphere_count};
   for (std::size_t i = 0; i < files.size(); ++i)
-    benchmark::RegisterBenchmark(("pack/" + files[i].stem().string()).c_str(),
-                                 [&, i](benchmark::State& state) { run(state, {meshes[i]}, {.count = sphere_count}); })
-        ->Unit(benchmark::kMillisecond)
-        ->UseRealTime()
-        ->Iterations(1);
+    measure("pack/" + files[i].stem().string(), [&, i] { return std::vector{pack(meshes[i], usual)}; });
   const struct {
     const char* name;
+    std::vector<packing> (*pack)(const std::vector<triangle_mesh>&, const pack_options&);
     pack_options options;
-  } all[] = {{"pack/all", {.count = sphere_count}},
-             {"pack/all/strictly_largest_first", {.count = sphere_count, .gap_per_radius = infinity}},
-             {"pack/all/overlapping", {.count = sphere_count, .allow_overlap = true}},
-             {"pack/all/one_thread", {.count = sphere_count, .threads = 1}}};
-  for (const auto& variant : all)
-    benchmark::RegisterBenchmark(variant.name,
-                                 [&, variant](benchmark::State& state) { run(state, meshes, variant.options); })
-        ->Unit(benchmark::kMillisecond)
-        ->UseRealTime()
-        ->Iterations(1);
+  } all[] = {{"pack/all", together, usual},
+             {"pack/one_by_one", one_by_one, usual},
+             {"pack/all/strictly_largest_first", together, {.count = sphere_count, .gap_per_radius = infinity}},
+             {"pack/all/overlapping", together, {.count = sphere_count, .allow_overlap = true}},
+             {"pack/all/one_thread", together, {.count = sphere_count, .threads = 1}}};
+  for (const auto& variant : all) measure(variant.name, [&] { return variant.pack(meshes, variant.options); });
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -81,6 +81,38 @@ TEST_CASE("packings of different makers are kept apart") {
   CHECK(io::pack_cached(box, {.count = 20}, cache).made.spheres.size() == 20);
 }
 
+TEST_CASE("several are packed beside one another, and each is kept and found by itself") {
+  const robot_folder folder;
+  const io::packing_cache cache(folder.path);
+  const std::vector<closed_mesh> meshes = {box, close_mesh(shapes::globe({0, 0, 0}, 0.1)),
+                                           close_mesh(shapes::box({0, 0, 0}, {0.3, 0.2, 0.1}))};
+  const pack_options options = {.count = 40};
+  const packing known = io::pack_cached(meshes[1], options, cache).made;
+  const auto first = io::pack_cached(meshes, options, cache), again = io::pack_cached(meshes, options, cache);
+  REQUIRE(first.size() == 3);
+  REQUIRE(again.size() == 3);
+  CHECK(files_in(folder.path) == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(first[i].found == (i == 1));
+    CHECK(again[i].found);
+    const auto alone = pack(mesh_solid(meshes[i]), options).spheres;
+    for (const auto* made : {&first[i], &again[i]})
+      CHECK(std::ranges::equal(made->made.spheres, alone, [](const auto& a, const auto& b) {
+        return a.center == b.center && a.radius == b.radius;
+      }));
+  }
+  CHECK(first[1].made.gap == known.gap);
+
+  auto wrong = meshes;
+  wrong[2] = close_mesh(shapes::moebius());
+  try {
+    io::pack_cached(wrong, {.count = 41}, cache);
+    CHECK(false);
+  } catch (const solid_error& error) {
+    CHECK(error.index == 2);
+  }
+}
+
 TEST_CASE("without a folder nothing is kept") {
   CHECK(through({}).ran);
   CHECK(through({}).ran);

@@ -114,4 +114,14 @@ inline cached_packing pack_cached(const closed_mesh& mesh, const pack_options& o
                      [](const mesh_solid& s, const pack_options& o) { return pack(s, o); });
 }
 
+/// Of several closed meshes, beside one another as by `pack`; each is kept as soon as it is done.
+template <std::ranges::random_access_range R>
+  requires std::same_as<std::ranges::range_value_t<R>, closed_mesh>
+std::vector<cached_packing> pack_cached(const R& meshes, const pack_options& options, const packing_cache& cache) {
+  const auto first = std::ranges::begin(meshes);
+  return side_by_side(std::size_t(std::ranges::size(meshes)), options, [&](std::size_t i, const pack_options& own) {
+    return pack_cached(first[std::ranges::range_difference_t<const R>(i)], own, cache);
+  });
+}
+
 }  // namespace clearance::io

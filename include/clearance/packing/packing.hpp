@@ -20,8 +20,9 @@ struct pack_options {
   double gap_per_radius = 1.6;
   bool allow_overlap = false;    ///< Spheres may overlap: fewer do for the same gap.
   double gap_tolerance = 0.01;   ///< The certified gap is at most this part above the true one (or 10 um, if more).
-  std::function<void(std::size_t done, std::size_t of)> progress = {};  ///< Now and then, from the calling thread.
-  std::function<bool()> cancelled = {};                                 ///< Asked as often; true: stop with what there is.
+  /// Now and then, from the calling thread; when several solids are packed at once, from any, but one call at a time.
+  std::function<void(std::size_t done, std::size_t of)> progress = {};
+  std::function<bool()> cancelled = {};  ///< Asked as often, in the same way; true: stop with what there is.
 };
 
 enum class pack_stop : std::uint8_t { count, no_room, smallest_radius, gap, time, cancelled, search_limit };
