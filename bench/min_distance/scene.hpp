@@ -41,7 +41,7 @@ inline Eigen::Isometry3d looking(const Eigen::Vector3d& from, Eigen::Vector3d fo
 
 inline void pack_all(scene& s) {
   const auto start = std::chrono::steady_clock::now();
-  for (const auto& mesh : s.meshes) s.packings.push_back(clearance::pack(clearance::mesh_solid(mesh), {.count = 2048}));
+  s.packings = clearance::pack(s.meshes, {.count = 2048});
   s.packing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

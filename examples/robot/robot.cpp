@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <ranges>
 
 /// Stands for your robot: a column with an arm on a hinge. The hinge is 0.5 m above the base.
 std::filesystem::path write_robot() {
@@ -28,11 +29,13 @@ int main() {
   // [load]
   // Once: read the robot, fill its links with spheres, build their trees.
   const clearance::io::robot robot = clearance::io::load_robot(file);
-  std::vector<decltype(clearance::make_part<clearance::sphere>(clearance::packing{}))> parts;
-  for (const auto& link : robot.parts()) {
-    const clearance::packing packed = clearance::pack(link.mesh, {.count = 100});
-    parts.push_back(clearance::make_part<clearance::sphere>(packed, {.tolerance = link.tessellation_error}));
-  }
+  const auto& links = robot.parts();
+  // [pack]
+  const auto packed = clearance::pack(links | std::views::transform(&clearance::io::robot_part::mesh), {.count = 100});
+  // [pack]
+  std::vector<decltype(clearance::make_part<clearance::sphere>(packed[0]))> parts;
+  for (std::size_t k = 0; k < links.size(); ++k)
+    parts.push_back(clearance::make_part<clearance::sphere>(packed[k], {.tolerance = links[k].tessellation_error}));
   const clearance::model arm(std::move(parts));
   // [load]
   std::filesystem::remove(file);

@@ -24,10 +24,8 @@ struct real_robot {
 
   real_robot(const std::string& urdf, std::size_t spheres, clearance::io::robot_geometry geometry = clearance::io::robot_geometry::collision)
       : description(clearance::io::load_robot(data_folder + "/robots/" + urdf, {.geometry = geometry})) {
-    for (const auto& part : description.parts()) {
-      solids.push_back(clearance::close_mesh(part.mesh));
-      packings.push_back(clearance::pack(clearance::mesh_solid(solids.back()), {.count = spheres}));
-    }
+    for (const auto& part : description.parts()) solids.push_back(clearance::close_mesh(part.mesh));
+    packings = clearance::pack(solids, {.count = spheres});
   }
 
   template <class V>
