@@ -7,6 +7,7 @@
 #include <clearance/packing/rules.hpp>
 
 #include <chrono>
+#include <numeric>
 #include <random>
 
 namespace clearance {
@@ -31,7 +32,7 @@ class packer {
     out.stopped_by = fill(seconds);
     for (std::size_t i = 0; i < spheres_.size(); ++i) out.spheres.push_back(rounded(spheres_[i]));
     out.room = limits_.smallest;
-    for (const entry& e : cells_) out.room = std::max(out.room, e.bound());
+    for (const turn& t : turns_) out.room = std::max(out.room, cells_[t.at].bound());
     const gap_report gap = measure_gap(solid_, spheres_, options_.gap_tolerance);
     out.gap = gap.certified, out.gap_mean = gap.mean, out.gap_p95 = gap.p95;
     double volume = std::numeric_limits<double>::infinity();
@@ -47,12 +48,17 @@ class packer {
     double gap;   ///< From the middle to the first `seen` spheres.
     double key;
     std::uint32_t seen;
-    std::uint64_t number;
 
     double room() const { return std::min(cell.depth, gap); }
     double bound() const { return room() + cell.reach(); }  ///< No room in the cell is larger.
+  };
+  /// What the heap moves about: small, for it is as deep as there are many cells, and each level is a miss of the cache.
+  struct turn {
+    double key;
+    std::uint32_t number;  ///< Of two with one key the one that came first.
+    std::uint32_t at;      ///< In cells_.
 
-    friend bool operator<(const entry& a, const entry& b) { return a.key != b.key ? a.key < b.key : a.number > b.number; }
+    friend bool operator<(const turn& a, const turn& b) { return a.key != b.key ? a.key < b.key : a.number > b.number; }
   };
   static constexpr std::size_t batch = 256, most_cells = 1u << 22;
 
@@ -76,19 +82,28 @@ class packer {
   double key(const solid_cell& cell, double gap) const { return rules_.key(cell.depth, cell.reach(), gap); }
   void push(const solid_cell& cell, double gap, std::uint32_t seen) {
     if (!(std::min(cell.depth, gap) + cell.reach() >= limits_.smallest)) return;
-    cells_.push_back({cell, gap, key(cell, gap), seen, numbers_++});
-    std::push_heap(cells_.begin(), cells_.end());
+    const entry e = {cell, gap, key(cell, gap), seen};
+    turns_.push_back({e.key, numbers_++, free_.empty() ? std::uint32_t(cells_.size()) : free_.back()});
+    if (free_.empty())
+      cells_.push_back(e);
+    else
+      cells_[free_.back()] = e, free_.pop_back();
+    std::push_heap(turns_.begin(), turns_.end());
   }
   entry pop() {
-    std::pop_heap(cells_.begin(), cells_.end());
-    const entry e = cells_.back();
-    cells_.pop_back();
-    return e;
+    std::pop_heap(turns_.begin(), turns_.end());
+    const std::uint32_t at = turns_.back().at;
+    turns_.pop_back();
+    free_.push_back(at);
+    return cells_[at];
   }
   void trust_less() {
     rules_.trust *= 0.6, pile_ += pile_ / 2;
-    for (entry& e : cells_) e.key = key(e.cell, e.gap);
-    std::make_heap(cells_.begin(), cells_.end());
+    for (turn& t : turns_) {
+      entry& e = cells_[t.at];
+      t.key = e.key = key(e.cell, e.gap);
+    }
+    std::make_heap(turns_.begin(), turns_.end());
   }
 
   template <class Clock>
@@ -99,17 +114,18 @@ class packer {
     for (const solid_cell& c : cover(solid_, 8, shift)) push(c, std::numeric_limits<double>::infinity(), 0);
 
     std::vector<work> works;
+    std::vector<std::uint32_t> order;
     stop_check check(options_);
     const auto certified = [this] { return measure_gap(solid_, spheres_, options_.gap_tolerance).certified; };
     for (;;) {
       if (const auto why = check(spheres_.size(), seconds, certified)) return *why;
-      if (cells_.empty()) return limits_.exhausted();
-      if (cells_.size() > most_cells) return pack_stop::search_limit;
-      if (cells_.size() > pile_) trust_less();
+      if (turns_.empty()) return limits_.exhausted();
+      if (turns_.size() > most_cells) return pack_stop::search_limit;
+      if (turns_.size() > pile_) trust_less();
 
       works.clear();
-      const double top = cells_.front().key;
-      while (!cells_.empty() && works.size() < batch && cells_.front().key >= 0.98 * top)
+      const double top = turns_.front().key;
+      while (!turns_.empty() && works.size() < batch && turns_.front().key >= 0.98 * top)
         works.push_back({pop(), work::stale, {}});
       const std::uint32_t seen = std::uint32_t(spheres_.size());
       tbb::parallel_for(std::size_t(0), works.size(), [&](std::size_t i) {
@@ -131,10 +147,14 @@ class packer {
           divide(w);
         }
       });
-      std::stable_sort(works.begin(), works.end(), [](const work& a, const work& b) {
+      order.resize(works.size());
+      std::iota(order.begin(), order.end(), 0);
+      std::stable_sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+        const work &a = works[i], &b = works[j];
         return (a.what == work::climbed ? a.sphere.radius : -1) > (b.what == work::climbed ? b.sphere.radius : -1);
       });
-      for (work& w : works) {
+      for (const std::uint32_t i : order) {
+        work& w = works[i];
         if (w.what == work::climbed) {
           const bool untouched = spheres_.size() == seen;
           // One of the same batch may be in the way; the cell then comes back with less room.
@@ -172,7 +192,9 @@ class packer {
   const pack_options& options_;
   pack_limits limits_;
   sphere_field spheres_;
-  std::vector<entry> cells_;  // a heap
+  std::vector<entry> cells_;
+  std::vector<std::uint32_t> free_;  // places in cells_
+  std::vector<turn> turns_;          // a heap
   pack_rules rules_;
   std::size_t pile_ = 1u << 20;
   std::uint32_t numbers_ = 0;
