@@ -74,11 +74,17 @@ CLEARANCE_HD inline bool mirrors(const world_transform& t) {
 
 inline constexpr double most_skew = 1e-4;
 
+/// As `is_finite` of a point: beyond, squares of float distances would overflow.
+CLEARANCE_HD inline bool too_far(const world_transform& t) {
+  const auto far = [](double x) { return !(-1e18 <= x && x <= 1e18); };
+  return far(t.m[0][3]) || far(t.m[1][3]) || far(t.m[2][3]);
+}
+
 /// Makes the rotation orthonormal to double precision, by Newton's steps towards the closest one: R (3 - R'R) / 2. False if
-/// the pose is not rigid to `most_skew`: scale, shear, a reflection, or a number that is not finite.
+/// the pose is not rigid to `most_skew`: scale, shear, a reflection, or a number that is not finite; or beyond 1e18 m.
 CLEARANCE_HD inline bool make_rigid(world_transform& t) {
   double off = skew(t);
-  if (!(off <= most_skew) || mirrors(t)) return false;
+  if (!(off <= most_skew) || mirrors(t) || too_far(t)) return false;
   for (int steps = 0; off >= 1e-14 && steps < 3; ++steps, off = skew(t)) {
     world_transform next = t;
     for (int r = 0; r < 3; ++r)
@@ -94,11 +100,12 @@ CLEARANCE_HD inline bool make_rigid(world_transform& t) {
 }
 
 /// `pose` with its rotation made orthonormal to double precision. Throws if it is not rigid to 1e-4: scale, shear, a
-/// reflection, or a number that is not finite. `what` and `number` say in the message which pose it was.
+/// reflection, or a number that is not finite; or if it is beyond 1e18 m. `what` and `number` say in the message which pose it was.
 inline world_transform rigid_transform_of(const Eigen::Isometry3d& pose, const char* what = "pose", std::int64_t number = -1) {
   world_transform t(pose);
   if (make_rigid(t)) return t;
   const std::string why = !pose.matrix().allFinite()   ? "it has a number that is not finite"
+                          : too_far(t)          ? "it is farther from the origin than 1e18 m"
                           : skew(t) > most_skew ? "its axes deviate from orthonormal by " + std::to_string(skew(t))
                                                 : "it is a reflection";
   throw std::invalid_argument("clearance: the pose of " + std::string(what) + (number < 0 ? "" : " " + std::to_string(number)) + " is not rigid: " + why);

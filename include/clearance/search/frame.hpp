@@ -26,6 +26,8 @@ struct placement {
 /// A float result at `distance` is off by at most error + unit_error * |distance|: 16 units of rounding of
 /// |p| + |t| + part size. Transform, deprojection and leaf formulas together stay below ten.
 inline constexpr double unit_error = 0x1p-20;
+/// And by this, because squares of lengths below 1e-19 m lose digits, and those of lengths below 2e-23 m are 0.
+inline constexpr double underflow_error = 0x1p-72;
 
 /// Where the cloud's coordinates start to be subtracted: near the robot, in steps of 64 m, so that ordinary scenes lose
 /// nothing and clouds in world coordinates of 1e6 m no more than their own coordinates have lost.
@@ -54,7 +56,7 @@ CLEARANCE_HD inline placement place(const part_facts& facts, const world_transfo
   const auto norm = [](position p) { return sqrt(fma(p.x, p.x, fma(p.y, p.y, p.z * p.z))); };
   const position center = part_from_cloud.inverse()(facts.center);
   const double size = norm({facts.center.x, facts.center.y, facts.center.z}) + facts.radius, away = norm(start);
-  const double error = unit_error * 2 * (size + away);
+  const double error = fma(unit_error * 2, size + away, underflow_error);
   placement p;
   p.part_from_cloud = to_floats(part_from_cloud);
   p.around = {{real(center.x), real(center.y), real(center.z)}, rounded_up(facts.radius + 2 * error)};
