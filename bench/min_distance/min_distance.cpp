@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One frame on the CPU: 307,200 points against the whole robot, by model and volume. *warm* is a prepared query that
 // remembers the last frame, *cold* one that does not, *plain* min_distance, *parts* warm with every part's own minimum.
-#include "scene.hpp"
+#include "crowds.hpp"
 
 #include <clearance/min_distance_query.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -15,8 +15,7 @@ namespace {
 enum kind { warm, cold, plain, parts };
 
 template <class Model, class Source>
-void ask(benchmark::State& state, const Model& model, const Source& source, kind how) {
-  const bench::scene& s = bench::the_scene();
+void ask(benchmark::State& state, const Model& model, const Source& source, kind how, const bench::scene& s = bench::the_scene()) {
   const clearance::host cpu{.threads = unsigned(state.range(0))};
   const clearance::placed<Source> cloud{source, s.world_from_camera};
   clearance::min_distance_query query(cpu, model);
@@ -54,6 +53,13 @@ void depth(benchmark::State& state) {
   ask(state, model, clearance::depth_image<std::uint16_t>(pixels.data(), 640, 480, {525, 525, 319.5, 239.5}), How);
 }
 
+template <bench::scene (*Make)(const bench::scene&), kind How>
+void crowd(benchmark::State& state) {
+  static const bench::scene s = Make(bench::the_scene());
+  static const auto model = bench::sphere_model<clearance::sphere>(s);
+  ask(state, model, clearance::point_span(s.cloud), How, s);
+}
+
 /// All that reading the points takes: their sum, in vector code.
 void read(benchmark::State& state) {
   const auto& cloud = bench::the_scene().cloud;
@@ -83,6 +89,13 @@ BENCHMARK(triangles<clearance::aabb, cold>) ON_THREADS;
 BENCHMARK(triangles<clearance::aabb, plain>) ON_THREADS;
 BENCHMARK(triangles<clearance::aabb, parts>) ON_THREADS;
 BENCHMARK(triangles<clearance::obb, warm>) ON_THREADS;
+BENCHMARK(crowd<bench::sixty_four_parts, warm>) ON_THREADS;
+BENCHMARK(crowd<bench::sixty_four_parts, cold>) ON_THREADS;
+BENCHMARK(crowd<bench::sixty_four_parts, parts>) ON_THREADS;
+BENCHMARK(crowd<bench::two_robots, warm>) ON_THREADS;
+BENCHMARK(crowd<bench::two_robots, cold>) ON_THREADS;
+BENCHMARK(crowd<bench::one_large_part, warm>) ON_THREADS;
+BENCHMARK(crowd<bench::one_large_part, cold>) ON_THREADS;
 
 }  // namespace
 

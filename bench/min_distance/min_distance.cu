@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One frame on a GPU, its points resident there: the prepared query warm (it remembers the last frame) and cold, beside a
 // kernel that only reads the points. Times are CUDA events around the enqueued frame.
+#include "crowds.hpp"
 #include "device.cuh"
 
 #include <clearance/volume/aabb.hpp>
@@ -37,8 +38,8 @@ void read(benchmark::State& state, bool flushed) {
 }
 
 template <class Model>
-void ask(benchmark::State& state, const Model& model, bool cold, bool plain = false, bool each = false, bool flushed = false) {
-  const bench::scene& s = bench::the_scene();
+void ask_in(const bench::scene& s, benchmark::State& state, const Model& model, bool cold, bool plain = false, bool each = false,
+            bool flushed = false) {
   const clearance::device gpu;
   const auto points = repeated(s.cloud, std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const clearance::vec3>(points));
@@ -62,6 +63,10 @@ void ask(benchmark::State& state, const Model& model, bool cold, bool plain = fa
     state.SetIterationTime(clock.seconds(frame));
   }
   state.counters["distance_mm"] = gpu.copy_out(result)[0].distance * 1e3;
+}
+template <class Model, class... How>
+void ask(benchmark::State& state, const Model& model, How... how) {
+  ask_in(bench::the_scene(), state, model, how...);
 }
 
 template <class V>
@@ -108,6 +113,17 @@ void triangles_cold(benchmark::State& state) {
   if (!no_device(state)) ask(state, triangles<V>(), true);
 }
 
+template <bench::scene (*Make)(const bench::scene&)>
+void crowd(benchmark::State& state, bool cold, bool each) {
+  if (no_device(state)) return;
+  static const bench::scene s = Make(bench::the_scene());
+  static const auto model = bench::sphere_model<clearance::sphere>(s);
+  ask_in(s, state, model, cold, false, each);
+}
+constexpr auto sixty_four_parts = crowd<bench::sixty_four_parts>;
+constexpr auto two_robots_20_m_apart = crowd<bench::two_robots>;
+constexpr auto one_part_of_100000 = crowd<bench::one_large_part>;
+
 #define FRAME ->Arg(307200)->ArgName("points")->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(200)->Repetitions(3)->ReportAggregatesOnly()
 #define MORE ->Arg(307200)->Arg(5000000)->Arg(50000000)->ArgName("points")->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(200)->Repetitions(3)->ReportAggregatesOnly()
 BENCHMARK_CAPTURE(read, warm, false) MORE;
@@ -125,6 +141,14 @@ BENCHMARK(triangles_warm<clearance::aabb>) FRAME;
 BENCHMARK(triangles_warm<clearance::obb>) FRAME;
 BENCHMARK(triangles_cold<clearance::aabb>) FRAME;
 BENCHMARK(triangles_cold<clearance::obb>) FRAME;
+BENCHMARK_CAPTURE(sixty_four_parts, warm, false, false) FRAME;
+BENCHMARK_CAPTURE(sixty_four_parts, cold, true, false) FRAME;
+BENCHMARK_CAPTURE(sixty_four_parts, every_part_warm, false, true) FRAME;
+BENCHMARK_CAPTURE(sixty_four_parts, every_part_cold, true, true) FRAME;
+BENCHMARK_CAPTURE(two_robots_20_m_apart, warm, false, false) FRAME;
+BENCHMARK_CAPTURE(two_robots_20_m_apart, cold, true, false) FRAME;
+BENCHMARK_CAPTURE(one_part_of_100000, warm, false, false) FRAME;
+BENCHMARK_CAPTURE(one_part_of_100000, cold, true, false) FRAME;
 
 }  // namespace
 
