@@ -3,6 +3,7 @@
 // kernel that only reads the points. Times are CUDA events around the enqueued frame.
 #include "crowds.hpp"
 #include "device.cuh"
+#include "scene_files.hpp"
 
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
@@ -152,4 +153,4 @@ BENCHMARK_CAPTURE(one_part_of_100000, cold, true, false) FRAME;
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) { return bench::main(argc, argv); }
