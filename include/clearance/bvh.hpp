@@ -18,7 +18,7 @@ struct bvh {
   buffer<std::uint32_t> ids;
   std::uint32_t depth = 0, width = 0;
 
-  bvh_view<V, P> view() const { return {volumes.data(), nodes.data(), primitives.data(), ids.data(), depth, width}; }
+  bvh_view<V, P> view() const { return {volumes.data(), nodes.data(), primitives.data(), ids.data(), depth, width, std::uint32_t(nodes.size())}; }
 
   /// A copy of a host tree where `other` runs.
   template <backend Other>

@@ -27,6 +27,7 @@ struct bvh_view {
   const P* primitives;
   const std::uint32_t* ids;  ///< Position of each primitive in the user's array.
   std::uint32_t levels, widest;
+  std::uint32_t node_count;  ///< Parents come before their children, level by level: so the first nodes are the top.
 
   CLEARANCE_HD node_type root() const { return 0; }
   CLEARANCE_HD bool is_leaf(node_type n) const { return nodes[n].is_leaf(); }

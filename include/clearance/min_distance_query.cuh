@@ -20,10 +20,9 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
   /// Throws std::invalid_argument if there are more than 128 parts; min_distance takes any number.
   min_distance_query(const device& on, model_view<view_type> model, std::pmr::memory_resource* memory = nullptr)
       : on_(on), memory_(memory), facts_(model.facts.begin(), model.facts.end()), launch_(on, model.size(), memory),
-        parts_(model.size(), on.id, memory), answer_(1, on.id), minima_(model.size(), on.id) {
-    for (const view_type& part : on.copy_out(model.parts, model.size())) own_.push_back({{}, on.copy_out(part.tree.nodes, 1)[0], part, {}, 0});
+        views_(model.size(), on.id, memory), answer_(1, on.id), minima_(model.size(), on.id) {
     const device_guard guard(on.id);
-    check_cuda(cudaMemcpyAsync(parts_.data(), own_.data(), own_.size() * sizeof(own_[0]), cudaMemcpyHostToDevice, on.stream), "cudaMemcpyAsync");
+    check_cuda(cudaMemcpyAsync(views_.data(), model.parts, model.size() * sizeof(view_type), cudaMemcpyDeviceToDevice, on.stream), "cudaMemcpyAsync");
     on_.wait();
     answer_.data()->done = 0;
   }
@@ -53,8 +52,8 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
   void enqueue(const world_transform* poses, const S& source, const world_transform* cloud_pose, min_distance_result* result,
                part_minimum* minima = nullptr) {
     const device_guard guard(on_.id);
-    auto a = launch_.first(result, minima, nullptr, 0);
-    a.placed = launch_.place(poses, cloud_pose, parts_.data());
+    auto a = launch_.first(views_.data(), result, minima, nullptr, 0);
+    launch_.place(poses, cloud_pose, a);
     a.points = launch_.checked(source.size()), a.last = true;
     launch_(source, a);
   }
@@ -95,15 +94,12 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
                                   std::to_string(poses.size()) + " poses");
     if (clouds.size() == 0) throw std::invalid_argument("clearance::min_distance_query: there is no cloud");
     const device_guard guard(on_.id);
-    auto a = launch_.first(result, minima, done, frame_number_);
+    auto a = launch_.first(views_.data(), result, minima, done, frame_number_);
     for (const auto& cloud : clouds) {
       frame_.put(facts_, poses, rigid_transform_of(cloud.pose, "cloud", a.cloud));
       frame_.error = std::max(frame_.error, a.frame.error);  // the bracket is over all clouds
       a.frame = frame_;
-      for (std::size_t k = 0; k < own_.size(); ++k) own_[k].place = frame_.places[k];
-      for (std::size_t k = 0; k < own_.size(); k += stream::cluster)
-        stream::gather(&own_[k], std::uint32_t(std::min<std::size_t>(stream::cluster, own_.size() - k)));
-      launch_.put(own_, a);
+      launch_.put(frame_.places, a);
       a.points = launch_.checked(std::uint64_t(cloud.source.size()) + a.first) - a.first;
       a.last = a.cloud + 1 == clouds.size();
       launch_(here(cloud.source, a.cloud), a);
@@ -130,8 +126,7 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
   std::pmr::memory_resource* memory_;
   std::vector<part_facts> facts_;
   stream::launcher<view_type> launch_;
-  std::vector<stream::stream_part<view_type>> own_;
-  device_buffer<stream::stream_part<view_type>> parts_;
+  device_buffer<view_type> views_;
   search::cloud_frame frame_;
   std::uint32_t frame_number_ = 0;
   std::vector<device_buffer<std::byte>> copies_;

@@ -194,6 +194,11 @@ void check_fours(const S& source) {
       const clearance::sample one = source[i + j];
       v.require(four[j].dropped == one.dropped && same_bytes(four[j].position, one.position), "sample", i + j, " of four differs");
     }
+    clearance::vec3 at[4];
+    const unsigned reasons = source.positions4(source.fours()[i / 4], i, at);
+    if (reasons == ~0u) continue;  // look4 must be asked
+    for (int j = 0; j < 4; ++j)
+      v.require((reasons >> 8 * j & 0xff) == unsigned(four[j].dropped) && same_bytes(at[j], four[j].position), "sample", i + j, " in short differs");
   }
 }
 

@@ -50,6 +50,16 @@ struct depth_image {
     for (std::uint32_t j = 0; j < 4; ++j) out[j] = deproject(r.d[j], u + j, v);
   }
 
+  /// As `look4`: where they are, and their reasons, a byte each.
+  CLEARANCE_HD unsigned positions4(const raw4& r, std::size_t i, vec3 (&out)[4]) const {
+    sample s[4];
+    look4(r, i, s);
+    unsigned reasons = 0;
+    CLEARANCE_UNROLL
+    for (int j = 0; j < 4; ++j) out[j] = s[j].position, reasons |= unsigned(s[j].dropped) << 8 * j;
+    return reasons;
+  }
+
   /// The point that pixel (u, v) shows if it holds `d`.
   CLEARANCE_HD sample deproject(Pixel d, std::uint32_t u, std::uint32_t v) const {
     const real z = product(real(d), scale);

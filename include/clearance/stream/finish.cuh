@@ -1,40 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Every block hands in its candidates; the last one answers, and makes the state ready for a next frame.
 
 #include <clearance/search/conclude.hpp>
 #include <clearance/search/resolve.hpp>
-#include <clearance/stream/block.cuh>
+#include <clearance/stream/best.cuh>
 #include <clearance/traversal/near_first.hpp>
 
 namespace clearance::stream {
 
 /// What a record is about, read before it is known whether the record is the best: the answer then waits for nothing.
-template <class PartView>
+template <class PartView, bool Each>
 struct evidence {
   using primitive_type = typename PartView::hierarchy_type::primitive_type;
+  using parts = frame_parts<PartView, Each>;
 
   record r;
   vec3 p;  ///< In the cloud's frame.
   primitive_type primitive;
 
   evidence() = default;
-  template <class Source, bool Each>
-  __device__ evidence(const frame_args<PartView>& a, const Source& source, const block_memory<PartView, Each>& s, const record& of) : r(of) {
-    if (r.key == no_key || key_index(r.key) < a.first) return;
-    p = source[key_index(r.key) - a.first].position;
-    if (r.primitive != none) primitive = part(a, s, r.part).view.tree.primitives[r.primitive];
+  template <class Source>
+  __device__ evidence(const Source& source, const record& of) : r(of) {
+    const std::uint32_t first = parts::here().head.first;
+    if (r.key == no_key || key_index(r.key) < first) return;
+    p = source[key_index(r.key) - first].position;
+    if (r.primitive != none) primitive = parts::view(r.part).tree.primitives[r.primitive];
   }
-  template <bool Each>
-  __device__ vec3 in_part(const frame_args<PartView>& a, const block_memory<PartView, Each>& s) const {
-    return part(a, s, r.part).place.part_from_cloud(p - s.frame.origin);
-  }
+  __device__ vec3 in_part() const { return parts::place(r.part).part_from_cloud(p - parts::here().origin); }
+
   /// Of a point inside a solid the closest primitive, which nobody has looked for yet; how far it is.
-  template <bool Each>
-  __device__ real complete(const frame_args<PartView>& a, const block_memory<PartView, Each>& s) {
+  __device__ real complete() {
     if constexpr (!requires { PartView::interior_type::empty; })
       if (r.primitive == none) {
         search::nearest_primitive<primitive_type> nearest{infinity};
-        near_first{}(part(a, s, r.part).view.tree, in_part(a, s), nearest);
+        near_first{}(parts::view(r.part).tree, in_part(), nearest);
         r.id = nearest.id, primitive = nearest.primitive;
         return nearest.within;
       }
@@ -43,124 +43,148 @@ struct evidence {
 };
 
 template <class PartView, bool Each>
-__device__ void write_witness(const frame_args<PartView>& a, const block_memory<PartView, Each>& s, evidence<PartView> e) {
+__device__ void write_witness(const frame_args<PartView>& a, evidence<PartView, Each> e) {
   min_distance_result& out = *a.result;
-  const real way_out = e.complete(a, s);
-  const vec3 q = e.in_part(a, s), away = e.primitive.normal(q);
-  const world_transform& world = part(a, s, e.r.part).place.world_from_part;
+  const real way_out = e.complete();
+  const vec3 q = e.in_part(), away = e.primitive.normal(q);
+  const world_transform& world = a.world(e.r.part);
   out.cloud = a.cloud, out.point = key_index(e.r.key) - a.first, out.part = e.r.part, out.primitive = e.r.id;
-  out.at = s.frame.world_from_cloud(e.p);
+  out.at = a.facts().world_from_cloud(e.p);
   out.nearest = world(e.primitive.nearest(q));
   out.normal = world.turned(way_out > 0 ? -away : away);
 }
 
 /// Counts, bracket and state, once all clouds are done; and a blank witness if there is no minimum.
 template <class PartView, bool Each>
-__device__ void write_bracket(const frame_args<PartView>& a, const block_memory<PartView, Each>& s, const record& best,
-                              const search::totals& all) {
+__device__ void write_bracket(const frame_args<PartView>& a, const record& best, const search::totals& all) {
+  using parts = frame_parts<PartView, Each>;
+  const auto& s = parts::here();
+  const search::frame_facts& frame = a.facts();
   min_distance_result r;
   double lower = -infinity;
   real tolerance = 0;
   min_distance_result& out = *a.result;
   if (best.key != no_key) {
     r.distance = key_distance(best.key), r.part = best.part;
-    tolerance = part(a, s, best.part).view.facts.tolerance;
-    lower = search::certain_distance(r.distance, s.frame.slop, s.frame.error);
+    tolerance = parts::view(best.part).facts.tolerance;
+    lower = search::certain_distance(r.distance, frame.slop, frame.error);
     if constexpr (Each) {
       lower = infinity;
       for (std::uint32_t k = 0; k < a.parts; ++k) {
-        const double its = search::certain_distance(key_distance(s.best[k].key), search::slop(part(a, s, k).view.facts), s.frame.error);
+        const double its = search::certain_distance(key_distance(s.best[k].key), search::slop(parts::view(k).facts), frame.error);
         lower = its < lower ? its : lower;
       }
     }
   } else {
     out = r;
   }
-  search::conclude(r, lower, tolerance, all, s.frame.error, std::uint64_t(a.first) + a.points);
+  search::conclude(r, lower, tolerance, all, frame.error, std::uint64_t(a.first) + a.points);
   if (!s.rigid) r.state = state::possible;  // nothing is known where a pose on the device is none: this stops a robot
   out.state = r.state, out.distance = r.distance, out.lower = r.lower, out.upper = r.upper, out.seen = r.seen, out.valid = r.valid;
   for (int k = 0; k < drop_reasons; ++k) out.dropped[k] = r.dropped[k];
 }
 
-/// Of all records the best of each slot; then the answer, by a thread each for what does not depend on one another.
+/// The best of all blocks' records and of earlier clouds' goes to s.best, slot by slot; what is behind one, if it is this
+/// thread's.
 template <class PartView, bool Each, class Source>
-__device__ void answer(const frame_args<PartView>& a, const Source& source, block_memory<PartView, Each>& s) {
-  const std::uint32_t t = threadIdx.x, slots = Each ? a.parts : 1, count = gridDim.x * slots;
-  evidence<PartView> mine(a, source, s, t < count ? a.records[t] : record{});
+__device__ evidence<PartView, Each> merge(const Source& source) {
+  auto& s = memory_of_block<PartView, Each>();
+  const auto& a = s.head;
+  const std::uint32_t t = threadIdx.x, lane = t & 31;
+  const auto earlier = [&](std::uint32_t slot) { return a.first > 0 ? a.state->best[slot] : record{}; };
+  if constexpr (Each) {
+    for (std::uint32_t slot = t / 32; slot < a.parts; slot += warps) {
+      record least = earlier(slot);
+#pragma unroll 4
+      for (std::uint32_t b = lane; b < gridDim.x; b += 32)
+        if (const record r = a.records[slot * gridDim.x + b]; before(r, least)) least = r;
+      least = least_of_warp(least);
+      if (lane == 0) s.best[slot] = least;
+    }
+    __syncthreads();
+    return evidence<PartView, Each>(source, t < a.parts && s.rigid ? s.best[t] : record{});
+  } else {
+    record least = t < gridDim.x ? a.records[t] : record{};
+    for (std::uint32_t b = t + block_threads; b < gridDim.x; b += block_threads)
+      if (const record r = a.records[b]; before(r, least)) least = r;
+    const evidence<PartView, Each> mine(source, least);
+    record* const of_warp = reinterpret_cast<record*>(s.queue);
+    static_assert(sizeof(s.queue) >= warps * sizeof(record));
+    least = least_of_warp(least);
+    if (lane == 0) of_warp[t / 32] = least;
+    __syncthreads();
+    least = least_of_warp(lane < warps ? of_warp[lane] : lane == warps ? earlier(0) : record{});
+    if (t == 0) s.best[0] = least;
+    __syncthreads();
+    return mine;
+  }
+}
+
+/// The answer, by a thread each for what does not depend on one another.
+template <class PartView, bool Each, class Source>
+__device__ void answer(const frame_args<PartView>& a, const Source& source) {
+  auto& s = memory_of_block<PartView, Each>();
+  frame_state& state = *s.head.state;
+  const std::uint32_t t = threadIdx.x, slots = Each ? a.parts : 1;
   search::totals all;
   const bool concludes = t == block_threads - 32 && a.last;
   if (concludes) {
-    for (int k = 0; k < drop_reasons; ++k) all.dropped[k] = fresh(a.state->dropped[k]);
-    all.certain = fresh(a.state->certain);
+    for (int k = 0; k < drop_reasons; ++k) all.dropped[k] = fresh(state.dropped[k]);
+    all.certain = fresh(state.certain);
   }
-  if (t < slots) s.best[t] = a.first > 0 ? a.state->best[t] : record{}, s.least[t] = s.best[t].key;
-  __syncthreads();
-  const auto merge = [&](const record& r, std::uint32_t i) {
-    if (r.key < fresh(s.least[i % slots])) atomicMin(&s.least[i % slots], r.key);
-    __syncthreads();
-    if (r.key != no_key && r.key == s.least[i % slots]) s.offer(r);
-    __syncthreads();
-  };
-  merge(mine.r, t);
-  for (std::uint32_t base = block_threads; base < count; base += block_threads)
-    merge(base + t < count ? a.records[base + t] : record{}, base + t);
+  evidence<PartView, Each> mine = merge<PartView, Each>(source);
   record best = s.best[0];
   for (std::uint32_t k = 1; k < slots; ++k)
     if (before(s.best[k], best)) best = s.best[k];
   if (!s.rigid) best = {};
-  const auto is = [](const record& x, const record& y) { return x.key == y.key && x.part == y.part && x.id == y.id; };
   const bool here = best.key != no_key && key_index(best.key) >= a.first;
-  if constexpr (!Each) {
-    if (here && is(mine.r, best)) write_witness(a, s, mine);
-  } else {
-    if (here && t == block_threads - 1) write_witness(a, s, evidence<PartView>(a, source, s, best));
-    if (t < a.parts) {
-      evidence<PartView> own(a, source, s, s.rigid ? s.best[t] : record{});
-      if (own.r.key == no_key) {
-        a.minima[t] = {};
-      } else if (key_index(own.r.key) >= a.first) {
-        own.complete(a, s);
-        a.minima[t] = {key_distance(own.r.key), a.cloud, key_index(own.r.key) - a.first, own.r.id};
-      }
+  if (here && mine.r.key == best.key && mine.r.part == best.part && mine.r.id == best.id) write_witness(a, mine);
+  if constexpr (Each) {
+    if (t < a.parts && mine.r.key == no_key) a.minima[t] = {};
+    if (t < a.parts && mine.r.key != no_key && key_index(mine.r.key) >= a.first) {
+      mine.complete();
+      a.minima[t] = {key_distance(mine.r.key), a.cloud, key_index(mine.r.key) - a.first, mine.r.id};
     }
   }
-  if (concludes) write_bracket(a, s, best, all);
+  if (concludes) write_bracket<PartView, Each>(a, best, all);
+  // Kept for the next frame: every part's minimum, or the best and others as there is room.
+  if (t < slots) state.best[t] = state.witness[t] = s.best[t];
+  if (!Each && mine.r.key != no_key)
+    if (const std::uint32_t place = atomicAdd(&s.children, 1u) + 1; place < 32) state.witness[place] = mine.r;
+  if (a.last && t < most_parts) state.bound[t] = no_bound;
 }
 
-/// Every block hands in its candidates; the last one answers, and makes the state ready for a next frame.
 template <class PartView, bool Each, class Source>
-__device__ void finish_block(const frame_args<PartView>& a, const Source& source, block_memory<PartView, Each>& s) {
+__noinline__ __device__ void finish_block(const frame_args<PartView>& a, const Source& source) {
+  auto& s = memory_of_block<PartView, Each>();
   const std::uint32_t t = threadIdx.x, slots = Each ? a.parts : 1;
-  frame_state& state = *a.state;
+  frame_state& state = *s.head.state;
   if (t < drop_reasons && s.dropped[t] != 0) atomicAdd(&state.dropped[t], static_cast<unsigned long long>(s.dropped[t]));
-  if (t < slots) a.records[blockIdx.x * slots + t] = s.best[t];
+  if constexpr (Each) {
+    if (t < slots) s.head.records[t * gridDim.x + blockIdx.x] = s.best[t];
+  } else if (t < 32) {
+    const record best = least_of_warp(t < warps ? s.best_of_warp[t] : s.best[0]);
+    if (t == 0) s.head.records[blockIdx.x] = best;
+  }
   __syncthreads();
   if (t == 0) {
-    __threadfence();
+    fence();
     s.last = atomicAdd(&state.done, 1u) + 1 == gridDim.x;
+    fence();
   }
   __syncthreads();
   if (!s.last) return;
-  __threadfence();
-  answer(a, source, s);
-  // Kept for the next frame: every part's minimum, or the best and others as there is room.
-  if (t == 0) s.pairs = Each ? slots : 1;
+  answer<PartView, Each>(a, source);
   __syncthreads();
-  if (t < slots) state.best[t] = state.witness[t] = s.best[t];
-  if (!Each && t < gridDim.x)
-    if (const record r = a.records[t]; r.key != no_key)
-      if (const std::uint32_t place = atomicAdd(&s.pairs, 1u); place < 32) state.witness[place] = r;
-  if (a.last && t < most_parts) state.bound[t] = no_bound;
-  if (a.last && t < drop_reasons) state.dropped[t] = 0;
-  __syncthreads();
-  if (t == 0) {
-    state.done = state.seeded = 0;
-    state.witnesses = Each ? slots : (s.pairs < 32 ? s.pairs : 32);
-    if (a.last) state.certain = 0;
-    if (a.last && a.done != nullptr) {
-      __threadfence_system();
-      *static_cast<volatile std::uint32_t*>(a.done) = a.number;
-    }
+  if (t < drop_reasons && a.last) state.dropped[t] = 0;
+  if (t != 0) return;
+  state.done = state.seeded = 0;
+  state.witnesses = Each ? slots : (s.children < 31 ? s.children + 1 : 32);
+  if (!a.last) return;
+  state.certain = 0;
+  if (a.done != nullptr) {
+    __threadfence_system();
+    *static_cast<volatile std::uint32_t*>(a.done) = a.number;
   }
 }
 

@@ -24,11 +24,12 @@ class launcher {
       check_cuda(cudaDeviceGetAttribute(&value, what, on.id), "cudaDeviceGetAttribute");
       return unsigned(value);
     };
-    most_blocks_ = ask(cudaDevAttrMultiProcessorCount) * 2;
+    processors_ = ask(cudaDevAttrMultiProcessorCount);
+    shared_of_processor_ = ask(cudaDevAttrMaxSharedMemoryPerMultiprocessor);
     most_shared_ = ask(cudaDevAttrMaxSharedMemoryPerBlockOptin);
     state_ = device_buffer<frame_state>(1, on.id, memory);
-    records_ = device_buffer<record>(most_blocks_ * parts, on.id, memory);
-    placed_ = device_buffer<placed_parts<PartView>>(1, on.id, memory);
+    records_ = device_buffer<record>(2 * processors_ * parts, on.id, memory);
+    placed_ = device_buffer<placed_parts>(1, on.id, memory);
     forget();
   }
 
@@ -38,28 +39,37 @@ class launcher {
   }
 
   /// What all clouds of a frame have in common.
-  args first(min_distance_result* result, part_minimum* minima, std::uint32_t* done, std::uint32_t number) const {
+  args first(const PartView* views, min_distance_result* result, part_minimum* minima, std::uint32_t* done, std::uint32_t number) const {
     args a{};
-    a.parts = parts_, a.state = state_.data(), a.records = records_.data();
+    a.parts = parts_, a.views = views, a.state = state_.data(), a.records = records_.data(), a.rest = placed_.data();
     a.result = result, a.minima = minima, a.done = done, a.number = number;
     return a;
   }
 
-  void put(std::span<const stream_part<PartView>> parts, args& a) {
-    const std::size_t inside = std::min<std::size_t>(parts.size(), inline_parts);
-    std::copy_n(parts.begin(), inside, a.part);
-    a.more = placed_.data()->part;
-    on_.stage(parts.subspan(inside), placed_.data()->part);
+  /// Poses that the host has made ready: some travel with the launch, and the rest beforehand.
+  void put(std::span<const search::placement> places, args& a) {
+    parts_now_.clear();
+    for (const auto& p : places) parts_now_.emplace_back(p);
+    for (std::size_t k = 0; k < places.size(); k += cluster) gather(&parts_now_[k], std::uint32_t(std::min<std::size_t>(cluster, places.size() - k)));
+    const std::size_t inside = std::min<std::size_t>(places.size(), inline_parts);
+    std::copy_n(parts_now_.begin(), inside, a.part);
+    for (std::size_t k = 0; k < inside; ++k) a.world_from_part[k] = places[k].world_from_part;
+    if (places.size() == inside) return;
+    world_now_.clear();
+    for (const auto& p : places) world_now_.push_back(p.world_from_part);
+    on_.stage(std::span<const frame_part>(parts_now_), placed_.data()->part);
+    on_.stage(std::span<const world_transform>(world_now_), placed_.data()->world_from_part);
   }
 
-  const placed_parts<PartView>* place(const world_transform* poses, const world_transform* cloud, const stream_part<PartView>* parts) {
-    place_kernel<<<1, most_parts, 0, on_.stream>>>(poses, cloud, parts, parts_, placed_.data());
+  /// Poses in device or pinned memory, made ready there.
+  void place(const world_transform* poses, const world_transform* cloud, args& a) {
+    place_kernel<<<1, most_parts, 0, on_.stream>>>(poses, cloud, a.views, parts_, placed_.data());
     check_cuda(cudaGetLastError(), "kernel launch");
-    return placed_.data();
+    a.placed = true;
   }
 
   std::uint32_t checked(std::uint64_t points) const {
-    if (points >= none - block_threads * 4 * most_blocks_)
+    if (points >= none - block_threads * 8 * processors_)
       throw std::invalid_argument("clearance::min_distance_query: " + std::to_string(points) + " points are too many for one call");
     return std::uint32_t(points);
   }
@@ -75,27 +85,32 @@ class launcher {
  private:
   template <bool Each, class Source>
   void start(const Source& source, args& a) const {
-    a.ring = shared_bytes<PartView, Each, Source>(true) <= most_shared_;
-    const std::size_t shared = shared_bytes<PartView, Each, Source>(a.ring);
+    constexpr std::size_t ring = ring_bytes<Source>();
+    const std::size_t others = sizeof(block_memory<PartView, Each>) + a.parts * sizeof(block_part<PartView>);
+    a.ring = others + ring <= most_shared_;
+    const std::size_t shared = others + (a.ring ? ring : 0);
     static std::atomic<std::uint64_t> allowed{0};  // by device: a kernel's limit is raised once, as that takes longer than a launch
     const std::uint64_t bit = 1ull << (on_.id & 63);
     if ((allowed.load(std::memory_order_relaxed) & bit) == 0) {
-      check_cuda(cudaFuncSetAttribute(stream_kernel<PartView, Each, Source>, cudaFuncAttributeMaxDynamicSharedMemorySize, int(shared)),
+      check_cuda(cudaFuncSetAttribute(stream_kernel<PartView, Each, Source>, cudaFuncAttributeMaxDynamicSharedMemorySize, int(most_shared_)),
                  "cudaFuncSetAttribute");
       allowed.fetch_or(bit, std::memory_order_relaxed);
     }
     constexpr unsigned a_block = block_threads * quad;
-    const unsigned blocks = std::max(1u, std::min(most_blocks_, (a.points + a_block - 1) / a_block));
+    const unsigned resident = 2 * (shared + 1024) <= shared_of_processor_ ? processors_ * 2 : processors_;
+    const unsigned blocks = std::max(1u, std::min(resident, (a.points + a_block - 1) / a_block));
     stream_kernel<PartView, Each><<<blocks, block_threads, shared, on_.stream>>>(source, a);
     check_cuda(cudaGetLastError(), "kernel launch");
   }
 
   device on_;
   std::uint32_t parts_;
-  unsigned most_blocks_ = 0, most_shared_ = 0;
+  unsigned processors_ = 0, most_shared_ = 0, shared_of_processor_ = 0;
   device_buffer<frame_state> state_;
   device_buffer<record> records_;
-  device_buffer<placed_parts<PartView>> placed_;
+  device_buffer<placed_parts> placed_;
+  std::vector<frame_part> parts_now_;
+  std::vector<world_transform> world_now_;
 };
 
 }  // namespace clearance::stream

@@ -4,42 +4,24 @@
 // point costs the depth of the tree in rounds and not the length of one thread's walk.
 
 #include <clearance/query/any_within.hpp>
+#include <clearance/stream/best.cuh>
 #include <clearance/stream/reader.cuh>
 #include <clearance/traversal/near_first.hpp>
 
 namespace clearance::stream {
 
-/// Is the point in the part's solid? Then its distance is 0, and there is nothing to look for in the tree.
 template <class PartView, bool Each>
-__device__ bool inside(const frame_args<PartView>& a, block_memory<PartView, Each>& s, vec3 q, std::uint32_t point, std::uint32_t k) {
-  if constexpr (!requires { PartView::interior_type::empty; }) {
-    const auto& body = part(a, s, k);
-    if (fresh(s.least[s.slot(k)]) <= make_key(0, point) && load_relaxed(&a.state->certain) != 0) return true;
-    if (!body.view.interior.inside(q)) return false;
-    s.lower(k, 0, *a.state);
-    atomicMin(&s.least[s.slot(k)], make_key(0, point));
-    s.offer({make_key(0, point), k, none, none});
-    any_within surface{body.place.error + body.view.facts.tolerance};
-    near_first{}(body.view.tree, q, surface);
-    if (!surface.found) atomicAdd(&a.state->certain, 1ull);
-    return true;
-  }
-  return false;
-}
-
-template <class PartView, bool Each>
-struct pair_search {
+struct pair_search : frame_parts<PartView, Each> {
+  using frame = frame_parts<PartView, Each>;
   using hierarchy = typename PartView::hierarchy_type;
   using traits = bounding_volume_traits<typename hierarchy::volume_type>;
   using memory = block_memory<PartView, Each>;
 
-  const frame_args<PartView>& a;
-  memory& s;
-
   /// Keeps those of a lane's points for `drain` that are near a part of the cluster from `first_part` on, four bits a part;
   /// says which it has no room for. The whole warp calls it.
-  __device__ unsigned add(unsigned those, const quad_points& p, std::uint32_t first, std::uint32_t first_part) const {
+  static __device__ unsigned add(unsigned those, const quad_points& p, std::uint32_t first, std::uint32_t first_part) {
     static_assert(quad * cluster <= 32);
+    memory& s = frame::here();
     const std::uint32_t lane = threadIdx.x & 31, mine = std::uint32_t(__popc(those));
     std::uint32_t sum = mine;
     for (std::uint32_t step = 1; step < 32; step *= 2)
@@ -49,71 +31,86 @@ struct pair_search {
     slot = __shfl_sync(all_lanes, slot, 31) + sum - mine;
     for (; those != 0 && slot < memory::pair_capacity; those &= those - 1, ++slot) {
       const unsigned bit = unsigned(__ffs(int(those))) - 1, j = bit % quad;
-      s.pair_table[slot] = {j < 2 ? (j == 0 ? p.at[0] : p.at[1]) : (j == 2 ? p.at[2] : p.at[3]), a.first + first + j, first_part + bit / quad};
+      s.pair_table[slot] = {j < 2 ? (j == 0 ? p.at[0] : p.at[1]) : (j == 2 ? p.at[2] : p.at[3]), s.head.first + first + j, first_part + bit / quad};
     }
     unsigned missed = 0;  // what is left, by point
     for (; those != 0; those >>= quad) missed |= those & ((1u << quad) - 1);
     return missed;
   }
-  __device__ bool crowded() const { return fresh(s.pairs) > memory::pair_capacity / 2; }
 
-  /// All pairs that were kept, to the end. The whole block calls it.
-  __device__ void drain() {
-    __syncthreads();
-    const std::uint32_t count = s.pairs < memory::pair_capacity ? s.pairs : memory::pair_capacity;
-    for (std::uint32_t i = threadIdx.x; i < count; i += block_threads) admit(i);
-    if (count > 0) walk();
-    if (threadIdx.x == 0 && count > 0) s.pairs = s.children = 0;
+  /// All pairs that were kept, to the end; `found` is how many there were, or more. The whole block calls it together.
+  static __device__ void drain(std::uint32_t found) {
+    memory& s = frame::here();
+    if (found > 0) walk(found < memory::pair_capacity ? found : memory::pair_capacity);
+    if (threadIdx.x == 0) s.pairs = s.children = 0;
     __syncthreads();
   }
 
  private:
-  /// A pair goes into the queue, unless it ends here. No tree is touched yet.
-  __device__ void admit(std::uint32_t i) {
-    const pair c = s.pair_table[i];
-    if (!s.near_part[c.part].passes(c.x)) return;
-    const auto& body = part(a, s, c.part);
-    const vec3 q = body.place.part_from_cloud(c.x);
-    if (inside(a, s, q, c.point, c.part)) return;
-    s.pair_table[i].x = q;
-    if (c.part < inline_parts && !body.root.is_leaf() && body.root.count() <= lanes && push_children(i, c.part, q, body.root.count())) return;
-    push({-infinity, body.root, i}, 0);
-  }
+  static __device__ std::uint32_t lane() { return threadIdx.x & (lanes - 1); }
+  static __device__ unsigned of_mates(unsigned ballot) { return ballot >> (threadIdx.x & 24) & 0xff; }
 
-  /// Instead of a root those of its children that are within reach, if the queue has room for them beside all other pairs.
-  __device__ bool push_children(std::uint32_t i, std::uint32_t k, vec3 q, std::uint32_t count) {
-    const real reach = s.reach(k);
-    real lb[lanes];
-    unsigned within = 0;
-#pragma unroll
-    for (std::uint32_t c = 0; c < lanes; ++c) {
-      lb[c] = c < count ? traits::lower_bound(s.top_volumes[k][c], q) : infinity;
-      within |= unsigned(c < count && lb[c] <= reach) << c;
+  /// Is the point in the part's solid? Then its distance is 0, and there is nothing to look for in the tree.
+  static __device__ bool inside(vec3 q, std::uint32_t point, std::uint32_t k) {
+    if constexpr (!requires { PartView::interior_type::empty; }) {
+      memory& s = frame::here();
+      const PartView& view = frame::view(k);
+      if (fresh(s.least[s.slot(k)]) <= make_key(0, point) && load_relaxed(&s.head.state->certain) != 0) return true;
+      if (!view.interior.inside(q)) return false;
+      s.lower(k, 0);
+      atomicMin(&s.least[s.slot(k)], make_key(0, point));
+      s.offer({make_key(0, point), k, none, none});
+      any_within surface{frame::place(k).error + view.facts.tolerance};
+      near_first{}(view.tree, q, surface);
+      if (!surface.found) atomicAdd(&s.head.state->certain, 1ull);
+      return true;
     }
-    const std::uint32_t n = std::uint32_t(__popc(within));
-    if (n == 0) return true;
-    if (atomicAdd(&s.children, n) + n > memory::queue_capacity - memory::pair_capacity - 4 * deepest_stack) return false;
-    std::uint32_t at = atomicAdd(&s.queued[0], n);
-#pragma unroll
-    for (std::uint32_t c = 0; c < lanes; ++c)
-      if (within >> c & 1) s.queue[at++] = {lb[c], s.top_nodes[k][c], i};
-    return true;
+    return false;
   }
 
-  __device__ void push(const pending& e, int parity) { s.queue[atomicAdd(&s.queued[parity], 1u)] = e; }
+  /// A pair goes into the queue, unless it ends here: those children of its root that are within reach, where they are at
+  /// hand and the queue has room for them beside all other pairs. Eight lanes a pair; the whole warp calls it.
+  static __device__ void admit(std::uint32_t i, bool live) {
+    memory& s = frame::here();
+    const pair c = live ? s.pair_table[i] : pair{{0, 0, 0}, 0, 0};
+    live = live && s.near_part[c.part].passes(c.x);
+    const vec3 q = frame::place(c.part).part_from_cloud(c.x);
+    if constexpr (!requires { PartView::interior_type::empty; }) {
+      const unsigned gone = of_mates(__ballot_sync(all_lanes, live && lane() == 0 && inside(q, c.point, c.part)));
+      live = live && gone == 0;
+    }
+    __syncwarp();  // all have read the pair
+    if (live && lane() == 0) s.pair_table[i].x = q;
+    const bvh_node root = live ? frame::node(c.part, 0) : bvh_node{0, bvh_node::leaf_bit};
+    const bool opens = !root.is_leaf() && root.count() <= lanes && frame::at_hand(c.part, root.first + root.count());
+    const bool exists = opens && lane() < root.count();
+    const std::uint32_t child = exists ? c.part * s.top_stride + root.first + lane() : 0;
+    const real lb = exists ? traits::lower_bound(s.top_volumes[child], q) : infinity;
+    const unsigned within = of_mates(__ballot_sync(all_lanes, exists && lb <= s.reach(c.part)));
+    const std::uint32_t n = std::uint32_t(__popc(within));
+    std::uint32_t at = none;
+    if (lane() == 0 && n > 0 && atomicAdd(&s.children, n) + n <= memory::queue_capacity - memory::pair_capacity - 4 * deepest_stack)
+      at = atomicAdd(&s.queued[0], n);
+    at = __shfl_sync(all_lanes, at, int(threadIdx.x & 24));
+    if ((within >> lane() & 1) && at != none) s.queue[at + std::uint32_t(__popc(within & ((1u << lane()) - 1)))] = {lb, s.top_nodes[child], i};
+    push({-infinity, root, i}, live && lane() == 0 && (!opens || (n > 0 && at == none)), 0);
+  }
 
   /// Takes pairs from the queue's end, one a group of eight lanes, until it is empty. It takes fewer as the queue fills, at
   /// last one, whose whole subtree then fits into what is kept free: so the queue cannot overflow.
-  __device__ void walk() {
-    const std::uint32_t group = threadIdx.x / lanes;
-    const bool messenger = threadIdx.x >= block_threads - memory::slots && threadIdx.x - (block_threads - memory::slots) < (Each ? a.parts : 1);
-    const std::uint32_t its = threadIdx.x - (block_threads - memory::slots);
-    std::uint32_t elsewhere = no_bound;  // what other blocks knew a round ago: nobody waits for it
-    int parity = 0;
-    for (;; parity ^= 1) {
-      if (messenger && elsewhere < fresh(s.bound[its])) atomicMin(&s.bound[its], elsewhere);
+  static __device__ void walk(std::uint32_t count) {
+    memory& s = frame::here();
+    const std::uint32_t group = threadIdx.x / lanes, its = block_threads - 1 - threadIdx.x, bounds = Each ? s.head.parts : 1;
+    // What other blocks know is asked for some rounds before it is looked at: nobody waits for it.
+    std::uint32_t elsewhere = its < bounds ? fresh(s.head.state->bound[its]) : no_bound;
+    best_of_block<Each> best(s);
+    for (std::uint32_t i = group; i - group % 4 < count; i += groups) admit(i, i < count);
+    for (int round = 0, parity = 0;; ++round, parity ^= 1) {
+      if (round % 4 == 3 && its < bounds) {
+        if (elsewhere < fresh(s.bound[its])) atomicMin(&s.bound[its], elsewhere);
+        elsewhere = fresh(s.head.state->bound[its]);
+      }
       __syncthreads();
-      if (messenger) elsewhere = fresh(a.state->bound[its]);
       const std::uint32_t queued = s.queued[parity];
       if (queued == 0) break;
       constexpr std::uint32_t room = memory::queue_capacity - deepest_stack;
@@ -124,43 +121,51 @@ struct pair_search {
       const pending e = busy ? s.queue[queued - taken + group] : pending{infinity, {0, 0}, 0};
       if (threadIdx.x == 0) s.queued[parity ^ 1] = queued - taken;
       __syncthreads();
-      offer(expand(e, parity ^ 1));
+      if (group - group % 4 < taken) best.take(expand(e, parity ^ 1), s);
     }
-    if (threadIdx.x == 0) s.queued[parity ^ 1] = 0;
-    __syncthreads();
+    best.leave(s);
   }
 
-  /// Inner children within reach go into the queue; of primitives the closest of this lane's is returned.
-  __device__ record expand(const pending& e, int parity) {
+  /// Inner children within reach go into the queue; of primitives the closest of this lane's is returned. The whole warp
+  /// calls it.
+  static __device__ record expand(const pending& e, int parity) {
+    memory& s = frame::here();
     record best;
     const pair v = s.pair_table[e.pair];
-    if (e.node.count() == 0 || !(e.bound <= s.reach(v.part))) return best;
-    const hierarchy& tree = part(a, s, v.part).view.tree;
-    const std::uint32_t lane = threadIdx.x & (lanes - 1);
-    for (std::uint32_t k = lane; k < e.node.count(); k += lanes) {
+    const real reach = s.reach(v.part);
+    const std::uint32_t count = e.bound <= reach ? e.node.count() : 0;
+#pragma unroll 1
+    for (std::uint32_t k = lane(); __any_sync(all_lanes, k < count); k += lanes) {
       const std::uint32_t place = e.node.first + k;
-      if (e.node.is_leaf()) {
-        const real distance = tree.primitives[place].distance(v.x);
-        if (!(distance <= s.reach(v.part))) continue;
-        const record r{make_key(distance, v.point), v.part, tree.ids[place], place};
-        if (before(r, best)) best = r;
-      } else {
-        const bvh_node child = tree.nodes[place];
-        const real lb = traits::lower_bound(tree.volumes[place], v.x);
-        if (lb <= s.reach(v.part)) push({lb, child, e.pair}, parity);
+      bvh_node child{0, 0};
+      real lb = infinity;
+      if (k < count) {
+        if (e.node.is_leaf()) {
+          const hierarchy& tree = frame::view(v.part).tree;
+          const std::uint32_t id = far(tree.ids + place);
+          const real distance = far(tree.primitives + place).distance(v.x);
+          const record r{make_key(distance, v.point), v.part, id, place};
+          if (distance <= reach && before(r, best)) best = r;
+        } else {
+          child = frame::node(v.part, place);
+          lb = traits::lower_bound(frame::volume(v.part, place), v.x);
+        }
       }
+      push({lb, child, e.pair}, child.count_and_kind != 0 && lb <= reach, parity);
     }
     return best;
   }
 
-  /// The lanes that share a bound agree first, then the block by an atomic minimum: so few come to the lock. The whole warp
-  /// calls it.
-  __device__ void offer(const record& r) {
-    const std::uint32_t mine = std::uint32_t(r.key >> 32);
-    const std::uint32_t least = least_of(Each ? __match_any_sync(all_lanes, r.part) : all_lanes, mine);
-    if (r.key == no_key || mine != least || r.key > atomicMin(&s.least[s.slot(r.part)], r.key)) return;
-    s.lower(r.part, key_distance(r.key), *a.state);
-    s.offer(r);
+  /// Those of a warp's lanes that have something to push do so at once. The whole warp calls it.
+  static __device__ void push(const pending& e, bool mine, int parity) {
+    memory& s = frame::here();
+    const unsigned those = __ballot_sync(all_lanes, mine);
+    if (those == 0) return;
+    const std::uint32_t thread = threadIdx.x & 31;
+    std::uint32_t at = 0;
+    if (thread == 0) at = atomicAdd(&s.queued[parity], std::uint32_t(__popc(those)));
+    at = __shfl_sync(all_lanes, at, 0) + std::uint32_t(__popc(those & ((1u << thread) - 1)));
+    if (mine) s.queue[at] = e;
   }
 };
 

@@ -8,7 +8,7 @@ namespace clearance::stream {
 /// What the host does with poses, for poses in memory that the device reads: a thread a part, one block.
 template <class PartView>
 __global__ void __launch_bounds__(most_parts) place_kernel(const world_transform* world_from_part, const world_transform* world_from_cloud,
-                                                           const stream_part<PartView>* parts, std::uint32_t count, placed_parts<PartView>* out) {
+                                                           const PartView* views, std::uint32_t count, placed_parts* out) {
   __shared__ world_transform pose[most_parts];
   __shared__ search::placement place[most_parts];
   __shared__ search::frame_facts frame;
@@ -23,13 +23,14 @@ __global__ void __launch_bounds__(most_parts) place_kernel(const world_transform
   if (t == 0) frame.origin = rigid ? search::origin_near(search::middle_of(frame.world_from_cloud, pose, count)) : vec3{0, 0, 0};
   __syncthreads();
   if (t < count) {
-    place[t] = search::place(parts[t].view.facts, pose[t], frame.world_from_cloud, frame.origin);
-    out->part[t] = {place[t], parts[t].root, parts[t].view, {}, 0};
+    place[t] = search::place(views[t].facts, pose[t], frame.world_from_cloud, frame.origin);
+    out->part[t] = frame_part(place[t]);
+    out->world_from_part[t] = pose[t];
   }
   __syncthreads();
   if (const std::uint32_t first = t * cluster; first < count) gather(out->part + first, count - first < cluster ? count - first : cluster);
   if (t != 0) return;
-  for (std::uint32_t k = 0; k < count; ++k) frame.add(parts[k].view.facts, place[k]);
+  for (std::uint32_t k = 0; k < count; ++k) frame.add(views[k].facts, place[k]);
   out->frame = frame, out->rigid = rigid;
 }
 

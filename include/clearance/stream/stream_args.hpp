@@ -9,7 +9,7 @@
 namespace clearance::stream {
 
 inline constexpr std::uint32_t most_parts = 128;
-inline constexpr std::uint32_t inline_parts = 12;  ///< As many as fit into 4 kB of kernel arguments.
+inline constexpr std::uint32_t inline_parts = 12;  ///< As many as travel with the launch.
 inline constexpr std::uint32_t no_bound = 0xff800000u;  ///< ordered(infinity)
 
 /// A candidate for the answer: all that is needed to write it out, so that nobody has to search for it again.
@@ -44,59 +44,76 @@ struct frame_state {
   }
 };
 
-/// One part for one frame.
-template <class PartView>
-struct alignas(16) stream_part {
-  search::placement place;
-  bvh_node root;
-  PartView view;
-  vec3 middle;  ///< Of its cluster's centres, in the cloud's frame,
-  real away;    ///< and the farthest that its ball reaches from there.
-};
-
 inline constexpr std::uint32_t cluster = 8;  ///< Parts that are first tested together, as one ball.
 
+/// Where one part is in one frame, as far as every block needs it.
+struct alignas(16) frame_part {
+  rigid_transform part_from_cloud;
+  ball around;
+  real error;
+  real away;    ///< The farthest that its ball reaches
+  vec3 middle;  ///< from the middle of its cluster's centres, in the cloud's frame.
+
+  frame_part() = default;
+  CLEARANCE_HD explicit frame_part(const search::placement& p) : part_from_cloud(p.part_from_cloud), around(p.around), error(p.error) {}
+};
+
 /// Sets `middle` and `away` of one cluster's parts.
-template <class PartView>
-CLEARANCE_HD void gather(stream_part<PartView>* parts, std::uint32_t count) {
+CLEARANCE_HD inline void gather(frame_part* parts, std::uint32_t count) {
   vec3 low{infinity, infinity, infinity}, high = -low;
   for (std::uint32_t k = 0; k < count; ++k) {
-    const vec3 at = parts[k].place.around.center;
+    const vec3 at = parts[k].around.center;
     low = {min(low.x, at.x), min(low.y, at.y), min(low.z, at.z)};
     high = {max(high.x, at.x), max(high.y, at.y), max(high.z, at.z)};
   }
   const vec3 middle{(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
   for (std::uint32_t k = 0; k < count; ++k) {
-    const ball& b = parts[k].place.around;
+    const ball& b = parts[k].around;
     parts[k].middle = middle, parts[k].away = (length(b.center - middle) + b.radius) * (1 + 8 * slack);
   }
 }
 
-/// Poses that live on the device, made ready by a kernel of their own.
-template <class PartView>
+/// In device memory: all parts, if poses live there and a kernel of its own has made them ready; else those from
+/// inline_parts on.
 struct placed_parts {
   search::frame_facts frame;
   bool rigid;
-  stream_part<PartView> part[most_parts];
+  frame_part part[most_parts];
+  world_transform world_from_part[most_parts];
 };
 
-/// One cloud of a frame; all but its points.
+/// What is asked of one cloud of a frame, in few words.
 template <class PartView>
-struct frame_args {
+struct alignas(16) frame_head {
   std::uint32_t points, parts;
   std::uint32_t cloud, first;  ///< The cloud's number, and that of its first point among all clouds' points.
   bool last;                   ///< No cloud follows: conclude.
   bool ring;                   ///< There is shared memory for points on their way.
+  bool placed;                 ///< All parts are in `rest`, and so is the frame.
   frame_state* state;
-  record* records;  ///< Room for one a block and slot.
+  record* records;  ///< Room for one a slot and block.
+  const PartView* views;
+  const placed_parts* rest;
+};
+
+/// One cloud of a frame; all but its points. What every block reads comes first and last what one block reads.
+template <class PartView>
+struct frame_args : frame_head<PartView> {
+  using frame_head<PartView>::placed;
+  using frame_head<PartView>::rest;
+
+  frame_part part[inline_parts];
   min_distance_result* result;
   part_minimum* minima;  ///< One a part, or null.
   std::uint32_t* done;   ///< Pinned, written after the result with `number`; or null.
   std::uint32_t number;
-  const placed_parts<PartView>* placed;  ///< If not null, what follows is there and not here.
   search::frame_facts frame;
-  const stream_part<PartView>* more;  ///< Parts from inline_parts on.
-  stream_part<PartView> part[inline_parts];
+  world_transform world_from_part[inline_parts];
+
+  CLEARANCE_HD const search::frame_facts& facts() const { return placed ? rest->frame : frame; }
+  CLEARANCE_HD const world_transform& world(std::uint32_t k) const {
+    return placed || k >= inline_parts ? rest->world_from_part[k] : world_from_part[k];
+  }
 };
 
 }  // namespace clearance::stream

@@ -9,81 +9,68 @@
 
 namespace clearance::stream {
 
-inline constexpr std::uint32_t batch = 8;  ///< Rounds between two looks at what others have found.
-
-template <class PartView, bool Each, class Source>
-constexpr std::size_t shared_bytes(bool ring) {
-  constexpr std::size_t fixed = (sizeof(block_memory<PartView, Each>) + 15) / 16 * 16;
-  return fixed + (ring ? ring_bytes<Source>() : 0);
-}
-
-/// Points that found no room before a drain are read again, for one cluster of parts at a time: that is little enough for
-/// some always to find room. It is rare.
-template <class PartView, bool Each, class Source>
-__noinline__ __device__ unsigned hand_over_again(pair_search<PartView, Each> pairs, const point_reader<Source> reader, const Source& source,
-                                                 std::uint32_t round, unsigned missed, std::uint32_t c) {
-  unsigned still = 0;
-  for (std::uint32_t r = 0; r < batch; ++r) {
-    const unsigned which = missed >> quad * r & 0xf;
-    if (!__any_sync(all_lanes, which != 0)) continue;
-    const std::uint32_t first = reader.index(round + r);
-    quad_points p;
-    for (std::uint32_t j = 0; j < quad; ++j)
-      p.at[j] = which >> j & 1 ? source[first + j].position - pairs.s.frame.origin : vec3{not_a_number, 0, 0};
-    still |= hand_over(pairs, p, [=] { return first; }, c, c + 1) << quad * r;
-  }
-  return still;
-}
+inline constexpr std::uint32_t batch = 32 / quad;  ///< Rounds after which the block comes together: a bit a point.
 
 template <class PartView, bool Each, class Source>
 __global__ void __launch_bounds__(block_threads, 2) stream_kernel(const __grid_constant__ Source source,
                                                                   const __grid_constant__ frame_args<PartView> a) {
-  extern __shared__ __align__(16) std::byte memory[];
-  auto& s = *reinterpret_cast<block_memory<PartView, Each>*>(memory);
-  using reader_type = point_reader<Source>;
-  auto* const ring = reinterpret_cast<typename reader_type::raw4*>(memory + shared_bytes<PartView, Each, Source>(false));
-  reader_type reader(source, a.points, a.ring ? ring : nullptr);
-  pair_search<PartView, Each> pairs{a, s};
+  using pairs = pair_search<PartView, Each>;
+  auto& s = memory_of_block<PartView, Each>();
+  constexpr std::size_t before_ring = sizeof(block_memory<PartView, Each>);
+  static_assert(before_ring % 16 == 0);
+  point_reader<Source, before_ring> reader(source, a.points, a.ring);
   const std::uint32_t t = threadIdx.x, rounds = reader.rounds(), clusters = (a.parts + cluster - 1) / cluster;
   const last_frame<PartView, Each> before(*a.state);
   reader.fetch(0);
-  prepare(a, s);
+  pairs::prepare(a, std::uint32_t(before_ring + (a.ring ? ring_bytes<Source>() : 0)));
   __syncthreads();
-  const top_level top(a, s);
-  before.seed(a, source, s);
+  before.seed(a, source);
+  pairs::fetch_tops(a.parts);  // is waited for with the first round of points
   for (std::uint32_t r = 1; r + 1 < stages; ++r) reader.fetch(r);  // not before the seeds, which would wait behind them
-  top.put(s);
   __syncthreads();
   if (__syncthreads_or(t < (Each ? a.parts : 1) && s.bound[t] == no_bound) && rounds > 0) {
-    reader.fetch(stages - 1);
-    seed_cold(a, reader.take(0, s.frame.origin), s);
-    reader.forget_counts();
+    __pipeline_wait_prior(0);
+    __syncthreads();  // the tops are there
+    quad_points p = reader.peek();
+    if (s.shifted) shift<PartView, Each>(p);
+    seed_cold<PartView, Each>(p);
     __syncthreads();
   }
-  sharpen(a, s, t);
-  __syncthreads();
-  for (std::uint32_t first = 0; first < rounds; first += batch) {
-    const std::uint32_t end = first + batch < rounds ? first + batch : rounds;
+  // All that this loop calls is inlined, and once: what lives across a call would be kept in memory, for every point.
+  // Points that found no room for a pair (a bit each of a batch) are read again, for one cluster of parts at a time: that is
+  // little enough for some always to find room. It is rare.
+  bool again = false;
+  unsigned todo = 0, left = 0;
+  for (std::uint32_t first = 0, begin = 0; first < rounds;) {
+    sharpen<PartView, Each>(t);
+    __syncthreads();
+    const bool shifted = s.shifted;
+    const std::uint32_t end = again ? begin + 1 : clusters;
     unsigned missed = 0;
-    for (std::uint32_t r = first; r < end; ++r) {
-      reader.fetch(r + stages - 1);
-      const quad_points p = reader.take(r, s.frame.origin);
-      missed |= hand_over(pairs, p, [&] { return reader.index(r); }, 0, clusters) << quad * (r - first);
+    std::uint32_t r = first;
+    for (std::uint32_t bits = 0; bits < 32 && r < rounds; bits += quad, ++r) {
+      const unsigned which = again ? left >> bits & 0xf : 0xf;
+      if (again && !__any_sync(all_lanes, which != 0)) continue;
+      if (!again) reader.fetch(r + stages - 1);
+      quad_points p = reader.take(r, again, which);
+      if (shifted) shift<PartView, Each>(p);
+      missed |= hand_over<PartView, Each>(p, [&] { return reader.index(r); }, begin, end) << bits;
     }
-    if (first / batch % 7 == 6) reader.report(s.dropped);
-    if (__syncthreads_or(missed != 0))
-      for (std::uint32_t c = 0; c < clusters; ++c)
-        for (unsigned left = missed; __syncthreads_or(left != 0);) {
-          pairs.drain();
-          refresh(a, s);
-          left = hand_over_again(pairs, reader, source, first, left, c);
-        }
-    if (end == rounds || pairs.crowded()) pairs.drain();
-    if (end != rounds) refresh(a, s);
+    const bool last = r == rounds;
+    if (last || !reader.wide) __pipeline_wait_prior(0);  // the tops, if no points came after them
+    reader.report(s.dropped);
+    __syncthreads();
+    const std::uint32_t found = s.pairs;
+    const bool crowd = found > pairs::memory::pair_capacity;
+    if (again || last || found > pairs::memory::pair_capacity * 3 / 4) pairs::drain(found);
+    if (!again) todo = missed;
+    left = again && crowd ? missed : todo;
+    if (again && !crowd) ++begin;
+    again = again ? begin < clusters : crowd;
+    if (!again) first = r, begin = 0;
   }
-  reader.report(s.dropped);
-  __syncthreads();
-  finish_block(a, source, s);
+  if (rounds == 0) __pipeline_wait_prior(0);
+  finish_block<PartView, Each>(a, source);
 }
 
 }  // namespace clearance::stream

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How the threads of a block are divided, and what a warp agrees on.
+
+#include <clearance/math.hpp>
+
+#include <cuda_pipeline.h>
+
+namespace clearance::stream {
+
+inline constexpr int block_threads = 512;
+inline constexpr std::uint32_t warps = block_threads / 32;
+inline constexpr int lanes = 8;  ///< Threads that share one pair: one a child of an 8-wide node.
+inline constexpr std::uint32_t groups = block_threads / lanes;
+inline constexpr std::uint32_t all_lanes = 0xffffffffu;
+
+template <class T>
+__device__ T fresh(const T& shared) {
+  return *static_cast<const volatile T*>(&shared);
+}
+
+/// Orders what this thread has written, and read, before it against what comes after, for the whole device. Less than
+/// __threadfence(), which also puts all such fences into one order, and takes longer.
+__device__ inline void fence() {
+#if __CUDA_ARCH__ >= 700
+  asm volatile("fence.acq_rel.gpu;" ::: "memory");
+#else
+  __threadfence();
+#endif
+}
+
+/// The least of the values of the lanes in `mask`, which all call it together.
+__device__ inline std::uint32_t least_of(unsigned mask, std::uint32_t value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_min_sync(mask, value);
+#else
+  std::uint32_t least = value;
+  for (unsigned left = mask; left != 0; left &= left - 1) {
+    const std::uint32_t other = __shfl_sync(mask, value, __ffs(int(left)) - 1);
+    least = other < least ? other : least;
+  }
+  return least;
+#endif
+}
+
+/// The sum of a warp's lanes.
+__device__ inline std::uint32_t sum_of(std::uint32_t value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_add_sync(all_lanes, value);
+#else
+  for (int width = 16; width > 0; width /= 2) value += __shfl_xor_sync(all_lanes, value, width);
+  return value;
+#endif
+}
+
+}  // namespace clearance::stream
