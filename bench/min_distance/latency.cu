@@ -82,7 +82,7 @@ void pinned_depth(benchmark::State& state, way by) {
 }
 void pinned_points(benchmark::State& state, way by) {
   if (no_device(state)) return;
-  const auto points = repeated(the_scene().cloud, std::size_t(state.range(0)));
+  const auto& points = repeated(the_scene().cloud, std::size_t(state.range(0)));
   from_pinned(state, points, by, points.size() > 1000000 ? 300 : 10000, [&](const vec3* p) { return clearance::point_span(p, points.size()); });
 }
 
@@ -109,7 +109,7 @@ void back_to_back(benchmark::State& state) {
   const device gpu;
   const auto model = robot().on(gpu);
   clearance::min_distance_query query(gpu, model);
-  const auto points = repeated(s.cloud, std::size_t(state.range(0)));
+  const auto& points = repeated(s.cloud, std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const vec3>(points));
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
   const device_clock clock;

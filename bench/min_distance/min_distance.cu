@@ -25,7 +25,7 @@ class cache_flush {
 void read(benchmark::State& state, bool flushed) {
   if (no_device(state)) return;
   const clearance::device gpu;
-  const auto points = repeated(bench::the_scene().cloud, std::size_t(state.range(0)));
+  const auto& points = repeated(bench::the_scene().cloud, std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const clearance::vec3>(points));
   const clearance::device_buffer<float> never(1, gpu.id);
   const device_clock clock;
@@ -42,7 +42,7 @@ template <class Model>
 void ask_in(const bench::scene& s, benchmark::State& state, const Model& model, bool cold, bool plain = false, bool each = false,
             bool flushed = false) {
   const clearance::device gpu;
-  const auto points = repeated(s.cloud, std::size_t(state.range(0)));
+  const auto& points = repeated(s.cloud, std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const clearance::vec3>(points));
   const clearance::point_span view(there.data(), points.size());
   const auto placed_there = model.on(gpu);

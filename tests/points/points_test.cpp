@@ -209,6 +209,7 @@ TEST_CASE("Four samples at once are the same four") {
   alignas(16) std::array<vec3, 256> points;
   const auto holes = with_holes(d, points.size());
   std::copy(holes.begin(), holes.end(), points.begin());
+  check_fours(point_span(points.data(), points.size()));
   check_fours(point_span(points.data(), points.size(), {.nearest = 1, .farthest = 6, .zero_is_missing = true}));
   CHECK(point_span(points.data() + 1, 8).fours() == nullptr);
   alignas(16) std::array<std::uint16_t, 64 * 12> raw;
