@@ -42,7 +42,7 @@ struct pair_search : frame_parts<PartView, Each> {
   static __device__ void drain(std::uint32_t found) {
     memory& s = frame::here();
     if (found > 0) walk(found < memory::pair_capacity ? found : memory::pair_capacity);
-    if (threadIdx.x == 0) s.pairs = s.children = 0;
+    if (threadIdx.x == 0) s.pairs = s.children = s.queued[0] = s.queued[1] = 0;
     __syncthreads();
   }
 
