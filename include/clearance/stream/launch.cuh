@@ -6,7 +6,7 @@
 #include <clearance/stream/place_kernel.cuh>
 #include <clearance/stream/stream_kernel.cuh>
 
-#include <atomic>
+#include <algorithm>
 
 namespace clearance::stream {
 
@@ -75,7 +75,7 @@ class launcher {
   }
 
   template <class Source>
-  void operator()(const Source& source, args& a) const {
+  void operator()(const Source& source, args& a) {
     if (a.minima == nullptr)
       start<false>(source, a);
     else
@@ -84,22 +84,21 @@ class launcher {
 
  private:
   template <bool Each, class Source>
-  void start(const Source& source, args& a) const {
+  void start(const Source& source, args& a) {
     constexpr std::size_t ring = ring_bytes<Source>();
     const std::size_t others = sizeof(block_memory<PartView, Each>) + a.parts * sizeof(block_part<PartView>);
     a.ring = others + ring <= most_shared_;
     const std::size_t shared = others + (a.ring ? ring : 0);
-    static std::atomic<std::uint64_t> allowed{0};  // by device: a kernel's limit is raised once, as that takes longer than a launch
-    const std::uint64_t bit = 1ull << (on_.id & 63);
-    if ((allowed.load(std::memory_order_relaxed) & bit) == 0) {
-      check_cuda(cudaFuncSetAttribute(stream_kernel<PartView, Each, Source>, cudaFuncAttributeMaxDynamicSharedMemorySize, int(most_shared_)),
-                 "cudaFuncSetAttribute");
-      allowed.fetch_or(bit, std::memory_order_relaxed);
+    // Every translation unit has a kernel of its own, so what is allowed is known by its address, and not by its type.
+    const auto kernel = stream_kernel<PartView, Each, Source>;
+    if (const auto address = reinterpret_cast<const void*>(kernel); std::find(allowed_.begin(), allowed_.end(), address) == allowed_.end()) {
+      check_cuda(cudaFuncSetAttribute(address, cudaFuncAttributeMaxDynamicSharedMemorySize, int(most_shared_)), "cudaFuncSetAttribute");
+      allowed_.push_back(address);
     }
     constexpr unsigned a_block = block_threads * quad;
     const unsigned resident = 2 * (shared + 1024) <= shared_of_processor_ ? processors_ * 2 : processors_;
     const unsigned blocks = std::max(1u, std::min(resident, (a.points + a_block - 1) / a_block));
-    stream_kernel<PartView, Each><<<blocks, block_threads, shared, on_.stream>>>(source, a);
+    kernel<<<blocks, block_threads, shared, on_.stream>>>(source, a);
     check_cuda(cudaGetLastError(), "kernel launch");
   }
 
@@ -109,6 +108,7 @@ class launcher {
   device_buffer<frame_state> state_;
   device_buffer<record> records_;
   device_buffer<placed_parts> placed_;
+  std::vector<const void*> allowed_;  ///< Kernels whose limit of shared memory has been raised: that takes longer than a launch.
   std::vector<frame_part> parts_now_;
   std::vector<world_transform> world_now_;
 };
