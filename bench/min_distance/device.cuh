@@ -12,10 +12,11 @@
 
 namespace bench {
 
-/// The frame, repeated with 2 mm of noise until there are `count` points. Made once, as it takes longer than what it is for.
+/// The frame, repeated with 2 mm of noise until there are `count` points. Made once a frame and count, as it takes longer than
+/// what it is for.
 inline const std::vector<clearance::vec3>& repeated(const std::vector<clearance::vec3>& frame, std::size_t count) {
-  static std::map<std::size_t, std::vector<clearance::vec3>> made;
-  std::vector<clearance::vec3>& points = made[count];
+  static std::map<std::pair<const clearance::vec3*, std::size_t>, std::vector<clearance::vec3>> made;
+  std::vector<clearance::vec3>& points = made[{frame.data(), count}];
   if (!points.empty()) return points;
   std::mt19937 bits(7);
   std::normal_distribution<float> noise(0, 0.002f);
