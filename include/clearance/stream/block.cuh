@@ -6,6 +6,8 @@
 #include <clearance/stream/stream_args.hpp>
 #include <clearance/stream/threads.cuh>
 
+#include <cuda_pipeline.h>
+
 namespace clearance::stream {
 
 /// A point near a part: first in the cloud's frame, then in the part's.
@@ -37,7 +39,7 @@ struct block_memory {
   frame_head<PartView> head;
   std::uint32_t bound[slots];  ///< ordered(): least of what this block and, at times, all blocks know.
   record best[slots];
-  record best_of_warp[warps];  ///< What is in `best` only at the end, if all parts share a bound.
+  record best_of_warp[warps];  ///< Instead, where all parts share a bound: `best` then has points inside solids alone.
   distance_key least[slots];  ///< The keys of `best`, or soon to be.
   std::uint32_t pairs;
   std::uint32_t children;  ///< Entries of the queue that roots were replaced with.

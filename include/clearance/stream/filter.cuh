@@ -6,23 +6,19 @@
 
 namespace clearance::stream {
 
-/// Sets the root tests to the present bounds, one a thread. Others may read the old ones meanwhile: those are only less sharp.
+/// Sets the root tests to the present bounds, one a thread. Nobody may be reading them.
 template <class PartView, bool Each>
 __device__ void sharpen(std::uint32_t thread) {
   using parts = frame_parts<PartView, Each>;
   auto& s = parts::here();
-  const auto set = [](search::root_test& test, const ball& around, real reach) {
-    const search::root_test next(around, reach);
-    test.m = next.m, test.w = next.w;
-  };
-  if (thread < s.head.parts) set(s.near_part[thread], parts::place(thread).around, s.reach(thread));
+  if (thread < s.head.parts) s.near_part[thread] = search::root_test(parts::place(thread).around, s.reach(thread));
   const std::uint32_t c = thread - most_parts, first = c * cluster;
   if (thread < most_parts || first >= s.head.parts) return;
   real reach = -infinity;
 #pragma unroll
   for (std::uint32_t k = first; k < first + cluster; ++k)
     if (k < s.head.parts) reach = max(reach, parts::place(k).away + s.reach(k));
-  set(s.near_cluster[c], {parts::place(first).middle, 0}, reach + 4 * slack * absolute(reach));
+  s.near_cluster[c] = search::root_test({parts::place(first).middle, 0}, reach + 4 * slack * absolute(reach));
 }
 
 /// Subtracts the frame's origin.

@@ -40,7 +40,7 @@ __global__ void __launch_bounds__(block_threads, 2) stream_kernel(const __grid_c
   // Points that found no room for a pair (a bit each of a batch) are read again, for one cluster of parts at a time: that is
   // little enough for some always to find room. It is rare.
   bool again = false;
-  unsigned todo = 0, left = 0;
+  unsigned roomless = 0, left = 0;  // of all clusters, and of this one
   for (std::uint32_t first = 0, begin = 0; first < rounds;) {
     sharpen<PartView, Each>(t);
     __syncthreads();
@@ -63,8 +63,8 @@ __global__ void __launch_bounds__(block_threads, 2) stream_kernel(const __grid_c
     const std::uint32_t found = s.pairs;
     const bool crowd = found > pairs::memory::pair_capacity;
     if (again || last || found > pairs::memory::pair_capacity * 3 / 4) pairs::drain(found);
-    if (!again) todo = missed;
-    left = again && crowd ? missed : todo;
+    if (!again) roomless = missed;
+    left = again && crowd ? missed : roomless;
     if (again && !crowd) ++begin;
     again = again ? begin < clusters : crowd;
     if (!again) first = r, begin = 0;

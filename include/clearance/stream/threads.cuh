@@ -4,8 +4,6 @@
 
 #include <clearance/math.hpp>
 
-#include <cuda_pipeline.h>
-
 namespace clearance::stream {
 
 inline constexpr int block_threads = 512;
