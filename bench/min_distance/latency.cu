@@ -44,9 +44,9 @@ clearance::pinned_buffer<T> pinned(const std::vector<T>& data, const device& gpu
   return copy;
 }
 
-enum class way { in_place, copied, copy_alone };
+enum class way { given, copied, copy_alone };
 
-/// From pinned memory to the answer on the host: read over the bus by the kernel itself, or copied first.
+/// From pinned memory to the answer on the host: given to the query as it is, or copied before.
 template <class T, class Make>
 void from_pinned(benchmark::State& state, const std::vector<T>& data, way by, std::size_t calls, Make make) {
   const scene& s = the_scene();
@@ -57,7 +57,7 @@ void from_pinned(benchmark::State& state, const std::vector<T>& data, way by, st
   const clearance::device_buffer<T> there(data.size(), gpu.id);
   clearance::min_distance_result r;
   percentiles(state, calls, [&](std::size_t) {
-    if (by == way::in_place) {
+    if (by == way::given) {
       r = query(s.poses, make(source.data()), s.world_from_camera);
       return;
     }
@@ -163,10 +163,10 @@ void shell(benchmark::State& state, bool cold) {
 }
 
 #define ONCE ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(1)
-BENCHMARK_CAPTURE(pinned_depth, in_place, way::in_place) ONCE;
+BENCHMARK_CAPTURE(pinned_depth, given, way::given) ONCE;
 BENCHMARK_CAPTURE(pinned_depth, copied, way::copied) ONCE;
 BENCHMARK_CAPTURE(pinned_depth, copy_alone, way::copy_alone) ONCE;
-BENCHMARK_CAPTURE(pinned_points, in_place, way::in_place)->Arg(307200)->Arg(5000000) ONCE;
+BENCHMARK_CAPTURE(pinned_points, given, way::given)->Arg(307200)->Arg(5000000) ONCE;
 BENCHMARK_CAPTURE(pinned_points, copied, way::copied)->Arg(307200)->Arg(5000000) ONCE;
 BENCHMARK_CAPTURE(pinned_points, copy_alone, way::copy_alone)->Arg(307200)->Arg(5000000) ONCE;
 BENCHMARK(new_pose) ONCE;

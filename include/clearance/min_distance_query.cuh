@@ -58,8 +58,8 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
     launch_(source, a);
   }
 
-  /// One frame, waited for; `minima`, if not empty, one a part, are every part's own. Points in memory that the device cannot
-  /// read are copied into buffers that are kept.
+  /// One frame, waited for; `minima`, if not empty, one a part, are every part's own. Points in host memory, pinned ones too,
+  /// are copied into buffers that are kept.
   template <class Clouds>
   min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<part_minimum> minima = {}) {
     if (!minima.empty() && minima.size() != facts_.size())
@@ -111,7 +111,7 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
   S readable(const S& source, std::uint32_t cloud) {
     if constexpr (requires { source.at(source.bytes().data()); }) {
       const auto bytes = source.bytes();
-      if (bytes.empty() || on_.reads(bytes.data())) return source;
+      if (bytes.empty() || on_.holds(bytes.data())) return source;
       if (copies_.size() <= cloud) copies_.resize(cloud + 1);
       auto& copy = copies_[cloud];
       if (copy.size() < bytes.size()) copy = device_buffer<std::byte>(bytes.size(), on_.id, memory_);

@@ -241,6 +241,23 @@ TEST_CASE("A prepared query takes its memory from the caller's resource, and non
   REQUIRE(memory.held == 0);
 }
 
+TEST_CASE("Points in pinned memory are found where they are, and where they have become others") {
+  dice d(13);
+  const device gpu;
+  const auto on_host = robot_of<clearance::sphere>(d, 3, 60);
+  const auto model = on_host.on(gpu);
+  clearance::min_distance_query query(gpu, model);
+  const std::vector<Eigen::Isometry3d> poses = {d.pose(1), d.pose(1), d.pose(1)};
+  const clearance::pinned_buffer<vec3> pinned(3000, gpu.id);
+  verdict v;
+  for (const char* when : {"first", "other points", "others again"}) {
+    const auto points = d.points(pinned.size(), 2);
+    std::copy(points.begin(), points.end(), pinned.data());
+    v.require(same_result(query(poses, clearance::point_span(pinned.data(), pinned.size())), min_distance(host{}, on_host, poses, points)), when,
+              ": differs from the host's result");
+  }
+}
+
 TEST_CASE("A query in a stream of its own leaves the caller's device alone, and refuses what does not fit") {
   dice d(8);
   const device gpu;

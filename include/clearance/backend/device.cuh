@@ -133,6 +133,17 @@ struct device {
     return attributes.devicePointer != nullptr;
   }
 
+  /// Can they without a bus between? Over a bus a kernel's small pieces take more than twice the time of one copy.
+  bool holds(const void* memory) const {
+    const device_guard guard(id);
+    cudaPointerAttributes attributes{};
+    check_cuda(cudaPointerGetAttributes(&attributes, memory), "cudaPointerGetAttributes");
+    if (attributes.type != cudaMemoryTypeHost) return reads(memory);
+    int integrated = 0;
+    check_cuda(cudaDeviceGetAttribute(&integrated, cudaDevAttrIntegrated, id), "cudaDeviceGetAttribute");
+    return integrated != 0 && attributes.devicePointer != nullptr;
+  }
+
  private:
   void need_stack(std::size_t bytes) const {
     std::size_t limit = 0;
