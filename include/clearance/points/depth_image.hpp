@@ -50,7 +50,7 @@ struct depth_image {
     for (std::uint32_t j = 0; j < 4; ++j) out[j] = deproject(r.d[j], u + j, v);
   }
 
-  /// As `look4`: where they are, and their reasons, a byte each.
+  /// As `look4`: where they are, and their reasons, a byte each; or ~0: ask `look4`.
   CLEARANCE_HD unsigned positions4(const raw4& r, std::size_t i, vec3 (&out)[4]) const {
     sample s[4];
     look4(r, i, s);

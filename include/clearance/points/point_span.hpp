@@ -37,13 +37,16 @@ struct point_span {
 
   /// As `look4`, but in few instructions: where they are, and why they do not count, a byte each; or ~0: ask `look4`.
   CLEARANCE_HD unsigned positions4(const raw4& r, std::size_t, vec3 (&out)[4]) const {
+    bool told = filter.plain();
     unsigned reasons = 0;
     CLEARANCE_UNROLL
     for (int j = 0; j < 4; ++j) {
       out[j] = {r.f[3 * j], r.f[3 * j + 1], r.f[3 * j + 2]};
-      reasons |= unsigned(is_finite(out[j]) ? drop_reason::none : drop_reason::not_finite) << 8 * j;
+      const real square = dot(out[j], out[j]);  // a kernel needs it, too; NaN if a coordinate is
+      told &= !(square >= 0x1p116f);            // all are finite
+      reasons |= unsigned(square == square ? drop_reason::none : drop_reason::not_finite) << 8 * j;
     }
-    return filter.plain() ? reasons : ~0u;
+    return told ? reasons : ~0u;
   }
 
   /// The memory it reads, and the same view of a copy elsewhere.

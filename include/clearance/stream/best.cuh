@@ -2,7 +2,7 @@
 #pragma once
 // The best candidates that a block has found.
 
-#include <clearance/stream/block.cuh>
+#include <clearance/stream/parts.cuh>
 
 namespace clearance::stream {
 

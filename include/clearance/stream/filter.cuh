@@ -8,17 +8,23 @@ namespace clearance::stream {
 
 /// Sets the root tests to the present bounds, one a thread. Nobody may be reading them.
 template <class PartView, bool Each>
-__device__ void sharpen(std::uint32_t thread) {
+__device__ void sharpen(std::uint32_t thread, std::uint32_t bound) {
   using parts = frame_parts<PartView, Each>;
   auto& s = parts::here();
-  if (thread < s.head.parts) s.near_part[thread] = search::root_test(parts::place(thread).around, s.reach(thread));
+  const auto reach = [&](std::uint32_t k) { return Each ? s.reach(k) : from_ordered(bound); };
+  if (thread < s.head.parts) {
+    const search::root_ball& root = parts::place(thread).root;
+    s.near_part[thread] = {root, search::limit(root.around, reach(thread))};
+  }
   const std::uint32_t c = thread - most_parts, first = c * cluster;
   if (thread < most_parts || first >= s.head.parts) return;
-  real reach = -infinity;
-#pragma unroll
-  for (std::uint32_t k = first; k < first + cluster; ++k)
-    if (k < s.head.parts) reach = max(reach, parts::place(k).away + s.reach(k));
-  s.near_cluster[c] = search::root_test({parts::place(first).middle, 0}, reach + 4 * slack * absolute(reach));
+  const search::root_ball& root = s.cluster[c];
+  real most = search::limit(root.around, reach(0));
+  if constexpr (Each) {
+    most = -infinity;
+    for (std::uint32_t k = first; k < first + cluster && k < s.head.parts; ++k) most = max(most, search::limit({{}, parts::place(k).away}, s.reach(k)));
+  }
+  s.near_cluster[c] = {root, most};
 }
 
 /// Subtracts the frame's origin.
@@ -29,10 +35,10 @@ __device__ void shift(quad_points& p) {
   for (int j = 0; j < quad; ++j) p.at[j] = p.at[j] - s.origin;
 }
 
-/// Hands four points to the search, pair by pair, with the parts of the clusters from `begin` to `end`; says which (a bit
-/// each) have a pair that found no room. The whole warp calls it.
+/// Hands four points to the search, pair by pair, with the parts of the clusters from `begin` (whose test is `together`) to `end`; not 0: some
+/// pair of theirs found no room. The whole warp calls it.
 template <class PartView, bool Each, class Index>
-__device__ unsigned hand_over(const quad_points& p, Index first, std::uint32_t begin, std::uint32_t end) {
+__device__ unsigned hand_over(const quad_points& p, Index first, search::root_test together, std::uint32_t begin, std::uint32_t end) {
   using pairs = pair_search<PartView, Each>;
   const auto& s = pairs::here();
   real square[quad];
@@ -40,13 +46,13 @@ __device__ unsigned hand_over(const quad_points& p, Index first, std::uint32_t b
   for (int j = 0; j < quad; ++j) square[j] = -dot(p.at[j], p.at[j]);
   unsigned missed = 0;
   for (std::uint32_t c = begin; c < end; ++c) {
-    const search::root_test together = s.near_cluster[c];
+    if (c != begin) together = s.near_cluster[c];
     bool near = false;
 #pragma unroll
     for (int j = 0; j < quad; ++j) near |= together.value(p.at[j]) <= square[j];
     if (!__any_sync(all_lanes, near)) continue;
     const search::root_test* const near_part = s.near_part + c * cluster;
-    const std::uint32_t parts = min(cluster, s.head.parts - c * cluster);
+    const std::uint32_t parts = s.head.parts - c * cluster;
     unsigned those = 0;  // a bit a part and point
 #pragma unroll
     for (std::uint32_t k = 0; k < cluster; ++k) {
@@ -55,7 +61,10 @@ __device__ unsigned hand_over(const quad_points& p, Index first, std::uint32_t b
 #pragma unroll
       for (int j = 0; j < quad; ++j) those |= unsigned(test.value(p.at[j]) <= square[j]) << (quad * k + j);
     }
-    if (__any_sync(all_lanes, those != 0)) missed |= pairs::add(those, p, first(), c * cluster);
+#pragma unroll
+    for (int j = 0; j < quad; ++j)
+      if ((p.reasons >> 8 * j & 0xff) != 0) those &= ~(0x11111111u << j);
+    if (those != 0) missed |= pairs::add(those, p, first(), c * cluster);
   }
   return missed;
 }

@@ -84,10 +84,10 @@ __device__ void write_bracket(const frame_args<PartView>& a, const record& best,
   for (int k = 0; k < drop_reasons; ++k) out.dropped[k] = r.dropped[k];
 }
 
-/// The best of all blocks' records and of earlier clouds' goes to s.best, slot by slot; what is behind one, if it is this
-/// thread's.
+/// The best of all blocks' records and of earlier clouds', slot by slot, to s.best, or to all threads if there is one slot;
+/// what is behind one, if it is this thread's.
 template <class PartView, bool Each, class Source>
-__device__ evidence<PartView, Each> merge(const Source& source) {
+__device__ evidence<PartView, Each> merge(const Source& source, record& best) {
   auto& s = memory_of_block<PartView, Each>();
   const auto& a = s.head;
   const std::uint32_t t = threadIdx.x, lane = t & 31;
@@ -102,20 +102,19 @@ __device__ evidence<PartView, Each> merge(const Source& source) {
       if (lane == 0) s.best[slot] = least;
     }
     __syncthreads();
+    best = s.best[0];
+    for (std::uint32_t k = 1; k < a.parts; ++k)
+      if (before(s.best[k], best)) best = s.best[k];
     return evidence<PartView, Each>(source, t < a.parts && s.rigid ? s.best[t] : record{});
   } else {
     record least = t < gridDim.x ? a.records[t] : record{};
     for (std::uint32_t b = t + block_threads; b < gridDim.x; b += block_threads)
       if (const record r = a.records[b]; before(r, least)) least = r;
     const evidence<PartView, Each> mine(source, least);
-    record* const of_warp = reinterpret_cast<record*>(s.queue);
-    static_assert(sizeof(s.queue) >= warps * sizeof(record));
     least = least_of_warp(least);
-    if (lane == 0) of_warp[t / 32] = least;
+    if (lane == 0) s.best_of_warp[t / 32] = least;
     __syncthreads();
-    least = least_of_warp(lane < warps ? of_warp[lane] : lane == warps ? earlier(0) : record{});
-    if (t == 0) s.best[0] = least;
-    __syncthreads();
+    best = least_of_warp(lane < warps ? s.best_of_warp[lane] : lane == warps ? earlier(0) : record{});
     return mine;
   }
 }
@@ -132,25 +131,31 @@ __device__ void answer(const frame_args<PartView>& a, const Source& source) {
     for (int k = 0; k < drop_reasons; ++k) all.dropped[k] = fresh(state.dropped[k]);
     all.certain = fresh(state.certain);
   }
-  evidence<PartView, Each> mine = merge<PartView, Each>(source);
-  record best = s.best[0];
-  for (std::uint32_t k = 1; k < slots; ++k)
-    if (before(s.best[k], best)) best = s.best[k];
+  record best;
+  evidence<PartView, Each> mine = merge<PartView, Each>(source, best);
   if (!s.rigid) best = {};
-  const bool here = best.key != no_key && key_index(best.key) >= a.first;
-  if (here && mine.r.key == best.key && mine.r.part == best.part && mine.r.id == best.id) write_witness(a, mine);
-  if constexpr (Each) {
-    if (t < a.parts && mine.r.key == no_key) a.minima[t] = {};
-    if (t < a.parts && mine.r.key != no_key && key_index(mine.r.key) >= a.first) {
-      mine.complete();
-      a.minima[t] = {key_distance(mine.r.key), a.cloud, key_index(mine.r.key) - a.first, mine.r.id};
-    }
-  }
+  const bool mine_here = mine.r.key != no_key && key_index(mine.r.key) >= a.first;
+  const bool won = mine_here && mine.r.key == best.key && mine.r.part == best.part && mine.r.id == best.id;
+  if (won) write_witness(a, mine);
   if (concludes) write_bracket<PartView, Each>(a, best, all);
   // Kept for the next frame: every part's minimum, or the best and others as there is room.
-  if (t < slots) state.best[t] = state.witness[t] = s.best[t];
-  if (!Each && mine.r.key != no_key)
-    if (const std::uint32_t place = atomicAdd(&s.children, 1u) + 1; place < 32) state.witness[place] = mine.r;
+  if constexpr (Each) {
+    if (t < slots) {
+      state.best[t] = s.best[t];
+      if (mine_here) {
+        a.witnesses[t] = {mine.r, mine.primitive};
+        mine.complete();
+        a.minima[t] = {key_distance(mine.r.key), a.cloud, key_index(mine.r.key) - a.first, mine.r.id};
+      } else if (mine.r.key == no_key) {
+        a.witnesses[t].r = {}, a.minima[t] = {};
+      }
+    }
+  } else {
+    if (t == 0) state.best[0] = best;
+    if (mine_here)
+      if (const std::uint32_t place = won ? 0 : atomicAdd(&s.children, 1u) + 1; place < 32) a.witnesses[place] = {mine.r, mine.primitive};
+    if (t == 0 && best.key == no_key) a.witnesses[0].r = {};
+  }
   if (a.last && t < most_parts) state.bound[t] = no_bound;
 }
 
@@ -162,18 +167,19 @@ __noinline__ __device__ void finish_block(const frame_args<PartView>& a, const S
   if (t < drop_reasons && s.dropped[t] != 0) atomicAdd(&state.dropped[t], static_cast<unsigned long long>(s.dropped[t]));
   if constexpr (Each) {
     if (t < slots) s.head.records[t * gridDim.x + blockIdx.x] = s.best[t];
+    __syncthreads();
   } else if (t < 32) {
     const record best = least_of_warp(t < warps ? s.best_of_warp[t] : s.best[0]);
     if (t == 0) s.head.records[blockIdx.x] = best;
+    __syncwarp();
   }
-  __syncthreads();
   if (t == 0) {
     fence();
     s.last = atomicAdd(&state.done, 1u) + 1 == gridDim.x;
-    fence();
   }
   __syncthreads();
   if (!s.last) return;
+  fence();
   answer<PartView, Each>(a, source);
   __syncthreads();
   if (t < drop_reasons && a.last) state.dropped[t] = 0;

@@ -7,6 +7,7 @@
 #include <clearance/stream/stream_kernel.cuh>
 
 #include <algorithm>
+#include <memory>
 
 namespace clearance::stream {
 
@@ -28,6 +29,7 @@ class launcher {
     shared_of_processor_ = ask(cudaDevAttrMaxSharedMemoryPerMultiprocessor);
     most_shared_ = ask(cudaDevAttrMaxSharedMemoryPerBlockOptin);
     state_ = device_buffer<frame_state>(1, on.id, memory);
+    witnesses_ = device_buffer<typename args::witness_type>(most_parts, on.id, memory);
     records_ = device_buffer<record>(2 * processors_ * parts, on.id, memory);
     placed_ = device_buffer<placed_parts>(1, on.id, memory);
     forget();
@@ -41,31 +43,33 @@ class launcher {
   /// What all clouds of a frame have in common.
   args first(const PartView* views, min_distance_result* result, part_minimum* minima, std::uint32_t* done, std::uint32_t number) const {
     args a{};
-    a.parts = parts_, a.views = views, a.state = state_.data(), a.records = records_.data(), a.rest = placed_.data();
+    a.parts = parts_, a.views = views, a.state = state_.data(), a.witnesses = witnesses_.data(), a.records = records_.data();
+    a.rest = placed_.data();
     a.result = result, a.minima = minima, a.done = done, a.number = number;
     return a;
   }
 
-  /// Poses that the host has made ready: some travel with the launch, and the rest beforehand.
+  /// Poses that the host has made ready: few travel with the launch, many beforehand.
   void put(std::span<const search::placement> places, args& a) {
-    parts_now_.clear();
-    for (const auto& p : places) parts_now_.emplace_back(p);
-    for (std::size_t k = 0; k < places.size(); k += cluster) gather(&parts_now_[k], std::uint32_t(std::min<std::size_t>(cluster, places.size() - k)));
-    const std::size_t inside = std::min<std::size_t>(places.size(), inline_parts);
-    std::copy_n(parts_now_.begin(), inside, a.part);
-    for (std::size_t k = 0; k < inside; ++k) a.world_from_part[k] = places[k].world_from_part;
-    if (places.size() == inside) return;
-    world_now_.clear();
-    for (const auto& p : places) world_now_.push_back(p.world_from_part);
-    on_.stage(std::span<const frame_part>(parts_now_), placed_.data()->part);
-    on_.stage(std::span<const world_transform>(world_now_), placed_.data()->world_from_part);
+    const auto fill = [&](auto& parts, world_transform* world) {
+      for (std::uint32_t k = 0; k < parts_; ++k) parts.part[k] = frame_part(places[k]), world[k] = places[k].world_from_part;
+      for (std::uint32_t c = 0; c * cluster < parts_; ++c) parts.gather(c, parts_);
+    };
+    a.far = parts_ > inline_parts;
+    if (!a.far) return fill(a.near, a.world_from_part);
+    if (!staged_) staged_ = std::make_unique<placed_parts>();
+    fill(staged_->parts, staged_->world_from_part);
+    const auto bytes = [](auto* from) { return reinterpret_cast<std::byte*>(from); };
+    const std::span<const std::byte> parts(bytes(&staged_->parts), bytes(staged_->parts.part + parts_));
+    on_.stage(parts, bytes(&placed_.data()->parts));
+    on_.stage(std::span<const world_transform>(staged_->world_from_part, parts_), placed_.data()->world_from_part);
   }
 
   /// Poses in device or pinned memory, made ready there.
   void place(const world_transform* poses, const world_transform* cloud, args& a) {
     place_kernel<<<1, most_parts, 0, on_.stream>>>(poses, cloud, a.views, parts_, placed_.data());
     check_cuda(cudaGetLastError(), "kernel launch");
-    a.placed = true;
+    a.far = a.placed = true;
   }
 
   std::uint32_t checked(std::uint64_t points) const {
@@ -85,19 +89,20 @@ class launcher {
  private:
   template <bool Each, class Source>
   void start(const Source& source, args& a) {
-    constexpr std::size_t ring = ring_bytes<Source>();
-    const std::size_t others = sizeof(block_memory<PartView, Each>) + a.parts * sizeof(block_part<PartView>);
-    a.ring = others + ring <= most_shared_;
-    const std::size_t shared = others + (a.ring ? ring : 0);
+    using memory = block_memory<PartView, Each>;
+    const std::size_t shared = memory_bytes<PartView, Each>(a.parts);
+    a.top_stride = a.parts == 0 ? 0 : std::uint16_t(std::min(memory::top_capacity / a.parts, 128u));
     // Every translation unit has a kernel of its own, so what is allowed is known by its address, and not by its type.
     const auto kernel = stream_kernel<PartView, Each, Source>;
     if (const auto address = reinterpret_cast<const void*>(kernel); std::find(allowed_.begin(), allowed_.end(), address) == allowed_.end()) {
       check_cuda(cudaFuncSetAttribute(address, cudaFuncAttributeMaxDynamicSharedMemorySize, int(most_shared_)), "cudaFuncSetAttribute");
       allowed_.push_back(address);
     }
-    constexpr unsigned a_block = block_threads * quad;
+    constexpr unsigned a_block = in_block_round;
     const unsigned resident = 2 * (shared + 1024) <= shared_of_processor_ ? processors_ * 2 : processors_;
     const unsigned blocks = std::max(1u, std::min(resident, (a.points + a_block - 1) / a_block));
+    a.rounds = (a.points + a_block * blocks - 1) / (a_block * blocks);
+    a.ahead = rounds_ahead(source, a.points, blocks);
     kernel<<<blocks, block_threads, shared, on_.stream>>>(source, a);
     check_cuda(cudaGetLastError(), "kernel launch");
   }
@@ -106,11 +111,11 @@ class launcher {
   std::uint32_t parts_;
   unsigned processors_ = 0, most_shared_ = 0, shared_of_processor_ = 0;
   device_buffer<frame_state> state_;
+  device_buffer<typename args::witness_type> witnesses_;
   device_buffer<record> records_;
   device_buffer<placed_parts> placed_;
   std::vector<const void*> allowed_;  ///< Kernels whose limit of shared memory has been raised: that takes longer than a launch.
-  std::vector<frame_part> parts_now_;
-  std::vector<world_transform> world_now_;
+  std::unique_ptr<placed_parts> staged_;    ///< Of many parts, on their way to `placed_`.
 };
 
 }  // namespace clearance::stream

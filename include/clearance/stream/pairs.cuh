@@ -18,24 +18,16 @@ struct pair_search : frame_parts<PartView, Each> {
   using memory = block_memory<PartView, Each>;
 
   /// Keeps those of a lane's points for `drain` that are near a part of the cluster from `first_part` on, four bits a part;
-  /// says which it has no room for. The whole warp calls it.
+  /// says which it has no room for. There is room for all of those that come first.
   static __device__ unsigned add(unsigned those, const quad_points& p, std::uint32_t first, std::uint32_t first_part) {
-    static_assert(quad * cluster <= 32);
+    static_assert(quad * cluster <= 32 && memory::pair_capacity >= quad * cluster);
     memory& s = frame::here();
-    const std::uint32_t lane = threadIdx.x & 31, mine = std::uint32_t(__popc(those));
-    std::uint32_t sum = mine;
-    for (std::uint32_t step = 1; step < 32; step *= 2)
-      if (const std::uint32_t before = __shfl_up_sync(all_lanes, sum, step); lane >= step) sum += before;
-    std::uint32_t slot = 0;
-    if (lane == 31) slot = atomicAdd(&s.pairs, sum);
-    slot = __shfl_sync(all_lanes, slot, 31) + sum - mine;
+    std::uint32_t slot = atomicAdd(&s.pairs, std::uint32_t(__popc(those)));
     for (; those != 0 && slot < memory::pair_capacity; those &= those - 1, ++slot) {
       const unsigned bit = unsigned(__ffs(int(those))) - 1, j = bit % quad;
       s.pair_table[slot] = {j < 2 ? (j == 0 ? p.at[0] : p.at[1]) : (j == 2 ? p.at[2] : p.at[3]), s.head.first + first + j, first_part + bit / quad};
     }
-    unsigned missed = 0;  // what is left, by point
-    for (; those != 0; those >>= quad) missed |= those & ((1u << quad) - 1);
-    return missed;
+    return those;
   }
 
   /// All pairs that were kept, to the end; `found` is how many there were, or more. The whole block calls it together.
@@ -69,8 +61,9 @@ struct pair_search : frame_parts<PartView, Each> {
   }
 
   /// A pair goes into the queue, unless it ends here: those children of its root that are within reach, where they are at
-  /// hand and the queue has room for them beside all other pairs. Eight lanes a pair; the whole warp calls it.
-  static __device__ void admit(std::uint32_t i, bool live) {
+  /// hand and the queue has room for them beside all other pairs (`few`: certainly). Eight lanes a pair; the whole warp
+  /// calls it.
+  static __device__ void admit(std::uint32_t i, bool live, bool few) {
     memory& s = frame::here();
     const pair c = live ? s.pair_table[i] : pair{{0, 0, 0}, 0, 0};
     live = live && s.near_part[c.part].passes(c.x);
@@ -82,18 +75,18 @@ struct pair_search : frame_parts<PartView, Each> {
     __syncwarp();  // all have read the pair
     if (live && lane() == 0) s.pair_table[i].x = q;
     const bvh_node root = live ? frame::node(c.part, 0) : bvh_node{0, bvh_node::leaf_bit};
-    const bool opens = !root.is_leaf() && root.count() <= lanes && frame::at_hand(c.part, root.first + root.count());
+    bool opens = !root.is_leaf() && root.count() <= lanes && frame::at_hand(c.part, root.first + root.count());
     const bool exists = opens && lane() < root.count();
-    const std::uint32_t child = exists ? c.part * s.top_stride + root.first + lane() : 0;
+    const std::uint32_t child = exists ? c.part * s.head.top_stride + root.first + lane() : 0;
     const real lb = exists ? traits::lower_bound(s.top_volumes[child], q) : infinity;
-    const unsigned within = of_mates(__ballot_sync(all_lanes, exists && lb <= s.reach(c.part)));
-    const std::uint32_t n = std::uint32_t(__popc(within));
-    std::uint32_t at = none;
-    if (lane() == 0 && n > 0 && atomicAdd(&s.children, n) + n <= memory::queue_capacity - memory::pair_capacity - 4 * deepest_stack)
-      at = atomicAdd(&s.queued[0], n);
-    at = __shfl_sync(all_lanes, at, int(threadIdx.x & 24));
-    if ((within >> lane() & 1) && at != none) s.queue[at + std::uint32_t(__popc(within & ((1u << lane()) - 1)))] = {lb, s.top_nodes[child], i};
-    push({-infinity, root, i}, live && lane() == 0 && (!opens || (n > 0 && at == none)), 0);
+    const bool within = exists && lb <= s.reach(c.part);
+    if (!few) {
+      const std::uint32_t n = std::uint32_t(__popc(of_mates(__ballot_sync(all_lanes, within))));
+      if (lane() == 0 && n > 0) opens = opens && atomicAdd(&s.children, n) + n <= memory::queue_capacity - memory::pair_capacity - 4 * deepest_stack;
+      opens = __shfl_sync(all_lanes, opens, int(threadIdx.x & 24));
+    }
+    push({lb, s.top_nodes[child], i}, within && opens, 0);
+    push({-infinity, root, i}, live && lane() == 0 && !opens, 0);
   }
 
   /// Takes pairs from the queue's end, one a group of eight lanes, until it is empty. It takes fewer as the queue fills, at
@@ -104,7 +97,9 @@ struct pair_search : frame_parts<PartView, Each> {
     // What other blocks know is asked for some rounds before it is looked at: nobody waits for it.
     std::uint32_t elsewhere = its < bounds ? fresh(s.head.state->bound[its]) : no_bound;
     best_of_block<Each> best(s);
-    for (std::uint32_t i = group; i - group % 4 < count; i += groups) admit(i, i < count);
+    const bool few = count <= (memory::queue_capacity - 4 * deepest_stack) / lanes;
+#pragma unroll 1
+    for (std::uint32_t i = group; i - group % 4 < count; i += groups) admit(i, i < count, few);
     for (int round = 0, parity = 0;; ++round, parity ^= 1) {
       if (round % 4 == 3 && its < bounds) {
         if (elsewhere < fresh(s.bound[its])) atomicMin(&s.bound[its], elsewhere);

@@ -24,11 +24,11 @@ __global__ void __launch_bounds__(most_parts) place_kernel(const world_transform
   __syncthreads();
   if (t < count) {
     place[t] = search::place(views[t].facts, pose[t], frame.world_from_cloud, frame.origin);
-    out->part[t] = frame_part(place[t]);
+    out->parts.part[t] = frame_part(place[t]);
     out->world_from_part[t] = pose[t];
   }
   __syncthreads();
-  if (const std::uint32_t first = t * cluster; first < count) gather(out->part + first, count - first < cluster ? count - first : cluster);
+  if (t * cluster < count) out->parts.gather(t, count);
   if (t != 0) return;
   for (std::uint32_t k = 0; k < count; ++k) frame.add(views[k].facts, place[k]);
   out->frame = frame, out->rigid = rigid;

@@ -2,40 +2,64 @@
 #pragma once
 // A bound before the first test. Any real pair of a point and a primitive is a valid one, so nothing can be lost.
 
+#include <clearance/stream/parts.cuh>
 #include <clearance/stream/reader.cuh>
 
 namespace clearance::stream {
 
 /// Last frame's minima and their neighbours, looked at anew: sixteen threads a minimum, or four where each part has one.
+/// Nothing of it needs shared memory to be ready.
 template <class PartView, bool Each>
 class last_frame {
  public:
   /// Reads what there is; nothing waits for it yet.
-  explicit __device__ last_frame(const frame_state& state) : w_(state.witness[threadIdx.x / each]), known_(state.witnesses) {}
+  explicit __device__ last_frame(const frame_args<PartView>& a) : w_(a.witnesses[slot()]), witnesses_(a.state->witnesses) {
+    if (a.first != 0 && slot() < (Each ? a.parts : 1)) known_ = fresh(a.state->bound[slot()]);
+  }
 
+  /// To the bounds of this block's warps, or of the parts.
   template <class Source>
   __device__ void seed(const frame_args<PartView>& a, const Source& source) const {
-    using parts = frame_parts<PartView, Each>;
-    auto& s = parts::here();
-    const std::uint32_t n = threadIdx.x % each, point = key_index(w_.key) - a.first + n - (n == 0 ? 0 : each / 2);
-    std::uint32_t bound = no_bound;
-    if (threadIdx.x / each < known_ && w_.part < a.parts && w_.primitive != none && point < a.points) {
+    auto& s = memory_of_block<PartView, Each>();
+    const std::uint32_t n = threadIdx.x % each, point = key_index(w_.r.key) - a.first + n - (n == 0 ? 0 : each / 2);
+    const bool live = a.parts > w_.r.part && witnesses_ > slot() && w_.r.primitive != none && (!Each || w_.r.part == slot());
+    std::uint32_t bound = known_;
+    if (live && point < a.points) {
+      const rigid_transform part_from_cloud = a.part()[w_.r.part].part_from_cloud;
+      const vec3 origin = a.facts().origin;
       const sample p = source[point];
-      const real d = parts::view(w_.part).tree.primitives[w_.primitive].distance(parts::place(w_.part).part_from_cloud(p.position - s.origin));
-      if (p.valid() && d < infinity) bound = ordered(d);
+      const real d = w_.primitive.distance(part_from_cloud(p.position - origin));
+      if (p.valid() && d < infinity) bound = lower_of(bound, ordered(d));
     }
     if constexpr (Each) {
-      if (bound != no_bound) atomicMin(&s.bound[w_.part], bound);
+      for (int step = 1; step < int(each); step *= 2) bound = lower_of(bound, __shfl_xor_sync(all_lanes, bound, step));
+      if (n == 0) s.bound[slot()] = bound;
     } else {
       bound = least_of(all_lanes, bound);
-      if ((threadIdx.x & 31) == 0 && bound != no_bound) atomicMin(&s.bound[0], bound);
+      if ((threadIdx.x & 31) == 0) s.seed_of_warp[threadIdx.x / 32] = bound;
+    }
+  }
+
+  /// The bound of all parts, to all threads, after `seed` and a barrier; where each part has its own: of the part without one.
+  static __device__ std::uint32_t found(std::uint32_t parts) {
+    auto& s = memory_of_block<PartView, Each>();
+    const std::uint32_t lane = threadIdx.x & 31;
+    if constexpr (Each) {
+      bool all = true;
+      for (std::uint32_t k = lane; k < parts; k += 32) all &= s.bound[k] != no_bound;
+      return __all_sync(all_lanes, all) ? 0 : no_bound;
+    } else {
+      const std::uint32_t bound = least_of(all_lanes, lane < warps ? s.seed_of_warp[lane] : no_bound);
+      if (threadIdx.x == 0) s.bound[0] = bound;
+      return bound;
     }
   }
 
  private:
   static constexpr std::uint32_t each = block_threads / (Each ? most_parts : 32);
-  record w_;
-  std::uint32_t known_;
+  static __device__ std::uint32_t slot() { return threadIdx.x / each; }
+  typename frame_head<PartView>::witness_type w_;
+  std::uint32_t witnesses_, known_ = no_bound;
 };
 
 /// Greedily to one leaf of part k, eight lanes together; the ordered() distance to what is there. Warps stay together all
@@ -80,7 +104,7 @@ __noinline__ __device__ void seed_cold(const quad_points p) {
   vec3 x = p.at[0];
   const std::uint32_t first = Each ? (threadIdx.x / lanes + blockIdx.x) % a.parts : 0, end = Each ? first + 1 : a.parts;
   const auto test = [&](std::uint32_t k, vec3 at) {
-    const ball around = parts::place(k).around;
+    const ball around = parts::place(k).root.around;
     const vec3 d = at - around.center;
     const real power = fma(-around.radius, around.radius, dot(d, d));
     if (power < least_power) least_power = power, k_least = k, x = at;

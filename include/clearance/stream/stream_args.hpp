@@ -27,12 +27,11 @@ CLEARANCE_HD inline bool before(const record& a, const record& b) {
   return a.id < b.id;
 }
 
-/// Lives in device memory from frame to frame; the last block of a frame resets all but the witnesses. Where all parts
-/// share a bound, slot 0 is theirs; else each part has its own.
+/// Lives in device memory from frame to frame; the last block of a frame resets all but the number of witnesses. Where all
+/// parts share a bound, slot 0 is theirs; else each part has its own.
 struct frame_state {
   std::uint32_t bound[most_parts];  ///< ordered() upper bounds of this frame, shared by all blocks.
   record best[most_parts];          ///< The minima over the clouds that are done.
-  record witness[most_parts];       ///< Where last frame's minima were: this frame's first bounds.
   std::uint32_t witnesses = 0;
   std::uint32_t done = 0;    ///< Blocks that have finished,
   std::uint32_t seeded = 0;  ///< and blocks that have seeded (cold frames only).
@@ -44,53 +43,76 @@ struct frame_state {
   }
 };
 
+/// Where last frame's minimum was: this frame's first bound.
+template <class Primitive>
+struct witness {
+  record r;
+  Primitive primitive;
+};
+
 inline constexpr std::uint32_t cluster = 8;  ///< Parts that are first tested together, as one ball.
+inline constexpr std::uint32_t most_clusters = most_parts / cluster;
 
 /// Where one part is in one frame, as far as every block needs it.
 struct alignas(16) frame_part {
   rigid_transform part_from_cloud;
-  ball around;
+  search::root_ball root;
   real error;
-  real away;    ///< The farthest that its ball reaches
-  vec3 middle;  ///< from the middle of its cluster's centres, in the cloud's frame.
+  real away;  ///< The farthest that its ball reaches from its cluster's centre.
 
   frame_part() = default;
-  CLEARANCE_HD explicit frame_part(const search::placement& p) : part_from_cloud(p.part_from_cloud), around(p.around), error(p.error) {}
+  CLEARANCE_HD explicit frame_part(const search::placement& p) : part_from_cloud(p.part_from_cloud), root(p.around), error(p.error) {}
 };
 
-/// Sets `middle` and `away` of one cluster's parts.
-CLEARANCE_HD inline void gather(frame_part* parts, std::uint32_t count) {
-  vec3 low{infinity, infinity, infinity}, high = -low;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const vec3 at = parts[k].around.center;
-    low = {min(low.x, at.x), min(low.y, at.y), min(low.z, at.z)};
-    high = {max(high.x, at.x), max(high.y, at.y), max(high.z, at.z)};
-  }
-  const vec3 middle{(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const ball& b = parts[k].around;
-    parts[k].middle = middle, parts[k].away = (length(b.center - middle) + b.radius) * (1 + 8 * slack);
-  }
-}
+/// Some parts of a frame, and a ball around each eight of them.
+template <std::uint32_t Most>
+struct alignas(16) frame_parts_of {
+  search::root_ball cluster[(Most + stream::cluster - 1) / stream::cluster];
+  frame_part part[Most];
 
-/// In device memory: all parts, if poses live there and a kernel of its own has made them ready; else those from
-/// inline_parts on.
+  /// Sets the ball around cluster c's parts, and what they need of it; there are `count` parts.
+  CLEARANCE_HD void gather(std::uint32_t c, std::uint32_t count) {
+    const std::uint32_t begin = c * stream::cluster, end = count < begin + stream::cluster ? count : begin + stream::cluster;
+    vec3 low{infinity, infinity, infinity}, high = -low;
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const vec3 at = part[k].root.around.center;
+      low = {min(low.x, at.x), min(low.y, at.y), min(low.z, at.z)};
+      high = {max(high.x, at.x), max(high.y, at.y), max(high.z, at.z)};
+    }
+    ball all{{(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2}, 0};
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const ball& b = part[k].root.around;
+      part[k].away = (length(b.center - all.center) + b.radius) * (1 + 8 * slack);
+      all.radius = max(all.radius, part[k].away);
+    }
+    cluster[c] = search::root_ball(all);
+  }
+};
+
+/// In device memory: all parts, if poses live there and a kernel of its own has made them ready, or if there are too many
+/// to travel with the launch.
 struct placed_parts {
   search::frame_facts frame;
   bool rigid;
-  frame_part part[most_parts];
+  frame_parts_of<most_parts> parts;
   world_transform world_from_part[most_parts];
 };
 
 /// What is asked of one cloud of a frame, in few words.
 template <class PartView>
 struct alignas(16) frame_head {
+  using witness_type = witness<typename PartView::hierarchy_type::primitive_type>;
+
   std::uint32_t points, parts;
   std::uint32_t cloud, first;  ///< The cloud's number, and that of its first point among all clouds' points.
+  std::uint32_t rounds;        ///< Until every point has been read by some block;
+  std::uint32_t ahead;         ///< and how many of them are copied ahead into shared memory.
+  std::uint16_t top_stride;    ///< First nodes of a tree that there is room for in shared memory.
   bool last;                   ///< No cloud follows: conclude.
-  bool ring;                   ///< There is shared memory for points on their way.
-  bool placed;                 ///< All parts are in `rest`, and so is the frame.
+  bool far;                    ///< All parts are in `rest`,
+  bool placed;                 ///< and so is the frame.
   frame_state* state;
+  witness_type* witnesses;
   record* records;  ///< Room for one a slot and block.
   const PartView* views;
   const placed_parts* rest;
@@ -99,10 +121,11 @@ struct alignas(16) frame_head {
 /// One cloud of a frame; all but its points. What every block reads comes first and last what one block reads.
 template <class PartView>
 struct frame_args : frame_head<PartView> {
+  using frame_head<PartView>::far;
   using frame_head<PartView>::placed;
   using frame_head<PartView>::rest;
 
-  frame_part part[inline_parts];
+  frame_parts_of<inline_parts> near;
   min_distance_result* result;
   part_minimum* minima;  ///< One a part, or null.
   std::uint32_t* done;   ///< Pinned, written after the result with `number`; or null.
@@ -110,9 +133,11 @@ struct frame_args : frame_head<PartView> {
   search::frame_facts frame;
   world_transform world_from_part[inline_parts];
 
+  CLEARANCE_HD const frame_part* part() const { return far ? rest->parts.part : near.part; }
+  CLEARANCE_HD const search::root_ball* clusters() const { return far ? rest->parts.cluster : near.cluster; }
   CLEARANCE_HD const search::frame_facts& facts() const { return placed ? rest->frame : frame; }
   CLEARANCE_HD const world_transform& world(std::uint32_t k) const {
-    return placed || k >= inline_parts ? rest->world_from_part[k] : world_from_part[k];
+    return far ? rest->world_from_part[k] : world_from_part[k];
   }
 };
 

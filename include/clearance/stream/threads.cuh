@@ -27,6 +27,8 @@ __device__ inline void fence() {
 #endif
 }
 
+__device__ inline std::uint32_t lower_of(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
+
 /// The least of the values of the lanes in `mask`, which all call it together.
 __device__ inline std::uint32_t least_of(unsigned mask, std::uint32_t value) {
 #if __CUDA_ARCH__ >= 800
