@@ -31,7 +31,7 @@ inline constexpr std::uint32_t deepest_stack = 64;
 template <class PartView, bool Each>
 struct block_memory {
   using volume_type = typename PartView::hierarchy_type::volume_type;
-  static constexpr std::uint32_t pair_capacity = 352, queue_capacity = 832;
+  static constexpr std::uint32_t pair_capacity = 1024, queue_capacity = 2048;
   static constexpr std::uint32_t slots = Each ? most_parts : 1;
   /// 73 nodes (three levels) of each of eight sphere trees; as much as leaves room for two blocks on a processor of an H200.
   static constexpr std::uint32_t top_capacity = (Each ? 10000 : 14016) / (sizeof(bvh_node) + sizeof(volume_type));

@@ -55,7 +55,10 @@ struct frame_parts {
     const std::uint32_t t = threadIdx.x;
     // Dealt to all warps alike: threads of a warp read kernel arguments one after another.
     const std::uint32_t dealt = (t & 31) * warps + t / 32;
-    copy_parts(a.part(), a.views, a.parts, dealt);
+    if (a.far)
+      copy_parts(a.rest->parts.part, a.views, a.parts, t);
+    else
+      copy_parts(a.near.part, a.views, a.parts, dealt);
     constexpr std::uint32_t head_words = sizeof(s.head) / sizeof(uint4), ball_words = sizeof(search::root_ball) / sizeof(uint2);
     static_assert(sizeof(s.head) % sizeof(uint4) == 0 && sizeof(search::root_ball) % sizeof(uint2) == 0);
     if (const std::uint32_t last = block_threads - 1 - t; last < head_words)
