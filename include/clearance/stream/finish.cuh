@@ -18,14 +18,18 @@ struct evidence {
   record r;
   vec3 p;  ///< In the cloud's frame.
   primitive_type primitive;
+  world_transform world;
 
   evidence() = default;
   template <class Source>
-  __device__ evidence(const Source& source, const record& of) : r(of) {
-    const std::uint32_t first = parts::here().head.first;
-    if (r.key == no_key || key_index(r.key) < first) return;
-    p = source[key_index(r.key) - first].position;
-    if (r.primitive != none) primitive = parts::view(r.part).tree.primitives[r.primitive];
+  __device__ evidence(const frame_args<PartView>& a, const Source& source, const record& of) : r(of) {
+    if (r.key == no_key || key_index(r.key) < a.first) return;
+    if (r.primitive != none) primitive = far(parts::view(r.part).tree.primitives + r.primitive);
+    p = source[key_index(r.key) - a.first].position;
+    if (a.far)
+      world = a.rest->world_from_part[r.part];
+    else
+      world = a.world_from_part[r.part];
   }
   __device__ vec3 in_part() const { return parts::place(r.part).part_from_cloud(p - parts::here().origin); }
 
@@ -47,11 +51,10 @@ __device__ void write_witness(const frame_args<PartView>& a, evidence<PartView, 
   min_distance_result& out = *a.result;
   const real way_out = e.complete();
   const vec3 q = e.in_part(), away = e.primitive.normal(q);
-  const world_transform& world = a.world(e.r.part);
   out.cloud = a.cloud, out.point = key_index(e.r.key) - a.first, out.part = e.r.part, out.primitive = e.r.id;
-  out.at = a.facts().world_from_cloud(e.p);
-  out.nearest = world(e.primitive.nearest(q));
-  out.normal = world.turned(way_out > 0 ? -away : away);
+  out.at = a.placed ? a.rest->frame.world_from_cloud(e.p) : a.frame.world_from_cloud(e.p);
+  out.nearest = e.world(e.primitive.nearest(q));
+  out.normal = e.world.turned(way_out > 0 ? -away : away);
 }
 
 /// Counts, bracket and state, once all clouds are done; and a blank witness if there is no minimum.
@@ -85,32 +88,34 @@ __device__ void write_bracket(const frame_args<PartView>& a, const record& best,
 }
 
 /// The best of all blocks' records and of earlier clouds', slot by slot, to s.best, or to all threads if there is one slot;
-/// what is behind one, if it is this thread's.
+/// what is behind one, if it is this thread's (the first lanes of warp w have slots w, w + 16, ...).
 template <class PartView, bool Each, class Source>
-__device__ evidence<PartView, Each> merge(const Source& source, record& best) {
+__device__ evidence<PartView, Each> merge(const frame_args<PartView>& a, const Source& source, record& best) {
   auto& s = memory_of_block<PartView, Each>();
-  const auto& a = s.head;
   const std::uint32_t t = threadIdx.x, lane = t & 31;
   const auto earlier = [&](std::uint32_t slot) { return a.first > 0 ? a.state->best[slot] : record{}; };
   if constexpr (Each) {
-    for (std::uint32_t slot = t / 32; slot < a.parts; slot += warps) {
+    record its;
+    for (std::uint32_t slot = t / 32, k = 0; slot < a.parts; slot += warps, ++k) {
       record least = earlier(slot);
 #pragma unroll 4
       for (std::uint32_t b = lane; b < gridDim.x; b += 32)
         if (const record r = a.records[slot * gridDim.x + b]; before(r, least)) least = r;
       least = least_of_warp(least);
-      if (lane == 0) s.best[slot] = least;
+      if (lane == k) its = least, s.best[slot] = least;
     }
+    const evidence<PartView, Each> mine(a, source, s.rigid ? its : record{});
     __syncthreads();
-    best = s.best[0];
-    for (std::uint32_t k = 1; k < a.parts; ++k)
-      if (before(s.best[k], best)) best = s.best[k];
-    return evidence<PartView, Each>(source, t < a.parts && s.rigid ? s.best[t] : record{});
+    record least;
+    for (std::uint32_t k = lane; k < a.parts; k += 32)
+      if (before(s.best[k], least)) least = s.best[k];
+    best = least_of_warp(least);
+    return mine;
   } else {
     record least = t < gridDim.x ? a.records[t] : record{};
     for (std::uint32_t b = t + block_threads; b < gridDim.x; b += block_threads)
       if (const record r = a.records[b]; before(r, least)) least = r;
-    const evidence<PartView, Each> mine(source, least);
+    const evidence<PartView, Each> mine(a, source, least);
     least = least_of_warp(least);
     if (lane == 0) s.best_of_warp[t / 32] = least;
     __syncthreads();
@@ -124,7 +129,7 @@ template <class PartView, bool Each, class Source>
 __device__ void answer(const frame_args<PartView>& a, const Source& source) {
   auto& s = memory_of_block<PartView, Each>();
   frame_state& state = *s.head.state;
-  const std::uint32_t t = threadIdx.x, slots = Each ? a.parts : 1;
+  const std::uint32_t t = threadIdx.x;
   search::totals all;
   const bool concludes = t == block_threads - 32 && a.last;
   if (concludes) {
@@ -132,7 +137,7 @@ __device__ void answer(const frame_args<PartView>& a, const Source& source) {
     all.certain = fresh(state.certain);
   }
   record best;
-  evidence<PartView, Each> mine = merge<PartView, Each>(source, best);
+  evidence<PartView, Each> mine = merge<PartView, Each>(a, source, best);
   if (!s.rigid) best = {};
   const bool mine_here = mine.r.key != no_key && key_index(mine.r.key) >= a.first;
   const bool won = mine_here && mine.r.key == best.key && mine.r.part == best.part && mine.r.id == best.id;
@@ -140,14 +145,14 @@ __device__ void answer(const frame_args<PartView>& a, const Source& source) {
   if (concludes) write_bracket<PartView, Each>(a, best, all);
   // Kept for the next frame: every part's minimum, or the best and others as there is room.
   if constexpr (Each) {
-    if (t < slots) {
-      state.best[t] = s.best[t];
+    if (const std::uint32_t slot = t / 32 + warps * (t & 31); slot < a.parts) {
+      state.best[slot] = s.best[slot];
       if (mine_here) {
-        a.witnesses[t] = {mine.r, mine.primitive};
+        a.witnesses[slot] = {mine.r, mine.primitive};
         mine.complete();
-        a.minima[t] = {key_distance(mine.r.key), a.cloud, key_index(mine.r.key) - a.first, mine.r.id};
+        a.minima[slot] = {key_distance(mine.r.key), a.cloud, key_index(mine.r.key) - a.first, mine.r.id};
       } else if (mine.r.key == no_key) {
-        a.witnesses[t].r = {}, a.minima[t] = {};
+        a.witnesses[slot].r = {}, a.minima[slot] = {};
       }
     }
   } else {
@@ -173,13 +178,9 @@ __noinline__ __device__ void finish_block(const frame_args<PartView>& a, const S
     if (t == 0) s.head.records[blockIdx.x] = best;
     __syncwarp();
   }
-  if (t == 0) {
-    fence();
-    s.last = atomicAdd(&state.done, 1u) + 1 == gridDim.x;
-  }
+  if (t == 0) s.last = count_in(state.done) + 1 == gridDim.x;
   __syncthreads();
   if (!s.last) return;
-  fence();
   answer<PartView, Each>(a, source);
   __syncthreads();
   if (t < drop_reasons && a.last) state.dropped[t] = 0;

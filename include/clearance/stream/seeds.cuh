@@ -130,8 +130,7 @@ __noinline__ __device__ void seed_cold(const quad_points p) {
   for (std::uint32_t k = threadIdx.x; k < bounds; k += block_threads) atomicMin(&a.state->bound[k], s.bound[k]);
   __syncthreads();
   if (threadIdx.x == 0) {
-    fence();
-    atomicAdd(&a.state->seeded, 1u);
+    count_in(a.state->seeded);
     const long long start = clock64();
     while (fresh(a.state->seeded) < gridDim.x && clock64() - start < 20000) {
     }

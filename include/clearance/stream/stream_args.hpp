@@ -136,9 +136,6 @@ struct frame_args : frame_head<PartView> {
   CLEARANCE_HD const frame_part* part() const { return far ? rest->parts.part : near.part; }
   CLEARANCE_HD const search::root_ball* clusters() const { return far ? rest->parts.cluster : near.cluster; }
   CLEARANCE_HD const search::frame_facts& facts() const { return placed ? rest->frame : frame; }
-  CLEARANCE_HD const world_transform& world(std::uint32_t k) const {
-    return far ? rest->world_from_part[k] : world_from_part[k];
-  }
 };
 
 }  // namespace clearance::stream

@@ -4,6 +4,8 @@
 
 #include <clearance/math.hpp>
 
+#include <cuda/atomic>
+
 namespace clearance::stream {
 
 inline constexpr int block_threads = 512;
@@ -17,14 +19,10 @@ __device__ T fresh(const T& shared) {
   return *static_cast<const volatile T*>(&shared);
 }
 
-/// Orders what this thread has written, and read, before it against what comes after, for the whole device. Less than
-/// __threadfence(), which also puts all such fences into one order, and takes longer.
-__device__ inline void fence() {
-#if __CUDA_ARCH__ >= 700
-  asm volatile("fence.acq_rel.gpu;" ::: "memory");
-#else
-  __threadfence();
-#endif
+/// Adds one to a counter of the whole device and returns what it was. What this thread has written, and read, before it is
+/// seen by who counts later; what others wrote before they counted is seen after it.
+__device__ inline std::uint32_t count_in(std::uint32_t& counter) {
+  return cuda::atomic_ref<std::uint32_t, cuda::thread_scope_device>(counter).fetch_add(1, cuda::memory_order_acq_rel);
 }
 
 __device__ inline std::uint32_t lower_of(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
