@@ -25,12 +25,12 @@ std::uint32_t rounds_ahead(const Source& source, std::uint32_t points, std::uint
 }
 
 /// The rounds that are read ahead.
-template <class Source>
+template <class Source, bool Each>
 class point_reader {
  public:
   using raw4 = typename raw_of<Source>::type;
 
-  __device__ point_reader(const Source& source, std::uint32_t rounds, const cards& all) : source_(source), rounds_(rounds) {
+  __device__ point_reader(const Source& source, std::uint32_t rounds, const cards<Each>& all) : source_(source), rounds_(rounds) {
     if constexpr (exists) from_ = source.fours() + all.index(0) / quad;
   }
 
@@ -43,13 +43,13 @@ class point_reader {
   }
 
   /// This thread's points of `round`; those of the next are on their way.
-  __device__ quad_points take(std::uint32_t round, const cards& all) {
+  __device__ quad_points take(std::uint32_t round, const cards<Each>& all) {
     const raw4 raw = next_;
     fetch(round + 1);
     return look(raw, all.index(round));
   }
   /// The first round's points, before they are taken.
-  __device__ quad_points peek(const cards& all) const { return look(next_, all.index(0)); }
+  __device__ quad_points peek(const cards<Each>& all) const { return look(next_, all.index(0)); }
 
  private:
   static constexpr bool exists = requires { typename Source::raw4; };

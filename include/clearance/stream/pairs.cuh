@@ -109,9 +109,11 @@ struct pair_search : frame_parts<PartView, Each> {
       const std::uint32_t queued = s.queued[parity];
       if (queued == 0) break;
       constexpr std::uint32_t room = memory::queue_capacity - deepest_stack;
-      const std::uint32_t fits = queued < room ? (room - queued) / (lanes - 1) : 0;
       std::uint32_t taken = queued < groups ? queued : groups;
-      taken = fits < taken ? (fits > 0 ? fits : 1) : taken;
+      if (queued > room - groups * (lanes - 1)) {
+        const std::uint32_t fits = queued < room ? (room - queued) / (lanes - 1) : 0;
+        taken = fits < taken ? (fits > 0 ? fits : 1) : taken;
+      }
       const bool busy = group < taken;
       const pending e = busy ? s.queue[queued - taken + group] : pending{infinity, {0, 0}, 0};
       if (threadIdx.x == 0) s.queued[parity ^ 1] = queued - taken;

@@ -49,16 +49,17 @@ struct frame_parts {
     return far(view(k).tree.volumes + n);
   }
 
-  /// Every thread brings a share of it.
-  static __device__ void prepare(const frame_args<PartView>& a) {
+  /// Every thread brings a share of it; and calls `meanwhile` once, while it waits for the first.
+  template <class F>
+  static __device__ void prepare(const frame_args<PartView>& a, F meanwhile) {
     memory& s = here();
     const std::uint32_t t = threadIdx.x;
     // Dealt to all warps alike: threads of a warp read kernel arguments one after another.
     const std::uint32_t dealt = (t & 31) * warps + t / 32;
     if (a.far)
-      copy_parts(a.rest->parts.part, a.views, a.parts, t);
+      copy_parts(a.rest->parts.part, a.views, a.parts, t, meanwhile);
     else
-      copy_parts(a.near.part, a.views, a.parts, dealt);
+      copy_parts(a.near.part, a.views, a.parts, dealt, meanwhile);
     constexpr std::uint32_t head_words = sizeof(s.head) / sizeof(uint4), ball_words = sizeof(search::root_ball) / sizeof(uint2);
     static_assert(sizeof(s.head) % sizeof(uint4) == 0 && sizeof(search::root_ball) % sizeof(uint2) == 0);
     if (const std::uint32_t last = block_threads - 1 - t; last < head_words)
@@ -81,7 +82,7 @@ struct frame_parts {
     memory& s = here();
     const std::uint32_t stride = s.head.top_stride, lane = threadIdx.x & 31;
 #pragma unroll 1
-    for (std::uint32_t k = threadIdx.x / 32; k < count; k += warps) {
+    for (std::uint32_t k = (threadIdx.x / 32 + warps / 2) % warps; k < count; k += warps) {  // the first warps sharpen tests
       const auto& tree = view(k).tree;
       const std::uint32_t top = stride < tree.node_count ? stride : tree.node_count;
       if (lane == 0) s.top[k] = std::uint16_t(top);
@@ -96,20 +97,25 @@ struct frame_parts {
 
  private:
   /// Every thread first reads, and then writes: it waits once.
-  static __device__ void copy_parts(const frame_part* from, const PartView* views, std::uint32_t count, std::uint32_t thread) {
+  template <class F>
+  static __device__ void copy_parts(const frame_part* places, const PartView* views, std::uint32_t count, std::uint32_t thread, F meanwhile) {
     using word = std::conditional_t<sizeof(PartView) % sizeof(uint4) == 0, uint4, std::uint32_t>;
     constexpr std::uint32_t place_words = sizeof(frame_part) / sizeof(uint4), view_words = sizeof(PartView) / sizeof(word);
     static_assert(sizeof(frame_part) % sizeof(uint4) == 0 && sizeof(PartView) % sizeof(word) == 0);
+    const std::uint32_t words = count * (place_words > view_words ? place_words : view_words);
+    std::uint32_t i = thread;
 #pragma unroll 1
-    for (std::uint32_t i = thread; i < count * (place_words > view_words ? place_words : view_words); i += block_threads) {
+    do {
       const bool of_place = i < count * place_words, of_view = i < count * view_words;
       uint4 place;
       word view;
-      if (of_place) place = reinterpret_cast<const uint4*>(from)[i];
+      if (of_place) place = reinterpret_cast<const uint4*>(places)[i];
       if (of_view) view = reinterpret_cast<const word*>(views)[i];
+      if (i == thread) meanwhile();
       if (of_place) reinterpret_cast<uint4*>(&parts()[i / place_words].place)[i % place_words] = place;
       if (of_view) reinterpret_cast<word*>(&parts()[i / view_words].view)[i % view_words] = view;
-    }
+      i += block_threads;
+    } while (i < words);
   }
   template <class T>
   static __device__ void fetch(T& to, const T& from) {

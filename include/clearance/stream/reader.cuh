@@ -7,9 +7,10 @@
 namespace clearance::stream {
 
 inline constexpr int quad = 4;     ///< Points that a thread has in hand, in a row.
-inline constexpr int piece = 16;   ///< Points in a row that stay together.
 inline constexpr std::uint32_t in_block_round = block_threads * quad;
-inline constexpr std::uint32_t lanes_of_piece = piece / quad;
+/// Points in a row that stay together: few, where each part has a bound and so more points are near.
+template <bool Each>
+inline constexpr std::uint32_t piece = Each ? 8 : 16;
 
 /// A thread's points, less the frame's origin; and why they do not count, a byte each: a drop_reason, or `no_point`.
 struct quad_points {
@@ -20,21 +21,23 @@ inline constexpr unsigned no_point = 0xff, unknown = ~0u;  ///< There is none; i
 
 /// Neighbouring points share their fate, and a block that gets many that are near some part keeps all others waiting: so
 /// the pieces are dealt out to the blocks like cards.
+template <bool Each>
 class cards {
  public:
   /// A row of cards after the other, each dealt from another block on: else a block's cards could all be of one column.
-  explicit __device__ cards(std::uint32_t row = threadIdx.x / lanes_of_piece) {
+  __device__ cards() {
+    const std::uint32_t row = threadIdx.x / lanes_of_piece;
     std::uint32_t column = blockIdx.x + __umulhi(row * 0x9e3779b9u, gridDim.x);
     if (column >= gridDim.x) column -= gridDim.x;
     card_ = row * gridDim.x + column;
   }
-  __device__ std::uint32_t card() const { return card_; }
   /// Of this thread's first point in a round; the others follow it.
   __device__ std::uint32_t index(std::uint32_t round) const {
-    return card_ * piece + threadIdx.x % lanes_of_piece * quad + round * in_block_round * gridDim.x;
+    return card_ * piece<Each> + threadIdx.x % lanes_of_piece * quad + round * in_block_round * gridDim.x;
   }
 
  private:
+  static constexpr std::uint32_t lanes_of_piece = piece<Each> / quad;
   std::uint32_t card_;
 };
 

@@ -21,10 +21,9 @@ __global__ void __launch_bounds__(block_threads, 2) stream_kernel(const __grid_c
   auto& s = memory_of_block<PartView, Each>();
   const std::uint32_t t = threadIdx.x, rounds = a.rounds, ahead = a.ahead, clusters = (a.parts + cluster - 1) / cluster;
   const seeds before(a);
-  const cards all;
-  point_reader<Source> reader(source, ahead, all);
-  reader.fetch(0);
-  pairs::prepare(a);
+  const cards<Each> all;
+  point_reader<Source, Each> reader(source, ahead, all);
+  pairs::prepare(a, [&] { reader.fetch(0); });
   before.seed(a, source);
   __syncthreads();
   std::uint32_t bound = seeds::found(a.parts);
