@@ -2,10 +2,9 @@
 // What a control loop sees: from points in pinned memory to the answer on the host, a new pose against points that stay,
 // frames back to back on one stream, and the worst cloud there is. Percentiles are counters, in microseconds.
 #include "device.cuh"
+#include "shell.hpp"
 
 #include <clearance/points/depth_image.hpp>
-#include <clearance/query/any_within.hpp>
-#include <clearance/traversal/near_first.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <algorithm>
@@ -119,47 +118,26 @@ void back_to_back(benchmark::State& state) {
     }) / 100);
 }
 
-/// Every point 0.3 m from the robot, to the rounding: no bound culls anything.
+/// Every point 0.3 m from the robot, to rounding: no bound culls anything.
 void shell(benchmark::State& state, bool cold) {
   if (no_device(state)) return;
   const scene& s = the_scene();
-  const auto& model = robot();
-  const auto view = model.view();
-  constexpr float away = 0.3f;
-  std::vector<vec3> points(static_cast<std::size_t>(state.range(0)));
-  clearance::host{}.for_ranges(points.size(), [&](clearance::indices range) {
-    for (std::size_t i = range.begin; i < range.end; i += range.step) {
-      std::mt19937 bits{unsigned(i)};
-      std::normal_distribution<double> axis;
-      for (bool outside = false; !outside;) {
-        const std::size_t k = bits() % s.poses.size();
-        const auto& ball = s.packings[k].spheres[bits() % s.packings[k].spheres.size()];
-        const Eigen::Vector3d out = Eigen::Vector3d(axis(bits), axis(bits), axis(bits)).normalized();
-        const Eigen::Vector3d world = s.poses[k] * (Eigen::Vector3d(ball.center.x, ball.center.y, ball.center.z) + (ball.radius + double(away)) * out);
-        outside = true;
-        for (std::size_t other = 0; other < s.poses.size() && outside; ++other) {
-          const Eigen::Vector3f q = (s.poses[other].inverse() * world).cast<float>();
-          clearance::any_within nearer{away - 1e-5f};
-          clearance::near_first{}(view.parts[other].tree, vec3{q.x(), q.y(), q.z()}, nearer);
-          outside = !nearer.found;
-        }
-        points[i] = {float(world.x()), float(world.y()), float(world.z())};
-      }
-    }
-  });
   const device gpu;
-  const auto there_model = model.on(gpu);
-  clearance::min_distance_query query(gpu, there_model);
-  const auto there = gpu.copy_in(std::span<const vec3>(points));
+  const auto model = robot().on(gpu);
+  clearance::min_distance_query query(gpu, model);
+  const clearance::device_buffer<vec3> there(static_cast<std::size_t>(state.range(0)), gpu.id);
+  put_shell(gpu, model, s.poses, 0.3f, there.data(), there.size());
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
   const device_clock clock;
   for (auto _ : state) {
     if (cold) query.forget();
     state.SetIterationTime(clock.seconds([&] {
-      query.enqueue(s.poses, clearance::point_span(there.data(), points.size()), Eigen::Isometry3d::Identity(), result.data());
+      query.enqueue(s.poses, clearance::point_span(there.data(), there.size()), Eigen::Isometry3d::Identity(), result.data());
     }));
   }
-  state.counters["distance_mm"] = gpu.copy_out(result)[0].distance * 1e3;
+  const auto r = gpu.copy_out(result)[0];
+  state.counters["distance_mm"] = r.distance * 1e3;
+  state.counters["valid"] = double(r.valid);
 }
 
 #define ONCE ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(1)
