@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One frame on a GPU, its points resident there: the prepared query warm (it remembers the last frame) and cold, beside a
-// kernel that only reads the points. Times are CUDA events around the enqueued frame.
+// kernel that only reads the points and one that does nothing. Times are CUDA events around the frame on an idle device, the
+// host's time to launch included; rows that are `queued` find the device at work, and are of the device alone.
 #include "crowds.hpp"
 #include "device.cuh"
 #include "scene_files.hpp"
@@ -22,25 +23,43 @@ class cache_flush {
   clearance::device_buffer<std::byte> dirt_{256u << 20, 0};
 };
 
-void read(benchmark::State& state, bool flushed) {
+/// How a frame is asked and timed.
+struct manner {
+  bool cold = false;     ///< Nothing is known of the last frame.
+  bool plain = false;    ///< By min_distance_async, which prepares nothing.
+  bool each = false;     ///< Every part's minimum too.
+  bool flushed = false;  ///< Nothing is in the cache.
+  bool queued = false;   ///< Behind other work.
+};
+
+void empty(benchmark::State& state, bool queued) {
+  if (no_device(state)) return;
+  const device_clock clock(queued);
+  const auto launch = [] { empty_kernel<><<<1, 32>>>(); };
+  launch();  // once, as a kernel is loaded by its first launch
+  for (auto _ : state) state.SetIterationTime(clock.seconds(launch));
+}
+
+void read(benchmark::State& state, manner how) {
   if (no_device(state)) return;
   const clearance::device gpu;
   const auto& points = repeated(bench::the_scene().cloud, std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const clearance::vec3>(points));
   const clearance::device_buffer<float> never(1, gpu.id);
-  const device_clock clock;
+  const device_clock clock(how.queued);
   const cache_flush flush;
+  const auto launch = [&] {
+    read_kernel<><<<264, 512>>>(reinterpret_cast<const float4*>(there.data()), points.size() * 3 / 4, never.data());
+  };
+  launch();
   for (auto _ : state) {
-    if (flushed) flush();
-    state.SetIterationTime(clock.seconds([&] {
-      read_kernel<><<<264, 512>>>(reinterpret_cast<const float4*>(there.data()), points.size() * 3 / 4, never.data());
-    }));
+    if (how.flushed) flush();
+    state.SetIterationTime(clock.seconds(launch));
   }
 }
 
 template <class Model>
-void ask_in(const bench::scene& s, benchmark::State& state, const Model& model, bool cold, bool plain = false, bool each = false,
-            bool flushed = false) {
+void ask(benchmark::State& state, const bench::scene& s, const Model& model, manner how) {
   const clearance::device gpu;
   const auto& points = repeated(s.cloud, std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const clearance::vec3>(points));
@@ -49,25 +68,25 @@ void ask_in(const bench::scene& s, benchmark::State& state, const Model& model, 
   clearance::min_distance_query query(gpu, placed_there);
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
   const clearance::device_buffer<clearance::part_minimum> minima(s.poses.size(), gpu.id);
-  const device_clock clock;
+  const device_clock clock(how.queued);
   const cache_flush flush;
   const auto frame = [&] {
-    if (plain)
+    if (how.plain)
       clearance::min_distance_async(gpu, placed_there, s.poses, clearance::placed<clearance::point_span>{view, s.world_from_camera}, result.data());
     else
-      query.enqueue(s.poses, view, s.world_from_camera, result.data(), each ? minima.data() : nullptr);
+      query.enqueue(s.poses, view, s.world_from_camera, result.data(), how.each ? minima.data() : nullptr);
   };
   frame();
   for (auto _ : state) {
-    if (cold) query.forget();
-    if (flushed) flush();
+    if (how.cold) query.forget();
+    if (how.flushed) flush();
     state.SetIterationTime(clock.seconds(frame));
   }
   state.counters["distance_mm"] = gpu.copy_out(result)[0].distance * 1e3;
 }
-template <class Model, class... How>
-void ask(benchmark::State& state, const Model& model, How... how) {
-  ask_in(bench::the_scene(), state, model, how...);
+template <class Model>
+void ask(benchmark::State& state, const Model& model, manner how = {}) {
+  ask(state, bench::the_scene(), model, how);
 }
 
 template <class V>
@@ -83,55 +102,69 @@ const auto& triangles() {
 
 template <class V>
 void spheres_warm(benchmark::State& state) {
-  if (!no_device(state)) ask(state, spheres<V>(), false);
+  if (!no_device(state)) ask(state, spheres<V>());
 }
 template <class V>
 void spheres_cold(benchmark::State& state) {
-  if (!no_device(state)) ask(state, spheres<V>(), true);
+  if (!no_device(state)) ask(state, spheres<V>(), {.cold = true});
 }
 template <class V>
 void spheres_plain(benchmark::State& state) {
-  if (!no_device(state)) ask(state, spheres<V>(), false, true);
+  if (!no_device(state)) ask(state, spheres<V>(), {.plain = true});
 }
 template <class V>
 void spheres_warm_flushed(benchmark::State& state) {
-  if (!no_device(state)) ask(state, spheres<V>(), false, false, false, true);
+  if (!no_device(state)) ask(state, spheres<V>(), {.flushed = true});
+}
+template <class V>
+void spheres_warm_queued(benchmark::State& state) {
+  if (!no_device(state)) ask(state, spheres<V>(), {.queued = true});
+}
+template <class V>
+void spheres_cold_queued(benchmark::State& state) {
+  if (!no_device(state)) ask(state, spheres<V>(), {.cold = true, .queued = true});
 }
 template <class V>
 void every_part_warm(benchmark::State& state) {
-  if (!no_device(state)) ask(state, spheres<V>(), false, false, true);
+  if (!no_device(state)) ask(state, spheres<V>(), {.each = true});
 }
 template <class V>
 void every_part_cold(benchmark::State& state) {
-  if (!no_device(state)) ask(state, spheres<V>(), true, false, true);
+  if (!no_device(state)) ask(state, spheres<V>(), {.cold = true, .each = true});
 }
 template <class V>
 void triangles_warm(benchmark::State& state) {
-  if (!no_device(state)) ask(state, triangles<V>(), false);
+  if (!no_device(state)) ask(state, triangles<V>());
 }
 template <class V>
 void triangles_cold(benchmark::State& state) {
-  if (!no_device(state)) ask(state, triangles<V>(), true);
+  if (!no_device(state)) ask(state, triangles<V>(), {.cold = true});
 }
 
 template <bench::scene (*Make)(const bench::scene&)>
-void crowd(benchmark::State& state, bool cold, bool each) {
+void crowd(benchmark::State& state, manner how) {
   if (no_device(state)) return;
   static const bench::scene s = Make(bench::the_scene());
   static const auto model = bench::sphere_model<clearance::sphere>(s);
-  ask_in(s, state, model, cold, false, each);
+  ask(state, s, model, how);
 }
 constexpr auto sixty_four_parts = crowd<bench::sixty_four_parts>;
 constexpr auto two_robots_20_m_apart = crowd<bench::two_robots>;
 constexpr auto one_part_of_100000 = crowd<bench::one_large_part>;
 
-#define FRAME ->Arg(307200)->ArgName("points")->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(200)->Repetitions(3)->ReportAggregatesOnly()
-#define MORE ->Arg(307200)->Arg(5000000)->Arg(50000000)->ArgName("points")->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(200)->Repetitions(3)->ReportAggregatesOnly()
-BENCHMARK_CAPTURE(read, warm, false) MORE;
-BENCHMARK_CAPTURE(read, flushed, true) MORE;
+#define TIMED ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(200)->Repetitions(3)->ReportAggregatesOnly()
+#define FRAME ->Arg(307200)->ArgName("points") TIMED
+#define MORE ->Arg(307200)->Arg(5000000)->Arg(50000000)->ArgName("points") TIMED
+BENCHMARK_CAPTURE(empty, idle, false) TIMED;
+BENCHMARK_CAPTURE(empty, queued, true) TIMED;
+BENCHMARK_CAPTURE(read, warm, {}) MORE;
+BENCHMARK_CAPTURE(read, flushed, {.flushed = true}) MORE;
+BENCHMARK_CAPTURE(read, queued, {.queued = true}) MORE;
 BENCHMARK(spheres_warm<clearance::sphere>) MORE;
 BENCHMARK(spheres_cold<clearance::sphere>) MORE;
 BENCHMARK(spheres_warm_flushed<clearance::sphere>) MORE;
+BENCHMARK(spheres_warm_queued<clearance::sphere>) MORE;
+BENCHMARK(spheres_cold_queued<clearance::sphere>) MORE;
 BENCHMARK(every_part_warm<clearance::sphere>) MORE;
 BENCHMARK(every_part_cold<clearance::sphere>) MORE;
 BENCHMARK(spheres_plain<clearance::sphere>) FRAME;
@@ -142,14 +175,14 @@ BENCHMARK(triangles_warm<clearance::aabb>) FRAME;
 BENCHMARK(triangles_warm<clearance::obb>) FRAME;
 BENCHMARK(triangles_cold<clearance::aabb>) FRAME;
 BENCHMARK(triangles_cold<clearance::obb>) FRAME;
-BENCHMARK_CAPTURE(sixty_four_parts, warm, false, false) FRAME;
-BENCHMARK_CAPTURE(sixty_four_parts, cold, true, false) FRAME;
-BENCHMARK_CAPTURE(sixty_four_parts, every_part_warm, false, true) FRAME;
-BENCHMARK_CAPTURE(sixty_four_parts, every_part_cold, true, true) FRAME;
-BENCHMARK_CAPTURE(two_robots_20_m_apart, warm, false, false) FRAME;
-BENCHMARK_CAPTURE(two_robots_20_m_apart, cold, true, false) FRAME;
-BENCHMARK_CAPTURE(one_part_of_100000, warm, false, false) FRAME;
-BENCHMARK_CAPTURE(one_part_of_100000, cold, true, false) FRAME;
+BENCHMARK_CAPTURE(sixty_four_parts, warm, {}) FRAME;
+BENCHMARK_CAPTURE(sixty_four_parts, cold, {.cold = true}) FRAME;
+BENCHMARK_CAPTURE(sixty_four_parts, every_part_warm, {.each = true}) FRAME;
+BENCHMARK_CAPTURE(sixty_four_parts, every_part_cold, {.cold = true, .each = true}) FRAME;
+BENCHMARK_CAPTURE(two_robots_20_m_apart, warm, {}) FRAME;
+BENCHMARK_CAPTURE(two_robots_20_m_apart, cold, {.cold = true}) FRAME;
+BENCHMARK_CAPTURE(one_part_of_100000, warm, {}) FRAME;
+BENCHMARK_CAPTURE(one_part_of_100000, cold, {.cold = true}) FRAME;
 
 }  // namespace
 
