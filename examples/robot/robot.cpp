@@ -55,7 +55,7 @@ int main() {
   // In every frame: where the links are now, and what the camera sees.
   for (const double angle : {1.5, 0.75, 0.0}) {
     const std::vector<Eigen::Isometry3d> poses = robot.poses(std::vector{angle});
-    last = clearance::min_distance(clearance::host{}, arm, poses, clearance::placed{image, camera});
+    last = clearance::min_distance(clearance::host{}, arm, poses, image, camera);
     std::printf("hinge at %.2f rad: %s is %.4f m from pixel (%u, %u), certainly at least %.4f m\n", angle,
                 robot.parts()[last.part].name.c_str(), last.distance, last.point % 64, last.point / 64, last.lower);
     if (!(last.lower > 0.6)) ++stops;  // also if there was no valid point

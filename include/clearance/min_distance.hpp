@@ -2,6 +2,7 @@
 #pragma once
 
 #include <clearance/points/point_span.hpp>
+#include <clearance/query/nearest.hpp>
 #include <clearance/search/host_search.hpp>
 #include <clearance/traversal/near_first.hpp>
 
@@ -37,29 +38,41 @@ S readable(const B& on, const S& source, std::vector<typename B::template buffer
 }
 
 template <class Model>
-auto view_of(const Model& m) {
+decltype(auto) view_of(const Model& m) {
   if constexpr (requires { m.view().facts.size(); })
     return m.view();
   else
     return m;
 }
 
+template <class Model>
+using part_view_of = typename std::remove_cvref_t<decltype(view_of(std::declval<const Model&>()))>::part_type;
+
+template <class T, class PartView>
+concept traversal_of = traversal<T, typename PartView::hierarchy_type, nearest>;
+
 }  // namespace detail
 
 /// Enqueues the least distance over all parts and points; `result` is device, pinned or managed memory, and is written in
 /// the order of the backend's stream, so that what follows there may read it. Clouds must be readable where it runs.
-template <backend B, class Model, class Clouds, class Traversal = near_first>
+template <backend B, class Model, class Clouds, detail::traversal_of<detail::part_view_of<Model>> Traversal = near_first>
 void min_distance_async(const B& on, const Model& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                         min_distance_result* result, part_minimum* minima = nullptr, Traversal traversal = {}) {
   minimum_search search(on, detail::view_of(model), poses, traversal, result, minima);
   for (const auto& cloud : detail::as_clouds(clouds)) search.add(cloud.source, cloud.pose);
   search.conclude();
 }
+/// Of one source, `cloud_pose` world-from-source.
+template <backend B, class Model, point_source S, detail::traversal_of<detail::part_view_of<Model>> Traversal = near_first>
+void min_distance_async(const B& on, const Model& model, std::span<const Eigen::Isometry3d> poses, const S& source,
+                        const Eigen::Isometry3d& cloud_pose, min_distance_result* result, part_minimum* minima = nullptr, Traversal traversal = {}) {
+  min_distance_async(on, model, poses, placed<S>{source, cloud_pose}, result, minima, traversal);
+}
 
 /// The least distance over all parts and all points, with its bracket and witness. `poses` are world-from-part, one a part;
 /// `clouds` a point source, a `placed` one, or a vector of those; memory that the backend cannot read is copied.
 /// Throws std::invalid_argument if the number of poses is wrong or one is not rigid.
-template <backend B, class Model, class Clouds, class Traversal = near_first>
+template <backend B, class Model, class Clouds, detail::traversal_of<detail::part_view_of<Model>> Traversal = near_first>
 min_distance_result min_distance(const B& on, const Model& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                  Traversal traversal = {}, std::vector<part_minimum>* minima = nullptr) {
   const auto view = detail::view_of(model);
@@ -72,9 +85,16 @@ min_distance_result min_distance(const B& on, const Model& model, std::span<cons
   if (minima != nullptr) *minima = on.copy_out(each.data(), each.size());
   return on.copy_out(result.data(), 1)[0];
 }
+/// Of one source, `cloud_pose` world-from-source.
+template <backend B, class Model, point_source S, detail::traversal_of<detail::part_view_of<Model>> Traversal = near_first>
+min_distance_result min_distance(const B& on, const Model& model, std::span<const Eigen::Isometry3d> poses, const S& source,
+                                 const Eigen::Isometry3d& cloud_pose, Traversal traversal = {}, std::vector<part_minimum>* minima = nullptr) {
+  return min_distance(on, model, poses, placed<S>{source, cloud_pose}, traversal, minima);
+}
 
 /// The same for one part.
-template <backend B, class Tree, class Interior, class Clouds, class Traversal = near_first>
+template <backend B, class Tree, class Interior, class Clouds,
+          detail::traversal_of<decltype(std::declval<const part<Tree, Interior>&>().view())> Traversal = near_first>
 min_distance_result min_distance(const B& on, const part<Tree, Interior>& body, const Eigen::Isometry3d& pose, const Clouds& clouds,
                                  Traversal traversal = {}) {
   const auto view = body.view();
@@ -82,15 +102,28 @@ min_distance_result min_distance(const B& on, const part<Tree, Interior>& body, 
   const model_view<std::remove_const_t<decltype(view)>> one{there.data(), {&body.facts, 1}, view.tree.depth(), view.tree.width()};
   return min_distance(on, one, std::span(&pose, 1), clouds, traversal);
 }
+template <backend B, class Tree, class Interior, point_source S,
+          detail::traversal_of<decltype(std::declval<const part<Tree, Interior>&>().view())> Traversal = near_first>
+min_distance_result min_distance(const B& on, const part<Tree, Interior>& body, const Eigen::Isometry3d& pose, const S& source,
+                                 const Eigen::Isometry3d& cloud_pose, Traversal traversal = {}) {
+  return min_distance(on, body, pose, placed<S>{source, cloud_pose}, traversal);
+}
 
 /// With the minimum of every part beside the robot's: one bound a part instead of one for all, and a tighter `lower`.
-template <backend B, class Model, class Clouds, class Traversal = near_first>
+template <backend B, class Model, class Clouds, detail::traversal_of<detail::part_view_of<Model>> Traversal = near_first>
 std::pair<min_distance_result, std::vector<part_minimum>> min_distance_per_part(const B& on, const Model& model,
                                                                                 std::span<const Eigen::Isometry3d> poses,
                                                                                 const Clouds& clouds, Traversal traversal = {}) {
   std::vector<part_minimum> minima;
   const auto result = min_distance(on, model, poses, clouds, traversal, &minima);
   return {result, std::move(minima)};
+}
+/// Of one source, `cloud_pose` world-from-source.
+template <backend B, class Model, point_source S, detail::traversal_of<detail::part_view_of<Model>> Traversal = near_first>
+std::pair<min_distance_result, std::vector<part_minimum>> min_distance_per_part(const B& on, const Model& model,
+                                                                                std::span<const Eigen::Isometry3d> poses, const S& source,
+                                                                                const Eigen::Isometry3d& cloud_pose, Traversal traversal = {}) {
+  return min_distance_per_part(on, model, poses, placed<S>{source, cloud_pose}, traversal);
 }
 
 }  // namespace clearance

@@ -68,6 +68,10 @@ std::string refusal(Words call) {
   }
   return "";
 }
+/// Can this be asked with that as the traversal?
+template <class Walk, class... Given>
+concept asks = requires(const Walk& walk, const Given&... given) { min_distance(host{}, given..., walk); };
+
 bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
 
 }  // namespace
@@ -110,6 +114,46 @@ TEST_CASE("Clouds of different kinds share one search; ties go to the lowest clo
     require_equal(min_distance(host{}, model, s.poses, several), brute_force(parts, s.poses, clouds), v, s.name + ", several");
     v.require(min_distance(host{}, model, s.poses, std::vector<placed<point_span>>{}).state == clearance::state::no_data, "no cloud");
   }
+}
+
+TEST_CASE("A source with its pose beside it is asked as the placed one is, by every form of the call") {
+  verdict v;
+  for (const auto& s : scenes<inner_sphere>()) {
+    const sources<inner_sphere> all(s);
+    const auto parts = brute_parts(s);
+    const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+    const auto check = [&](const auto& source, const Eigen::Isometry3d& pose) {
+      const auto expected = brute_force(parts, s.poses, {brute_cloud(source, pose)});
+      std::vector<clearance::part_minimum> minima;
+      require_equal(min_distance(host{}, model, s.poses, source, pose), expected, v, s.name);
+      require_equal(min_distance(host{}, model, s.poses, source, pose, clearance::stack{}, &minima), expected, v, s.name + ", stack");
+      require_equal(minima, expected, v, s.name + ", stack");
+      const auto [r, each] = clearance::min_distance_per_part(host{}, model, s.poses, source, pose, clearance::recursive{});
+      require_equal(r, expected, v, s.name + ", per part");
+      require_equal(each, expected, v, s.name + ", per part");
+      clearance::min_distance_result later;
+      clearance::min_distance_async(host{}, model, s.poses, source, pose, &later, minima.data());
+      require_equal(later, expected, v, s.name + ", enqueued");
+      require_equal(minima, expected, v, s.name + ", enqueued");
+      require_equal(min_distance(host{}, model.parts()[0], s.poses[0], source, pose),
+                    brute_force(std::vector{parts[0]}, {s.poses[0]}, {brute_cloud(source, pose)}), v, s.name + ", one part");
+    };
+    check(all.span, s.cloud_pose);
+    check(all.raw, all.camera_pose);
+  }
+}
+
+TEST_CASE("What walks no tree is not taken for a traversal") {
+  using part = clearance::part<clearance::bvh<clearance::sphere, inner_sphere>>;
+  using model = clearance::model<part>;
+  using poses = std::vector<Eigen::Isometry3d>;
+  STATIC_REQUIRE(asks<clearance::near_first, model, poses, std::vector<vec3>>);
+  STATIC_REQUIRE(asks<clearance::near_first, part, Eigen::Isometry3d, std::vector<vec3>>);
+  STATIC_REQUIRE(asks<Eigen::Isometry3d, model, poses, point_span>);  // the cloud's pose
+  STATIC_REQUIRE_FALSE(asks<Eigen::Isometry3d, model, poses, placed<point_span>>);  // it has one
+  STATIC_REQUIRE_FALSE(asks<Eigen::Isometry3d, part, Eigen::Isometry3d, placed<point_span>>);
+  STATIC_REQUIRE_FALSE(asks<int, model, poses, point_span>);
+  STATIC_REQUIRE_FALSE(asks<int, part, Eigen::Isometry3d, point_span>);
 }
 
 TEST_CASE("Volumes that the library does not know give the same bits") {
