@@ -118,7 +118,10 @@ struct pair_search : frame_parts<PartView, Each> {
       const pending e = busy ? s.queue[queued - taken + group] : pending{infinity, {0, 0}, 0};
       if (threadIdx.x == 0) s.queued[parity ^ 1] = queued - taken;
       __syncthreads();
-      if (group - group % 4 < taken) best.take(expand(e, parity ^ 1), s);
+      if (group - group % 4 < taken) {
+        const record found = expand(e, parity ^ 1);
+        if (__any_sync(all_lanes, e.node.is_leaf())) best.take(found, s);
+      }
     }
     best.leave(s);
   }

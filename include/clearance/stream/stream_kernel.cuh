@@ -10,8 +10,11 @@
 
 namespace clearance::stream {
 
-/// Rounds after which the block comes together: a bit a round says what is to be done again.
-inline constexpr std::uint32_t short_batch = 8, long_batch = 32;
+/// Rounds after which the block comes together, by how far that filled the table of pairs last time; a bit a round says what
+/// is to be done again.
+CLEARANCE_HD constexpr std::uint32_t rounds_of_batch(std::uint32_t pairs, std::uint32_t capacity) {
+  return pairs <= capacity / 8 ? 32 : pairs <= capacity / 4 ? 16 : 8;
+}
 
 template <class PartView, bool Each, class Source>
 __global__ void __launch_bounds__(block_threads, 2) stream_kernel(const __grid_constant__ Source source,
@@ -28,7 +31,8 @@ __global__ void __launch_bounds__(block_threads, 2) stream_kernel(const __grid_c
   __syncthreads();
   std::uint32_t bound = seeds::found(a.parts);
   pairs::fetch_tops(a.parts);
-  if (bound == no_bound && rounds > 0) {
+  const bool cold = bound == no_bound;
+  if (cold && rounds > 0) {
     __pipeline_wait_prior(0);
     __syncthreads();  // the tops are there
     quad_points p = ahead > 0 ? reader.peek(all) : look_closely(source, a.points, all.index(0));
@@ -41,7 +45,7 @@ __global__ void __launch_bounds__(block_threads, 2) stream_kernel(const __grid_c
   // for a pair (a bit a round of a batch) is read again, for one cluster of parts at a time: that is little enough for some
   // always to find room. It is rare.
   drop_counter dropped;
-  std::uint32_t batch = short_batch;
+  std::uint32_t batch = cold ? 8 : 16;
   bool again = false;
   unsigned roomless = 0, left = ~0u;  // of all clusters, and what this turn is about
   for (std::uint32_t first = 0, begin = 0; first < rounds;) {
@@ -82,7 +86,7 @@ __global__ void __launch_bounds__(block_threads, 2) stream_kernel(const __grid_c
     again = again ? begin < clusters : crowd;
     if (again) continue;
     first = end, begin = 0, left = ~0u;
-    batch = found <= pairs::memory::pair_capacity / 8 ? long_batch : short_batch;
+    batch = rounds_of_batch(found, pairs::memory::pair_capacity);
   }
   if (rounds == 0) __pipeline_wait_prior(0);
   finish_block<PartView, Each>(a, source);
