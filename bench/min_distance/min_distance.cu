@@ -133,12 +133,24 @@ void every_part_cold(benchmark::State& state) {
   if (!no_device(state)) ask(state, spheres<V>(), {.cold = true, .each = true});
 }
 template <class V>
+void every_part_warm_queued(benchmark::State& state) {
+  if (!no_device(state)) ask(state, spheres<V>(), {.each = true, .queued = true});
+}
+template <class V>
 void triangles_warm(benchmark::State& state) {
   if (!no_device(state)) ask(state, triangles<V>());
 }
 template <class V>
 void triangles_cold(benchmark::State& state) {
   if (!no_device(state)) ask(state, triangles<V>(), {.cold = true});
+}
+template <class V>
+void triangles_warm_queued(benchmark::State& state) {
+  if (!no_device(state)) ask(state, triangles<V>(), {.queued = true});
+}
+template <class V>
+void triangles_cold_queued(benchmark::State& state) {
+  if (!no_device(state)) ask(state, triangles<V>(), {.cold = true, .queued = true});
 }
 
 template <bench::scene (*Make)(const bench::scene&)>
@@ -167,6 +179,7 @@ BENCHMARK(spheres_warm_queued<clearance::sphere>) MORE;
 BENCHMARK(spheres_cold_queued<clearance::sphere>) MORE;
 BENCHMARK(every_part_warm<clearance::sphere>) MORE;
 BENCHMARK(every_part_cold<clearance::sphere>) MORE;
+BENCHMARK(every_part_warm_queued<clearance::sphere>) MORE;
 BENCHMARK(spheres_plain<clearance::sphere>) FRAME;
 BENCHMARK(spheres_warm<clearance::aabb>) FRAME;
 BENCHMARK(spheres_warm<clearance::obb>) FRAME;
@@ -175,6 +188,8 @@ BENCHMARK(triangles_warm<clearance::aabb>) FRAME;
 BENCHMARK(triangles_warm<clearance::obb>) FRAME;
 BENCHMARK(triangles_cold<clearance::aabb>) FRAME;
 BENCHMARK(triangles_cold<clearance::obb>) FRAME;
+BENCHMARK(triangles_warm_queued<clearance::aabb>) FRAME;
+BENCHMARK(triangles_cold_queued<clearance::aabb>) FRAME;
 BENCHMARK_CAPTURE(sixty_four_parts, warm, {}) FRAME;
 BENCHMARK_CAPTURE(sixty_four_parts, cold, {.cold = true}) FRAME;
 BENCHMARK_CAPTURE(sixty_four_parts, every_part_warm, {.each = true}) FRAME;
