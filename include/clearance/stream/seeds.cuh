@@ -93,8 +93,11 @@ __device__ std::uint32_t descend(std::uint32_t k, vec3 q, bool live) {
 /// every part needs a bound), and all blocks wait a little for one another. Nothing depends on that wait but speed, so it
 /// gives up rather than hang.
 template <class PartView, bool Each>
-__noinline__ __device__ void seed_cold(const quad_points p) {
+__noinline__ __device__ void seed_cold(quad_points p) {
   using parts = frame_parts<PartView, Each>;
+#pragma unroll
+  for (int j = 0; j < quad; ++j)
+    if ((p.reasons >> 8 * j & 0xff) != 0) p.at[j].x = not_a_number;  // is no nearest point
   auto& s = parts::here();
   const auto& a = s.head;
   // By power: the square of the distance to a ball's centre less the square of its radius. No root, and good enough. One
