@@ -32,6 +32,8 @@ class launcher {
     witnesses_ = device_buffer<typename args::witness_type>(most_parts, on.id, memory);
     records_ = device_buffer<record>(2 * processors_ * parts, on.id, memory);
     placed_ = device_buffer<placed_parts>(1, on.id, memory);
+    const device_guard guard(on.id);
+    check_cuda(cudaMemsetAsync(witnesses_.data(), 0, most_parts * sizeof(typename args::witness_type), on.stream), "cudaMemsetAsync");
     forget();
   }
 

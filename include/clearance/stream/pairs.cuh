@@ -33,8 +33,9 @@ struct pair_search : frame_parts<PartView, Each> {
   /// All pairs that were kept, to the end; `found` is how many there were, or more. The whole block calls it together.
   static __device__ void drain(std::uint32_t found) {
     memory& s = frame::here();
-    if (found > 0) walk(found < memory::pair_capacity ? found : memory::pair_capacity);
-    if (threadIdx.x == 0) s.pairs = s.children = s.queued[0] = s.queued[1] = 0;
+    if (found == 0) return;
+    walk(found < memory::pair_capacity ? found : memory::pair_capacity);
+    if (threadIdx.x == 0) s.pairs = s.children = 0;
     __syncthreads();
   }
 
@@ -107,7 +108,10 @@ struct pair_search : frame_parts<PartView, Each> {
       }
       __syncthreads();
       const std::uint32_t queued = s.queued[parity];
-      if (queued == 0) break;
+      if (queued == 0) {
+        if (threadIdx.x == 0) s.queued[parity ^ 1] = 0;
+        break;
+      }
       constexpr std::uint32_t room = memory::queue_capacity - deepest_stack;
       std::uint32_t taken = queued < groups ? queued : groups;
       if (queued > room - groups * (lanes - 1)) {

@@ -16,6 +16,7 @@ __global__ void __launch_bounds__(most_parts) place_kernel(const world_transform
   bool rigid = true;
   if (t < count) pose[t] = world_from_part[t], rigid = make_rigid(pose[t]);
   if (t == 0) {
+    frame = search::frame_facts();  // shared memory begins with what others left there
     frame.world_from_cloud = world_from_cloud == nullptr ? world_transform() : *world_from_cloud;
     rigid = make_rigid(frame.world_from_cloud) && rigid;
   }
