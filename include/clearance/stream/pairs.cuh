@@ -48,7 +48,8 @@ struct pair_search : frame_parts<PartView, Each> {
     if constexpr (!requires { PartView::interior_type::empty; }) {
       memory& s = frame::here();
       const PartView& view = frame::view(k);
-      if (fresh(s.least[s.slot(k)]) <= make_key(0, point) && load_relaxed(&s.head.state->certain) != 0) return true;
+      // Not for the same point: another part may have been first there, and the lowest counts.
+      if (fresh(s.least[s.slot(k)]) < make_key(0, point) && load_relaxed(&s.head.state->certain) != 0) return true;
       if (!view.interior.inside(q)) return false;
       s.lower(k, 0);
       atomicMin(&s.least[s.slot(k)], make_key(0, point));
