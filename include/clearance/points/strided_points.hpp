@@ -39,7 +39,11 @@ struct strided_points {
   CLEARANCE_HD static real load(const std::byte* from, real minus) {
     Scalar s;
     if (reinterpret_cast<std::uintptr_t>(from) % alignof(Scalar) == 0)
+#if defined(__CUDA_ARCH__)
+      s = __ldg(reinterpret_cast<const Scalar*>(from));  // else compilers make one load of both: the slow one
+#else
       s = *reinterpret_cast<const Scalar*>(from);
+#endif
     else
       memcpy(&s, from, sizeof s);
     return real(s - minus);
