@@ -2,7 +2,6 @@
 #pragma once
 // What the threads of one block share: the bounds, the parts, the best candidates, and the pairs still to be looked at.
 
-#include <clearance/search/root_test.hpp>
 #include <clearance/stream/stream_args.hpp>
 #include <clearance/stream/threads.cuh>
 

@@ -5,6 +5,7 @@
 #include <clearance/bvh_view.hpp>
 #include <clearance/result.hpp>
 #include <clearance/search/frame.hpp>
+#include <clearance/search/root_test.hpp>
 
 namespace clearance::stream {
 
