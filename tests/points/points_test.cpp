@@ -223,6 +223,23 @@ TEST_CASE("Four samples at once are the same four") {
   CHECK(a.fours() == nullptr);
 }
 
+TEST_CASE("The short way tells ordinary points and holes, and leaves what is near the largest coordinates to the long one") {
+  constexpr float nan = clearance::not_a_number, inf = clearance::infinity;
+  const std::array<float, 12> edges = {0, -0.0f, 1e-38f, 5, 1e16f, 2.9e17f, 1e18f, 1.0000001e18f, 2e19f, 3e38f, inf, nan};
+  alignas(16) std::array<vec3, 4> points;
+  verdict v;
+  for (const float x : edges)
+    for (const float y : edges)
+      for (const float z : edges) {
+        points = {vec3{1, 2, 3}, vec3{x, y, z}, vec3{-y, z, -x}, vec3{4, 5, 6}};
+        const point_span source(points.data(), points.size());
+        check_fours(source);
+        vec3 at[4];
+        const auto large = [](float c) { return clearance::absolute(c) > 1e16f; };
+        if (!large(x) && !large(y) && !large(z)) v.require(source.positions4(source.fours()[0], 0, at) != ~0u, "point", 1, " needs the long way");
+      }
+}
+
 TEST_CASE("A table of a pinhole's rays is that pinhole, bit for bit; a bent ray bends its point alone") {
   dice d(7);
   const depth_image<std::uint16_t> pinhole(nullptr, 60, 12, {525, 520, 30.5, 6.25});
