@@ -35,8 +35,8 @@ __device__ void shift(quad_points& p) {
   for (int j = 0; j < quad; ++j) p.at[j] = p.at[j] - s.origin;
 }
 
-/// Hands four points to the search, pair by pair, with the parts of the clusters from `begin` (whose test is `together`) to `end`; not 0: some
-/// pair of theirs found no room. The whole warp calls it.
+/// Hands four points to the search, pair by pair, with the parts of the clusters from `begin` (whose test is `together`) to
+/// `end`; not 0: some pair of theirs found no room. The whole warp calls it.
 template <class PartView, bool Each, class Index>
 __device__ unsigned hand_over(const quad_points& p, Index first, search::root_test together, std::uint32_t begin, std::uint32_t end) {
   using pairs = pair_search<PartView, Each>;

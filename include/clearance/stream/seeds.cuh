@@ -40,7 +40,7 @@ class last_frame {
     }
   }
 
-  /// The bound of all parts, to all threads, after `seed` and a barrier; where each part has its own: of the part without one.
+  /// The bound of all parts, to all threads, after `seed` and a barrier; where each part has its own: `no_bound` if one has none.
   static __device__ std::uint32_t found(std::uint32_t parts) {
     auto& s = memory_of_block<PartView, Each>();
     const std::uint32_t lane = threadIdx.x & 31;
