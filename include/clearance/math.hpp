@@ -81,6 +81,16 @@ CLEARANCE_HD inline vec3 fma(real s, vec3 a, vec3 b) { return {fma(s, a.x, b.x),
 CLEARANCE_HD inline vec3 scaled(real s, vec3 a) { return fma(s, a, vec3{0, 0, 0}); }
 CLEARANCE_HD inline real dot(vec3 a, vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 CLEARANCE_HD inline real length(vec3 a) { return square_root(dot(a, a)); }
+/// The same, quicker on a device, but up to 2^-23 of it wrong there: for bounds, which `slack` covers, and never for answers.
+CLEARANCE_HD inline real rough_length(vec3 a) {
+#if defined(__CUDA_ARCH__)
+  real root;
+  asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(root) : "f"(dot(a, a)));
+  return root;
+#else
+  return length(a);
+#endif
+}
 CLEARANCE_HD inline vec3 cross(vec3 a, vec3 b) {
   return {fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x))};
 }

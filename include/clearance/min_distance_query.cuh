@@ -17,9 +17,9 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
  public:
   using view_type = part_view<bvh_view<V, P>, Interior>;
 
-  /// Throws std::invalid_argument if there are more than 128 parts; min_distance takes any number.
+  /// Throws std::invalid_argument if there are more than 128 parts, or trees that `build` would not make; min_distance takes any.
   min_distance_query(const device& on, model_view<view_type> model, std::pmr::memory_resource* memory = nullptr)
-      : on_(on), memory_(memory), facts_(model.facts.begin(), model.facts.end()), launch_(on, model.size(), memory),
+      : on_(on), memory_(memory), facts_(model.facts.begin(), model.facts.end()), launch_(on, model.size(), model.depth, model.width, memory),
         views_(model.size(), on.id, memory), answer_(1, on.id), minima_(model.size(), on.id) {
     const device_guard guard(on.id);
     check_cuda(cudaMemcpyAsync(views_.data(), model.parts, model.size() * sizeof(view_type), cudaMemcpyDeviceToDevice, on.stream), "cudaMemcpyAsync");

@@ -18,6 +18,15 @@ struct square {
   int* data;
   __host__ __device__ void operator()(std::size_t i) const { data[i] *= data[i]; }
 };
+/// The rough length of a vector of length about 2^(i / 64 - 20), over its own length.
+struct roughness {
+  float* ratio;
+  __host__ __device__ void operator()(std::size_t i) const {
+    const float x = (1 + static_cast<float>(i % 64) / 64) * std::exp2f(static_cast<float>(i / 64) - 20);
+    const clearance::vec3 v{x, -0.7f * x, 0.3f * x};
+    ratio[i] = clearance::rough_length(v) / clearance::length(v);
+  }
+};
 struct deep_body {
   std::size_t need;
   __host__ __device__ void operator()(clearance::indices) const {}
@@ -50,6 +59,15 @@ TEST_CASE("The device visits every index once, in the order of its stream") {
   gpu.wait();
   const auto back = gpu.copy_out(there);
   for (int k = 0; k < 1000; ++k) REQUIRE(back[k] == numbers[k] * numbers[k] * numbers[k] * numbers[k]);
+}
+
+TEST_CASE("A rough length is wrong by far less than the slack of the bounds that use it") {
+  const device gpu;
+  const std::size_t n = 64 * 50;
+  const auto ratio = gpu.make_scratch<float>(n);
+  gpu.for_each(n, roughness{ratio.data()});
+  gpu.wait();
+  for (const float r : gpu.copy_out(ratio.data(), n)) REQUIRE(std::abs(r - 1) <= clearance::slack / 8);
 }
 
 TEST_CASE("Staged bytes arrive whole, whatever happens to the source afterwards") {

@@ -273,6 +273,13 @@ TEST_CASE("A query in a stream of its own leaves the caller's device alone, and 
   skewed.linear() *= 1.01;
   REQUIRE_THROWS_AS(query(std::vector{skewed, poses[1]}, clearance::point_span(cloud)), std::invalid_argument);
   REQUIRE(same_result(query(poses, clearance::point_span(cloud)), min_distance(host{}, on_host, poses, clearance::point_span(cloud))));
+  auto wide = clearance::build<clearance::sphere>(ball_of_spheres(d, 20));
+  wide.width = 16;
+  std::vector<decltype(clearance::make_part(wide))> one;
+  one.push_back(clearance::make_part(std::move(wide)));
+  const auto by_hand = clearance::model(std::move(one));
+  const auto by_hand_there = by_hand.on(gpu);
+  REQUIRE_THROWS_AS(clearance::min_distance_query(gpu, by_hand_there), std::invalid_argument);
   const auto crowd = robot_of<clearance::sphere>(d, 129, 2);
   const auto crowd_there = crowd.on(gpu);
   REQUIRE_THROWS_AS(clearance::min_distance_query(gpu, crowd_there), std::invalid_argument);

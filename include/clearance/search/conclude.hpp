@@ -6,17 +6,20 @@
 
 namespace clearance::search {
 
-/// From the minimum to what is certain: counts, bracket, state.
-CLEARANCE_HD inline void conclude(min_distance_result& r, double lower, real winner_tolerance, const totals& all, double error,
-                                  std::uint64_t seen) {
+/// How many points there were, and how many of them count.
+CLEARANCE_HD inline void count(min_distance_result& r, const totals& all, std::uint64_t seen) {
   r.seen = r.valid = seen;
   for (int k = 1; k < drop_reasons; ++k) {
     r.dropped[k] = all.dropped[k];
     r.valid -= all.dropped[k];
   }
+}
+
+/// From the minimum to what is certain; `certain`: some point is certainly inside.
+CLEARANCE_HD inline void bracket(min_distance_result& r, double lower, real winner_tolerance, bool certain, double error) {
   if (r.part == none) return;  // no data
   const double error_here = fma(unit_error, double(absolute(r.distance)), error);
-  const bool inside = all.certain != 0 || r.distance < -(error_here + winner_tolerance);
+  const bool inside = certain || r.distance < -(error_here + winner_tolerance);
   // A point inside leaves nothing above 0, and a missing certificate (an infinite gap) nothing below.
   r.lower = lower > 0 && !inside ? rounded_down(lower) : 0;
   const double most = double(r.distance) + winner_tolerance + error_here;  // below 0 only if it is certainly inside
@@ -52,7 +55,8 @@ struct conclude_body {
         lower = its < lower ? its : lower;
       }
     }
-    conclude(*result, lower, result->part == none ? 0 : parts[result->part].facts.tolerance, *all, error, seen);
+    count(*result, *all, seen);
+    bracket(*result, lower, result->part == none ? 0 : parts[result->part].facts.tolerance, all->certain != 0, error);
   }
 };
 

@@ -25,49 +25,31 @@ __device__ inline record least_of_warp(const record& r) {
   return least;
 }
 
-/// One minimum: every warp keeps its own, so that no warp waits for another.
 template <bool Each>
-class best_of_block {
- public:
-  template <class Memory>
-  explicit __device__ best_of_block(const Memory& s) : best_(s.best_of_warp[threadIdx.x / 32]) {}
+struct best_of_block;
 
-  /// The whole warp calls it.
-  template <class Memory>
-  __device__ void take(const record& r, Memory& s) {
-    if (!__any_sync(all_lanes, before(r, best_))) return;
-    const record least = least_of_warp(r);
-    if (!before(least, best_)) return;
-    best_ = least;
-    if ((threadIdx.x & 31) == 0) s.lower(0, key_distance(least.key));
+/// One minimum: a warp agrees first. All lanes of a warp call it.
+template <>
+struct best_of_block<false> {
+  template <class Primitive, class Memory>
+  static __device__ void take(const record& r, const Primitive& primitive, Memory& s) {
+    if (!same(r, least_of_warp(r))) return;
+    s.lower(0, key_distance(r.key));
+    s.offer(r, primitive);
   }
-  template <class Memory>
-  __device__ void leave(Memory& s) const {
-    if ((threadIdx.x & 31) == 0) s.best_of_warp[threadIdx.x / 32] = best_;
-  }
-
- private:
-  record best_;
 };
 
 /// One a part: the lanes that share a part agree first, then the block by an atomic minimum: so few come to the lock.
 template <>
-class best_of_block<true> {
- public:
-  template <class Memory>
-  explicit __device__ best_of_block(const Memory&) {}
-
-  template <class Memory>
-  __device__ void take(const record& r, Memory& s) {
-    if (!__any_sync(all_lanes, r.key != no_key)) return;
+struct best_of_block<true> {
+  template <class Primitive, class Memory>
+  static __device__ void take(const record& r, const Primitive& primitive, Memory& s) {
     const std::uint32_t mine = std::uint32_t(r.key >> 32);
     const std::uint32_t least = least_of(__match_any_sync(all_lanes, r.part), mine);
     if (r.key == no_key || mine != least || r.key > atomicMin(&s.least[r.part], r.key)) return;
     s.lower(r.part, key_distance(r.key));
-    s.offer(r);
+    s.offer(r, primitive);
   }
-  template <class Memory>
-  __device__ void leave(Memory&) const {}
 };
 
 }  // namespace clearance::stream

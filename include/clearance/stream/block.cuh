@@ -10,27 +10,32 @@
 namespace clearance::stream {
 
 /// A point near a part: first in the cloud's frame, then in the part's.
-struct pair {
+struct alignas(16) pair {
   vec3 x;
   std::uint32_t point;
-  std::uint32_t part;
 };
 
-/// A pair against the children (or primitives) first .. first+count-1 of a node no nearer than `bound`.
-struct pending {
+/// A pair (and its part, 16 bits each) against the children or primitives of a node no nearer than `bound`.
+struct alignas(16) pending {
   real bound;
   bvh_node node;
   std::uint32_t pair;
 };
 
-/// What a tree's depth-first stack may need: `build` sees to it.
-inline constexpr std::uint32_t deepest_stack = 64;
+/// The answer, if a block's best is the best of all; but for the counts.
+struct draft {
+  position at, nearest;
+  vec3 normal;
+  std::uint32_t primitive, part;
+  clearance::state state;
+  real distance, lower, upper;
+};
 
 /// `Each`: one bound a part, and every part's minimum; else one bound for all.
 template <class PartView, bool Each>
 struct block_memory {
   using volume_type = typename PartView::hierarchy_type::volume_type;
-  static constexpr std::uint32_t pair_capacity = 1024, queue_capacity = 2048;
+  static constexpr std::uint32_t pair_capacity = 1024, stack_capacity = 3 * deepest_stack;
   static constexpr std::uint32_t slots = Each ? most_parts : 1;
   /// 73 nodes (three levels) of each of eight sphere trees; as much as leaves room for two blocks on a processor of an H200.
   static constexpr std::uint32_t top_capacity = (Each ? 10000 : 14016) / (sizeof(bvh_node) + sizeof(volume_type));
@@ -39,22 +44,23 @@ struct block_memory {
   std::uint32_t bound[slots];  ///< ordered(): least of what this block and, at times, all blocks know.
   std::uint32_t seed_of_warp[warps];
   record best[slots];
-  record best_of_warp[warps];  ///< Instead, where all parts share a bound: `best` then has points inside solids alone.
+  typename PartView::hierarchy_type::primitive_type nearest;  ///< Of `best`, where all parts share a bound.
   distance_key least[slots];  ///< The keys of `best`, or soon to be.
   std::uint32_t pairs;
-  std::uint32_t children;  ///< Entries of the queue that roots were replaced with.
-  std::uint32_t queued[2];  ///< Entries of the queue, by parity of the round.
+  std::uint32_t kept;  ///< Witnesses for the next frame.
   std::uint32_t dropped[drop_reasons];
   unsigned lock[slots];
+  distance_key drafted;  ///< What `answer` is about.
+  draft answer;
   bool last, rigid, shifted;
   vec3 origin;  ///< Is subtracted from points, if it is not 0 (`shifted`).
   search::root_test near_cluster[most_clusters], near_part[most_parts];
   search::root_ball cluster[most_clusters];
-  std::uint16_t top[most_parts];  ///< How many of a tree's first nodes are here.
   alignas(16) bvh_node top_nodes[top_capacity];
   alignas(16) volume_type top_volumes[top_capacity];
   pair pair_table[pair_capacity];
-  alignas(16) pending queue[queue_capacity];
+  std::uint16_t part_of_pair[pair_capacity];
+  pending stack[warps][stack_capacity];
 
   static __device__ std::uint32_t slot(std::uint32_t part) { return Each ? part : 0; }
   __device__ real reach(std::uint32_t part) const { return from_ordered(fresh(bound[slot(part)])); }
@@ -65,12 +71,16 @@ struct block_memory {
   }
 
   /// Keeps the better of `best` and `r`. Improvements are rare (a record process), so a lock costs nothing.
-  __device__ void offer(const record& r) {
+  template <class Primitive>
+  __device__ void offer(const record& r, const Primitive& primitive) {
     record& kept = best[slot(r.part)];
     for (bool offered = false; !offered;) {
       if (atomicCAS(&lock[slot(r.part)], 0u, 1u) != 0) continue;
       __threadfence_block();
-      if (before(r, kept)) kept = r;
+      if (before(r, kept)) {
+        kept = r;
+        if constexpr (!Each) nearest = primitive;
+      }
       __threadfence_block();
       atomicExch(&lock[slot(r.part)], 0u);
       offered = true;

@@ -35,38 +35,49 @@ __device__ void shift(quad_points& p) {
   for (int j = 0; j < quad; ++j) p.at[j] = p.at[j] - s.origin;
 }
 
-/// Hands four points to the search, pair by pair, with the parts of the clusters from `begin` (whose test is `together`) to
-/// `end`; not 0: some pair of theirs found no room. The whole warp calls it.
+/// Where a warp has stopped for want of room, if it has (not 0): in the last of so many clusters, of whose pairs with this
+/// lane's points `those` are still to be handed over.
+struct unfinished {
+  std::uint32_t clusters = 0;
+  unsigned those = ~0u;
+};
+
+/// Hands four points to the search, pair by pair, with the parts of all clusters, or with what was `left` of that; false:
+/// there was no room for some. The whole warp calls it.
 template <class PartView, bool Each, class Index>
-__device__ unsigned hand_over(const quad_points& p, Index first, search::root_test together, std::uint32_t begin, std::uint32_t end) {
+__device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clusters, unfinished& left) {
   using pairs = pair_search<PartView, Each>;
   const auto& s = pairs::here();
   real square[quad];
 #pragma unroll
   for (int j = 0; j < quad; ++j) square[j] = -dot(p.at[j], p.at[j]);
-  unsigned missed = 0;
-  for (std::uint32_t c = begin; c < end; ++c) {
-    if (c != begin) together = s.near_cluster[c];
+  for (std::uint32_t c = left.clusters == 0 ? 0 : left.clusters - 1; c < clusters; ++c) {
+    const search::root_test together = s.near_cluster[c];
     bool near = false;
 #pragma unroll
     for (int j = 0; j < quad; ++j) near |= together.value(p.at[j]) <= square[j];
-    if (!__any_sync(all_lanes, near)) continue;
-    const search::root_test* const near_part = s.near_part + c * cluster;
-    const std::uint32_t parts = s.head.parts - c * cluster;
-    unsigned those = 0;  // a bit a part and point
+    if (__any_sync(all_lanes, near)) {
+      const search::root_test* const near_part = s.near_part + c * cluster;
+      const std::uint32_t parts = s.head.parts - c * cluster;
+      unsigned those = 0;  // a bit a part and point
 #pragma unroll
-    for (std::uint32_t k = 0; k < cluster; ++k) {
-      if (k >= parts) break;
-      const search::root_test test = near_part[k];
+      for (std::uint32_t k = 0; k < cluster; ++k) {
+        if (k >= parts) break;
+        const search::root_test test = near_part[k];
 #pragma unroll
-      for (int j = 0; j < quad; ++j) those |= unsigned(test.value(p.at[j]) <= square[j]) << (quad * k + j);
+        for (int j = 0; j < quad; ++j) those |= unsigned(test.value(p.at[j]) <= square[j]) << (quad * k + j);
+      }
+#pragma unroll
+      for (int j = 0; j < quad; ++j)
+        if ((p.reasons >> 8 * j & 0xff) != 0) those &= ~(0x11111111u << j);
+      those &= left.those;
+      if (those != 0) those = pairs::add(those, p, first(), c * cluster);
+      if (__any_sync(all_lanes, those != 0)) return left = {c + 1, those}, false;
     }
-#pragma unroll
-    for (int j = 0; j < quad; ++j)
-      if ((p.reasons >> 8 * j & 0xff) != 0) those &= ~(0x11111111u << j);
-    if (those != 0) missed |= pairs::add(those, p, first(), c * cluster);
+    left.those = ~0u;
   }
-  return missed;
+  left.clusters = 0;
+  return true;
 }
 
 }  // namespace clearance::stream

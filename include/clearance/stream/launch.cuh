@@ -16,10 +16,15 @@ class launcher {
  public:
   using args = frame_args<PartView>;
 
-  launcher(const device& on, std::size_t parts, std::pmr::memory_resource* memory) : on_(on), parts_(std::uint32_t(parts)) {
+  /// For `parts` trees, none deeper or wider than that.
+  launcher(const device& on, std::size_t parts, std::uint32_t depth, std::uint32_t width, std::pmr::memory_resource* memory)
+      : on_(on), parts_(std::uint32_t(parts)) {
     if (parts > most_parts)
       throw std::invalid_argument("clearance::min_distance_query: " + std::to_string(parts) + " parts, but at most " + std::to_string(most_parts) +
                                   " on a device; use min_distance");
+    if (width > most_children || std::uint64_t(depth) * (width - 1) + 1 > deepest_stack)
+      throw std::invalid_argument("clearance::min_distance_query: a tree of depth " + std::to_string(depth) + " and width " + std::to_string(width) +
+                                  " is too large for a device; use min_distance");
     const auto ask = [&](cudaDeviceAttr what) {
       int value = 0;
       check_cuda(cudaDeviceGetAttribute(&value, what, on.id), "cudaDeviceGetAttribute");
@@ -31,6 +36,7 @@ class launcher {
     state_ = device_buffer<frame_state>(1, on.id, memory);
     witnesses_ = device_buffer<typename args::witness_type>(most_parts, on.id, memory);
     records_ = device_buffer<record>(2 * processors_ * parts, on.id, memory);
+    candidates_ = device_buffer<typename args::witness_type>(2 * processors_, on.id, memory);
     placed_ = device_buffer<placed_parts>(1, on.id, memory);
     const device_guard guard(on.id);
     check_cuda(cudaMemsetAsync(witnesses_.data(), 0, most_parts * sizeof(typename args::witness_type), on.stream), "cudaMemsetAsync");
@@ -45,7 +51,7 @@ class launcher {
   /// What all clouds of a frame have in common.
   args first(const PartView* views, min_distance_result* result, part_minimum* minima, std::uint32_t* done, std::uint32_t number) const {
     args a{};
-    a.parts = parts_, a.views = views, a.state = state_.data(), a.witnesses = witnesses_.data(), a.records = records_.data();
+    a.parts = parts_, a.views = views, a.state = state_.data(), a.witnesses = witnesses_.data(), a.records = records_.data(), a.candidates = candidates_.data();
     a.rest = placed_.data();
     a.result = result, a.minima = minima, a.done = done, a.number = number;
     return a;
@@ -93,7 +99,7 @@ class launcher {
   void start(const Source& source, args& a) {
     using memory = block_memory<PartView, Each>;
     const std::size_t shared = memory_bytes<PartView, Each>(a.parts);
-    a.top_stride = a.parts == 0 ? 0 : std::uint16_t(std::min(memory::top_capacity / a.parts, 128u));
+    a.top_stride = a.parts == 0 ? 0 : std::min(memory::top_capacity / a.parts, 128u);
     // Every translation unit has a kernel of its own, so what is allowed is known by its address, and not by its type.
     const auto kernel = stream_kernel<PartView, Each, Source>;
     if (const auto address = reinterpret_cast<const void*>(kernel); std::find(allowed_.begin(), allowed_.end(), address) == allowed_.end()) {
@@ -115,6 +121,7 @@ class launcher {
   device_buffer<frame_state> state_;
   device_buffer<typename args::witness_type> witnesses_;
   device_buffer<record> records_;
+  device_buffer<typename args::witness_type> candidates_;
   device_buffer<placed_parts> placed_;
   std::vector<const void*> allowed_;  ///< Kernels whose limit of shared memory has been raised: that takes longer than a launch.
   std::unique_ptr<placed_parts> staged_;    ///< Of many parts, on their way to `placed_`.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The few points near a part, against the trees: a block's queue of (point, node) pairs, eight lanes to a pair, so that a
-// point costs the depth of the tree in rounds and not the length of one thread's walk.
+// The few points near a part, against the trees. Every warp walks with some of them: eight nodes at once, four lanes to a node's
+// children, from a stack that is its own, so that warps wait for one another only at the end.
 
 #include <clearance/query/any_within.hpp>
 #include <clearance/stream/best.cuh>
@@ -23,11 +23,17 @@ struct pair_search : frame_parts<PartView, Each> {
     static_assert(quad * cluster <= 32 && memory::pair_capacity >= quad * cluster);
     memory& s = frame::here();
     std::uint32_t slot = atomicAdd(&s.pairs, std::uint32_t(__popc(those)));
-    for (; those != 0 && slot < memory::pair_capacity; those &= those - 1, ++slot) {
-      const unsigned bit = unsigned(__ffs(int(those))) - 1, j = bit % quad;
-      s.pair_table[slot] = {j < 2 ? (j == 0 ? p.at[0] : p.at[1]) : (j == 2 ? p.at[2] : p.at[3]), s.head.first + first + j, first_part + bit / quad};
+    unsigned left = 0;
+#pragma unroll
+    for (int j = 0; j < quad; ++j) {
+      unsigned its = those >> j & 0x11111111u;
+      for (; its != 0 && slot < memory::pair_capacity; its &= its - 1, ++slot) {
+        s.pair_table[slot] = {p.at[j], s.head.first + first + j};
+        s.part_of_pair[slot] = std::uint16_t(first_part + (unsigned(__ffs(int(its))) - 1) / quad);
+      }
+      left |= its << j;
     }
-    return those;
+    return left;
   }
 
   /// All pairs that were kept, to the end; `found` is how many there were, or more. The whole block calls it together.
@@ -35,13 +41,16 @@ struct pair_search : frame_parts<PartView, Each> {
     memory& s = frame::here();
     if (found == 0) return;
     walk(found < memory::pair_capacity ? found : memory::pair_capacity);
-    if (threadIdx.x == 0) s.pairs = s.children = 0;
     __syncthreads();
+    if (threadIdx.x == 0) s.pairs = 0;  // a barrier comes before the next one is kept
   }
 
  private:
-  static __device__ std::uint32_t lane() { return threadIdx.x & (lanes - 1); }
-  static __device__ unsigned of_mates(unsigned ballot) { return ballot >> (threadIdx.x & 24) & 0xff; }
+  static constexpr std::uint32_t mates = 4;             ///< Lanes that share a node: two children each.
+  static constexpr std::uint32_t at_once = 32 / mates;  ///< Nodes that a warp looks at together.
+
+  static __device__ std::uint32_t lane() { return threadIdx.x % mates; }
+  static __device__ std::uint32_t group() { return threadIdx.x % 32 / mates; }
 
   /// Is the point in the part's solid? Then its distance is 0, and there is nothing to look for in the tree.
   static __device__ bool inside(vec3 q, std::uint32_t point, std::uint32_t k) {
@@ -53,7 +62,7 @@ struct pair_search : frame_parts<PartView, Each> {
       if (!view.interior.inside(q)) return false;
       s.lower(k, 0);
       atomicMin(&s.least[s.slot(k)], make_key(0, point));
-      s.offer({make_key(0, point), k, none, none});
+      s.offer({make_key(0, point), k, none, none}, s.nearest);
       any_within surface{frame::place(k).error + view.facts.tolerance};
       near_first{}(view.tree, q, surface);
       if (!surface.found) atomicAdd(&s.head.state->certain, 1ull);
@@ -62,115 +71,112 @@ struct pair_search : frame_parts<PartView, Each> {
     return false;
   }
 
-  /// A pair goes into the queue, unless it ends here: those children of its root that are within reach, where they are at
-  /// hand and the queue has room for them beside all other pairs (`few`: certainly). Eight lanes a pair; the whole warp
-  /// calls it.
-  static __device__ void admit(std::uint32_t i, bool live, bool few) {
+  /// A pair's point into its part's frame; and onto the stack what is within reach below the root of that part's tree, or the
+  /// root if it is a leaf, unless the pair ends here. Four lanes to a pair.
+  static __device__ std::uint32_t admit(std::uint32_t i, bool live, pending* stack, std::uint32_t top) {
     memory& s = frame::here();
-    const pair c = live ? s.pair_table[i] : pair{{0, 0, 0}, 0, 0};
-    live = live && s.near_part[c.part].passes(c.x);
-    const vec3 q = frame::place(c.part).part_from_cloud(c.x);
+    const pair c = live ? s.pair_table[i] : pair{};
+    const std::uint32_t part = live ? s.part_of_pair[i] : 0;
+    live = live && s.near_part[part].passes(c.x);
+    const vec3 q = frame::place(part).part_from_cloud(c.x);
     if constexpr (!requires { PartView::interior_type::empty; }) {
-      const unsigned gone = of_mates(__ballot_sync(all_lanes, live && lane() == 0 && inside(q, c.point, c.part)));
-      live = live && gone == 0;
+      const unsigned gone = __ballot_sync(all_lanes, live && lane() == 0 && inside(q, c.point, part)) >> group() * mates;
+      live = live && (gone & 1) == 0;
     }
     __syncwarp();  // all have read the pair
     if (live && lane() == 0) s.pair_table[i].x = q;
-    const bvh_node root = live ? frame::node(c.part, 0) : bvh_node{0, bvh_node::leaf_bit};
-    bool opens = !root.is_leaf() && root.count() <= lanes && frame::at_hand(c.part, root.first + root.count());
-    const bool exists = opens && lane() < root.count();
-    const std::uint32_t child = exists ? c.part * s.head.top_stride + root.first + lane() : 0;
-    const real lb = exists ? traits::lower_bound(s.top_volumes[child], q) : infinity;
-    const bool within = exists && lb <= s.reach(c.part);
-    if (!few) {
-      const std::uint32_t n = std::uint32_t(__popc(of_mates(__ballot_sync(all_lanes, within))));
-      if (lane() == 0 && n > 0) opens = opens && atomicAdd(&s.children, n) + n <= memory::queue_capacity - memory::pair_capacity - 4 * deepest_stack;
-      opens = __shfl_sync(all_lanes, opens, int(threadIdx.x & 24));
-    }
-    push({lb, s.top_nodes[child], i}, within && opens, 0);
-    push({-infinity, root, i}, live && lane() == 0 && !opens, 0);
+    const bvh_node root = live ? frame::node(part, 0) : bvh_node{0, 0};
+    const std::uint32_t pair_and_part = part << 16 | i;
+    const real reach = s.reach(part);
+    top = push({-infinity, root, pair_and_part}, root.is_leaf() && lane() == 0, stack, top);
+    return push_children(root, root.is_leaf() ? 0 : root.count(), pair_and_part, q, reach, stack, top);
   }
 
-  /// Takes pairs from the queue's end, one a group of eight lanes, until it is empty. It takes fewer as the queue fills, at
-  /// last one, whose whole subtree then fits into what is kept free: so the queue cannot overflow.
+  /// A warp's share of the pairs. It takes nodes from the end of its stack, and fewer as that fills, at last one, whose whole
+  /// subtree then fits into what is kept free: so the stack cannot overflow.
   static __device__ void walk(std::uint32_t count) {
     memory& s = frame::here();
-    const std::uint32_t group = threadIdx.x / lanes, its = block_threads - 1 - threadIdx.x, bounds = Each ? s.head.parts : 1;
+    const std::uint32_t warp = threadIdx.x / 32, bounds = Each ? s.head.parts : 1;
+    pending* const stack = s.stack[warp];
     // What other blocks know is asked for some rounds before it is looked at: nobody waits for it.
-    std::uint32_t elsewhere = its < bounds ? fresh(s.head.state->bound[its]) : no_bound;
-    best_of_block<Each> best(s);
-    const bool few = count <= (memory::queue_capacity - 4 * deepest_stack) / lanes;
+    std::uint32_t elsewhere = threadIdx.x < bounds ? fresh(s.head.state->bound[threadIdx.x]) : no_bound;
+    std::uint32_t top = 0, row = 0;
 #pragma unroll 1
-    for (std::uint32_t i = group; i - group % 4 < count; i += groups) admit(i, i < count, few);
-    for (int round = 0, parity = 0;; ++round, parity ^= 1) {
-      if (round % 4 == 3 && its < bounds) {
-        if (elsewhere < fresh(s.bound[its])) atomicMin(&s.bound[its], elsewhere);
-        elsewhere = fresh(s.head.state->bound[its]);
+    for (int round = 0;; ++round) {
+#pragma unroll 1
+      for (; row * warps < count && top < at_once; row += at_once) {
+        // A point's pairs follow one another, and so do neighbours': from another warp on in each row.
+        const std::uint32_t its = row + group(), i = its * warps + (its + warp) % warps;
+        top = admit(i, i < count, stack, top);
       }
-      __syncthreads();
-      const std::uint32_t queued = s.queued[parity];
-      if (queued == 0) {
-        if (threadIdx.x == 0) s.queued[parity ^ 1] = 0;
-        break;
+      if (top == 0) break;
+      if (round % 8 == 7 && threadIdx.x < bounds) {
+        if (elsewhere < fresh(s.bound[threadIdx.x])) atomicMin(&s.bound[threadIdx.x], elsewhere);
+        elsewhere = fresh(s.head.state->bound[threadIdx.x]);
       }
-      constexpr std::uint32_t room = memory::queue_capacity - deepest_stack;
-      std::uint32_t taken = queued < groups ? queued : groups;
-      if (queued > room - groups * (lanes - 1)) {
-        const std::uint32_t fits = queued < room ? (room - queued) / (lanes - 1) : 0;
-        taken = fits < taken ? (fits > 0 ? fits : 1) : taken;
-      }
-      const bool busy = group < taken;
-      const pending e = busy ? s.queue[queued - taken + group] : pending{infinity, {0, 0}, 0};
-      if (threadIdx.x == 0) s.queued[parity ^ 1] = queued - taken;
-      __syncthreads();
-      if (group - group % 4 < taken) {
-        const record found = expand(e, parity ^ 1);
-        if (__any_sync(all_lanes, e.node.is_leaf())) best.take(found, s);
-      }
+      constexpr std::uint32_t room = memory::stack_capacity - deepest_stack, growth = most_children - 1;
+      static_assert(at_once - 1 + at_once * most_children <= room - at_once * growth);
+      std::uint32_t taken = top < at_once ? top : at_once;
+      if (top > room - at_once * growth) taken = top + 2 * growth <= room ? 2 : 1;
+      __syncwarp();  // all that has been pushed is there
+      const pending e = group() < taken ? stack[top - 1 - group()] : pending{infinity, {0, 0}, 0};
+      __syncwarp();
+      top = expand(e, stack, top - taken);
     }
-    best.leave(s);
   }
 
-  /// Inner children within reach go into the queue; of primitives the closest of this lane's is returned. The whole warp
-  /// calls it.
-  static __device__ record expand(const pending& e, int parity) {
+  /// Inner children within reach go onto the stack, primitives are looked at. All lanes of a warp call it.
+  static __device__ std::uint32_t expand(const pending& e, pending* stack, std::uint32_t top) {
     memory& s = frame::here();
-    record best;
-    const pair v = s.pair_table[e.pair];
-    const real reach = s.reach(v.part);
+    const pair v = s.pair_table[e.pair & 0xffff];
+    const real reach = s.reach(e.pair >> 16);
     const std::uint32_t count = e.bound <= reach ? e.node.count() : 0;
-#pragma unroll 1
-    for (std::uint32_t k = lane(); __any_sync(all_lanes, k < count); k += lanes) {
-      const std::uint32_t place = e.node.first + k;
-      bvh_node child{0, 0};
-      real lb = infinity;
-      if (k < count) {
-        if (e.node.is_leaf()) {
-          const hierarchy& tree = frame::view(v.part).tree;
-          const std::uint32_t id = far(tree.ids + place);
-          const real distance = far(tree.primitives + place).distance(v.x);
-          const record r{make_key(distance, v.point), v.part, id, place};
-          if (distance <= reach && before(r, best)) best = r;
-        } else {
-          child = frame::node(v.part, place);
-          lb = traits::lower_bound(frame::volume(v.part, place), v.x);
-        }
-      }
-      push({lb, child, e.pair}, child.count_and_kind != 0 && lb <= reach, parity);
-    }
-    return best;
+    const bool leaf = e.node.is_leaf();
+    top = push_children(e.node, leaf ? 0 : count, e.pair, v.x, reach, stack, top);
+    look(e.node.first, leaf ? count : 0, e.pair >> 16, v, reach);
+    return top;
   }
 
-  /// Those of a warp's lanes that have something to push do so at once. The whole warp calls it.
-  static __device__ void push(const pending& e, bool mine, int parity) {
-    memory& s = frame::here();
+  /// The first `count` children of an inner node, as far as they are within reach; the stack's new size.
+  static __device__ std::uint32_t push_children(bvh_node node, std::uint32_t count, std::uint32_t pair_and_part, vec3 q, real reach,
+                                                pending* stack, std::uint32_t top) {
+    constexpr std::uint32_t each = most_children / mates;
+    pending child[each];
+    bool within[each];
+#pragma unroll
+    for (std::uint32_t j = 0; j < each; ++j) {
+      const std::uint32_t part = pair_and_part >> 16, k = lane() + j * mates, n = node.first + k;
+      child[j] = {infinity, {0, 0}, pair_and_part};
+      if (k < count) child[j] = {traits::lower_bound(frame::volume(part, n), q), frame::node(part, n), pair_and_part};
+      within[j] = k < count && child[j].bound <= reach;
+    }
+#pragma unroll
+    for (std::uint32_t j = 0; j < each; ++j) top = push(child[j], within[j], stack, top);
+    return top;
+  }
+
+  /// Those of a warp's lanes that have something to push do so at once; the stack's new size.
+  static __device__ std::uint32_t push(const pending& e, bool mine, pending* stack, std::uint32_t top) {
     const unsigned those = __ballot_sync(all_lanes, mine);
-    if (those == 0) return;
-    const std::uint32_t thread = threadIdx.x & 31;
-    std::uint32_t at = 0;
-    if (thread == 0) at = atomicAdd(&s.queued[parity], std::uint32_t(__popc(those)));
-    at = __shfl_sync(all_lanes, at, 0) + std::uint32_t(__popc(those & ((1u << thread) - 1)));
-    if (mine) s.queue[at] = e;
+    pending* const place = stack + top + __popc(those & ((1u << threadIdx.x % 32) - 1));
+    if (mine) *place = e;
+    return top + std::uint32_t(__popc(those));
+  }
+
+  /// The primitives of leaves. All lanes of a warp call it.
+  static __device__ void look(std::uint32_t first, std::uint32_t count, std::uint32_t part, const pair& v, real reach) {
+#pragma unroll 1
+    for (std::uint32_t k = lane(); __any_sync(all_lanes, k < count); k += mates) {
+      record r;
+      typename hierarchy::primitive_type primitive;
+      if (k < count) {
+        const hierarchy& tree = frame::view(part).tree;
+        const std::uint32_t id = far(tree.ids + first + k);
+        primitive = far(tree.primitives + first + k);
+        if (const real distance = primitive.distance(v.x); distance <= reach) r = {make_key(distance, v.point), part, id, first + k};
+      }
+      if (__any_sync(all_lanes, r.key != no_key)) best_of_block<Each>::take(r, primitive, frame::here());
+    }
   }
 };
 

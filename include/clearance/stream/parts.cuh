@@ -38,14 +38,15 @@ struct frame_parts {
   }
   static __device__ const frame_part& place(std::uint32_t k) { return parts()[k].place; }
   static __device__ const PartView& view(std::uint32_t k) { return parts()[k].view; }
-  /// Are the nodes of a part before `end` in shared memory?
-  static __device__ bool at_hand(std::uint32_t k, std::uint32_t end) { return end <= here().top[k]; }
+  /// Node n of part k, and its volume: from shared memory, if it is one of the first.
   static __device__ bvh_node node(std::uint32_t k, std::uint32_t n) {
-    if (at_hand(k, n + 1)) return here().top_nodes[k * here().head.top_stride + n];
+    const std::uint32_t stride = here().head.top_stride;
+    if (n < stride) return here().top_nodes[k * stride + n];
     return far(view(k).tree.nodes + n);
   }
   static __device__ volume_type volume(std::uint32_t k, std::uint32_t n) {
-    if (at_hand(k, n + 1)) return here().top_volumes[k * here().head.top_stride + n];
+    const std::uint32_t stride = here().head.top_stride;
+    if (n < stride) return here().top_volumes[k * stride + n];
     return far(view(k).tree.volumes + n);
   }
 
@@ -68,26 +69,24 @@ struct frame_parts {
       reinterpret_cast<uint2*>(s.cluster)[i] = reinterpret_cast<const uint2*>(a.clusters())[i];
     if (t < drop_reasons) s.dropped[t] = 0;
     if (t < memory::slots) s.best[t] = {}, s.least[t] = no_key, s.lock[t] = 0;
-    if (t < warps) s.best_of_warp[t] = {};
     if (t == block_threads - 64) {
       s.origin = a.facts().origin;
       s.shifted = s.origin.x != 0 || s.origin.y != 0 || s.origin.z != 0;
       s.rigid = !a.placed || a.rest->rigid;
-      s.pairs = s.children = s.queued[0] = s.queued[1] = 0;
+      s.pairs = s.kept = 0;
     }
   }
 
   /// Starts to copy the first nodes of each tree, its top levels: no point then waits for them. After `prepare`.
   static __device__ void fetch_tops(std::uint32_t count) {
     memory& s = here();
-    const std::uint32_t stride = s.head.top_stride, lane = threadIdx.x & 31;
+    const std::uint32_t stride = s.head.top_stride, two_warps = threadIdx.x / 64;
 #pragma unroll 1
-    for (std::uint32_t k = (threadIdx.x / 32 + warps / 2) % warps; k < count; k += warps) {  // the first warps sharpen tests
+    for (std::uint32_t k = two_warps; k < count; k += warps / 2) {
       const auto& tree = view(k).tree;
       const std::uint32_t top = stride < tree.node_count ? stride : tree.node_count;
-      if (lane == 0) s.top[k] = std::uint16_t(top);
 #pragma unroll 1
-      for (std::uint32_t n = lane; n < top; n += 32) {
+      for (std::uint32_t n = threadIdx.x % 64; n < top; n += 64) {
         fetch(s.top_nodes[k * stride + n], tree.nodes[n]);
         fetch(s.top_volumes[k * stride + n], tree.volumes[n]);
       }

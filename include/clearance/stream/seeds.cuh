@@ -17,19 +17,22 @@ class last_frame {
     if (a.first != 0 && slot() < (Each ? a.parts : 1)) known_ = fresh(a.state->bound[slot()]);
   }
 
-  /// To the bounds of this block's warps, or of the parts.
+  /// Reads the points that those are about, once it is known which.
   template <class Source>
-  __device__ void seed(const frame_args<PartView>& a, const Source& source) const {
-    auto& s = memory_of_block<PartView, Each>();
+  __device__ void look(const frame_args<PartView>& a, const Source& source) {
     const std::uint32_t n = threadIdx.x % each, point = key_index(w_.r.key) - a.first + n - (n == 0 ? 0 : each / 2);
     const bool live = a.parts > w_.r.part && witnesses_ > slot() && w_.r.primitive != none && (!Each || w_.r.part == slot());
+    if (live && point < a.points) p_ = source[point];
+  }
+
+  /// To the bounds of this block's warps, or of the parts.
+  __device__ void seed(const frame_args<PartView>& a) const {
+    auto& s = memory_of_block<PartView, Each>();
+    const std::uint32_t n = threadIdx.x % each;
     std::uint32_t bound = known_;
-    if (live && point < a.points) {
-      const rigid_transform part_from_cloud = a.part()[w_.r.part].part_from_cloud;
-      const vec3 origin = a.facts().origin;
-      const sample p = source[point];
-      const real d = w_.primitive.distance(part_from_cloud(p.position - origin));
-      if (p.valid() && d < infinity) bound = lower_of(bound, ordered(d));
+    if (p_.valid()) {
+      const real d = w_.primitive.distance(a.part()[w_.r.part].part_from_cloud(p_.position - a.facts().origin));
+      if (d < infinity) bound = lower_of(bound, ordered(d));
     }
     if constexpr (Each) {
       for (int step = 1; step < int(each); step *= 2) bound = lower_of(bound, __shfl_xor_sync(all_lanes, bound, step));
@@ -60,6 +63,7 @@ class last_frame {
   static __device__ std::uint32_t slot() { return threadIdx.x / each; }
   typename frame_head<PartView>::witness_type w_;
   std::uint32_t witnesses_, known_ = no_bound;
+  sample p_{{}, drop_reason::not_finite};
 };
 
 /// Greedily to one leaf of part k, eight lanes together; the ordered() distance to what is there. Warps stay together all

@@ -11,6 +11,8 @@ namespace clearance::stream {
 
 inline constexpr std::uint32_t most_parts = 128;
 inline constexpr std::uint32_t inline_parts = 12;  ///< As many as travel with the launch.
+inline constexpr std::uint32_t most_children = 8;  ///< Of a node,
+inline constexpr std::uint32_t deepest_stack = 64;  ///< and what a tree's depth-first stack may need; trees that `build` makes keep to both.
 inline constexpr std::uint32_t no_bound = 0xff800000u;  ///< ordered(infinity)
 
 /// A candidate for the answer: all that is needed to write it out, so that nobody has to search for it again.
@@ -28,11 +30,14 @@ CLEARANCE_HD inline bool before(const record& a, const record& b) {
   return a.id < b.id;
 }
 
+CLEARANCE_HD inline bool same(const record& a, const record& b) { return a.key == b.key && a.part == b.part && a.id == b.id; }
+
 /// Lives in device memory from frame to frame; the last block of a frame resets all but the number of witnesses. Where all
 /// parts share a bound, slot 0 is theirs; else each part has its own.
 struct frame_state {
   std::uint32_t bound[most_parts];  ///< ordered() upper bounds of this frame, shared by all blocks.
-  record best[most_parts];          ///< The minima over the clouds that are done.
+  record best[most_parts];          ///< The minima over the clouds that are done,
+  distance_key best_key = no_key;   ///< and over all blocks that are done, where all parts share a bound.
   std::uint32_t witnesses = 0;
   std::uint32_t done = 0;    ///< Blocks that have finished,
   std::uint32_t seeded = 0;  ///< and blocks that have seeded (cold frames only).
@@ -107,17 +112,21 @@ struct alignas(16) frame_head {
   std::uint32_t points, parts;
   std::uint32_t cloud, first;  ///< The cloud's number, and that of its first point among all clouds' points.
   std::uint32_t rounds;        ///< Until every point has been read by some block;
-  std::uint32_t ahead;         ///< and how many of them are copied ahead into shared memory.
-  std::uint16_t top_stride;    ///< First nodes of a tree that there is room for in shared memory.
+  std::uint32_t ahead;         ///< and how many of them are read a round ahead.
+  std::uint32_t top_stride;    ///< First nodes of a tree that there is room for in shared memory.
   bool last;                   ///< No cloud follows: conclude.
   bool far;                    ///< All parts are in `rest`,
   bool placed;                 ///< and so is the frame.
   frame_state* state;
   witness_type* witnesses;
-  record* records;  ///< Room for one a slot and block.
+  record* records;           ///< Room for one a part and block, where each part has a bound;
+  witness_type* candidates;  ///< else for one a block.
   const PartView* views;
   const placed_parts* rest;
 };
+
+template <class PartView>
+using witness_of = typename frame_head<PartView>::witness_type;
 
 /// One cloud of a frame; all but its points. What every block reads comes first and last what one block reads.
 template <class PartView>

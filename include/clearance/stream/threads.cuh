@@ -10,8 +10,7 @@ namespace clearance::stream {
 
 inline constexpr int block_threads = 512;
 inline constexpr std::uint32_t warps = block_threads / 32;
-inline constexpr int lanes = 8;  ///< Threads that share one pair: one a child of an 8-wide node.
-inline constexpr std::uint32_t groups = block_threads / lanes;
+inline constexpr int lanes = 8;  ///< Threads that go down a tree together: one a child of an 8-wide node.
 inline constexpr std::uint32_t all_lanes = 0xffffffffu;
 
 template <class T>

@@ -34,7 +34,7 @@ struct aabb {
     const vec3 beyond{max(lower.x - q.x, q.x - upper.x), max(lower.y - q.y, q.y - upper.y), max(lower.z - q.z, q.z - upper.z)};
     const real deepest = max(max(beyond.x, beyond.y), beyond.z);
     if (deepest < 0) return deepest * (1 + slack);
-    return length({max(beyond.x, 0), max(beyond.y, 0), max(beyond.z, 0)}) * (1 - slack);
+    return rough_length({max(beyond.x, 0), max(beyond.y, 0), max(beyond.z, 0)}) * (1 - slack);
   }
 
   std::array<ball, 8> balls() const {

@@ -41,7 +41,7 @@ struct obb {
     const real deepest = max(max(beyond.x, beyond.y), beyond.z);
     if (deepest < 0) return deepest * (1 + slack);
     // The axes are orthonormal to 1e-7 only; the factor covers that too.
-    return length({max(beyond.x, 0), max(beyond.y, 0), max(beyond.z, 0)}) * (1 - slack) - slack * absolute(deepest);
+    return rough_length({max(beyond.x, 0), max(beyond.y, 0), max(beyond.z, 0)}) * (1 - slack) - slack * absolute(deepest);
   }
 
   std::array<ball, 8> balls() const {

@@ -50,7 +50,7 @@ struct sphere {
     return {center, std::nextafter(real(radius * (1 + 2.0 * slack)), infinity)};
   }
 
-  CLEARANCE_HD real lower_bound(vec3 q) const { return fma(length(q - center), 1 - slack, -radius); }
+  CLEARANCE_HD real lower_bound(vec3 q) const { return fma(rough_length(q - center), 1 - slack, -radius); }
 
   std::array<ball, 1> balls() const { return {{{center, radius}}}; }
 };
