@@ -35,7 +35,7 @@ struct draft {
 template <class PartView, bool Each>
 struct block_memory {
   using volume_type = typename PartView::hierarchy_type::volume_type;
-  static constexpr std::uint32_t pair_capacity = 1024, stack_capacity = 3 * deepest_stack;
+  static constexpr std::uint32_t pair_capacity = 1024, stack_capacity = 3 * deepest_stack, given_capacity = 32 * warps;
   static constexpr std::uint32_t slots = Each ? most_parts : 1;
   /// 73 nodes (three levels) of each of eight sphere trees; as much as leaves room for two blocks on a processor of an H200.
   static constexpr std::uint32_t top_capacity = (Each ? 10000 : 14016) / (sizeof(bvh_node) + sizeof(volume_type));
@@ -46,7 +46,7 @@ struct block_memory {
   record best[slots];
   typename PartView::hierarchy_type::primitive_type nearest;  ///< Of `best`, where all parts share a bound.
   distance_key least[slots];  ///< The keys of `best`, or soon to be.
-  std::uint32_t pairs;
+  std::uint32_t pairs, given;
   std::uint32_t kept;  ///< Witnesses for the next frame.
   std::uint32_t dropped[drop_reasons];
   unsigned lock[slots];
@@ -61,6 +61,7 @@ struct block_memory {
   pair pair_table[pair_capacity];
   std::uint16_t part_of_pair[pair_capacity];
   pending stack[warps][stack_capacity];
+  pending given_nodes[given_capacity];
 
   static __device__ std::uint32_t slot(std::uint32_t part) { return Each ? part : 0; }
   __device__ real reach(std::uint32_t part) const { return from_ordered(fresh(bound[slot(part)])); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 // The few points near a part, against the trees. Every warp walks with some of them: eight nodes at once, four lanes to a node's
-// children, from a stack that is its own, so that warps wait for one another only at the end.
+// children, from a stack that is its own, and gives away what is too much for it, to be dealt to all warps when they are done.
 
 #include <clearance/query/any_within.hpp>
 #include <clearance/stream/best.cuh>
@@ -42,7 +42,7 @@ struct pair_search : frame_parts<PartView, Each> {
     if (found == 0) return;
     walk(found < memory::pair_capacity ? found : memory::pair_capacity);
     __syncthreads();
-    if (threadIdx.x == 0) s.pairs = 0;  // a barrier comes before the next one is kept
+    if (threadIdx.x == 0) s.pairs = s.given = 0;  // a barrier comes before the next one is kept
   }
 
  private:
@@ -92,7 +92,7 @@ struct pair_search : frame_parts<PartView, Each> {
     return push_children(root, root.is_leaf() ? 0 : root.count(), pair_and_part, q, reach, stack, top);
   }
 
-  /// A warp's share of the pairs. It takes nodes from the end of its stack, and fewer as that fills, at last one, whose whole
+  /// A warp's share of the pairs, then of what warps have given away. It takes nodes from the end of its stack, and fewer as that fills, at last one, whose whole
   /// subtree then fits into what is kept free: so the stack cannot overflow.
   static __device__ void walk(std::uint32_t count) {
     memory& s = frame::here();
@@ -101,6 +101,7 @@ struct pair_search : frame_parts<PartView, Each> {
     // What other blocks know is asked for some rounds before it is looked at: nobody waits for it.
     std::uint32_t elsewhere = threadIdx.x < bounds ? fresh(s.head.state->bound[threadIdx.x]) : no_bound;
     std::uint32_t top = 0, row = 0;
+    bool shared = false;
 #pragma unroll 1
     for (int round = 0;; ++round) {
 #pragma unroll 1
@@ -109,7 +110,13 @@ struct pair_search : frame_parts<PartView, Each> {
         const std::uint32_t its = row + group(), i = its * warps + (its + warp) % warps;
         top = admit(i, i < count, stack, top);
       }
-      if (top == 0) break;
+      if (top == 0) {
+        if (shared) break;
+        __syncthreads();
+        shared = true;
+        top = take_share(stack);
+        continue;
+      }
       if (round % 8 == 7 && threadIdx.x < bounds) {
         if (elsewhere < fresh(s.bound[threadIdx.x])) atomicMin(&s.bound[threadIdx.x], elsewhere);
         elsewhere = fresh(s.head.state->bound[threadIdx.x]);
@@ -122,13 +129,38 @@ struct pair_search : frame_parts<PartView, Each> {
       const pending e = group() < taken ? stack[top - 1 - group()] : pending{infinity, {0, 0}, 0};
       __syncwarp();
       top = expand(e, stack, top - taken);
+      if (!shared && top > 2 * at_once) top = give(stack, top);
     }
+  }
+
+  /// All but the first of a warp's nodes, if there is room; the stack's new size. All lanes of a warp call it.
+  static __device__ std::uint32_t give(const pending* stack, std::uint32_t top) {
+    memory& s = frame::here();
+    const std::uint32_t lane = threadIdx.x % 32, some = top - at_once;
+    std::uint32_t at = memory::given_capacity;
+    if (lane == 0 && fresh(s.given) + some <= memory::given_capacity) at = atomicAdd(&s.given, some);
+    at = __shfl_sync(all_lanes, at, 0);
+    __syncwarp();  // all that has been pushed is there
+    std::uint32_t k = lane;
+#pragma unroll 1
+    for (; k < some && at + k < memory::given_capacity; k += 32) s.given_nodes[at + k] = stack[at_once + k];
+    return at + some <= memory::given_capacity ? at_once : top;
+  }
+
+  /// This warp's share of what all have given; the stack's size.
+  static __device__ std::uint32_t take_share(pending* stack) {
+    memory& s = frame::here();
+    const std::uint32_t lane = threadIdx.x % 32, warp = threadIdx.x / 32, i = lane * warps + warp;
+    const std::uint32_t given = s.given < memory::given_capacity ? s.given : memory::given_capacity;
+    if (i < given) stack[lane] = s.given_nodes[i];
+    return (given + warps - 1 - warp) / warps;
   }
 
   /// Inner children within reach go onto the stack, primitives are looked at. All lanes of a warp call it.
   static __device__ std::uint32_t expand(const pending& e, pending* stack, std::uint32_t top) {
     memory& s = frame::here();
-    const pair v = s.pair_table[e.pair & 0xffff];
+    pair v{};
+    if (e.node.count_and_kind != 0) v = s.pair_table[e.pair & 0xffff];  // else another warp may be writing there
     const real reach = s.reach(e.pair >> 16);
     const std::uint32_t count = e.bound <= reach ? e.node.count() : 0;
     const bool leaf = e.node.is_leaf();

@@ -73,7 +73,7 @@ struct frame_parts {
       s.origin = a.facts().origin;
       s.shifted = s.origin.x != 0 || s.origin.y != 0 || s.origin.z != 0;
       s.rigid = !a.placed || a.rest->rigid;
-      s.pairs = s.kept = 0;
+      s.pairs = s.given = s.kept = 0;
     }
   }
 
