@@ -93,7 +93,8 @@ __device__ void write_bracket(const frame_args<PartView>& a, min_distance_result
   min_distance_result& out = *a.result;
   if (r.part == none) out = r;
   search::count(r, all, std::uint64_t(a.first) + a.points);
-  if (!memory_of_block<PartView, Each>().rigid) r.state = state::possible;  // nothing is known where a pose on the device is none: this stops a robot
+  // Nothing is known where a pose on the device is none: this stops a robot.
+  if (!memory_of_block<PartView, Each>().rigid) r.state = state::possible;
   out.state = r.state, out.distance = r.distance, out.lower = r.lower, out.upper = r.upper, out.seen = r.seen, out.valid = r.valid;
   for (int k = 0; k < drop_reasons; ++k) out.dropped[k] = r.dropped[k];
 }

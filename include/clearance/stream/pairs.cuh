@@ -92,8 +92,9 @@ struct pair_search : frame_parts<PartView, Each> {
     return push_children(root, root.is_leaf() ? 0 : root.count(), pair_and_part, q, reach, stack, top);
   }
 
-  /// A warp's share of the pairs, then of what warps have given away. It takes nodes from the end of its stack, and fewer as that fills, at last one, whose whole
-  /// subtree then fits into what is kept free: so the stack cannot overflow.
+  /// A warp's share of the pairs, then of what warps have given away: a far point can be about equally far from hundreds of
+  /// nodes. It takes nodes from the end of its stack, and fewer as that fills, at last one, whose whole subtree then fits into
+  /// what is kept free: so the stack cannot overflow.
   static __device__ void walk(std::uint32_t count) {
     memory& s = frame::here();
     const std::uint32_t warp = threadIdx.x / 32, bounds = Each ? s.head.parts : 1;
@@ -133,7 +134,8 @@ struct pair_search : frame_parts<PartView, Each> {
     }
   }
 
-  /// All but the first of a warp's nodes, if there is room; the stack's new size. All lanes of a warp call it.
+  /// All but the first of a warp's nodes, if there is room for all; the stack's new size. If another warp is quicker, some are
+  /// kept and given, and looked at twice. All lanes of a warp call it.
   static __device__ std::uint32_t give(const pending* stack, std::uint32_t top) {
     memory& s = frame::here();
     const std::uint32_t lane = threadIdx.x % 32, some = top - at_once;
@@ -141,9 +143,8 @@ struct pair_search : frame_parts<PartView, Each> {
     if (lane == 0 && fresh(s.given) + some <= memory::given_capacity) at = atomicAdd(&s.given, some);
     at = __shfl_sync(all_lanes, at, 0);
     __syncwarp();  // all that has been pushed is there
-    std::uint32_t k = lane;
 #pragma unroll 1
-    for (; k < some && at + k < memory::given_capacity; k += 32) s.given_nodes[at + k] = stack[at_once + k];
+    for (std::uint32_t k = lane; k < some && at + k < memory::given_capacity; k += 32) s.given_nodes[at + k] = stack[at_once + k];
     return at + some <= memory::given_capacity ? at_once : top;
   }
 
