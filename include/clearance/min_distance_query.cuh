@@ -95,15 +95,20 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
     if (clouds.size() == 0) throw std::invalid_argument("clearance::min_distance_query: there is no cloud");
     const device_guard guard(on_.id);
     auto a = launch_.first(views_.data(), result, minima, done, frame_number_);
-    for (const auto& cloud : clouds) {
-      frame_.put(facts_, poses, rigid_transform_of(cloud.pose, "cloud", a.cloud));
-      frame_.error = std::max(frame_.error, a.frame.error);  // the bracket is over all clouds
-      a.frame = frame_;
-      launch_.put(frame_.places, a);
-      a.points = launch_.checked(std::uint64_t(cloud.source.size()) + a.first) - a.first;
-      a.last = a.cloud + 1 == clouds.size();
-      launch_(here(cloud.source, a.cloud), a);
-      a.first += a.points, ++a.cloud;
+    try {
+      for (const auto& cloud : clouds) {
+        frame_.put(facts_, poses, rigid_transform_of(cloud.pose, "cloud", a.cloud));
+        frame_.error = std::max(frame_.error, a.frame.error);  // the bracket is over all clouds
+        a.frame = frame_;
+        launch_.put(frame_.places, a);
+        a.points = launch_.checked(std::uint64_t(cloud.source.size()) + a.first) - a.first;
+        a.last = a.cloud + 1 == clouds.size();
+        launch_(here(cloud.source, a.cloud), a);
+        a.first += a.points, ++a.cloud;
+      }
+    } catch (...) {
+      forget();  // the clouds before this one have left their bounds and minima
+      throw;
     }
   }
 

@@ -149,6 +149,18 @@ TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are cou
       v.require(std::ranges::equal(minima, each, same_minimum), std::to_string(rotation) + when, ": some part's minimum differs");
     }
   REQUIRE_THROWS_AS(query(poses, std::vector<clearance::placed<clearance::point_span>>()), std::invalid_argument);
+  // What was enqueued before a cloud is refused leaves nothing behind: the near points are in the first cloud alone.
+  auto near = clouds;
+  std::ranges::sort(near, std::greater{}, [](const auto& cloud) { return cloud.source.size(); });
+  near.resize(2);
+  near[1].pose.linear() *= 1.01;
+  const std::vector<vec3> apart(5000, vec3{50, 0, 0});
+  const clearance::placed<clearance::point_span> far{clearance::point_span(apart), d.pose(0.2)};
+  const auto expected = min_distance(host{}, on_host, poses, far);
+  for (int k = 0; k < 3; ++k) {
+    REQUIRE_THROWS_AS(query(poses, near), std::invalid_argument);
+    REQUIRE(same_result(query(poses, far), expected));
+  }
 }
 
 TEST_CASE("A frame in the caller's graph reads poses from memory when it runs, and is the frame of those poses in every bit") {
