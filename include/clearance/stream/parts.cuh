@@ -80,9 +80,9 @@ struct frame_parts {
   /// Starts to copy the first nodes of each tree, its top levels: no point then waits for them. After `prepare`.
   static __device__ void fetch_tops(std::uint32_t count) {
     memory& s = here();
-    const std::uint32_t stride = s.head.top_stride, two_warps = threadIdx.x / 64;
+    const std::uint32_t stride = s.head.top_stride;
 #pragma unroll 1
-    for (std::uint32_t k = two_warps; k < count; k += warps / 2) {
+    for (std::uint32_t k = threadIdx.x / 64; k < count; k += warps / 2) {  // two warps a tree
       const auto& tree = view(k).tree;
       const std::uint32_t top = stride < tree.node_count ? stride : tree.node_count;
 #pragma unroll 1
