@@ -3,10 +3,13 @@
 
 root=$(cd "$(dirname "$0")/.." && pwd)
 
-# Names of Debian 12; Ubuntu 24.04 has the same names (untried there).
-packages_command="g++ cmake ninja-build libeigen3-dev libtbb-dev libassimp-dev liburdfdom-dev libstb-dev liblzf-dev \
-libyaml-cpp-dev libxxhash-dev libcli11-dev nlohmann-json3-dev"
-packages_test="$packages_command catch2 libfcl-dev libbenchmark-dev ccache python3"
+# What each part needs on a Debian 12 that has nothing; each list holds the one before. README.md names the same.
+# (zlib1g-dev: libassimp-dev links its libz.so and does not bring it.) Ubuntu 24.04 has the same names (untried there).
+packages_library="cmake g++ make libeigen3-dev libtbb-dev"
+packages_io="$packages_library libassimp-dev zlib1g-dev liburdfdom-dev libstb-dev liblzf-dev libyaml-cpp-dev libxxhash-dev"
+packages_command="$packages_io libcli11-dev nlohmann-json3-dev ninja-build"
+packages_test="$packages_command catch2 libfcl-dev python3 ccache"
+packages_all="$packages_test libbenchmark-dev"
 
 say() { printf '%s\n' "$*"; }
 fail() { say "$*" >&2; exit 1; }
