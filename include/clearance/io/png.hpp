@@ -43,8 +43,10 @@
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wold-style-cast"
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#if !defined(__clang__)  // which does not know them
 #pragma GCC diagnostic ignored "-Wduplicated-branches"
 #pragma GCC diagnostic ignored "-Wuseless-cast"
+#endif
 #endif
 namespace clearance::io::stb {
 #if __has_include(<stb/stb_image.h>)

@@ -46,13 +46,14 @@ class minimum_search<host, PartView, Traversal> {
     const auto parts = std::uint32_t(model_.size());
     const auto first = std::uint32_t(seen_);
     distance_key* const part_best = minima_ == nullptr ? nullptr : part_best_.data();
-    const search::point_body<PartView, S, Traversal> body{
+    using points = search::point_body<PartView, S, Traversal>;
+    const points body{
         model_.parts, frame_.places.data(), parts, source, frame_.origin, first, &totals_, part_best, walk_};
     for (const witness& w : last_)
       if (w.cloud == cloud) recall(body, w.point);
     if (n >= 4 * sample_tiles * search::tile_points)
       search::sample_tiles(body, sample_tiles, [&](vec3 p, std::size_t i, std::uint32_t k) {
-        search::seed_body{body, 1}.descend(p, first + std::uint32_t(i), k);
+        search::seed_body<points>{body, 1}.descend(p, first + std::uint32_t(i), k);
       });
     workers_.for_pieces(n, piece, [&](std::size_t begin, std::size_t end) { body(indices{begin, end, 1}); });
     const search::resolve_body<PartView, S, Traversal> resolve{model_.parts,  frame_.places.data(),

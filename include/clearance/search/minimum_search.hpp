@@ -31,6 +31,11 @@ struct placed {
   S source;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
 };
+// Said, because clang before 17 deduces nothing of an aggregate.
+template <point_source S>
+placed(S) -> placed<S>;
+template <point_source S>
+placed(S, Eigen::Isometry3d) -> placed<S>;
 
 /// One search for the minimum distance over any number of clouds, of any kinds; all share one bound.
 ///
