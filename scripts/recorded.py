@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What was recorded, for the scripts that put its numbers into the documentation. Needs nothing but Python.
+
+The functions of a `Records` are what `<!-- = ... -->` in a page may say (scripts/quote-docs): each reads files of
+docs/gpu-runs, of docs/cpu-runs, or of scripts, of a file that several runs have the newest.
+"""
+
+import collections
+import csv
+import pathlib
+import re
+
+scenes = ("table", "room")
+
+
+class Mistake(Exception):
+    pass
+
+
+def thousands(points):
+    return f"{points / 1e6:g}M" if points >= 1e6 else f"{points / 1e3:.3g}k"
+
+
+def factor(value):
+    return f"{value:.2f}" if value < 9.995 else f"{value:.0f}"
+
+
+def span(values, text):
+    """The least and the largest of them, each by `text`."""
+    low, high = text(min(values)), text(max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+class Paper:
+    """What bench_paper_device wrote: value[axis, scene, metric][variant][points], and [x] for what is no cloud's size."""
+
+    def __init__(self, file):
+        lines = file.read_text().splitlines()
+        self.stamp = "; ".join(line.lstrip("# ") for line in lines if line.startswith("#"))
+        self.points_of = collections.defaultdict(lambda: collections.defaultdict(dict))
+        self.steps_of = collections.defaultdict(lambda: collections.defaultdict(dict))
+        for r in csv.DictReader(line for line in lines if not line.startswith("#")):
+            key = r["axis"], r["scene"], r["metric"]
+            self.points_of[key][r["variant"]][int(r["points"])] = float(r["value"])
+            self.steps_of[key][r["variant"]][float(r["x"])] = float(r["value"])
+
+    def value(self, axis, variant, scene, points, metric="us"):
+        try:
+            return self.points_of[axis, scene, metric][variant][points]
+        except KeyError:
+            raise Mistake(f"{axis}, {variant}, {scene}, {points}, {metric} was not measured") from None
+
+    def values(self, axis, variant, scene=None, metric="us"):
+        """Of all clouds, or of all of one scene: {(scene, points): value}."""
+        found = {(s, p): v for s in scenes if scene in (None, s)
+                 for p, v in self.points_of.get((axis, s, metric), {}).get(variant, {}).items()}
+        if not found:
+            raise Mistake(f"{axis}, {variant}, {scene}, {metric} was not measured")
+        return found
+
+    def ratios(self, axis, over, under, scene=None):
+        above, below = self.values(axis, over, scene), self.values(axis, under, scene)
+        if above.keys() != below.keys():
+            raise Mistake(f"{axis}: {over} and {under} were measured with different clouds")
+        return [above[cloud] / below[cloud] for cloud in above]
+
+
+def paper_claims(paper):
+    """The numbers behind the paper's claims: a row for each claim, a column for each cloud, and the range over all clouds."""
+    clouds = ()
+
+    def number(value):
+        return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
+
+    def digits(value):
+        return f"{value:.0f}" if value >= 10 else f"{value:.1g}"
+
+    def line(name, cell, width=16, last=""):
+        def at(scene, points):
+            try:
+                return cell(lambda axis, variant, metric="us": paper.points_of[axis, scene, metric][variant][points])
+            except KeyError:  # not measured: no OctoMap, say
+                return "-"
+
+        return f"{name:<48}" + "".join(f"{at(scene, points):>{width}}" for scene, points in clouds) + f"{last:>20}".rstrip() + "\n"
+
+    def heading(width=16, last=""):
+        titles = "".join(f"{scene + ' ' + thousands(points):>{width}}" for scene, points in clouds)
+        return f"{'':<48}{titles}" + f"{last:>20}".rstrip() + "\n"
+
+    def microseconds(name, axis, variant):
+        try:
+            all_clouds = span(paper.values(axis, variant).values(), number)
+        except Mistake:
+            all_clouds = "-"
+        return line(name, lambda t: number(t(axis, variant)), 16, all_clouds)
+
+    def times(name, axis, over, under):
+        all_clouds = span(paper.ratios(axis, over, under), factor) + " x"
+        return line(name, lambda t: factor(t(axis, over) / t(axis, under)) + " x", 16, all_clouds)
+
+    ours, papers = "GPU ours, ", "GPU the paper's, "
+    clouds = (("table", 307200), ("table", 1000000), ("room", 307200), ("room", 5000000))
+    claims = [
+        heading(16, "all clouds"),
+        "microseconds, points resident, CUDA events\n",
+        microseconds("  the paper's kernels", "transfer", "the paper's kernels"),
+        microseconds("  ours, cold", "transfer", "our kernel, cold"),
+        microseconds("  ours, warm", "transfer", "our kernel, warm"),
+        "microseconds, points on the host, until the answer is there, host clock\n",
+        microseconds("  copying alone, pinned memory", "transfer", "copy from pinned memory"),
+        microseconds("  the paper's, pinned", "competitors", papers + "pinned"),
+        microseconds("  ours, pinned", "competitors", ours + "pinned"),
+        microseconds("  the paper's, pageable", "competitors", papers + "pageable"),
+        microseconds("  ours, pageable", "competitors", ours + "pageable"),
+        microseconds("  octree, then GPU (octree given)", "competitors", "octree + GPU"),
+        microseconds("  CPU octree, query", "competitors", "CPU octree query"),
+        microseconds("  CPU octree, construction", "competitors", "CPU octree construction"),
+        microseconds("  CPU, the paper's Algorithm 1, one thread", "competitors", "CPU Algorithm 1 (1 thread)"),
+        microseconds("  CPU, ours, one thread", "competitors", "CPU ours (1 thread)"),
+        microseconds("  CPU, ours, all 16 processors", "competitors", "CPU ours (all threads)"),
+        "the paper's kernels, one axis changed: times as long as its own choice\n",
+        times("  stack instead of recursion", "traversal", "stack", "recursive"),
+        times("  near child first instead of recursion", "traversal", "near first", "recursive"),
+        times("  eight lanes per point instead of recursion", "traversal", "cooperative", "recursive"),
+        times("  parts in sequence instead of streams", "schedule", "recursive; sequential", "recursive; streams"),
+        times("  parts fused instead of streams", "schedule", "recursive; fused", "recursive; streams"),
+        times("  trees moved beforehand instead of points", "transform", "trees beforehand", "points into parts"),
+        times("  volumes moved in the walk instead of points", "transform", "volumes in the walk", "points into parts"),
+        times("  balls around parts first, then points", "transform", "survivors into parts", "points into parts"),
+        times("  bound shared by a block instead of by all", "sharing", "recursive; block", "recursive; all"),
+        times("  the same, as few threads as a GTX 780 holds", "sharing", "recursive; block; few threads", "recursive; all; few threads"),
+        times("  bound shared by nobody instead of by all", "sharing", "recursive; nobody", "recursive; all"),
+        times("  no cache preference instead of PreferL1", "cache", "recursive; no preference", "recursive; prefer L1"),
+        times("  PreferShared instead of PreferL1", "cache", "recursive; prefer shared", "recursive; prefer L1"),
+        times("  last witness as seed instead of none", "seed", "recursive streams; last witness", "recursive streams; none"),
+    ]
+    clouds = (("table", 102400), ("table", 1000000), ("room", 307200), ("room", 5000000))
+    claims += ["\n" + heading(), "node tests per point, all parts (accepted updates of the bound per point)\n"]
+    for variant in ("recursive; sequential", "recursive; nobody", "recursive; block", "recursive; all", "recursive; all; sequential parts",
+                    "recursive; all; fused parts", "recursive; block; few threads", "recursive; all; few threads", "near first; nobody",
+                    "near first; block", "near first; all", "near first; all; last witness"):
+        label = variant.replace("recursive; sequential", "recursive; on one CPU thread") if variant.endswith("sequential") else variant
+        claims.append(line("  " + label.replace(";", ","),
+                           lambda t: f"{number(t('culling', variant, 'node_tests'))} ({digits(t('culling', variant, 'updates'))})"))
+    clouds = (("table", 307200), ("table", 5000000), ("room", 307200), ("room", 5000000))
+    claims += ["\n" + heading(), "the paper's kernels, best width, over\n"]
+    over = "the paper's over ours "
+    for how in ("cold", "warm"):
+        claims.append(line(f"  ours, {how}", lambda t: f"{t('headline', over + how, 'ratio'):.1f} x"))
+    clouds = (("table", 307200), ("room", 307200))
+    claims += ["\n" + heading(30), "microseconds: the paper's kernels | near first, fused, otherwise the same | ours cold | ours warm\n"]
+    methods = ("the paper's; ", "near first fused; ", "ours cold; ", "ours warm; ")
+    for axis in ("width", "volume", "fit"):
+        measured = paper.points_of[axis, "table", "us"]
+        for variant in dict.fromkeys(v.split("; ", 1)[1] for v in measured):
+            claims.append(line("  " + variant.replace(";", ","),
+                               lambda t: " | ".join(number(t(axis, m + variant)) for m in methods if m + variant in measured), 30))
+    claims.append("microseconds: ours cold | ours warm\n")
+    for variant in paper.points_of["layout", "table", "bytes_a_point"]:
+        claims.append(line(f"  points as {variant}", lambda t: " | ".join(number(t("layout", f"{variant}; {how}")) for how in ("cold", "warm")), 30))
+    return paper.stamp + "\n\n" + "".join(claims)
