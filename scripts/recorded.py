@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What was recorded, for the scripts that put its numbers into the documentation. Needs nothing but Python.
-
-The functions of a `Records` are what `<!-- = ... -->` in a page may say (scripts/quote-docs): each reads files of
-docs/gpu-runs, of docs/cpu-runs, or of scripts, of a file that several runs have the newest.
-"""
+"""What was recorded, for the scripts that put its numbers into the documentation. Needs nothing but Python."""
 
 import collections
 import csv
+import functools
 import pathlib
 import re
 
+root = pathlib.Path(__file__).resolve().parent.parent
 scenes = ("table", "room")
 
 
@@ -160,3 +158,64 @@ def paper_claims(paper):
     for variant in paper.points_of["layout", "table", "bytes_a_point"]:
         claims.append(line(f"  points as {variant}", lambda t: " | ".join(number(t("layout", f"{variant}; {how}")) for how in ("cold", "warm")), 30))
     return paper.stamp + "\n\n" + "".join(claims)
+
+
+def newest(name):
+    """The file of this name in the newest run that has one."""
+    found = sorted(root.glob(f"docs/*-runs/*/{name}"))
+    if not found:
+        raise Mistake(f"no run has recorded a {name}")
+    return found[-1]
+
+
+def recorded_number(name, row, which=0):
+    """A number of the row that begins with `row`: the one at this place after it, or the first after the word `which`."""
+    lines = [" ".join(line.split()) for line in newest(name).read_text().splitlines()]
+    begins = " ".join(row.split()) + " "
+    rows = [line[len(begins) - 1 :] for line in lines if line.startswith(begins)]
+    if len(rows) != 1:
+        raise Mistake(f"{newest(name).relative_to(root)} has {len(rows)} rows '{row}', not one")
+    text = rows[0]
+    if isinstance(which, str):
+        if text.count(f" {which} ") != 1:
+            raise Mistake(f"{name}: the row '{row}' does not say '{which}' once")
+        text, which = text[text.index(f" {which} ") + len(which) + 1 :], 0
+    numbers = re.findall(r"(?<=\s)-?\d[\d,]*(?:\.\d+)?", text)
+    return float(numbers[which].replace(",", ""))
+
+
+def recorded_commit(name):
+    found = set(re.findall(r"\bcommit ([0-9a-f]{7,40})\b", newest(name).read_text().split("\n\n")[0]))
+    if len(found) != 1:
+        raise Mistake(f"the head of {name} names {len(found)} commits, not one")
+    return found.pop()
+
+
+def packages(name):
+    """A list of scripts/lib.sh, such as packages_test, with what it includes."""
+    text = (root / "scripts/lib.sh").read_text().replace("\\\n", "")
+    found = re.search(rf'^{name}="([^"]*)"', text, re.MULTILINE)
+    if not found:
+        raise Mistake(f"scripts/lib.sh has no list {name}")
+    return [p for word in found[1].split() for p in (packages(word.strip("${}")) if word.startswith("$") else [word])]
+
+
+@functools.cache
+def phrases():
+    """What `<!-- = ... -->` in a page may use: each reads recorded files, and the result is put into the text."""
+    paper = Paper(newest("paper.csv"))
+    spread = lambda values, form: span(values, lambda v: format(v, form) if form else factor(v))
+
+    def times(axis, over, under, scene=None, form=""):
+        """How many times as long `over` takes as `under`: the range over all clouds that were measured."""
+        return spread(paper.ratios(axis, over, under, scene), form)
+
+    def measured(axis, variant, scene=None, metric="us", scale=1, form=",.0f"):
+        return spread([scale * v for v in paper.values(axis, variant, scene, metric).values()], form)
+
+    def goal(value, limit, form, prefix=""):
+        """What was measured, and whether it is within its goal."""
+        return f"{'' if value <= limit else 'missed: '}{prefix}{value:{form}}"
+
+    return {"number": recorded_number, "commit": recorded_commit, "paper": paper.value, "times": times, "measured": measured,
+            "goal": goal, "packages": packages, "min": min, "max": max, "round": round, "format": format}
