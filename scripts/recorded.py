@@ -204,18 +204,34 @@ def packages(name):
 def phrases():
     """What `<!-- = ... -->` in a page may use: each reads recorded files, and the result is put into the text."""
     paper = Paper(newest("paper.csv"))
-    spread = lambda values, form: span(values, lambda v: format(v, form) if form else factor(v))
+
+    def spread(values, form=""):
+        """The range of some values; without a format they are factors."""
+        return span(list(values), lambda v: format(v, form) if form else factor(v))
 
     def times(axis, over, under, scene=None, form=""):
         """How many times as long `over` takes as `under`: the range over all clouds that were measured."""
         return spread(paper.ratios(axis, over, under, scene), form)
 
+    def clouds(*keys, scene=None):
+        """For each cloud that was measured the values of all keys: (axis, variant[, metric]), or "points"."""
+        columns = [None if key == "points" else paper.values(key[0], key[1], scene, *key[2:]) for key in keys]
+        first = next(column for column in columns if column is not None)
+        if any(column is not None and column.keys() != first.keys() for column in columns):
+            raise Mistake(f"{keys} were measured with different clouds")
+        return [tuple(cloud[1] if column is None else column[cloud] for column in columns) for cloud in first]
+
     def measured(axis, variant, scene=None, metric="us", scale=1, form=",.0f"):
         return spread([scale * v for v in paper.values(axis, variant, scene, metric).values()], form)
 
-    def goal(value, limit, form, prefix=""):
+    def along(variant, scene, scale=1, form=",.0f"):
+        """The range along the run of the robot (axis motion)."""
+        return spread([scale * v for v in paper.steps_of["motion", scene, "us"][variant].values()], form)
+
+    def goal(value, limit, form, prefix="", least=False):
         """What was measured, and whether it is within its goal."""
-        return f"{'' if value <= limit else 'missed: '}{prefix}{value:{form}}"
+        met = value >= limit if least else value <= limit
+        return f"{'' if met else 'missed: '}{prefix}{value:{form}}"
 
     return {"number": recorded_number, "commit": recorded_commit, "paper": paper.value, "times": times, "measured": measured,
-            "goal": goal, "packages": packages, "min": min, "max": max, "round": round, "format": format}
+            "clouds": clouds, "along": along, "spread": spread, "goal": goal, "format": format, "packages": packages, "min": min, "max": max}
