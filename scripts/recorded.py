@@ -200,6 +200,16 @@ def packages(name):
     return [p for word in found[1].split() for p in (packages(word.strip("${}")) if word.startswith("$") else [word])]
 
 
+def apt_lines(**titles):
+    """A line for each named list of scripts/lib.sh: `apt install` of what the lists before it do not have, and its title."""
+    lines, before = [], []
+    for name, title in titles.items():
+        names = packages("packages_" + name)
+        lines.append(("    apt install " + " ".join(p for p in names if p not in before), title))
+        before += names
+    return "\n".join(f"{line:<75}    # {title}" for line, title in lines)
+
+
 @functools.cache
 def phrases():
     """What `<!-- = ... -->` in a page may use: each reads recorded files, and the result is put into the text."""
@@ -234,4 +244,4 @@ def phrases():
         return f"{'' if met else 'missed: '}{prefix}{value:{form}}"
 
     return {"number": recorded_number, "commit": recorded_commit, "paper": paper.value, "times": times, "measured": measured,
-            "clouds": clouds, "along": along, "spread": spread, "goal": goal, "format": format, "packages": packages, "min": min, "max": max}
+            "clouds": clouds, "along": along, "spread": spread, "goal": goal, "format": format, "apt_lines": apt_lines, "min": min, "max": max}
