@@ -160,34 +160,37 @@ def paper_claims(paper):
     return paper.stamp + "\n\n" + "".join(claims)
 
 
-def newest(name):
-    """The file of this name in the newest run that has one."""
+def newest(name, beside=None):
+    """The file of this name in the newest run that has one; a page that lies beside one speaks of that."""
+    if beside and (beside / name).exists():
+        return beside / name
     found = sorted(root.glob(f"docs/*-runs/*/{name}"))
     if not found:
         raise Mistake(f"no run has recorded a {name}")
     return found[-1]
 
 
-def recorded_number(name, row, which=0):
+def number_in(file, row, which=0):
     """A number of the row that begins with `row`: the one at this place after it, or the first after the word `which`."""
-    lines = [" ".join(line.split()) for line in newest(name).read_text().splitlines()]
+    lines = [" ".join(line.split()) for line in file.read_text().splitlines()]
     begins = " ".join(row.split()) + " "
     rows = [line[len(begins) - 1 :] for line in lines if line.startswith(begins)]
     if len(rows) != 1:
-        raise Mistake(f"{newest(name).relative_to(root)} has {len(rows)} rows '{row}', not one")
+        raise Mistake(f"{file.relative_to(root)} has {len(rows)} rows '{row}', not one")
     text = rows[0]
     if isinstance(which, str):
         if text.count(f" {which} ") != 1:
-            raise Mistake(f"{name}: the row '{row}' does not say '{which}' once")
+            raise Mistake(f"{file.name}: the row '{row}' does not say '{which}' once")
         text, which = text[text.index(f" {which} ") + len(which) + 1 :], 0
     numbers = re.findall(r"(?<=\s)-?\d[\d,]*(?:\.\d+)?", text)
     return float(numbers[which].replace(",", ""))
 
 
-def recorded_commit(name):
-    found = set(re.findall(r"\bcommit ([0-9a-f]{7,40})\b", newest(name).read_text().split("\n\n")[0]))
+def commit_of(file):
+    """The commit that the first lines of a recorded file name."""
+    found = set(re.findall(r"\bcommit ([0-9a-f]{7,40})\b", file.read_text().split("\n\n")[0]))
     if len(found) != 1:
-        raise Mistake(f"the head of {name} names {len(found)} commits, not one")
+        raise Mistake(f"the first lines of {file.relative_to(root)} name {len(found)} commits, not one")
     return found.pop()
 
 
@@ -211,9 +214,15 @@ def apt_lines(**titles):
 
 
 @functools.cache
-def phrases():
-    """What `<!-- = ... -->` in a page may use: each reads recorded files, and the result is put into the text."""
-    paper = Paper(newest("paper.csv"))
+def phrases(folder):
+    """What `<!-- = ... -->` in a page of this folder may use: each reads recorded files, and the result is put into the text."""
+    paper = Paper(newest("paper.csv", folder))
+
+    def number(name, row, which=0):
+        return number_in(newest(name, folder), row, which)
+
+    def commit(name):
+        return commit_of(newest(name, folder))
 
     def spread(values, form=""):
         """The range of some values; without a format they are factors."""
@@ -243,5 +252,5 @@ def phrases():
         met = value >= limit if least else value <= limit
         return f"{'' if met else 'missed: '}{prefix}{value:{form}}"
 
-    return {"number": recorded_number, "commit": recorded_commit, "paper": paper.value, "times": times, "measured": measured,
+    return {"number": number, "commit": commit, "paper": paper.value, "times": times, "measured": measured,
             "clouds": clouds, "along": along, "spread": spread, "goal": goal, "format": format, "apt_lines": apt_lines, "min": min, "max": max}
