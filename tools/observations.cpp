@@ -13,18 +13,18 @@ using namespace clearance;
 std::uint64_t observation::size() const { return image() ? image()->pixels.size() : points()->points.size(); }
 
 observation observe(const cloud_options& from) {
-  observation made{from, {}, 0, {}};
+  observation made;
+  made.from = from;
   if (from.is_image()) {
     made.data = io::load_png(from.file);
     return made;
   }
   io::cloud cloud = io::load_cloud(from.file);
-  const vec3 zero{-real(cloud.origin.x()), -real(cloud.origin.y()), -real(cloud.origin.z())};  // exact: the origin is in floats
   std::uint64_t zeros = 0;
-  for (vec3& p : cloud.points) {
-    if (p != zero) continue;
+  for (Eigen::Vector3d& p : cloud.points) {
+    if (!p.isZero(0)) continue;
     ++zeros;
-    if (from.zero_is_missing) p.x = not_a_number;
+    if (from.zero_is_missing) p.x() = not_a_number;
   }
   if (from.zero_is_missing) made.zeros = zeros;
   if (!from.zero_is_missing && 100 * zeros > cloud.points.size())
@@ -44,8 +44,14 @@ observation observe(const cloud_options& from) {
   return made;
 }
 
-seen_points observation::seen(const Eigen::Isometry3d& carrier) const {
+Eigen::Isometry3d observation::world(const Eigen::Isometry3d& carrier) const {
   const Eigen::Isometry3d placed = carrier * from.pose;
+  if (!from.use_viewpoint || !points()) return placed;
+  return placed * pose("--use-viewpoint: " + from.file, points()->viewpoint->translation, points()->viewpoint->rotation);
+}
+
+seen_points observation::seen(const Eigen::Isometry3d& carrier, const std::vector<Eigen::Isometry3d>& robot) {
+  const Eigen::Isometry3d placed = world(carrier);
   if (const auto* frame = image()) {
     depth_image<std::uint16_t> source(frame->pixels.data(), std::uint32_t(frame->width), std::uint32_t(frame->height),
                                       *from.camera, from.scale);
@@ -53,21 +59,22 @@ seen_points observation::seen(const Eigen::Isometry3d& carrier) const {
     source.farthest = real(from.farthest);
     return {source, placed};
   }
-  const io::cloud& cloud = *points();
-  Eigen::Isometry3d world = placed;
-  if (from.use_viewpoint)
-    world = placed * pose("--use-viewpoint: " + from.file, cloud.viewpoint->translation, cloud.viewpoint->rotation);
-  world.translation() = world * cloud.origin;
-  point_span source(cloud.points);
+  floats_ = points()->near(robot, placed);
+  auto [source, pose] = floats_.view();
   source.filter.nearest = real(from.nearest);
   source.filter.farthest = real(from.farthest);
-  source.filter.sensor = {-real(cloud.origin.x()), -real(cloud.origin.y()), -real(cloud.origin.z())};
-  return {source, world};
+  return {source, pose};
 }
 
 void observation::recount(min_distance_result& r) const {
   r.dropped[int(drop_reason::not_finite)] -= zeros;
   r.dropped[int(drop_reason::missing)] += zeros;
+}
+
+void observation::forget_points() {
+  floats_.points = {};
+  if (auto* cloud = std::get_if<io::cloud>(&data)) cloud->points = {};
+  if (auto* frame = std::get_if<io::depth_frame>(&data)) frame->pixels = {};
 }
 
 std::vector<vec3> valid_points(const seen_points& seen) {

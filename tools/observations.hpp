@@ -21,11 +21,20 @@ struct observation {
   const clearance::io::cloud* points() const { return std::get_if<clearance::io::cloud>(&data); }
   const clearance::io::depth_frame* image() const { return std::get_if<clearance::io::depth_frame>(&data); }
 
-  /// What the query reads, in place. `carrier`: world-from-link of the link that --camera-link names, else the identity.
-  seen_points seen(const Eigen::Isometry3d& carrier) const;
+  /// World-from-cloud. `carrier`: world-from-link of the link that --camera-link names, else the identity.
+  Eigen::Isometry3d world(const Eigen::Isometry3d& carrier) const;
+
+  /// What the query reads, in memory of this object; `robot`: where the parts will be, roughly, so that floats are fine there.
+  seen_points seen(const Eigen::Isometry3d& carrier, const std::vector<Eigen::Isometry3d>& robot);
 
   /// Counts what was turned into NaN as missing.
   void recount(clearance::min_distance_result& r) const;
+
+  /// Frees the memory of points and pixels.
+  void forget_points();
+
+ private:
+  clearance::io::float_cloud floats_;
 };
 
 /// Reads the file. Throws if it is damaged.

@@ -60,9 +60,10 @@ int run(const query_options& asked) {
     clouds.push_back(observe(from));
     for (const auto& note : clouds.back().notes) report.notes.push_back(note);
   }
-  for (const observation& cloud : clouds)  // the clouds stay where they are from here on
+  for (observation& cloud : clouds)  // they stay where they are from here on
     q.clouds.push_back(cloud.seen(cloud.from.link.empty() ? Eigen::Isometry3d::Identity()
-                                                          : asked.base * robot.link_pose(cloud.from.link, joints, limits)));
+                                                          : asked.base * robot.link_pose(cloud.from.link, joints, limits),
+                                  q.poses));
   report.load = clock.lap();
 
   const std::vector<body> bodies = make_bodies(asked, robot, shown, report.notes);

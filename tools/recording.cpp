@@ -93,31 +93,40 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
 }
 
 void merged_cloud::add(observation frame, const Eigen::Isometry3d& carrier) {
-  const seen_points seen = frame.seen(carrier);
+  const Eigen::Isometry3d world = rigid(frame.world(carrier), "cloud", std::int64_t(frames_.size()));
+  const seen_points seen = frame.seen(carrier, {world});  // relative to the sensor, as its range is
+  const io::cloud* const exact = frame.points();
   first_.push_back(points_.size());
   std::visit(
       [&](const auto& source) {
+        sensors_.push_back({world.translation(), exact ? 0 : source.rounding().relative});
         for (std::size_t i = 0; i < source.size(); ++i) {
           const sample s = source[i];
           ++dropped_[int(s.dropped)];
-          points_.push_back(s.valid() ? seen.pose * Eigen::Vector3d(s.position.x, s.position.y, s.position.z)
-                                      : Eigen::Vector3d::Constant(not_a_number));
+          const Eigen::Vector3d p = exact ? exact->points[i] : Eigen::Vector3d(s.position.x, s.position.y, s.position.z);
+          points_.push_back(s.valid() ? world * p : Eigen::Vector3d::Constant(not_a_number));
         }
       },
       seen.points);
   dropped_[int(drop_reason::not_finite)] -= frame.zeros;  // what was turned into NaN was missing
   dropped_[int(drop_reason::missing)] += frame.zeros;
-  if (auto* cloud = std::get_if<io::cloud>(&frame.data)) cloud->points = {};
-  if (auto* image = std::get_if<io::depth_frame>(&frame.data)) image->pixels = {};
+  frame.forget_points();
   frames_.push_back(std::move(frame));
 }
 
-seen_points merged_cloud::finish() {
-  cloud_ = io::make_cloud("merged", points_, points_.size(), 1);
-  points_ = {};
-  Eigen::Isometry3d world = Eigen::Isometry3d::Identity();
-  world.translation() = cloud_.origin;
-  return {point_span(cloud_.points), world};
+seen_points merged_cloud::finish(const std::vector<Eigen::Isometry3d>& robot) {
+  const std::size_t all = points_.size();
+  cloud_ = io::make_cloud("merged", std::move(points_), all, 1).near(robot);
+  // From its sensor a point is no farther than by way of the origin; and the sensor's pose has moved it in double.
+  position_error worst;
+  for (const sensor& s : sensors_) {
+    const double off = s.relative + search::pose_error;
+    worst.relative = std::max(worst.relative, off);
+    worst.absolute = std::max(worst.absolute, off * (s.at - cloud_.origin).norm() + search::pose_error * s.at.norm());
+  }
+  cloud_.off.relative += worst.relative, cloud_.off.absolute += worst.absolute;
+  const auto [source, pose] = cloud_.view();
+  return {source, pose};
 }
 
 std::pair<const observation*, std::uint32_t> merged_cloud::origin(std::uint32_t i) const {

@@ -24,8 +24,8 @@ class merged_cloud {
   /// Adds what `frame` shows, which needs not stay.
   void add(observation frame, const Eigen::Isometry3d& carrier);
 
-  /// To be called once, after the last frame.
-  seen_points finish();
+  /// To be called once, after the last frame; `robot` as of observation::seen.
+  seen_points finish(const std::vector<Eigen::Isometry3d>& robot);
 
   /// The frame in which point `i` of the merged cloud was seen, and the point's number there.
   std::pair<const observation*, std::uint32_t> origin(std::uint32_t i) const;
@@ -36,7 +36,12 @@ class merged_cloud {
  private:
   std::vector<observation> frames_;  // without their points
   std::vector<std::size_t> first_;   // the number of each frame's first point
+  struct sensor {
+    Eigen::Vector3d at;  // in the world
+    double relative;     // how far a point may be off, as a part of its distance from there
+  };
+  std::vector<sensor> sensors_;
   std::vector<Eigen::Vector3d> points_;
   std::uint64_t dropped_[clearance::drop_reasons] = {};
-  clearance::io::cloud cloud_;
+  clearance::io::float_cloud cloud_;
 };

@@ -81,13 +81,13 @@ int run(const query_options& asked) {
   const question q{asked.model, asked.volume, &bodies, {}, {}};
   const auto prepared = asked.on_device ? prepare_device(q) : prepare_host(q);
   int code = 0;
-  double upload = asked.recording.merge ? prepared->see(merged.finish()) : 0;
+  double upload = asked.recording.merge ? prepared->see(merged.finish(moves.poses(0))) : 0;
   std::optional<observation> frame;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     if (!asked.recording.merge) {
       observation next = load(k);
       frame.emplace(std::move(next));  // it stays while it is asked about
-      upload = prepared->see(frame->seen(moves.carrier(k)));
+      upload = prepared->see(frame->seen(moves.carrier(k), moves.poses(k)));
     }
     frame_report report{.frame = k, .file = frames[k].file, .found = prepared->ask(moves.poses(k)), .bodies = &bodies};
     report.found.upload = std::exchange(upload, 0);

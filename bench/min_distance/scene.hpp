@@ -73,7 +73,7 @@ inline scene kuka(const std::filesystem::path& data, bool packed) {
   s.name = "kuka";
   for (const auto& part : robot.parts()) s.meshes.push_back(clearance::close_mesh(part.mesh));
   s.poses = robot.poses(std::vector<double>{0, 0.6, 0, -1.4, 0, 0.5, 0});
-  s.cloud = clearance::io::load_cloud((data / "clouds/kinect_seq/frame_20121214T142255.814212.pcd").string()).points;
+  s.cloud = clearance::io::load_cloud((data / "clouds/kinect_seq/frame_20121214T142255.814212.pcd").string()).relative_to({0, 0, 0}).points;
   s.world_from_camera = looking({2.18, -0.1, 1.25}, {-0.75, 0.1, -0.65});
   if (packed) pack_all(s);
   return s;

@@ -92,7 +92,7 @@ inline std::vector<scenario> scenarios(const scene& robot) {
   const std::filesystem::path folder = std::filesystem::path(CLEARANCE_TEST_DATA) / "clouds/kinect_seq";
   if (robot.name == "kuka")
     for (const char* frame : {"frame_20121214T142256.068683.pcd", "frame_20121214T142256.332395.pcd"}) {
-      const auto next = clearance::io::load_cloud((folder / frame).string()).points;
+      const auto next = clearance::io::load_cloud((folder / frame).string()).relative_to({0, 0, 0}).points;
       frames.insert(frames.end(), next.begin(), next.end());
     }
   scenario table{.name = "table",

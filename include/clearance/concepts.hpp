@@ -162,6 +162,21 @@ concept point_source = std::is_trivially_copyable_v<S> && requires(const S s, st
   { s[i] } -> std::same_as<sample>;
 };
 
+/// How far from its point a position may be: at most `absolute + relative * (its distance from the source's (0,0,0))`, in
+/// metres. What was lost before a source was made, or is lost when it is read; the bracket of every distance carries it.
+struct position_error {
+  double absolute = 0, relative = 0;
+};
+
+/// A source with the optional member `position_error rounding() const`, called on the host, says so; any other is exact.
+template <point_source S>
+position_error rounding_of(const S& source) {
+  if constexpr (requires { { source.rounding() } -> std::same_as<position_error>; })
+    return source.rounding();
+  else
+    return {};
+}
+
 /// `point_source<S>` with reasons.
 template <class S>
 consteval bool explain_point_source() {
@@ -170,6 +185,9 @@ consteval bool explain_point_source() {
                 "a point source needs: CLEARANCE_HD std::size_t size() const");
   static_assert(requires(const S s, std::size_t i) { { s[i] } -> std::same_as<sample>; },
                 "a point source needs: CLEARANCE_HD sample operator[](std::size_t) const");
+  if constexpr (requires(const S s) { s.rounding(); })
+    static_assert(requires(const S s) { { s.rounding() } -> std::same_as<position_error>; },
+                  "what a point source has by the name rounding must be: position_error rounding() const");
   return point_source<S>;
 }
 

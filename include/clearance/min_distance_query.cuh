@@ -53,7 +53,7 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
                part_minimum* minima = nullptr) {
     const device_guard guard(on_.id);
     auto a = launch_.first(views_.data(), result, minima, nullptr, 0);
-    launch_.place(poses, cloud_pose, a);
+    launch_.place(poses, cloud_pose, rounding_of(source), a);
     a.points = launch_.checked(source.size()), a.last = true;
     launch_(source, a);
   }
@@ -97,8 +97,8 @@ class min_distance_query<device, part_view<bvh_view<V, P>, Interior>> {
     auto a = launch_.first(views_.data(), result, minima, done, frame_number_);
     try {
       for (const auto& cloud : clouds) {
-        frame_.put(facts_, poses, rigid_transform_of(cloud.pose, "cloud", a.cloud));
-        frame_.error = std::max(frame_.error, a.frame.error);  // the bracket is over all clouds
+        frame_.put(facts_, poses, rigid_transform_of(cloud.pose, "cloud", a.cloud), rounding_of(cloud.source));
+        frame_.error.widen(a.frame.error);  // the bracket is over all clouds
         a.frame = frame_;
         launch_.put(frame_.places, a);
         a.points = launch_.checked(std::uint64_t(cloud.source.size()) + a.first) - a.first;

@@ -44,12 +44,12 @@ std::string record(float x, float y, float z) {
 TEST_CASE("an XYZ file may have comments, other separators and further columns") {
   const io::cloud c = read(".xyz", "\xEF\xBB\xBF# made by hand\n1 2 3\r\n\n  4,5,6, 255\n7;8\t9 # last\nnan nan nan\n+1e1 -.5 inf");
   REQUIRE(c.points.size() == 5);
-  CHECK(c.points[0] == vec3{1, 2, 3});
-  CHECK(c.points[1] == vec3{4, 5, 6});
-  CHECK(c.points[2] == vec3{7, 8, 9});
-  CHECK(!is_finite(c.points[3]));
-  CHECK(c.points[4].x == 10);
-  CHECK(c.points[4].z == infinity);
+  CHECK(c.points[0] == Eigen::Vector3d(1, 2, 3));
+  CHECK(c.points[1] == Eigen::Vector3d(4, 5, 6));
+  CHECK(c.points[2] == Eigen::Vector3d(7, 8, 9));
+  CHECK(!c.points[3].allFinite());
+  CHECK(c.points[4].x() == 10);
+  CHECK(c.points[4].z() == infinity);
   CHECK(c.width == 5);
   CHECK(c.height == 1);
 }
@@ -81,9 +81,9 @@ TEST_CASE("the points of a PLY file come in the file's order, from text and from
   const std::string bytes = ply("binary_little_endian", "3", "float", record(1, 2, 3) + record(not_a_number, 0, 0) + record(4, 5, 6));
   for (const io::cloud& c : {read(".ply", text), read(".PLY", bytes)}) {
     REQUIRE(c.points.size() == 3);
-    CHECK(c.points[0] == vec3{1, 2, 3});
-    CHECK(!is_finite(c.points[1]));
-    CHECK(c.points[2] == vec3{4, 5, 6});
+    CHECK(c.points[0] == Eigen::Vector3d(1, 2, 3));
+    CHECK(!c.points[1].allFinite());
+    CHECK(c.points[2] == Eigen::Vector3d(4, 5, 6));
   }
   // Data that begin with what looks like the end of a line.
   for (const std::string begin : {"\n", "\r\n", "\n\n", "\r", " "}) {
@@ -92,8 +92,8 @@ TEST_CASE("the points of a PLY file come in the file's order, from text and from
     float z;
     std::memcpy(&z, first.data(), 4);
     const io::cloud c = read(".ply", ply("binary_little_endian", "2", "float", first + record(4, 5, 6)));
-    CHECK(c.points[0] == vec3{1, 2, z});
-    CHECK(c.points[1] == vec3{4, 5, 6});
+    CHECK(c.points[0] == Eigen::Vector3d(1, 2, z));
+    CHECK(c.points[1] == Eigen::Vector3d(4, 5, 6));
   }
 }
 
@@ -108,7 +108,7 @@ TEST_CASE("a PLY file that is not what it says is refused") {
   contains(refused(".ply", ply("ascii", "1", "float", "3 200 1\n\n\n")), ":12: a vertex needs 4 values, here are 3");
   contains(refused(".ply", ply("ascii", "1", "real", "")), ":5: a PLY property needs");
   contains(refused(".ply", ply("ascii", "1", "double", "1 200 5000000.125 2\n")), "rounded to float");
-  CHECK(read(".ply", ply("ascii", "1", "double", "1 200 5.125 2\n")).points.at(0) == vec3{5.125, 2, 1});
+  CHECK(read(".ply", ply("ascii", "1", "double", "1 200 5.125 2\n")).points.at(0) == Eigen::Vector3d(5.125, 2, 1));
 }
 
 TEST_CASE("a PLY file cut at any length or with any byte changed is read or refused, never more") {

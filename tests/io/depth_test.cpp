@@ -111,13 +111,12 @@ TEST_CASE("the PNG and the PCD of one real frame agree in every pixel", "[data]"
     double worst = 0;
     std::size_t differ = 0;
     for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
-      const bool valid = is_finite(cloud.points[i]);
+      const bool valid = cloud.points[i].allFinite();
       differ += valid != (depth.pixels[i] != 0);
       if (!valid) continue;
       const double z = 0.001 * depth.pixels[i], u = double(i % depth.width), v = double(i / depth.width);
       const Eigen::Vector3d p((u - 320) * z / 525, (v - 240) * z / 525, z);
-      const vec3 q = cloud.points[i];
-      worst = std::max(worst, (p - Eigen::Vector3d(double(q.x), double(q.y), double(q.z))).norm());
+      worst = std::max(worst, (p - cloud.points[i]).norm());
     }
     CHECK(differ == 0);
     CHECK(worst < 1e-6);

@@ -12,7 +12,7 @@ TEST_CASE("A depth image and the cloud of the same frame agree to 1e-6 m, and in
   for (const char* name : kinect_frames) {
     const std::string frame = data_folder + "/clouds/kinect_seq/frame_" + name;
     const auto png = clearance::io::load_png(frame + "_depth.png");
-    const auto pcd = clearance::io::load_cloud(frame + ".pcd");
+    const auto pcd = clearance::io::load_cloud(frame + ".pcd").relative_to({0, 0, 0});
     const auto image = view_of(png, kinect, 0.001);
     const clearance::point_span cloud(pcd.points);
     REQUIRE(image.size() == cloud.size());

@@ -16,13 +16,13 @@ namespace {
 struct seen_frame {
   std::string name;
   clearance::io::depth_frame image = {};
-  clearance::io::cloud cloud = {};
+  clearance::io::float_cloud cloud = {};
   clearance::intrinsics camera = kinect;
   double scale = 0.001;
 
   template <class Use>
   auto with_source(Use use) const {
-    return image.pixels.empty() ? use(clearance::point_span(cloud.points)) : use(view_of(image, camera, scale));
+    return image.pixels.empty() ? use(cloud.view().source) : use(view_of(image, camera, scale));
   }
 };
 
@@ -31,7 +31,7 @@ std::vector<seen_frame> frames() {
   std::vector<seen_frame> all;
   all.push_back({"kinect", clearance::io::load_png(clouds + "kinect_seq/frame_" + kinect_frames[0] + "_depth.png")});
   for (const char* name : {"capture0001", "five_people", "table_scene_mug_stereo_textured"})
-    all.push_back({name, {}, clearance::io::load_cloud(clouds + "organized/" + name + ".pcd")});
+    all.push_back({name, {}, clearance::io::load_cloud(clouds + "organized/" + name + ".pcd").relative_to({0, 0, 0})});
   all.push_back({"shelf", shelf_frame(0), {}, shelf_camera, 1e-4});
   return all;
 }

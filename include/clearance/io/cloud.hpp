@@ -2,18 +2,12 @@
 #pragma once
 // A point cloud in memory that keeps the numbering and the precision of its file.
 
-#include <clearance/math.hpp>
+#include <clearance/points/strided_points.hpp>
+#include <clearance/search/minimum_search.hpp>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace clearance::io {
 
@@ -23,53 +17,69 @@ struct viewpoint {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
 };
 
-/// Points in the file's order, one for each of its records; an invalid record stays in its place as NaN.
-/// Point i is at `origin + points[i]` metres; the origin is 0 unless the points are far from 0 (see far_origin).
+/// A cloud as a query reads it: floats less an origin. Point i is at `pose * points[i]` in the world, to within `off`.
+struct float_cloud {
+  std::vector<vec3> points;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< In the cloud's frame.
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  position_error off;
+
+  /// What min_distance takes; this object must stay.
+  placed<point_span> view() const {
+    point_span source(points);
+    source.filter.sensor = {-real(origin.x()), -real(origin.y()), -real(origin.z())};
+    source.off = off;
+    return {source, pose};
+  }
+};
+
+/// Points in the file's order, one for each of its records, with the file's coordinates (metres); an invalid record stays
+/// in its place as NaN. A query wants floats: `min_distance(on, model, poses, cloud.near(poses, world_from_cloud).view())`.
 struct cloud {
   std::string name;
-  std::vector<vec3> points;
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> points;
   std::optional<io::viewpoint> viewpoint;
   std::size_t width = 0;  // an organised cloud has height rows of width points; any other has height 1
   std::size_t height = 1;
+
+  /// Floats less any origin, a position in the cloud's frame: exact where they can be, else off by 2^-24 of their length,
+  /// which the bracket carries. So it is tight for a robot near the origin, and true for any. Throws if the pose is not rigid.
+  float_cloud relative_to(const Eigen::Vector3d& origin, const Eigen::Isometry3d& world_from_cloud = Eigen::Isometry3d::Identity()) const;
+
+  /// Floats for a robot whose parts have these poses (world-from-part): relative to 0, if that is within 32 m of their
+  /// middle, so that a file's floats stay what they are; else to the middle, in whole metres.
+  float_cloud near(std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& world_from_cloud = Eigen::Isometry3d::Identity()) const;
 };
 
-/// What to subtract so that floats lose no more than the coordinates have: 0 on an axis along which the points lie
-/// around 0 or within 16 m of it (a float errs by less than 1 um there), else their median, rounded to a float: then
-/// the difference of two floats of similar size is exact. Outliers and (0,0,0), the usual "no return", do not count.
-inline Eigen::Vector3d far_origin(const std::vector<Eigen::Vector3d>& points) {
-  constexpr double near = 16;
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> along;
-    bool far = false;
-    for (const auto& p : points) far = far || std::abs(p[axis]) > near;
-    if (!far) continue;
-    for (const auto& p : points)
-      if (std::isfinite(p.sum()) && !p.isZero(0)) along.push_back(p[axis]);
-    if (along.empty()) continue;
-    const std::size_t last = along.size() - 1, few = last / 20;
-    const auto at = [&](std::size_t rank) {
-      std::nth_element(along.begin(), along.begin() + std::ptrdiff_t(rank), along.end());
-      return along[rank];
-    };
-    const double low = at(few), high = at(last - few), middle = float(at(last / 2));
-    if (std::isfinite(middle) && std::abs(middle) > near && std::abs(middle) > high - low) origin[axis] = middle;
+inline float_cloud cloud::relative_to(const Eigen::Vector3d& origin, const Eigen::Isometry3d& world_from_cloud) const {
+  float_cloud made{.points = {}, .origin = origin, .pose = rigid(world_from_cloud, "cloud"), .off = {}};
+  if (!origin.isZero(0)) {  // what moving the frame costs, since nobody sees it later
+    made.off.absolute = search::pose_error * (made.pose.translation().norm() + origin.norm());
+    made.pose.translation() = made.pose * origin;
   }
-  return origin;
+  made.points.reserve(points.size());
+  bool exact = true;
+  for (const Eigen::Vector3d& p : points) {
+    const Eigen::Vector3d way = p - origin;
+    made.points.push_back({to_float(way.x()), to_float(way.y()), to_float(way.z())});
+    const vec3& f = made.points.back();
+    exact = exact && (!is_finite(f) || (f.x + origin.x() == p.x() && f.y + origin.y() == p.y() && f.z + origin.z() == p.z()));
+  }
+  if (!exact) made.off.relative = strided_points<double>{}.rounding().relative;
+  return made;
 }
 
-/// A cloud of the given coordinates (metres, double), with an origin subtracted in double where that saves precision.
-inline cloud make_cloud(std::string name, const std::vector<Eigen::Vector3d>& coordinates, std::size_t width,
-                        std::size_t height) {
-  cloud made{.name = std::move(name), .points = {}, .origin = far_origin(coordinates), .viewpoint = {},
-             .width = width, .height = height};
-  made.points.reserve(coordinates.size());
-  for (const auto& p : coordinates) {
-    const Eigen::Vector3f relative = (p - made.origin).cast<float>();
-    made.points.push_back({relative.x(), relative.y(), relative.z()});
-  }
-  return made;
+inline float_cloud cloud::near(std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& world_from_cloud) const {
+  const std::vector<world_transform> parts(poses.begin(), poses.end());
+  const auto [x, y, z] = search::middle_of(rigid_transform_of(world_from_cloud, "cloud"), parts.data(), parts.size());
+  const Eigen::Vector3d middle(x, y, z);
+  if (middle.cwiseAbs().maxCoeff() > 32) return relative_to(middle.array().round(), world_from_cloud);
+  return relative_to(Eigen::Vector3d::Zero(), world_from_cloud);
+}
+
+/// A cloud of the given coordinates (metres).
+inline cloud make_cloud(std::string name, std::vector<Eigen::Vector3d> points, std::size_t width, std::size_t height) {
+  return {.name = std::move(name), .points = std::move(points), .viewpoint = {}, .width = width, .height = height};
 }
 
 }  // namespace clearance::io

@@ -66,6 +66,15 @@ struct depth_image {
     return depth_sample(d, {product((real(u) - cx) * inverse_fx, z), product((real(v) - cy) * inverse_fy, z), z}, nearest, farthest);
   }
 
+  /// Scale, focal length and three products cost x and y six roundings, z two; and what cx and cy lost is as much of z.
+  position_error rounding() const {
+    const auto square = [](double a) { return a * a; };
+    const auto widest = [](double c, double n) { return std::fmax(std::fabs(c), std::fabs(n - 1 - c)); };
+    const double slant = square(widest(cx, width) * inverse_fx) + square(widest(cy, height) * inverse_fy);  // of the outermost ray
+    const double centre = std::sqrt(square(double(cx) * inverse_fx) + square(double(cy) * inverse_fy));
+    return {0, 0x1.001p-24 * (std::sqrt((36 * slant + 4) / (slant + 1)) + centre)};
+  }
+
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(pixels, std::size_t(row) * height)); }
   depth_image at(const std::byte* copy) const {
     depth_image moved = *this;

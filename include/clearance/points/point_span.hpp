@@ -10,6 +10,7 @@ struct point_span {
   const vec3* points = nullptr;
   std::size_t count = 0;
   point_filter filter = {};
+  position_error off = {};  ///< What the floats have lost, if they were made from something finer.
 
   point_span() = default;
   point_span(const vec3* points, std::size_t count, point_filter filter = {}) : points(points), count(count), filter(filter) {}
@@ -51,7 +52,12 @@ struct point_span {
 
   /// The memory it reads, and the same view of a copy elsewhere.
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(points, count)); }
-  point_span at(const std::byte* copy) const { return {reinterpret_cast<const vec3*>(copy), count, filter}; }
+  point_span at(const std::byte* copy) const {
+    point_span moved = *this;
+    moved.points = reinterpret_cast<const vec3*>(copy);
+    return moved;
+  }
+  position_error rounding() const { return off; }
 };
 
 static_assert(point_source<point_span>);

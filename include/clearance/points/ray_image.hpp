@@ -35,6 +35,9 @@ struct ray_image {
     return depth_sample(d, {product(rays[i].x, z), product(rays[i].y, z), z}, nearest, farthest);
   }
 
+  /// Scale, ray and two products.
+  position_error rounding() const { return {0, 4 * 0x1.001p-24}; }
+
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(pixels, std::size_t(row) * height)); }
   ray_image at(const std::byte* copy) const {
     ray_image moved = *this;

@@ -33,6 +33,11 @@ struct strided_points {
     moved.data = copy;
     return moved;
   }
+  /// Of a double less the origin: 2^-53, and 2^-24 when it becomes a float.
+  position_error rounding() const {
+    const bool as_they_are = std::is_same_v<Scalar, float> && origin == vec3{0, 0, 0};
+    return {0, as_they_are ? 0 : 0x1.00001p-24};
+  }
 
  private:
   // Byte by byte: a record of 18 or 22 bytes puts floats at odd addresses, which a GPU cannot load.

@@ -16,9 +16,9 @@ CLEARANCE_HD inline void count(min_distance_result& r, const totals& all, std::u
 }
 
 /// From the minimum to what is certain; `certain`: some point is certainly inside.
-CLEARANCE_HD inline void bracket(min_distance_result& r, double lower, real winner_tolerance, bool certain, double error) {
+CLEARANCE_HD inline void bracket(min_distance_result& r, double lower, real winner_tolerance, bool certain, const float_error& error) {
   if (r.part == none) return;  // no data
-  const double error_here = fma(unit_error, double(absolute(r.distance)), error);
+  const double error_here = error.at(r.distance);
   const bool inside = certain || r.distance < -(error_here + winner_tolerance);
   // A point inside leaves nothing above 0, and a missing certificate (an infinite gap) nothing below.
   r.lower = lower > 0 && !inside ? rounded_down(lower) : 0;
@@ -28,8 +28,8 @@ CLEARANCE_HD inline void bracket(min_distance_result& r, double lower, real winn
 }
 
 /// What a minimum of `distance` leaves certain for a part that may be nearer by `slop` (gap and tolerance).
-CLEARANCE_HD inline double certain_distance(real distance, double slop, double error) {
-  return double(distance) - slop - fma(unit_error, double(absolute(distance)), error);
+CLEARANCE_HD inline double certain_distance(real distance, double slop, const float_error& error) {
+  return double(distance) - slop - error.at(distance);
 }
 CLEARANCE_HD inline double slop(const part_facts& f) { return double(f.gap) + double(f.tolerance); }
 
@@ -40,7 +40,7 @@ struct conclude_body {
   std::uint32_t part_count;
   const totals* all;
   const distance_key* part_best;
-  double error;         ///< The largest `placement::error` of the call.
+  float_error error;    ///< The largest of the call.
   double largest_slop;  ///< Of all parts: all that is known of a part without a minimum of its own.
   std::uint64_t seen;
   min_distance_result* result;

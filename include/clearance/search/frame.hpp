@@ -19,15 +19,45 @@ struct totals {
 struct placement {
   rigid_transform part_from_cloud;  ///< The exact path: one fixed sequence of operations.
   ball around;                      ///< The part's ball in the cloud's frame, its radius enlarged by every error.
-  real error;                       ///< Most that float arithmetic can be off near this part, at distance 0.
+  real error;                       ///< Most that a distance to this part can be off, at distance 0.
   world_transform world_from_part;
 };
 
-/// A float result at `distance` is off by at most error + unit_error * |distance|: 16 units of rounding of
-/// |p| + |t| + part size. Transform, deprojection and leaf formulas together stay below ten.
-inline constexpr double unit_error = 0x1p-20;
-/// And by this, because squares of lengths below 1e-19 m lose digits, and those of lengths below 2e-23 m are 0.
+/// Arithmetic in floats costs at most 16 units of rounding (2^-24) of |p| + |t| + part size, where p is less the origin:
+/// of |p| that subtraction one, the rotation's own floats 1.8, the sums of products two; of |t| three; of the point in the
+/// part's frame one, and a leaf formula five. That is 11; the other five may be the source's own.
+inline constexpr double unit_error = 0x1p-20, source_share = 5 * 0x1p-24;
+/// And this, because squares of lengths below 1e-19 m lose digits, and those of lengths below 2e-23 m are 0.
 inline constexpr double underflow_error = 0x1p-72;
+/// Poses are composed in double, from rotations orthonormal to 1e-14: with R' for the inverse of R a way is 1.5e-14 of itself
+/// off, that from the origin twice, and ten roundings of 2^-53 add 2e-15. All is less than this part of all ways together.
+inline constexpr double pose_error = 0x1p-44;
+
+/// Most that a distance can be off, by what the distance itself is.
+struct float_error {
+  double here = 0;                ///< At distance 0; the largest of all parts.
+  double per_metre = unit_error;  ///< And so much more for each metre.
+
+  CLEARANCE_HD double at(real distance) const { return fma(per_metre, double(absolute(distance)), here); }
+  CLEARANCE_HD void widen(const float_error& other) {
+    here = other.here > here ? other.here : here;
+    per_metre = other.per_metre > per_metre ? other.per_metre : per_metre;
+  }
+};
+
+/// What arithmetic in floats costs near a part whose size and distance from the origin sum up to `extent`.
+CLEARANCE_HD inline double arithmetic_error(double extent) { return fma(unit_error * 2, extent, underflow_error); }
+
+/// All that a distance to it can be off. `poses` is the sum of all ways between frames, `origin` that from the source's own
+/// zero to the origin. A point's position is at most extent + distance + origin long, and off by `relative` of that; what
+/// `source_share` covers of the first two is in unit_error, which counts the extent twice.
+CLEARANCE_HD inline float_error error_near(double extent, double poses, double origin, const position_error& off) {
+  const double here = arithmetic_error(extent) + fma(pose_error, poses, fma(off.relative, origin, off.absolute));
+  if (off.relative <= source_share) return {here, unit_error};
+  const double more = off.relative - source_share;
+  if (!(more < 0.5)) return {double(infinity), unit_error};
+  return {fma(more, extent, here) / (1 - more), (unit_error + more) / (1 - more)};  // of the distance as it is, said of the computed one
+}
 
 /// Where the cloud's coordinates start to be subtracted: near the robot, in steps of 64 m, so that ordinary scenes lose
 /// nothing and clouds in world coordinates of 1e6 m no more than their own coordinates have lost.
@@ -46,21 +76,24 @@ CLEARANCE_HD inline position middle_of(const world_transform& world_from_cloud, 
   return world_from_cloud.inverse()(position{sum.x / double(parts), sum.y / double(parts), sum.z / double(parts)});
 }
 
+CLEARANCE_HD inline double norm(position p) { return sqrt(fma(p.x, p.x, fma(p.y, p.y, p.z * p.z))); }
+
 /// `part_from_cloud` maps positions that `origin` was subtracted from. Both transforms have passed make_rigid.
 CLEARANCE_HD inline placement place(const part_facts& facts, const world_transform& world_from_part, const world_transform& world_from_cloud,
-                                    vec3 origin) {
+                                    vec3 origin, const position_error& off) {
   const world_transform part_from_world = world_from_part.inverse();
   world_transform part_from_cloud = part_from_world * world_from_cloud;
   const position start = part_from_world(world_from_cloud(origin));
   part_from_cloud.m[0][3] = start.x, part_from_cloud.m[1][3] = start.y, part_from_cloud.m[2][3] = start.z;
-  const auto norm = [](position p) { return sqrt(fma(p.x, p.x, fma(p.y, p.y, p.z * p.z))); };
   const position center = part_from_cloud.inverse()(facts.center);
-  const double size = norm({facts.center.x, facts.center.y, facts.center.z}) + facts.radius, away = norm(start);
-  const double error = fma(unit_error * 2, size + away, underflow_error);
+  const double extent = norm({facts.center.x, facts.center.y, facts.center.z}) + facts.radius + norm(start);
+  const double origin_away = norm({origin.x, origin.y, origin.z});
+  const double poses = norm(world_from_part.translation()) + norm(world_from_cloud.translation()) + origin_away;
   placement p;
   p.part_from_cloud = to_floats(part_from_cloud);
-  p.around = {{real(center.x), real(center.y), real(center.z)}, rounded_up(facts.radius + 2 * error)};
-  p.error = rounded_up(error);
+  // Only what arithmetic can do to the points as they were read: bounds are about what is computed.
+  p.around = {{real(center.x), real(center.y), real(center.z)}, rounded_up(facts.radius + 2 * arithmetic_error(extent))};
+  p.error = rounded_up(error_near(extent, poses, origin_away, off).here);
   p.world_from_part = world_from_part;
   return p;
 }
@@ -69,12 +102,16 @@ CLEARANCE_HD inline placement place(const part_facts& facts, const world_transfo
 struct frame_facts {
   world_transform world_from_cloud;
   vec3 origin = {0, 0, 0};
-  double error = 0;  ///< The largest `placement::error`,
-  double slop = 0;   ///< and the largest gap plus tolerance, of all parts.
+  float_error error;
+  double slop = 0;  ///< The largest gap plus tolerance of all parts.
+
+  frame_facts() = default;
+  CLEARANCE_HD frame_facts(const world_transform& cloud, vec3 origin, const position_error& off)
+      : world_from_cloud(cloud), origin(origin), error{0, error_near(0, 0, 0, off).per_metre} {}
 
   CLEARANCE_HD void add(const part_facts& facts, const placement& place) {
     const double its = double(facts.gap) + double(facts.tolerance);
-    error = place.error > error ? place.error : error;
+    error.widen({place.error});
     slop = its > slop ? its : slop;
   }
 };
@@ -84,36 +121,34 @@ struct cloud_frame : frame_facts {
   std::vector<placement> places;
   std::vector<world_transform> poses;
 
-  /// Throws if a pose is not rigid. `world_from_cloud` is taken as checked.
-  void put(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const world_transform& cloud) {
+  /// Throws if a pose is not rigid. `cloud`, world-from-cloud, is taken as checked; `off` is its source's `rounding_of`.
+  void put(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const world_transform& cloud, const position_error& off) {
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__FMA__)
     // Without -mfma each fma is a call, which makes a frame's poses cost microseconds. Same bits, either way.
-    if (__builtin_cpu_supports("fma")) return put_with_fma(facts, parts, cloud);
+    if (__builtin_cpu_supports("fma")) return put_with_fma(facts, parts, cloud, off);
 #endif
-    put_plain(facts, parts, cloud);
-  }
-  void put(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const Eigen::Isometry3d& cloud) {
-    put(facts, parts, world_transform(cloud));
+    put_plain(facts, parts, cloud, off);
   }
   cloud_frame() = default;
-  cloud_frame(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const Eigen::Isometry3d& cloud) {
-    put(facts, parts, world_transform(cloud));
+  cloud_frame(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const Eigen::Isometry3d& cloud,
+              const position_error& off = {}) {
+    put(facts, parts, world_transform(cloud), off);
   }
 
  private:
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__FMA__)
   __attribute__((target("fma"), flatten)) void put_with_fma(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts,
-                                                            const world_transform& cloud) {
-    put_plain(facts, parts, cloud);
+                                                            const world_transform& cloud, const position_error& off) {
+    put_plain(facts, parts, cloud, off);
   }
 #endif
-  void put_plain(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const world_transform& cloud) {
-    world_from_cloud = cloud, error = slop = 0;
+  void put_plain(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const world_transform& cloud,
+                 const position_error& off) {
     poses.clear(), places.clear();
     for (std::size_t k = 0; k < parts.size(); ++k) poses.push_back(rigid_transform_of(parts[k], "part", std::int64_t(k)));
-    origin = origin_near(middle_of(world_from_cloud, poses.data(), poses.size()));
+    frame_facts::operator=({cloud, origin_near(middle_of(cloud, poses.data(), poses.size())), off});
     for (std::size_t k = 0; k < parts.size(); ++k) {
-      places.push_back(place(facts[k], poses[k], world_from_cloud, origin));
+      places.push_back(place(facts[k], poses[k], world_from_cloud, origin, off));
       add(facts[k], places.back());
     }
   }

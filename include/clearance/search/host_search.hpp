@@ -30,7 +30,7 @@ class minimum_search<host, PartView, Traversal> {
     totals_ = {};
     part_best_.assign(minima == nullptr ? 0 : model_.size(), no_key);
     std::fill_n(minima, part_best_.size(), part_minimum{});
-    clouds_ = 0, seen_ = 0, error_ = 0;
+    clouds_ = 0, seen_ = 0, error_ = {};
   }
 
   /// Searches a cloud; they are numbered in this order.
@@ -41,8 +41,8 @@ class minimum_search<host, PartView, Traversal> {
     const std::uint64_t n = source.size();
     if (seen_ + n >= none)
       throw std::invalid_argument("clearance::min_distance: more than 2^32 - 2 points in one call");
-    frame_.put(model_.facts, poses_, world_from_cloud);
-    error_ = std::max(error_, frame_.error);
+    frame_.put(model_.facts, poses_, world_transform(world_from_cloud), rounding_of(source));
+    error_.widen(frame_.error);
     const auto parts = std::uint32_t(model_.size());
     const auto first = std::uint32_t(seen_);
     distance_key* const part_best = minima_ == nullptr ? nullptr : part_best_.data();
@@ -113,7 +113,7 @@ class minimum_search<host, PartView, Traversal> {
   part_minimum* minima_ = nullptr;
   std::uint32_t clouds_ = 0;
   std::uint64_t seen_ = 0;
-  double error_ = 0;
+  search::float_error error_;
 };
 
 }  // namespace clearance

@@ -73,8 +73,8 @@ class minimum_search {
     const Eigen::Isometry3d world_from_cloud = rigid(cloud_pose, "cloud", cloud);
     const std::uint64_t n = source.size();
     if (seen_ + n >= none) throw std::invalid_argument("clearance::min_distance: more than 2^32 - 2 points in one call");
-    const search::cloud_frame frame(model_.facts, poses_, world_from_cloud);
-    error_ = std::max(error_, frame.error);
+    const search::cloud_frame frame(model_.facts, poses_, world_from_cloud, rounding_of(source));
+    error_.widen(frame.error);
     slop_ = frame.slop;
     places_ = on_.template make_scratch<search::placement>(model_.size());
     on_.stage(std::span<const search::placement>(frame.places), places_.data());
@@ -114,7 +114,8 @@ class minimum_search {
   std::size_t stack_bytes_ = 0;
   std::uint32_t clouds_ = 0;
   std::uint64_t seen_ = 0;
-  double error_ = 0, slop_ = 0;
+  search::float_error error_;
+  double slop_ = 0;
 };
 
 }  // namespace clearance

@@ -73,9 +73,9 @@ class launcher {
     on_.stage(std::span<const world_transform>(staged_->world_from_part, parts_), placed_.data()->world_from_part);
   }
 
-  /// Poses in device or pinned memory, made ready there.
-  void place(const world_transform* poses, const world_transform* cloud, args& a) {
-    place_kernel<<<1, most_parts, 0, on_.stream>>>(poses, cloud, a.views, parts_, placed_.data());
+  /// Poses in device or pinned memory, made ready there; `off` is the `rounding_of` the cloud's source.
+  void place(const world_transform* poses, const world_transform* cloud, const position_error& off, args& a) {
+    place_kernel<<<1, most_parts, 0, on_.stream>>>(poses, cloud, a.views, parts_, off, placed_.data());
     check_cuda(cudaGetLastError(), "kernel launch");
     a.far = a.placed = true;
   }
