@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The bracket is true wherever most points, the origin of their floats, or the poses are.
+#include "search/far_scenes.hpp"
+
+#include <clearance/min_distance_query.hpp>
+
+using namespace testing;
+using clearance::host, clearance::placed;
+
+namespace {
+
+/// By every way in: plain, by parts, prepared (cold and warm), and with another cloud before and after it.
+struct ask_host {
+  verdict& v;
+
+  template <class Body, class Source>
+  void operator()(const std::vector<Body>& robot, const std::vector<Eigen::Isometry3d>& poses, const Source& source, const truth& t,
+                  const std::string& name) const {
+    const auto model = model_of(robot);
+    const wide distance = t.distance(robot, poses);
+    const placed cloud{source, t.pose};
+    require_bracket(clearance::min_distance(host{}, model, poses, cloud), distance, v, name);
+    require_bracket(clearance::min_distance_per_part(host{}, model, poses, cloud).first, distance, v, name + ", by parts");
+    clearance::min_distance_query query(host{}, model);
+    for (const char* when : {", cold", ", warm"}) require_bracket(query(poses, cloud), distance, v, name + when);
+    // A cloud whose floats are exact comes before or after it, near the robot but a little farther: the error is that of both.
+    const std::vector<vec3> other = {{0, 0, real(distance) + 3}};
+    for (const bool before : {true, false}) {
+      clearance::min_distance_result r;
+      clearance::minimum_search search(host{}, model.view(), std::span<const Eigen::Isometry3d>(poses), clearance::near_first{}, &r);
+      if (before) search.add(clearance::point_span(other), poses[0]);
+      search.add(source, t.pose);
+      if (!before) search.add(clearance::point_span(other), poses[0]);
+      search.conclude();
+      const wide both = std::min(distance, truth{{oracle::vec{0, 0, wide(other[0].z)}}, poses[0]}.distance(robot, poses));
+      require_bracket(r, both, v, name + (before ? ", the second" : ", the first"));
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("The bracket contains the distance however far most points, and the origin of their floats, are") {
+  verdict v;
+  each_far_question<ball_body>(300, ask_host{v});
+  each_far_question<box_body>(300, ask_host{v});
+}
+
+TEST_CASE("The bracket contains the distance at poses as far away as poses may be") {
+  verdict v;
+  each_far_pose<ball_body>(300, ask_host{v});
+  each_far_pose<box_body>(300, ask_host{v});
+}
+
+TEST_CASE("A robot near the origin of the floats has a bracket of micrometres, whatever is far away") {
+  dice d(93);
+  verdict v;
+  for (int round = 0; round < 50; ++round) {
+    far_scene<box_body> s(d, 4 * round + 1);  // with points near it, somewhere up to 1e7 m from 0
+    const auto model = model_of(s.robot);
+    s.each_source([&](const auto& source, const truth& t, const std::string& name) {
+      if (name.find("less the robot") == name.npos) return;
+      const auto r = clearance::min_distance(host{}, model, s.poses, placed{source, t.pose});
+      if (r.distance < 5) v.require(r.upper - r.lower < 100e-6f + 0x1p-42f * (s.world_from_cloud.translation().norm() + s.middle.norm()), name, ": from",
+                                    r.lower, " to", r.upper);
+    });
+  }
+}
+
+TEST_CASE("What a source's positions have lost is no more than it says") {
+  dice d(94);
+  verdict v;
+  const auto check = [&](const auto&, const auto&, const auto& source, const truth& t, const std::string& name) {
+    const auto off = clearance::rounding_of(source);
+    for (std::size_t i = 0; i < source.size(); ++i) {
+      if (!t.points[i]) continue;
+      const auto p = wider(source[i].position);
+      v.require(oracle::between(p, *t.points[i]) <= off.absolute + off.relative * oracle::length(*t.points[i]), name, ", point", i);
+    }
+  };
+  each_far_question<ball_body>(300, check);
+  CHECK(clearance::rounding_of(clearance::point_span{}).relative == 0);
+  CHECK(clearance::rounding_of(clearance::strided_points<float>{}).relative == 0);
+}
