@@ -105,9 +105,9 @@ TEST_CASE("a PLY file that is not what it says is refused") {
   contains(refused(".ply", ply("binary_little_endian", "2", "float", record(1, 2, 3))), "more than the file holds");
   contains(refused(".ply", ply("ascii", "2", "float", "3.0000 200 1.00000 2.00000\n")), "the file ends after 1");
   contains(refused(".ply", ply("ascii", "1", "float", "3 200 1 two\n")), ":12: \"two\" is not a number");
-  contains(refused(".ply", ply("ascii", "1", "float", "3 200 1\n\n\n")), ":12: a vertex needs 4 values, here are 3");
+  contains(refused(".ply", ply("ascii", "1", "float", "3 200 1\n\n\n")), ":12: vertex 0 has fewer values than the header says");
   contains(refused(".ply", ply("ascii", "1", "real", "")), ":5: a PLY property needs");
-  contains(refused(".ply", ply("ascii", "1", "double", "1 200 5000000.125 2\n")), "rounded to float");
+  CHECK(read(".ply", ply("ascii", "1", "double", "1 200 5000000.125 2\n")).points.at(0).x() == 5000000.125);
   CHECK(read(".ply", ply("ascii", "1", "double", "1 200 5.125 2\n")).points.at(0) == Eigen::Vector3d(5.125, 2, 1));
 }
 
@@ -143,8 +143,8 @@ TEST_CASE("real damaged PLY files are read or refused", "[data]") {
     ++(why.empty() ? read : refused);
     CHECK((why.empty() || why.find(entry.path().string()) == 0));
   }
-  CHECK(read == 21);
-  CHECK(refused == 3);
+  CHECK(read == 19);
+  CHECK(refused == 5);  // counts too low, lines with too many values
   CHECK(io::load_ply(folder + "trimesh/points_emptyface.ply").points.size() == 1024);
   CHECK(io::load_ply(folder + "trimesh/empty.ply").points.empty());
 }

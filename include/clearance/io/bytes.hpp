@@ -8,6 +8,7 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <string_view>
 
 namespace clearance::io {
@@ -62,12 +63,5 @@ class byte_reader {
   std::string_view rest_;
   const std::string* file_;
 };
-
-/// Replaces the file's content. Throws std::runtime_error naming the file.
-inline void write_bytes(const std::string& file, std::string_view bytes) {
-  std::ofstream out(file, std::ios::binary);
-  if (!out) refuse(file, "cannot be opened for writing");
-  if (!out.write(bytes.data(), std::streamsize(bytes.size())).flush()) refuse(file, "cannot be written");
-}
 
 }  // namespace clearance::io

@@ -18,11 +18,11 @@ inline std::string extension(const std::string& file) {
 }
 
 /// Reads a point cloud by the end of its name: .pcd, .ply, .xyz or .txt. Throws std::runtime_error.
-inline cloud load_cloud(const std::string& file) {
+inline cloud load_cloud(const std::string& file, const read_limits& limits = {}) {
   const std::string end = extension(file);
-  if (end == ".pcd") return load_pcd(file);
-  if (end == ".ply") return load_ply(file);
-  if (end == ".xyz" || end == ".txt") return load_xyz(file);
+  if (end == ".pcd") return within_memory(file, [&] { return load_pcd(file, limits); });
+  if (end == ".ply") return within_memory(file, [&] { return load_ply(file, limits); });
+  if (end == ".xyz" || end == ".txt") return within_memory(file, [&] { return load_xyz(file, limits); });
   refuse(file, "is no point cloud by its name: .pcd, .ply, .xyz and .txt are read");
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 // Lines, words and numbers of a text file, without locale and without copies.
 
+#include <clearance/io/sentence.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -15,13 +17,28 @@
 
 namespace clearance::io {
 
-/// Takes the next line off `rest`, without its end (\n or \r\n).
+/// Takes the next line off `rest`, without its end: \n, \r\n or \r alone.
 inline std::string_view take_line(std::string_view& rest) {
-  const std::size_t end = rest.find('\n');
-  std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-  if (line.ends_with('\r')) line.remove_suffix(1);
+  std::size_t end = 0;
+  while (end < rest.size() && rest[end] != '\n' && rest[end] != '\r') ++end;
+  const std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(std::min(rest.size(), end + (rest.substr(end).starts_with("\r\n") ? 2 : 1)));
   return line;
+}
+
+/// The binary data after a text header, of which the last line was just taken off `all`, so that `rest` was left. Where
+/// the header's lines end by \r alone, a \n after the last one is data.
+inline std::string_view data_after(std::string_view all, std::string_view rest) {
+  const std::string_view first = all.substr(std::min(all.find_first_of("\r\n"), all.size()));
+  const std::size_t taken = all.size() - rest.size();
+  const bool returns = first.starts_with('\r') && !first.starts_with("\r\n");
+  return returns && all.substr(0, taken).ends_with("\r\n") ? all.substr(taken - 1) : rest;
+}
+
+/// Without the byte order mark that some editors put first.
+inline std::string_view without_mark(std::string_view bytes) {
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  return bytes;
 }
 
 /// Takes the next word off `line`; empty at its end. Any of `separators` ends a word.
@@ -38,28 +55,31 @@ inline std::vector<std::string_view> words(std::string_view line) {
   return all;
 }
 
-/// The number that the whole word spells ("nan" and "inf" too; beyond double it is inf or 0), or nothing.
+/// Whether the number that `word` spells, which no double holds, is too small rather than too large.
+inline bool spells_tiny(std::string_view word) {
+  const std::size_t e = std::min(word.find_first_of("eE"), word.size());
+  const std::size_t point = std::min(word.find('.'), e), first = word.find_first_of("123456789");
+  long long exponent = 0;
+  if (e < word.size()) {
+    std::string_view spelt = word.substr(e + 1);
+    if (spelt.starts_with('+')) spelt.remove_prefix(1);
+    const auto [end, error] = std::from_chars(spelt.data(), spelt.data() + spelt.size(), exponent);
+    if (error == std::errc::result_out_of_range) return spelt.starts_with('-');
+  }
+  return first > point ? exponent < (long long)(first - point) : exponent + (long long)(point - first) < 0;
+}
+
+/// The number that the whole word spells ("nan" and "inf" too), or nothing, as for one too large for its type. One too
+/// small for it is 0.
 template <class T>
 std::optional<T> number(std::string_view word) {
   if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);  // from_chars knows no plus
   T value{};
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || word.empty()) return std::nullopt;
-  if (error == std::errc::result_out_of_range) {
-    if constexpr (std::numeric_limits<T>::is_integer)
-      return std::nullopt;
-    else
-      return word.find("e-") == word.npos && word.find("E-") == word.npos ? std::numeric_limits<T>::infinity() : T(0);
-  }
+  if constexpr (!std::numeric_limits<T>::is_integer)
+    if (error == std::errc::result_out_of_range && spells_tiny(word)) return T(0);
   return error == std::errc{} ? std::optional<T>(value) : std::nullopt;
-}
-
-/// The beginning of a word as a sentence may show it: no control characters, no bytes beyond ASCII.
-inline std::string quoted(std::string_view word) {
-  std::string text(word.substr(0, 40));
-  for (char& c : text)
-    if (c < ' ' || c > '~') c = '?';
-  return '"' + text + '"';
 }
 
 }  // namespace clearance::io

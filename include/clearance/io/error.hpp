@@ -1,31 +1,103 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/io/sentence.hpp>
+
+#include <sys/stat.h>
+
+#include <algorithm>
 #include <cstddef>
-#include <filesystem>
+#include <cstdint>
 #include <fstream>
+#include <new>
 #include <stdexcept>
 #include <string>
-#include <system_error>
+#include <vector>
 
 namespace clearance::io {
 
-/// Ends the reading of a file with one sentence that starts with its name (and line, counted from 1; 0 for none).
+/// Ends the reading of a file with one sentence of at most 380 bytes that starts with its name (and line, counted from
+/// 1; 0 for none). Long names lose their middle.
 [[noreturn]] inline void refuse(const std::string& file, const std::string& why, std::size_t line = 0) {
-  throw std::runtime_error(file + (line ? ":" + std::to_string(line) : "") + ": " + why);
+  const std::string place = sentence(file, 200) + (line ? ":" + std::to_string(line) : "") + ": ";
+  throw std::runtime_error(place + sentence(why, longest_sentence - 20 - place.size()));
 }
 
-/// The whole file as bytes. A missing, unreadable or empty one (0 bytes) is an error that names it.
-inline std::string read_bytes(const std::string& file) {
-  std::error_code failed;
-  const auto status = std::filesystem::status(file, failed);
-  if (!std::filesystem::exists(status)) refuse(file, "there is no such file");
-  if (std::filesystem::is_directory(status)) refuse(file, "is a folder, not a file");
+/// What `read()` returns; where it needs more memory than there is, a sentence that names the file.
+template <class Read>
+auto within_memory(const std::string& file, Read read) {
+  try {
+    return read();
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  }
+  refuse(file, "there is not enough memory to read it");
+}
+
+/// How much a file may become. Both are said in the sentence that refuses one.
+struct read_limits {
+  /// Bytes of memory that the points or pixels of a compressed file may take. A few megabytes can hold gigabytes.
+  std::uint64_t unfolded = std::uint64_t(1) << 30;
+  /// Bytes that come from a pipe, which may never end.
+  std::uint64_t piped = std::uint64_t(1) << 32;
+};
+
+/// "1024 MiB", for sentences.
+inline std::string mebibytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
+
+/// Which file it is, whatever name it goes by.
+struct file_identity {
+  ::dev_t device = 0;
+  ::ino_t number = 0;
+  friend bool operator==(const file_identity&, const file_identity&) = default;
+};
+
+/// While one lives, it knows the files that its thread reads: so that what is written is none of them.
+class files_read {
+ public:
+  files_read() : above_(innermost()) { innermost() = this; }
+  ~files_read() { innermost() = above_; }
+  files_read(const files_read&) = delete;
+  files_read& operator=(const files_read&) = delete;
+
+  bool has(const file_identity& file) const { return std::ranges::find(seen_, file) != seen_.end(); }
+
+  static void note(const file_identity& file) {
+    for (files_read* each = innermost(); each; each = each->above_) each->seen_.push_back(file);
+  }
+
+ private:
+  static files_read*& innermost() {
+    thread_local files_read* log = nullptr;
+    return log;
+  }
+  files_read* above_;
+  std::vector<file_identity> seen_;
+};
+
+/// The whole file, or what a pipe gives until it ends, as bytes. A missing, unreadable or empty one (0 bytes), a folder
+/// and a device are errors that name it.
+inline std::string read_bytes(const std::string& file, const read_limits& limits = {}) {
+  struct ::stat status {};
+  // A NUL would end the name for the system, but not for us.
+  if (file.find('\0') != file.npos || ::stat(file.c_str(), &status) != 0) refuse(file, "there is no such file");
+  if (S_ISDIR(status.st_mode)) refuse(file, "is a folder, not a file");
+  if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)) refuse(file, "is a device, not a file");
+  const bool regular = S_ISREG(status.st_mode);
   std::ifstream in(file, std::ios::binary);
   if (!in) refuse(file, "cannot be opened for reading");
-  std::string bytes;
-  // In pieces, not by the size that the file system reports: a pipe or /dev/stdin has none.
-  for (char piece[1 << 16]; in.read(piece, sizeof piece), in.gcount() > 0;) bytes.append(piece, std::size_t(in.gcount()));
+  if (regular) files_read::note({status.st_dev, status.st_ino});
+  std::string bytes = within_memory(file, [&] {
+    std::string all;
+    if (regular) all.reserve(std::size_t(status.st_size));
+    // In pieces: a pipe has no size, and a file may grow meanwhile.
+    for (char piece[1 << 16]; in.read(piece, sizeof piece), in.gcount() > 0;) {
+      all.append(piece, std::size_t(in.gcount()));
+      if (!regular && all.size() > limits.piped)
+        refuse(file, "gives more than " + mebibytes(limits.piped) + ", the limit for what is no regular file");
+    }
+    return all;
+  });
   if (in.bad()) refuse(file, "cannot be read");
   if (bytes.empty()) refuse(file, "is empty (0 bytes)");
   return bytes;

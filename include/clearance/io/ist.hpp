@@ -5,6 +5,7 @@
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/packed_part.hpp>
 #include <clearance/io/png_check.hpp>
+#include <clearance/io/write_file.hpp>
 
 #include <set>
 #include <span>

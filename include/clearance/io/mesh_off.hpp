@@ -57,6 +57,12 @@ inline polygon_mesh read_off(std::string_view rest, const std::string& file) {
     }
     mesh.ends.push_back(mesh.corners.size());
   }
+  while (!rest.empty()) {
+    line = take_line(rest);
+    ++at;
+    if (line = line.substr(0, line.find('#')); line.find_first_not_of(" \t\r\v\f") != line.npos)
+      refuse(file, "has more lines than the header's " + std::to_string(faces) + " faces", at);
+  }
   return mesh;
 }
 

@@ -46,6 +46,17 @@ inline std::vector<Eigen::Vector3d> pcd_records(const char* data, const pcd_head
   return points;
 }
 
+/// The value that a word of a field spells; refuses one that is not of the field's type.
+inline double pcd_spelt(std::string_view word, const pcd_field& field, const std::string& file, std::size_t line) {
+  const auto value = number<double>(word);
+  if (!value) refuse(file, quoted(word) + " is not a number", line);
+  const double most = std::exp2(8.0 * double(field.size) - (field.type == 'I' ? 1 : 0));  // the first beyond whole types
+  const bool fits = field.type == 'F' ? field.size > 4 || !std::isfinite(*value) || std::isfinite(float(*value))
+                                      : *value == std::floor(*value) && *value >= (field.type == 'I' ? -most : 0) && *value < most;
+  if (!fits) refuse(file, quoted(word) + " is not of TYPE " + field.type + " and SIZE " + std::to_string(field.size), line);
+  return *value;
+}
+
 inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_header& header, const std::string& file) {
   if (header.points > rest.size() / 2 + 1)  // a record needs a digit and an end of line at least
     refuse(file, "POINTS says " + std::to_string(header.points) + ", more than a file of this size can hold");
@@ -63,10 +74,8 @@ inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_h
                        std::to_string(values.size()), at);
     Eigen::Vector3d p;
     for (int axis = 0; axis < 3; ++axis) {
-      const auto word = values[header.fields[header.xyz[std::size_t(axis)]].column];
-      const auto value = number<double>(word);
-      if (!value) refuse(file, quoted(word) + " is not a number", at);
-      p[axis] = *value;
+      const auto& field = header.fields[header.xyz[std::size_t(axis)]];
+      p[axis] = pcd_spelt(values[field.column], field, file, at);
     }
     points.push_back(p);
   }
@@ -76,8 +85,16 @@ inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_h
   return points;
 }
 
+/// Refuses data that POINTS does not count: more than a line end, or the zeros that some writers fill a page with.
+inline void check_pcd_end(std::string_view rest, const pcd_header& header, const std::string& file) {
+  const bool padding = rest.find_first_not_of('\0') == rest.npos && rest.size() < 4096;
+  if (!padding && rest != "\n" && rest != "\r\n")
+    refuse(file, "POINTS says " + std::to_string(header.points) + ", but " + std::to_string(rest.size()) +
+                     " bytes follow the last record");
+}
+
 inline std::vector<Eigen::Vector3d> pcd_compressed(std::string_view rest, const pcd_header& header,
-                                                   const std::string& file) {
+                                                   const std::string& file, const read_limits& limits) {
   if (header.points == 0) return {};
   std::uint32_t packed = 0, unpacked = 0;
   if (rest.size() < 8) refuse(file, "the file ends before the sizes of the compressed block");
@@ -93,6 +110,11 @@ inline std::vector<Eigen::Vector3d> pcd_compressed(std::string_view rest, const 
   if (unpacked / 88 > packed)  // three bytes of LZF stand for at most 264
     refuse(file, "the compressed block says that " + std::to_string(packed) + " bytes unpack to " +
                      std::to_string(unpacked) + ", which is impossible");
+  check_pcd_end(rest.substr(packed), header, file);
+  const std::uint64_t memory = unpacked + header.points * (sizeof(Eigen::Vector3d) + sizeof(vec3));
+  if (memory > limits.unfolded)
+    refuse(file, std::to_string(rest.size()) + " bytes unfold to " + mebibytes(memory) + " of points, more than the limit of " +
+                     mebibytes(limits.unfolded));
   std::vector<char> data(unpacked);
   if (lzf_decompress(rest.data(), packed, data.data(), unpacked) != unpacked)
     refuse(file, "the compressed block is damaged");
@@ -100,7 +122,7 @@ inline std::vector<Eigen::Vector3d> pcd_compressed(std::string_view rest, const 
 }
 
 /// Reads a PCD file from memory; `file` is its name in the cloud and in errors.
-inline cloud read_pcd(std::string_view bytes, const std::string& file) {
+inline cloud read_pcd(std::string_view bytes, const std::string& file, const read_limits& limits = {}) {
   std::string_view rest = bytes;
   const pcd_header header = take_pcd_header(rest, file);
   std::vector<Eigen::Vector3d> points;
@@ -111,17 +133,20 @@ inline cloud read_pcd(std::string_view bytes, const std::string& file) {
         refuse(file, "POINTS says " + std::to_string(header.points) + " records of " +
                          std::to_string(header.record_bytes) + " bytes, but the file ends " +
                          std::to_string(rest.size()) + " bytes after the header");
+      check_pcd_end(rest.substr(header.points * header.record_bytes), header, file);
       points = pcd_records(rest.data(), header, false);
       break;
-    case pcd_header::encoding::binary_compressed: points = pcd_compressed(rest, header, file); break;
+    case pcd_header::encoding::binary_compressed: points = pcd_compressed(rest, header, file, limits); break;
   }
   cloud made = make_cloud(file, points, header.width, header.height);
   made.viewpoint = header.viewpoint;
   return made;
 }
 
-/// Reads a PCD file: ascii, binary or binary_compressed, fields in any order and of any type; other fields are skipped,
-/// bytes after the data ignored. Throws std::runtime_error naming file and line.
-inline cloud load_pcd(const std::string& file) { return read_pcd(read_bytes(file), file); }
+/// Reads a PCD file: ascii, binary or binary_compressed, fields in any order and of any type; other fields are skipped.
+/// Throws std::runtime_error naming file and line, also where POINTS is not what the data hold.
+inline cloud load_pcd(const std::string& file, const read_limits& limits = {}) {
+  return read_pcd(read_bytes(file, limits), file, limits);
+}
 
 }  // namespace clearance::io

@@ -60,6 +60,8 @@ inline void lay_out(pcd_header& header, const std::string& file) {
 /// Takes the header off `rest`; what is left is the data.
 inline pcd_header take_pcd_header(std::string_view& rest, const std::string& file) {
   pcd_header header;
+  const std::string_view all = rest;
+  std::vector<std::string_view> given;
   bool has_fields = false, has_size = false, has_type = false, has_width = false, has_points = false;
   const auto whole = [&](std::string_view word, std::uint64_t least, std::uint64_t most, const char* what) {
     const auto value = number<std::uint64_t>(word);
@@ -86,6 +88,12 @@ inline pcd_header take_pcd_header(std::string_view& rest, const std::string& fil
     if (std::find(std::begin(known), std::end(known), key) == std::end(known))
       refuse(file, quoted(key) + " is no PCD header entry", header.lines);
     if (values.empty()) refuse(file, std::string(key) + " has no value", header.lines);
+    if (std::find(given.begin(), given.end(), key) != given.end())
+      refuse(file, std::string(key) + " is given twice", header.lines);
+    given.push_back(key);
+    constexpr std::string_view lists[] = {"FIELDS", "COLUMNS", "SIZE", "TYPE", "COUNT", "VIEWPOINT"};
+    if (values.size() > 1 && std::find(std::begin(lists), std::end(lists), key) == std::end(lists))
+      refuse(file, std::string(key) + " has more than one value", header.lines);
     if (key == "VERSION") {
       constexpr std::string_view versions[] = {".5", ".6", ".7", "0.5", "0.6", "0.7"};
       if (std::find(std::begin(versions), std::end(versions), values[0]) == std::end(versions))
@@ -147,6 +155,7 @@ inline pcd_header take_pcd_header(std::string_view& rest, const std::string& fil
         if (field.type == 'F' && field.size < 4)
           refuse(file, "field " + field.name + " is a float of " + std::to_string(field.size) + " bytes");
       lay_out(header, file);
+      rest = data_after(all, rest);
       return header;
     }
   }

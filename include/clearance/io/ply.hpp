@@ -2,40 +2,26 @@
 #pragma once
 
 #include <clearance/io/cloud.hpp>
-#include <clearance/io/ply_check.hpp>
-
-#include <assimp/Importer.hpp>
-#include <assimp/scene.h>
-
-#include <span>
+#include <clearance/io/ply_values.hpp>
 
 namespace clearance::io {
 
 /// Reads a PLY file from memory; `file` is its name in the cloud and in errors.
-inline cloud read_ply(std::string_view bytes, const std::string& file) {
-  const ply_vertices checked = check_ply(bytes, file);
+inline cloud read_ply(std::string_view rest, const std::string& file) {
+  const ply_header header = take_ply_header(rest, file);
+  if (!header.elements.empty() && !header.find("vertex")) refuse(file, "a PLY point cloud needs the element vertex");
   std::vector<Eigen::Vector3d> points;
-  if (checked.count > 0) {
-    Assimp::Importer importer;
-    const aiScene* scene = importer.ReadFileFromMemory(checked.bytes.data(), checked.bytes.size(), 0, "ply");
-    if (!scene || scene->mNumMeshes != 1) refuse(file, std::string("cannot be read as PLY: ") + importer.GetErrorString());
-    const aiMesh& mesh = *scene->mMeshes[0];
-    if (mesh.mNumVertices != checked.count)
-      refuse(file, "the header says " + std::to_string(checked.count) + " vertices, read were " +
-                       std::to_string(mesh.mNumVertices));
-    points.reserve(mesh.mNumVertices);
-    for (const aiVector3D& v : std::span(mesh.mVertices, mesh.mNumVertices)) {
-      points.emplace_back(double(v.x), double(v.y), double(v.z));
-      if (const double far = points.back().cwiseAbs().maxCoeff(); checked.doubles && std::isfinite(far) && far > 1024)
-        refuse(file, "has double coordinates of " + std::to_string(far) +
-                         " m, which would be rounded to float when read: convert it to PCD or XYZ");
-    }
-  }
+  read_ply_values(
+      rest, header, file, [&](const ply_values&, const double* p) { points.emplace_back(p[0], p[1], p[2]); },
+      [](const auto&...) {});
   return make_cloud(file, points, points.size(), 1);
 }
 
-/// Reads the vertices of a PLY file, ascii or binary, in the file's order; faces are ignored. assimp rounds coordinates
-/// to float, so doubles farther than 1024 m from 0 are refused: PCD and XYZ files keep them. Throws std::runtime_error.
-inline cloud load_ply(const std::string& file) { return read_ply(read_bytes(file), file); }
+/// Reads the vertices of a PLY file, ascii or binary, in the file's order, in double; all else is checked and passed
+/// over. Throws std::runtime_error with a sentence for a value that does not fit its type, and if the counts are not those
+/// of the data.
+inline cloud load_ply(const std::string& file, const read_limits& limits = {}) {
+  return read_ply(read_bytes(file, limits), file);
+}
 
 }  // namespace clearance::io

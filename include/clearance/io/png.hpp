@@ -86,8 +86,9 @@ namespace clearance::io {
 // These are static because they call static functions: one definition in each translation unit.
 
 /// Reads a PNG file from memory; `file` is its name in the frame and in errors.
-[[maybe_unused]] static depth_frame read_png(std::string_view bytes, const std::string& file) {
-  check_depth_png(bytes, file);
+[[maybe_unused]] static depth_frame read_png(std::string_view bytes, const std::string& file,
+                                             const read_limits& limits = {}) {
+  check_depth_png(bytes, file, limits);
   if (bytes.size() > INT_MAX) refuse(file, "is larger than 2 GiB");
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stb::stbi_us, decltype(&std::free)> pixels(
@@ -101,6 +102,8 @@ namespace clearance::io {
 
 /// Reads a depth frame from a 16-bit grey PNG; any other PNG, and a damaged or truncated one, is refused with a
 /// std::runtime_error.
-[[maybe_unused]] static depth_frame load_png(const std::string& file) { return read_png(read_bytes(file), file); }
+[[maybe_unused]] static depth_frame load_png(const std::string& file, const read_limits& limits = {}) {
+  return within_memory(file, [&] { return read_png(read_bytes(file, limits), file, limits); });
+}
 
 }  // namespace clearance::io

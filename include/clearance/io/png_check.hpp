@@ -36,7 +36,7 @@ constexpr std::uint32_t png_number(std::string_view bytes) {
 }
 
 /// Refuses anything but a complete, undamaged PNG of 16-bit grey pixels whose size its data can fill.
-inline void check_depth_png(std::string_view bytes, const std::string& file) {
+inline void check_depth_png(std::string_view bytes, const std::string& file, const read_limits& limits = {}) {
   using namespace std::string_view_literals;
   constexpr std::string_view signature = "\x89PNG\r\n\x1a\n"sv;
   if (!bytes.starts_with(signature)) refuse(file, "is not a PNG image");
@@ -71,6 +71,9 @@ inline void check_depth_png(std::string_view bytes, const std::string& file) {
   if (width > (1u << 24) || height > (1u << 24) || (2 * width + 1) * height > 1032 * packed)
     refuse(file, "the PNG image says " + std::to_string(width) + "x" + std::to_string(height) +
                      " pixels, more than its data can hold");
+  if (const std::uint64_t memory = 4 * width * height; memory > limits.unfolded)  // of the pixels, and while they are unpacked
+    refuse(file, std::to_string(packed) + " bytes unfold to " + std::to_string(width) + "x" + std::to_string(height) +
+                     " pixels of " + mebibytes(memory) + ", more than the limit of " + mebibytes(limits.unfolded));
 }
 
 }  // namespace clearance::io

@@ -3,6 +3,7 @@
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/packed_part.hpp>
+#include <clearance/io/write_file.hpp>
 
 #include <span>
 
@@ -13,8 +14,7 @@ namespace clearance::io {
 inline packing load_spheres_csv(const std::string& file) {
   constexpr std::string_view separators = " \t\r\v\f,;";
   const std::string bytes = read_bytes(file);
-  std::string_view rest = bytes;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  std::string_view rest = without_mark(bytes);
   std::vector<inner_sphere> spheres;
   bool header_may_come = true;
   for (std::size_t at = 1; !rest.empty(); ++at) {

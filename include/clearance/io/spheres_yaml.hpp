@@ -9,6 +9,7 @@
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/packed_part.hpp>
+#include <clearance/io/write_file.hpp>
 
 #include <yaml-cpp/yaml.h>
 

@@ -9,11 +9,10 @@ namespace clearance::io {
 
 /// Reads a text file with a point on each line: x y z in metres, then anything. Blanks, tabs, commas and semicolons
 /// separate; # starts a comment; "nan" keeps a record's place. Throws std::runtime_error naming file and line.
-inline cloud load_xyz(const std::string& file) {
+inline cloud load_xyz(const std::string& file, const read_limits& limits = {}) {
   constexpr std::string_view separators = " \t\r\v\f,;";
-  const std::string bytes = read_bytes(file);
-  std::string_view rest = bytes;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // the mark that some editors put first
+  const std::string bytes = read_bytes(file, limits);
+  std::string_view rest = without_mark(bytes);
   std::vector<Eigen::Vector3d> points;
   for (std::size_t at = 1; !rest.empty(); ++at) {
     std::string_view line = take_line(rest);

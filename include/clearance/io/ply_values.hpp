@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/io/ply_header.hpp>
+
+#include <bit>
+#include <cstring>
+#include <utility>
+
+namespace clearance::io {
+
+/// The values of a PLY file, one after another, each checked to be of its type. A number of any type is a double without
+/// loss.
+class ply_values {
+ public:
+  ply_values(std::string_view rest, const ply_header& header, const std::string& file)
+      : rest_(rest), file_(file), format_(header.format), at_(header.lines) {}
+
+  /// Refuses a count of records that the file cannot hold.
+  void expect(const ply_element& element) const {
+    std::size_t least = 0;  // bytes of a record
+    for (const auto& p : element.properties) least += ascii() ? 2 : ply_size(p.count.value_or(p.type));
+    if (least > 0 && element.count > (rest_.size() + 1) / least)
+      refuse(file_, "the header says " + std::to_string(element.count) + " of " + io::quoted(element.name) +
+                        ", more than the file holds (is it cut short?)");
+  }
+
+  /// Goes to the record `number` of an element. In text each is a line of its own; lines without words do not count.
+  void begin(const ply_element& element, std::uint64_t number) {
+    element_ = &element, number_ = number;
+    if (!ascii()) return;
+    do {
+      if (rest_.empty())
+        refuse(file_, "the header says " + std::to_string(element.count) + " of " + io::quoted(element.name) +
+                          ", the file ends after " + std::to_string(number) + " (is it cut short?)");
+      line_ = take_line(rest_);
+      ++at_;
+    } while (blank(line_));
+  }
+  void end() const {
+    if (!blank(line_)) refuse(file_, record() + " has more values than the header says", at_);
+  }
+
+  double next(ply_type type) { return ascii() ? spelt(type) : packed(type); }
+
+  /// How many values the list has that comes next.
+  std::uint64_t list(const ply_property& p) {
+    const double count = next(*p.count);
+    if (!(count >= 0)) refuse(file_, record() + " has a list of " + std::to_string((long long)count), line());
+    if (count > double(left()) / double(ascii() ? 1 : ply_size(p.type)))
+      refuse(file_, record() + " has a list that is longer than the file", line());
+    return std::uint64_t(count);
+  }
+
+  /// After the last element there is nothing more.
+  void finish() const {
+    if (ascii() ? !blank(rest_, " \t\r\n\v\f") : !rest_.empty())
+      refuse(file_, "has more data than its header says, after " +
+                        (element_ ? "the last of " + io::quoted(element_->name) : std::string("the header")),
+             ascii() ? at_ + 1 : 0);
+  }
+
+  std::string record() const { return element_->name.substr(0, 40) + ' ' + std::to_string(number_); }
+  std::size_t line() const { return ascii() ? at_ : 0; }
+
+ private:
+  bool ascii() const { return format_ == ply_header::encoding::ascii; }
+  std::size_t left() const { return rest_.size() + line_.size(); }
+  static bool blank(std::string_view text, const char* separators = " \t\r\v\f") {
+    return text.find_first_not_of(separators) == text.npos;
+  }
+
+  double spelt(ply_type type) {
+    constexpr double least[] = {-0x1p7, 0, -0x1p15, 0, -0x1p31, 0};
+    constexpr double most[] = {0x1p7 - 1, 0x1p8 - 1, 0x1p15 - 1, 0x1p16 - 1, 0x1p31 - 1, 0x1p32 - 1};
+    constexpr const char* names[] = {"char", "uchar", "short", "ushort", "int", "uint"};
+    const std::string_view word = take_word(line_);
+    if (word.empty()) refuse(file_, record() + " has fewer values than the header says", at_);
+    if (is_whole(type)) {
+      const auto value = number<std::int64_t>(word);
+      if (!value || double(*value) < least[int(type)] || double(*value) > most[int(type)])
+        refuse(file_, quoted(word) + " is no " + names[int(type)] + ", as the header says", at_);
+      return double(*value);
+    }
+    const auto value = number<double>(word);
+    if (!value || (type == ply_type::float32 && std::isfinite(*value) && !std::isfinite(float(*value))))
+      refuse(file_, quoted(word) + " is not a number" + (value ? " that a float holds" : ""), at_);
+    return *value;
+  }
+
+  double packed(ply_type type) {
+    const std::size_t size = ply_size(type);
+    if (rest_.size() < size) refuse(file_, "is cut short in " + record());
+    char bytes[8] = {};
+    std::memcpy(bytes, rest_.data(), size);
+    rest_.remove_prefix(size);
+    if ((format_ == ply_header::encoding::big_endian) != (std::endian::native == std::endian::big))
+      std::reverse(bytes, bytes + size);
+    const auto as = [&]<class T>(T value) {
+      std::memcpy(&value, bytes, sizeof value);
+      return double(value);
+    };
+    switch (type) {
+      case ply_type::int8: return as(std::int8_t());
+      case ply_type::uint8: return as(std::uint8_t());
+      case ply_type::int16: return as(std::int16_t());
+      case ply_type::uint16: return as(std::uint16_t());
+      case ply_type::int32: return as(std::int32_t());
+      case ply_type::uint32: return as(std::uint32_t());
+      case ply_type::float32: return as(float());
+      default: return as(double());
+    }
+  }
+
+  std::string_view rest_, line_;
+  const std::string& file_;
+  ply_header::encoding format_;
+  std::size_t at_;
+  const ply_element* element_ = nullptr;
+  std::uint64_t number_ = 0;
+};
+
+/// Walks through all the values of a PLY file in their order: `vertex(values, position)` is called for each record of the
+/// element vertex, `list(element, property, values, listed)` for each list; `values` says where. Refuses what does not fit
+/// the header, data after its last element included.
+template <class Vertex, class List>
+void read_ply_values(std::string_view rest, const ply_header& header, const std::string& file, Vertex vertex,
+                     List list) {
+  ply_values values(rest, header, file);
+  std::vector<double> listed;
+  for (const auto& element : header.elements) {
+    if (element.properties.empty()) continue;
+    values.expect(element);
+    const bool is_vertex = element.name == "vertex";
+    std::vector<int> axes;  // of each property, -1 for none
+    for (const auto& p : element.properties)
+      axes.push_back(is_vertex && !p.count && (p.name == "x" || p.name == "y" || p.name == "z") ? p.name[0] - 'x' : -1);
+    if (is_vertex && std::ranges::count_if(axes, [](int a) { return a >= 0; }) != 3)
+      refuse(file, "PLY vertices need the properties x, y and z, once each");
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      values.begin(element, i);
+      double position[3] = {};
+      for (std::size_t k = 0; k < axes.size(); ++k) {
+        const auto& p = element.properties[k];
+        if (!p.count) {
+          const double value = values.next(p.type);
+          if (axes[k] >= 0) position[axes[k]] = value;
+          continue;
+        }
+        listed.clear();
+        for (std::uint64_t left = values.list(p); left > 0; --left) listed.push_back(values.next(p.type));
+        list(element, p, values, listed);
+      }
+      values.end();
+      if (is_vertex) vertex(values, position);
+    }
+  }
+  values.finish();
+}
+
+}  // namespace clearance::io

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The one way in which this library writes files: beside, then in place, so that a full disk or a crash costs nothing.
+
+#include <clearance/io/error.hpp>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <random>
+#include <utility>
+
+namespace clearance::io {
+
+/// Refuses what may not be replaced by a new file: a folder, a device or pipe, a symbolic link (the file behind it is
+/// meant, or is it?). Returns what is there now.
+inline std::optional<struct ::stat> check_target(const std::string& file) {
+  struct ::stat there {};
+  if (file.empty() || file.find('\0') != file.npos) refuse(file, "is no name of a file");
+  if (::lstat(file.c_str(), &there) != 0) {
+    if (errno != ENOENT) refuse(file, std::string("cannot be written: ") + std::strerror(errno));
+    return std::nullopt;
+  }
+  if (S_ISDIR(there.st_mode)) refuse(file, "is a folder, and cannot be written");
+  if (S_ISLNK(there.st_mode)) refuse(file, "is a symbolic link, which is not written through: name the file itself");
+  if (!S_ISREG(there.st_mode)) refuse(file, "is no regular file, and is not written to");
+  return there;
+}
+
+namespace detail {
+
+/// A new file in the folder of `file` under a name that nobody can foresee; gone again unless it is put in place.
+class file_beside {
+ public:
+  file_beside(const std::string& file, ::mode_t mode) : file_(file) {
+    const std::size_t slash = file.rfind('/');
+    folder_ = slash == file.npos ? "." : file.substr(0, slash + 1);
+    std::random_device random;
+    for (int tries = 0; at_ < 0; ++tries) {
+      name_ = (slash == file.npos ? "" : folder_) + ".clearance-";
+      for (int k = 0; k < 4; ++k) name_ += std::to_string(random());
+      at_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+      if (at_ < 0 && (errno != EEXIST || tries > 9)) fail("a new file beside it cannot be made");
+    }
+  }
+  file_beside(const file_beside&) = delete;
+  file_beside& operator=(const file_beside&) = delete;
+  ~file_beside() {
+    if (at_ >= 0) ::close(at_);
+    if (!placed_) ::unlink(name_.c_str());
+  }
+
+  void allow(::mode_t mode) {
+    if (::fchmod(at_, mode) != 0) fail("its permissions cannot be kept");
+  }
+  void write(std::string_view bytes) {
+    while (!bytes.empty()) {
+      const ::ssize_t done = ::write(at_, bytes.data(), std::min(bytes.size(), std::size_t(1) << 30));
+      if (done < 0 && errno == EINTR) continue;
+      if (done <= 0) fail("");
+      bytes.remove_prefix(std::size_t(done));
+    }
+  }
+  void put_in_place() {
+    if (::fsync(at_) != 0) fail("");
+    if (::close(std::exchange(at_, -1)) != 0) fail("");
+    if (::rename(name_.c_str(), file_.c_str()) != 0) fail("the new file cannot take its place");
+    placed_ = true;
+    if (const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); folder >= 0) {
+      ::fsync(folder);  // so that a crash now does not lose the name; not every file system can
+      ::close(folder);
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    const std::string why = std::strerror(errno);
+    refuse(file_, "cannot be written" + (what.empty() ? ": " + why : ": " + what + " (" + why + ")"));
+  }
+
+  const std::string& file_;
+  std::string folder_, name_;
+  int at_ = -1;
+  bool placed_ = false;
+};
+
+}  // namespace detail
+
+/// Replaces the file's content: all of it, or nothing. The bytes go to a new file beside it, reach the disk, and take
+/// its name (and its permissions). Throws std::runtime_error naming the file, which is then as it was.
+inline void write_bytes(const std::string& file, std::string_view bytes) {
+  const auto there = check_target(file);
+  detail::file_beside made(file, there ? 0600 : 0666);
+  if (there) made.allow(there->st_mode & 0777);
+  made.write(bytes);
+  made.put_in_place();
+}
+
+/// As check_target, and refuses a file that `inputs` has seen.
+inline void check_output(const std::string& file, const files_read& inputs) {
+  const auto there = check_target(file);
+  if (there && inputs.has({there->st_dev, there->st_ino}))
+    refuse(file, "is a file that this reads, and is not written over");
+}
+
+}  // namespace clearance::io
