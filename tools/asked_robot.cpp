@@ -52,13 +52,21 @@ io::robot load_robot(const query_options& asked) {
   options.geometry = asked.visual.value_or(false) ? io::robot_geometry::visual : io::robot_geometry::collision;
   for (const auto& [name, folder] : asked.packages) options.packages[name] = folder;
   options.exclude_links = asked.excluded;
-  return io::load_robot(asked.robot, options);
+  return io::within_memory(asked.robot, [&] { return io::load_robot(asked.robot, options); });
+}
+
+std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const io::robot& robot,
+                                            const std::vector<double>& joints, const std::string& when) {
+  auto poses = robot.poses(joints, {asked.ignore_limits});
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    poses[k] = rigid(asked.base * poses[k], ("link " + io::quoted(robot.parts()[k].name) + when).c_str());
+  return poses;
 }
 
 std::vector<body> make_bodies(const query_options& asked, const io::robot& robot, progress& shown,
                               std::vector<std::string>& notes) {
   std::vector<io::packed_part> given;
-  if (!asked.packing.empty()) given = io::load_spheres(asked.packing);
+  if (!asked.packing.empty()) given = io::within_memory(asked.packing, [&] { return io::load_spheres(asked.packing); });
   const auto spheres_of = assigned(given, robot, asked);
   std::vector<body_source> sources;
   for (std::size_t k = 0; k < robot.parts().size(); ++k) {
@@ -68,7 +76,12 @@ std::vector<body> make_bodies(const query_options& asked, const io::robot& robot
   const body_options how{
       .model = asked.model, .pack = {.count = asked.spheres}, .cache = chosen_cache(asked.no_cache, asked.cache)};
   body_account account;
-  std::vector<body> bodies = make_bodies(sources, how, shown, account);
+  std::vector<body> bodies;
+  try {
+    bodies = make_bodies(sources, how, shown, account);
+  } catch (const std::runtime_error& error) {  // it names the link
+    io::refuse(asked.robot, error.what());
+  }
   note_packing(asked, account, notes);
   return bodies;
 }

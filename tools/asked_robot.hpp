@@ -9,6 +9,10 @@
 /// The robot of --robot.
 clearance::io::robot load_robot(const query_options& asked);
 
+/// The robot's poses, moved by the base; throws if one of its links is where no query can be. `when` says more of it.
+std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const clearance::io::robot& robot,
+                                            const std::vector<double>& joints, const std::string& when = {});
+
 /// One body for each of its parts, packed if the model is of spheres. Notes are what a user should see.
 std::vector<body> make_bodies(const query_options& asked, const clearance::io::robot& robot, progress& shown,
                               std::vector<std::string>& notes);

@@ -6,12 +6,6 @@
 #include <cmath>
 #include <cstdint>
 
-namespace {
-
-std::string quoted(std::string_view text) { return '"' + std::string(text.substr(0, 60)) + '"'; }
-
-}  // namespace
-
 std::vector<double> numbers(const std::string& option, const std::string& text, bool infinite) {
   std::vector<double> values;
   std::string_view rest = text;
@@ -22,7 +16,7 @@ std::vector<double> numbers(const std::string& option, const std::string& text, 
     while (word.ends_with(' ')) word.remove_suffix(1);
     const auto value = clearance::io::number<double>(word);
     if (!value || std::isnan(*value) || (!infinite && !std::isfinite(*value)))
-      throw usage_error(option, quoted(word) + " is not a" + (value ? " finite" : "") + " number");
+      throw usage_error(option, clearance::io::quoted(word) + " is not a" + (value ? " finite" : "") + " number");
     values.push_back(*value);
     if (comma == rest.npos) return values;
     rest.remove_prefix(comma + 1);
@@ -44,7 +38,7 @@ std::size_t whole_number(const std::string& option, const std::string& text) {
   constexpr std::uint64_t most = 10'000'000;
   const auto value = clearance::io::number<std::uint64_t>(text);
   if (!value || *value < 1 || *value > most)
-    throw usage_error(option, quoted(text) + " is not a whole number from 1 to " + std::to_string(most));
+    throw usage_error(option, clearance::io::quoted(text) + " is not a whole number from 1 to " + std::to_string(most));
   return *value;
 }
 
@@ -70,12 +64,12 @@ std::size_t choice(const std::string& option, const std::string& text, const std
     if (text == names[i]) return i;
     all += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
   }
-  throw usage_error(option, quoted(text) + " is not " + all);
+  throw usage_error(option, clearance::io::quoted(text) + " is not " + all);
 }
 
 std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == text.npos || equals == 0 || equals + 1 == text.size())
-    throw usage_error(option, quoted(text) + " is not of the form name=value");
+    throw usage_error(option, clearance::io::quoted(text) + " is not of the form name=value");
   return {text.substr(0, equals), text.substr(equals + 1)};
 }

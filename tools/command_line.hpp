@@ -2,6 +2,8 @@
 #pragma once
 // What the subcommands share: how words become numbers and poses, and what is said when they do not.
 
+#include <clearance/io/sentence.hpp>
+
 #include <Eigen/Geometry>
 
 #include <cstddef>
@@ -17,7 +19,8 @@ class App;
 
 /// A sentence about an option; exit code 1.
 struct usage_error : std::invalid_argument {
-  usage_error(const std::string& option, const std::string& why) : std::invalid_argument(option + ": " + why) {}
+  usage_error(const std::string& option, const std::string& why)
+      : std::invalid_argument(clearance::io::sentence_about(option, why)) {}
 };
 
 /// A subcommand: its options are filled in when `run` is called; what it returns is the exit code.

@@ -60,6 +60,7 @@ bool same_witness(const min_distance_result& a, const min_distance_result& b) {
 int run(const demo_settings& settings) {
   const std::size_t count = whole_number("--spheres", settings.spheres);
   const device_state gpu = find_device();
+  if (!settings.scene.empty()) io::check_target(settings.scene);
   progress shown;
   stopwatch clock;
   const demo_scene world = make_demo_scene();

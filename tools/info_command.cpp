@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "backends.hpp"
 #include "command_line.hpp"
+#include "json_text.hpp"
 
 #include <clearance/config.hpp>
 #include <clearance/io/packing_cache.hpp>
@@ -8,7 +9,6 @@
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
 
 #include <iostream>
@@ -21,9 +21,9 @@ json or_null(double value) { return std::isfinite(value) ? json(value) : json(nu
 
 /// What a file of spheres holds. Exit code 0: it is whole.
 int describe(const std::string& file, bool as_json) {
-  const auto parts = clearance::io::load_spheres(file);
+  const auto parts = clearance::io::within_memory(file, [&] { return clearance::io::load_spheres(file); });
   json out = {{"file", file}, {"parts", json::array()}};
-  std::string text = file + ": " + std::to_string(parts.size()) + (parts.size() == 1 ? " part\n" : " parts\n");
+  std::string text = clearance::io::printable(file) + ": " + std::to_string(parts.size()) + (parts.size() == 1 ? " part\n" : " parts\n");
   for (const auto& part : parts) {
     const clearance::packing& p = part.spheres;
     const bool certified = std::isfinite(p.gap);
@@ -41,14 +41,15 @@ int describe(const std::string& file, bool as_json) {
                             {"solid", part.solid ? json(part.solid.hex()) : json(nullptr)}});
     char line[256];
     std::snprintf(line, sizeof line, "%zu spheres, radii %.6f to %.6f m, ", p.spheres.size(), p.radius_min, p.radius_max);
-    text += "  " + part.name + std::string(part.name.size() < 28 ? 28 - part.name.size() : 1, ' ') + line;
+    const std::string name = clearance::io::printable(part.name);
+    text += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') + line;
     if (certified)
       std::snprintf(line, sizeof line, "gap at most %.6f m (95 %% %.6f, mean %.6f), fill %.4f", p.gap, p.gap_p95, p.gap_mean, p.fill);
     text += certified ? line : "no certificate";
     if (part.solid) text += ", of mesh " + part.solid.hex().substr(0, 12);
     text += '\n';
   }
-  std::cout << (as_json ? out.dump(2, ' ', false, json::error_handler_t::replace) + '\n' : text);
+  std::cout << (as_json ? json_text(out, 2) : text);
   return 0;
 }
 
@@ -75,7 +76,7 @@ subcommand add_info(CLI::App& app) {
                                           {"cuda", gpu.compiled}, {"device", gpu.present ? json(gpu.says) : nullptr},
                                           {"backend", gpu.present ? "device" : "host"},
                         {"cache", cache.empty() ? json(nullptr) : json(cache)}};
-      std::cout << out.dump(2, ' ', false, json::error_handler_t::replace) << '\n';
+      std::cout << json_text(out, 2);
       return 0;
     }
     std::cout << "clearance " << version << ", compiled by " << __VERSION__ << '\n'

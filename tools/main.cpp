@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The `clearance` command: how far a robot is from everything a depth sensor sees.
 #include "command_line.hpp"
+#include "messages.hpp"
+#include "progress.hpp"
 
 #include <clearance/config.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <fcntl.h>
+
 #include <algorithm>
-#include <cstdint>
+#include <csignal>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -16,26 +21,40 @@ namespace {
 
 constexpr int failure = 1;
 
-/// CLI11 takes "-.5" for an option; "--camera-pose -.5,..." is handed to it as one word.
-std::vector<std::string> with_negative_values(int argc, char** argv, const CLI::App& app) {
+bool blank(std::string_view text) { return text.find_first_not_of(" \t\r\n\v\f") == text.npos; }
+
+/// The words of the command line as CLI11 wants them. It would drop an empty value, take the next option for the value of
+/// "--cache=", and "-.5" for an option: so every option that takes a value is handed to it in one word, "--option=value",
+/// and has one.
+std::vector<std::string> checked_words(int argc, char** argv, const CLI::App& app) {
   std::vector<std::string> words;
   const CLI::App* sub = nullptr;
   for (int i = 1; i < argc; ++i) {
     std::string word = argv[i];
+    if (blank(word)) throw usage_error("the command line", "word " + std::to_string(i) + " of it is empty");
     for (const CLI::App* each : app.get_subcommands({}))
       if (!sub && each->check_name(word)) sub = each;
-    const CLI::Option* option = sub && word.starts_with("--") ? sub->get_option_no_throw(word) : nullptr;
-    if (option && option->get_expected_max() > 0 && i + 1 < argc) {
-      const std::string_view next = argv[i + 1];
-      if (next.size() > 1 && next[0] == '-' && std::string_view(".0123456789").find(next[1]) != next.npos) {
-        word += '=' + std::string(next);
-        ++i;
+    const std::string name = word.substr(0, word.find('='));
+    const CLI::Option* option = sub && word.starts_with("--") ? sub->get_option_no_throw(name) : nullptr;
+    if (option && option->get_expected_max() > 0) {
+      if (name.size() == word.size() && i + 1 < argc) {
+        const std::string_view next = argv[i + 1];
+        if (next.starts_with("--")) throw usage_error(name, "has no value, but the next word is " + std::string(next));
+        (word += '=') += argv[++i];
       }
+      if (name.size() < word.size() && blank(std::string_view(word).substr(name.size() + 1)))
+        throw usage_error(name, "has an empty value (is a variable of the shell not set?)");
     }
     words.push_back(word);
   }
   std::reverse(words.begin(), words.end());  // as CLI11 wants them
   return words;
+}
+
+/// One value each time that an option is given; CLI11 would take "[a,b]" and further words for more.
+void take_one_value_each(CLI::App& app) {
+  for (CLI::App* sub : app.get_subcommands({}))
+    for (CLI::Option* option : sub->get_options()) option->allow_extra_args(false);
 }
 
 /// CLI11 would only say that a subcommand is missing.
@@ -51,15 +70,27 @@ void check_subcommand(int argc, char** argv, const CLI::App& app) {
 
 int fail(std::string why) {
   if (why.starts_with("clearance: ")) why.erase(0, 11);
-  for (char& c : why)  // one line, whatever a damaged file has put into it
-    if (std::uint8_t(c) < 32 || c == 127) c = '?';
-  std::cerr << "clearance: " << why << '\n';
+  say("clearance", why);
   return failure;
+}
+
+/// What the command printed has left it, or the exit code says so.
+int finish(int code) {
+  std::cout.flush();
+  return !std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) ? fail("the output cannot be written") : code;
+}
+
+/// Files that are opened later must not become what is closed now, and a file that grows too large is an error, no signal.
+void hold_streams() {
+  std::signal(SIGXFSZ, SIG_IGN);
+  for (int stream = 0; stream < 3; ++stream)
+    if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY);  // so that using it fails
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  hold_streams();
   CLI::App app("How far is this robot from everything its depth sensor sees?", "clearance");
   const std::string version = std::to_string(CLEARANCE_VERSION_MAJOR) + '.' + std::to_string(CLEARANCE_VERSION_MINOR) +
                               '.' + std::to_string(CLEARANCE_VERSION_PATCH);
@@ -68,23 +99,22 @@ int main(int argc, char** argv) {
   app.footer("Exit codes: 0 done; 1 an error, wrong usage included; 2 --check fails; 3 no valid point.");
   std::vector<subcommand> run;
   for (const auto add : {add_query, add_run, add_pack, add_demo, add_info}) run.push_back(add(app));
+  take_one_value_each(app);
   try {
     check_subcommand(argc, argv, app);
-    app.parse(with_negative_values(argc, argv, app));
+    app.parse(checked_words(argc, argv, app));
     for (std::size_t i = 0; i < run.size(); ++i) {
       if (!app.get_subcommands({}).at(i)->parsed()) continue;
-      const int code = run[i]();
-      if (!std::cout.flush()) return fail("the output cannot be written");
-      return code;
+      return finish(run[i]());
     }
     return failure;
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
+    if (error.get_exit_code() == 0) return finish(app.exit(error));
     std::string help = "clearance";
     for (const CLI::App* sub : app.get_subcommands()) help += ' ' + sub->get_name();
     return fail(std::string(error.what()) + " (" + help + " --help says more)");
   } catch (const std::bad_alloc&) {
-    return fail("there is not enough memory");
+    return fail("there is not enough memory" + (progress::doing().empty() ? "" : " for " + progress::doing()));
   } catch (const std::exception& error) {
     return fail(error.what());
   }

@@ -16,10 +16,10 @@ observation observe(const cloud_options& from) {
   observation made;
   made.from = from;
   if (from.is_image()) {
-    made.data = io::load_png(from.file);
+    made.data = io::load_png(from.file, from.limits);
     return made;
   }
-  io::cloud cloud = io::load_cloud(from.file);
+  io::cloud cloud = io::load_cloud(from.file, from.limits);
   std::uint64_t zeros = 0;
   for (Eigen::Vector3d& p : cloud.points) {
     if (!p.isZero(0)) continue;

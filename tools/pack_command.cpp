@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "command_line.hpp"
+#include "json_text.hpp"
+#include "messages.hpp"
 #include "robot_bodies.hpp"
 
 #include <clearance/io/mesh.hpp>
@@ -8,7 +10,6 @@
 #include <clearance/io/spheres_file.hpp>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <iostream>
@@ -92,7 +93,7 @@ packed_subject fill(const subject& what, const pack_settings& asked, progress& s
     made.cached = account.cached;
   } catch (const std::runtime_error& error) {  // a mesh alone is known by its file's name
     std::string why = error.what();
-    const std::string link = "link \"" + what.parts[0].name + "\": ";
+    const std::string link = "link " + io::quoted(what.parts[0].name) + ": ";
     if (!what.robot && why.starts_with(link)) why.erase(0, link.size());
     io::refuse(asked.input, why);
   }
@@ -150,12 +151,12 @@ void print_one(const body& b, bool cached) {
 void print_all(const packed_subject& made) {
   std::size_t widest = 4, cached = 0, spheres = 0;
   double fill = 0, mean = 0, p95 = 0, most = 0;
-  for (const body& b : made.bodies) widest = std::max(widest, b.name.size());
+  for (const body& b : made.bodies) widest = std::max(widest, io::printable(b.name).size());
   const auto name = [&](const std::string& n) { return n + std::string(widest - n.size(), ' '); };
   std::cout << name("link") << "  spheres   fill  gap mm: mean   95 %    max   radii mm        holes  seconds\n";
   for (std::size_t k = 0; k < made.bodies.size(); ++k) {
     const packing& p = made.bodies[k].packed;
-    std::cout << name(made.bodies[k].name)
+    std::cout << name(io::printable(made.bodies[k].name))
               << text("  %7zu  %.3f       %6.2f %6.2f %6.2f  %6.2f-%-7.2f  %5u  %7.2f%s\n", p.spheres.size(), p.fill, 1e3 * p.gap_mean, 1e3 * p.gap_p95,
                       1e3 * p.gap, 1e3 * p.radius_min, 1e3 * p.radius_max, made.bodies[k].closed.caps.loops, p.seconds, made.cached[k] ? " (cached)" : "");
     const double n = double(made.bodies.size());
@@ -172,14 +173,17 @@ int run(const pack_settings& asked) {
       throw usage_error("--out", file + " is none of .ist, .csv, .yaml, .yml and .glb by its name");
   progress shown;
   shown.show("reading " + asked.input);
-  const subject what = load(asked);
+  io::files_read inputs;
+  const subject what = io::within_memory(asked.input, [&] { return load(asked); });
+  for (const std::string& file : asked.out) io::check_output(file, inputs);
   const packed_subject made = fill(what, asked, shown);
   for (const std::string& file : asked.out) {
     shown.show("writing " + file);
+    io::check_output(file, inputs);
     write(file, what, made);
   }
   shown.clear();
-  for (const auto& note : what.notes) std::cerr << "note: " << note << '\n';
+  say_notes(what.notes);
   if (asked.json) {
     nlohmann::ordered_json out = {{what.robot ? "robot" : "mesh", asked.input}};
     if (what.robot) {
@@ -190,7 +194,7 @@ int run(const pack_settings& asked) {
     } else {
       out.update(quality(made.bodies[0], made.cached[0]));
     }
-    std::cout << out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    std::cout << json_text(out, 2);
   } else if (what.robot) {
     print_all(made);
   } else {

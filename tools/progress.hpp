@@ -3,6 +3,8 @@
 
 #include "stopwatch.hpp"
 
+#include <clearance/io/sentence.hpp>
+
 #include <cstdio>
 #include <string>
 #include <unistd.h>
@@ -14,17 +16,22 @@ class progress {
 
   /// At most ten times a second, so that it costs nothing.
   void show(const std::string& what) {
+    doing_ = what;
     if (!terminal_ || (shown_ && (since_ += clock_.lap()) < 0.1)) return;
-    std::fprintf(stderr, "\r\033[K%s", what.substr(0, 78).c_str());
+    std::fprintf(stderr, "\r\033[K%s", clearance::io::sentence(what, 78).c_str());
     shown_ = true;
     since_ = 0;
   }
+  /// What was shown last: what is being done.
+  static const std::string& doing() { return doing_; }
+
   void clear() {
     if (shown_) std::fputs("\r\033[K", stderr);
     shown_ = false;
   }
 
  private:
+  inline static std::string doing_;
   bool terminal_ = ::isatty(STDERR_FILENO) != 0, shown_ = false;
   double since_ = 0;
   stopwatch clock_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "asked_robot.hpp"
 #include "command_line.hpp"
+#include "messages.hpp"
 #include "observations.hpp"
 #include "report.hpp"
 #include "stopwatch.hpp"
@@ -47,13 +48,13 @@ int run(const query_options& asked) {
   stopwatch clock;
   progress shown;
   shown.show("reading " + asked.robot);
+  io::files_read inputs;
   const io::robot robot = load_robot(asked);
   const auto joints = configuration(asked, robot.kinematics());
   const io::joint_options limits{asked.ignore_limits};
   query_report report;
   report.notes = robot.notes();
-  question q{asked.model, asked.volume, nullptr, {}, {}};
-  for (const auto& pose : robot.poses(joints, limits)) q.poses.push_back(asked.base * pose);
+  question q{asked.model, asked.volume, nullptr, placed_links(asked, robot, joints), {}};
   std::vector<observation> clouds;
   for (const cloud_options& from : asked.clouds) {
     shown.show("reading " + from.file);
@@ -64,6 +65,8 @@ int run(const query_options& asked) {
     q.clouds.push_back(cloud.seen(cloud.from.link.empty() ? Eigen::Isometry3d::Identity()
                                                           : asked.base * robot.link_pose(cloud.from.link, joints, limits),
                                   q.poses));
+  for (std::size_t i = 0; i < clouds.size(); ++i) rigid(q.clouds[i].pose, ("cloud " + io::quoted(clouds[i].from.file)).c_str());
+  if (!asked.scene.empty()) io::check_output(asked.scene, inputs);  // known before the robot is packed
   report.load = clock.lap();
 
   const std::vector<body> bodies = make_bodies(asked, robot, shown, report.notes);
@@ -75,9 +78,12 @@ int run(const query_options& asked) {
   report.asked = &asked;
   report.clouds = &clouds;
   report.bodies = &bodies;
-  if (!asked.scene.empty()) draw(report, robot, q);
+  if (!asked.scene.empty()) {
+    io::check_output(asked.scene, inputs);
+    draw(report, robot, q);
+  }
   shown.clear();
-  for (const auto& note : report.notes) std::cerr << "note: " << note << '\n';
+  say_notes(report.notes);
   std::cout << (asked.json ? to_json(report) : to_text(report));
   const min_distance_result& r = report.found.result;
   if (r.state == state::no_data) return 3;

@@ -20,15 +20,10 @@ namespace {
 using texts = std::vector<std::string>;
 
 struct raw_options {
-  std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames, trajectory;
+  std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames, trajectory, unfolded;
   texts joint, packages, excluded, clouds, poses, links, cameras, scales, ranges;
   bool ignore_limits = false, json = false, no_cache = false, merge = false;
 };
-
-/// An option that takes one word each time it is given, as often as wanted.
-CLI::Option* repeatable(CLI::App& app, const std::string& name, texts& to, const std::string& says) {
-  return app.add_option(name, to, says)->allow_extra_args(false);
-}
 
 /// Sets one per-cloud option, as it was given on the command line.
 void set(cloud_options& cloud, const std::string& option, const std::string& text) {
@@ -90,6 +85,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   if (!raw.geometry.empty()) o.visual = choice("--geometry", raw.geometry, {"collision", "visual"}) == 1;
   for (const auto& text : raw.packages) o.packages.push_back(assignment("--package", text));
   if (!raw.base.empty()) o.base = pose("--base-pose", raw.base);
+  if (!raw.unfolded.empty()) o.recording.camera.limits.unfolded = std::uint64_t(whole_number("--unfold-limit", raw.unfolded)) << 20;
   o.clouds = clouds_of(app, o.recording.camera);
   o.recording.frames = raw.frames;
   o.recording.trajectory = raw.trajectory;
@@ -128,7 +124,7 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
         "Point clouds (.pcd .ply .xyz .txt) or 16-bit depth images (.png): a folder, in the order of their names, or a text file with one path a "
         "line, relative to that file")->required();
     one("--trajectory", raw->trajectory,
-        "CSV: a line with the names of the joints, then one row a frame, or one row for all (rad, m)")->required();
+        "CSV: a line with the names of the joints, then one row a frame, or one row for all (rad, m); not needed if no joint is free");
     app.add_flag("--merge", raw->merge,
                  "Ask every frame about the clouds of all frames, merged in the world: each frame's cloud is put there by --camera-pose, with "
                  "--camera-link by that link's pose in the frame's row of the trajectory");
@@ -142,11 +138,12 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   app.add_option("--package", raw->packages, "name=DIR: where package://name/ is");
   one("--base-pose", raw->base, "x,y,z,qx,qy,qz,qw: world-from-base (m; default: the base is at the world's origin)");
   if (!recorded) app.add_option("--cloud", raw->clouds, "Point cloud (.pcd .ply .xyz) or 16-bit depth image (.png); may be repeated")->required();
-  repeatable(app, "--camera-pose", raw->poses, "x,y,z,qx,qy,qz,qw: world-from-cloud, or link-from-cloud with --camera-link");
-  repeatable(app, "--camera-link", raw->links, "The link that carries the camera");
-  repeatable(app, "--intrinsics", raw->cameras, "fx,fy,cx,cy of a depth image, pixels");
-  repeatable(app, "--depth-scale", raw->scales, "Metres a unit of a depth image (default 0.001)");
-  repeatable(app, "--range", raw->ranges, "near,far: other points do not count (m; along z for images, else from the sensor)");
+  app.add_option("--camera-pose", raw->poses, "x,y,z,qx,qy,qz,qw: world-from-cloud, or link-from-cloud with --camera-link");
+  app.add_option("--camera-link", raw->links, "The link that carries the camera");
+  app.add_option("--intrinsics", raw->cameras, "fx,fy,cx,cy of a depth image, pixels");
+  app.add_option("--depth-scale", raw->scales, "Metres a unit of a depth image (default 0.001)");
+  app.add_option("--range", raw->ranges, "near,far: other points do not count (m; along z for images, else from the sensor)");
+  one("--unfold-limit", raw->unfolded, "MiB of memory that the points or pixels of one compressed cloud or image may take (default 1024)");
   app.add_flag("--use-viewpoint")->description("Apply the VIEWPOINT of a PCD file");
   app.add_flag("--zero-is-missing")->description("(0,0,0) is no point");
   one("--model", raw->model, "spheres (default) or triangles");

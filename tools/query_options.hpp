@@ -3,6 +3,8 @@
 
 #include "backends.hpp"
 
+#include <clearance/io/error.hpp>
+
 #include <Eigen/Geometry>
 
 #include <memory>
@@ -24,6 +26,7 @@ struct cloud_options {
   double scale = 0.001;
   double nearest = 0, farthest = clearance::infinity;
   bool use_viewpoint = false, zero_is_missing = false;
+  clearance::io::read_limits limits;
 
   bool is_image() const;
 

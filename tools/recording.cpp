@@ -27,7 +27,7 @@ std::vector<std::string> columns(const std::string& file, std::string_view line,
                                  const std::map<std::string, double>& fixed) {
   std::vector<std::string> names;
   std::map<std::string, double> values = fixed;
-  for (bool more = true; more;) {
+  for (bool more = !trimmed(line).empty(); more;) {
     const std::size_t comma = line.find(',');
     const std::string name(trimmed(line.substr(0, comma)));
     more = comma != line.npos;
@@ -63,7 +63,7 @@ std::vector<std::string> list_frames(const std::string& where) {
     return files;
   }
   const std::string bytes = io::read_bytes(where);
-  for (std::string_view rest = bytes; !rest.empty();)
+  for (std::string_view rest = io::without_mark(bytes); !rest.empty();)
     if (const std::string_view path = trimmed(io::take_line(rest)); !path.empty())
       files.push_back((fs::path(where).parent_path() / path).string());
   if (files.empty()) io::refuse(where, "lists no frame");
@@ -72,10 +72,21 @@ std::vector<std::string> list_frames(const std::string& where) {
 
 std::vector<std::vector<double>> read_trajectory(const std::string& file, const io::kinematic_tree& tree,
                                                  const std::map<std::string, double>& fixed, io::joint_options limits) {
+  if (file.empty()) {
+    for (std::size_t i = 0; i < tree.size(); ++i)
+      if (const std::string& name = tree.movable(i).name; !fixed.contains(name))
+        throw usage_error("--trajectory", "is needed, because joint " + io::quoted(name) + " has no value (--joint name=value fixes it)");
+    return {tree.configuration(fixed, limits)};
+  }
   const std::string bytes = io::read_bytes(file);
-  std::string_view rest = bytes;
+  std::string_view rest = io::without_mark(bytes);
   const std::vector<std::string> names = columns(file, io::take_line(rest), tree, fixed);
+  rest = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);  // without blank lines at the end
   std::vector<std::vector<double>> rows;
+  if (names.empty()) {
+    if (!rest.empty()) io::refuse(file, "has values, but no names of joints", 2);
+    return {tree.configuration(fixed, limits)};
+  }
   for (std::size_t line = 2; !rest.empty(); ++line) {
     const std::string text(io::take_line(rest));
     const std::string where = file + ':' + std::to_string(line);

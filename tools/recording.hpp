@@ -13,7 +13,8 @@
 /// The frames of a folder in the order of their names, or those that a text file lists, relative to it. At least one.
 std::vector<std::string> list_frames(const std::string& where);
 
-/// One configuration a row. Every movable joint has either a column or a value in `fixed`.
+/// One configuration a row. Every movable joint has either a column or a value in `fixed`; if all are fixed, there is one
+/// row, and no file (an empty name) or one without columns.
 std::vector<std::vector<double>> read_trajectory(const std::string& file, const clearance::io::kinematic_tree& tree,
                                                  const std::map<std::string, double>& fixed,
                                                  clearance::io::joint_options limits);

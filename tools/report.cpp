@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.hpp"
 
-#include <nlohmann/json.hpp>
+#include "json_text.hpp"
 
 #include <cmath>
 #include <cstdarg>
@@ -71,7 +71,7 @@ std::string to_json(const frame_report& report) {
   out["points"] = counts(report.found.result);
   out["upload_us"] = std::round(1e9 * report.found.upload) / 1e3;  // the clock's nanoseconds
   out["latency_us"] = std::round(1e9 * report.found.query) / 1e3;
-  return out.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
+  return json_text(out, -1);
 }
 
 std::string to_json(const query_report& report) {
@@ -109,8 +109,9 @@ std::string to_json(const query_report& report) {
     }
     out["clouds"].push_back(std::move(one));
   }
-  out["notes"] = report.notes;
-  return out.dump(2, ' ', false, json::error_handler_t::replace) + '\n';  // file names may not be UTF-8
+  out["notes"] = json::array();
+  for (const auto& note : report.notes) out["notes"].push_back(io::sentence(note));
+  return json_text(out, 2);
 }
 
 std::string to_text(const query_report& report) {
@@ -126,10 +127,10 @@ std::string to_text(const query_report& report) {
                                   : r.state == state::possible ? "possible: the bracket contains 0"
                                                                : "free");
     out += text("distance  %.6f m; to the solid certainly %.6f to %.6f m\n", double(r.distance), double(r.lower), double(r.upper));
-    out += "cloud     " + cloud.from.file + text(", point %u", r.point);
+    out += "cloud     " + io::printable(cloud.from.file) + text(", point %u", r.point);
     if (const auto at = pixel(cloud, r.point)) out += text(", pixel %llu,%llu", (unsigned long long)at->first, (unsigned long long)at->second);
     out += text("\npoint     %.6f %.6f %.6f\n", r.at.x, r.at.y, r.at.z);
-    out += "part      " + part.name;
+    out += "part      " + io::printable(part.name);
     if (r.primitive != none) out += text(", %s %u", asked.model == model_kind::spheres ? "sphere" : "triangle", r.primitive);
     out += text("\nnearest   %.6f %.6f %.6f\n", r.nearest.x, r.nearest.y, r.nearest.z);
     if (!(r.normal == vec3{0, 0, 0}))
@@ -148,9 +149,10 @@ std::string to_text(const query_report& report) {
   for (std::size_t k = 0; k < report.bodies->size(); ++k) {
     const body& made = (*report.bodies)[k];
     const part_minimum& m = report.found.parts[k];
-    out += "  " + made.name + std::string(made.name.size() < 28 ? 28 - made.name.size() : 1, ' ');
+    const std::string name = io::printable(made.name);
+    out += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ');
     out += m.point == none ? "         -" : text("%10.6f m, point %u", double(m.distance), m.point);
-    if (m.point != none && report.clouds->size() > 1) out += " of " + (*report.clouds)[m.cloud].from.file;
+    if (m.point != none && report.clouds->size() > 1) out += " of " + io::printable((*report.clouds)[m.cloud].from.file);
     if (asked.model == model_kind::spheres) out += text(", gap %.4f m", made.packed.gap);
     if (made.closed.caps.loops != 0) out += text(", %u holes closed (%.2g m2)", made.closed.caps.loops, made.closed.caps.area);
     out += '\n';

@@ -15,7 +15,7 @@ namespace {
 [[noreturn]] void refuse(const std::string& name, const std::invalid_argument& error) {
   std::string why = error.what();
   if (why.starts_with("clearance: ")) why.erase(0, 11);
-  throw std::runtime_error("link \"" + name + "\": " + why);
+  io::refuse("link " + io::quoted(name), why);
 }
 
 /// The part's tolerance holds either way; what sticks out of the solid goes there.

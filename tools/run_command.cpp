@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "asked_robot.hpp"
 #include "command_line.hpp"
+#include "messages.hpp"
 #include "recording.hpp"
 #include "report.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 
 void print(const std::vector<std::string>& notes, progress& shown) {
   shown.clear();
-  for (const auto& note : notes) std::cerr << "note: " << note << '\n';
+  say_notes(notes);
 }
 
 /// The robot along its trajectory, and the camera with it.
@@ -29,9 +30,7 @@ class motion {
   std::size_t size() const { return rows_.size(); }
 
   std::vector<Eigen::Isometry3d> poses(std::size_t frame) const {
-    auto poses = robot_.poses(row(frame), limits());
-    for (auto& pose : poses) pose = asked_.base * pose;
-    return poses;
+    return placed_links(asked_, robot_, row(frame), " in frame " + std::to_string(frame));
   }
   Eigen::Isometry3d carrier(std::size_t frame) const {
     const std::string& link = asked_.recording.camera.link;

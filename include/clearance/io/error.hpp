@@ -19,8 +19,7 @@ namespace clearance::io {
 /// Ends the reading of a file with one sentence of at most 380 bytes that starts with its name (and line, counted from
 /// 1; 0 for none). Long names lose their middle.
 [[noreturn]] inline void refuse(const std::string& file, const std::string& why, std::size_t line = 0) {
-  const std::string place = sentence(file, 200) + (line ? ":" + std::to_string(line) : "") + ": ";
-  throw std::runtime_error(place + sentence(why, longest_sentence - 20 - place.size()));
+  throw std::runtime_error(sentence_about(sentence(file, 200) + (line ? ":" + std::to_string(line) : ""), why));
 }
 
 /// What `read()` returns; where it needs more memory than there is, a sentence that names the file.

@@ -5,8 +5,8 @@
 #include <clearance/packing/pack.hpp>
 
 #include <cstdlib>
+#include <filesystem>
 #include <optional>
-#include <random>
 
 namespace clearance::io {
 
@@ -72,14 +72,10 @@ class packing_cache {
     if (folder_.empty() || made.spheres.empty()) return false;
     std::error_code failed;
     std::filesystem::create_directories(folder_, failed);
-    std::random_device random;
-    const auto part = folder_ / ("." + key.hex() + '.' + std::to_string(random()) + std::to_string(random()));
     try {
-      save_ist(std::vector{packed_part{.name = "", .spheres = made, .solid = solid, .recipe = key}}, part.string());
-      std::filesystem::rename(part, file(key));
+      save_ist(std::vector{packed_part{.name = "", .spheres = made, .solid = solid, .recipe = key}}, file(key).string());
       return true;
     } catch (const std::exception&) {
-      std::filesystem::remove(part, failed);
       return false;
     }
   }

@@ -4,6 +4,7 @@
 
 #include <clearance/io/scene_balls.hpp>
 #include <clearance/io/scene_mesh.hpp>
+#include <clearance/io/write_file.hpp>
 
 #include <assimp/Exporter.hpp>
 #include <assimp/scene.h>
@@ -54,15 +55,17 @@ struct scene {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
 };
 
-/// Writes a binary glTF file (.glb); glTF's y is up, so all is turned by -90 degrees about x. Throws std::runtime_error.
+/// Writes a binary glTF file (.glb), whole or not at all; glTF's y is up, so all is turned by -90 degrees about x. Names
+/// become printable UTF-8. Throws std::runtime_error.
 inline void save_scene(const scene& world, const std::string& file) {
   std::vector<std::unique_ptr<aiMesh>> meshes;
   std::vector<std::unique_ptr<aiMaterial>> materials;
   std::vector<std::unique_ptr<aiNode>> nodes;
   std::vector<std::pair<std::string, std::vector<std::unique_ptr<aiNode>>>> groups;
-  const auto add = [&](const std::string& name, std::unique_ptr<aiMesh> mesh, const Eigen::Isometry3d& pose, colour paint,
+  const auto add = [&](const std::string& given, std::unique_ptr<aiMesh> mesh, const Eigen::Isometry3d& pose, colour paint,
                        const std::string& group = {}) {
     if (mesh->mNumVertices == 0) return;
+    const std::string name = scene_name(given);
     auto node = std::make_unique<aiNode>(name);
     Eigen::Isometry3d relative = pose;
     relative.translation() -= world.origin;
@@ -102,15 +105,16 @@ inline void save_scene(const scene& world, const std::string& file) {
     hand_over(below, &above.mChildren, above.mNumChildren);
   };
   for (auto& [name, members] : groups) {
-    nodes.push_back(std::make_unique<aiNode>(name));
+    nodes.push_back(std::make_unique<aiNode>(scene_name(name)));
     adopt(*nodes.back(), members);
   }
   out.mRootNode = new aiNode("world");
   out.mRootNode->mTransformation = aiMatrix4x4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
   adopt(*out.mRootNode, nodes);
   Assimp::Exporter exporter;
-  if (exporter.Export(&out, "glb2", file) != aiReturn_SUCCESS)
-    refuse(file, std::string("the scene cannot be written: ") + exporter.GetErrorString());
+  const aiExportDataBlob* blob = exporter.ExportToBlob(&out, "glb2");
+  if (!blob) refuse(file, std::string("the scene cannot be written: ") + exporter.GetErrorString());
+  write_bytes(file, {static_cast<const char*>(blob->data), blob->size});
 }
 
 }  // namespace clearance::io

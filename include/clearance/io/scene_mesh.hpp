@@ -24,6 +24,9 @@ struct colour {
   float red, green, blue, alpha;
 };
 
+/// A name as a glTF file may hold it, in valid UTF-8, and within the 1023 bytes that assimp would cut it to.
+inline std::string scene_name(const std::string& name) { return shortened(printable(name), 1000); }
+
 inline std::unique_ptr<aiMaterial> scene_material(const std::string& name, colour paint) {
   auto material = std::make_unique<aiMaterial>();
   const aiString label(name);

@@ -74,6 +74,12 @@ inline std::string sentence(std::string_view text, std::size_t most = longest_se
   return shortened(printable(text), most);
 }
 
+/// "place: why" as one sentence that leaves room for a word before it. Neither may push the other out.
+inline std::string sentence_about(std::string_view place, std::string_view why) {
+  const std::string where = sentence(place, 220) + ": ";
+  return where + sentence(why, longest_sentence - 20 - where.size());
+}
+
 /// The beginning of a word or name as a sentence may quote it.
 inline std::string quoted(std::string_view word) { return '"' + sentence(word, 60) + '"'; }
 

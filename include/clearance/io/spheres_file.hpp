@@ -5,6 +5,8 @@
 #include <clearance/io/spheres_csv.hpp>
 #include <clearance/io/spheres_yaml.hpp>
 
+#include <filesystem>
+
 namespace clearance::io {
 
 /// "ist", "csv" or "yaml" by the end of the file's name, or nothing.

@@ -10,6 +10,7 @@
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/packed_part.hpp>
 #include <clearance/io/write_file.hpp>
+#include <clearance/io/yaml_check.hpp>
 
 #include <yaml-cpp/yaml.h>
 
@@ -58,8 +59,9 @@ inline std::vector<packed_part> load_spheres_yaml(const std::string& file) {
   const std::string bytes = read_bytes(file);
   std::vector<packed_part> parts;
   std::set<std::string> names;
+  std::size_t spheres = 0;
   try {
-    YAML::Node at = YAML::Load(bytes);
+    YAML::Node at = parse_yaml(bytes, file);
     for (const char* above : {"robot_cfg", "kinematics"})
       if (at.IsMap() && at[above]) at.reset(at[above]);
     if (!at.IsMap() || !at["collision_spheres"]) refuse(file, "has no collision_spheres");
@@ -72,6 +74,9 @@ inline std::vector<packed_part> load_spheres_yaml(const std::string& file) {
       const std::string name = link.first.Scalar();
       if (!names.insert(name).second) refuse(file, "has link " + io::quoted(name) + " twice");
       parts.push_back(detail::yaml_link(link.first, link.second, file));
+      spheres += parts.back().spheres.spheres.size();
+      if (spheres > bytes.size() / 8)  // {center: [0,0,0], radius: 1}; only aliases make more of less
+        refuse(file, "repeats its spheres by aliases, more than its size allows");
     }
   } catch (const YAML::Exception& error) {
     refuse(file, "is no YAML: " + error.msg, std::size_t(std::max(0, error.mark.line + 1)));

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What must hold of a YAML file before its nodes are made: yaml-cpp keeps the first of two equal keys, reads the first
+// of several documents, and knows no lines that end by \r alone.
+
+#include <clearance/io/cloud_text.hpp>
+#include <clearance/io/error.hpp>
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
+
+#include <set>
+#include <sstream>
+#include <vector>
+
+namespace clearance::io {
+
+namespace detail {
+
+/// Refuses a map that has one key twice. It sees each event of the file once, however often an alias repeats it.
+class yaml_keys final : public YAML::EventHandler {
+ public:
+  explicit yaml_keys(const std::string& file) : file_(file) {}
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++documents_ > 1) refuse(file_, "has more than one YAML document", line(mark));
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { node(mark, ""); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { node(mark, {}); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string& value) override {
+    node(mark, value);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    node(mark, {});
+    open_.push_back({});
+  }
+  void OnSequenceEnd() override { open_.pop_back(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    node(mark, {});
+    open_.push_back({.map = true});
+  }
+  void OnMapEnd() override { open_.pop_back(); }
+
+ private:
+  struct level {
+    bool map = false, key_next = true;
+    std::set<std::string> keys = {};
+  };
+
+  static std::size_t line(const YAML::Mark& mark) { return std::size_t(std::max(0, mark.line + 1)); }
+
+  void node(const YAML::Mark& mark, const std::optional<std::string>& scalar) {
+    if (open_.empty() || !open_.back().map) return;
+    level& here = open_.back();
+    if (here.key_next && scalar && !here.keys.insert(*scalar).second)
+      refuse(file_, "has the key " + io::quoted(*scalar) + " twice", line(mark));
+    here.key_next = !here.key_next;
+  }
+
+  const std::string& file_;
+  std::vector<level> open_;
+  int documents_ = 0;
+};
+
+}  // namespace detail
+
+/// The only document of a YAML file. Throws std::runtime_error, and YAML::Exception for what is none.
+inline YAML::Node parse_yaml(std::string_view bytes, const std::string& file) {
+  std::string text;
+  for (std::string_view rest = without_mark(bytes); !rest.empty(); text += '\n') text += take_line(rest);
+  std::istringstream in(text);
+  detail::yaml_keys keys(file);
+  for (YAML::Parser parser(in); parser.HandleNextDocument(keys);) {
+  }
+  return YAML::Load(text);
+}
+
+}  // namespace clearance::io

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every option of every subcommand, as its own --help lists them: one that is given has a value, or is refused.
+#include "io/scratch_file.hpp"
+#include "tools/run_command.hpp"
+
+#include <sstream>
+
+namespace {
+
+struct listed_option {
+  std::string name;
+  bool takes_value;
+};
+
+std::vector<listed_option> options_of(const std::string& subcommand) {
+  const outcome help = run_command(subcommand + " --help");
+  REQUIRE(help.code == 0);
+  std::vector<listed_option> found;
+  std::istringstream in(help.out);
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream text(line);
+    std::string name, type;
+    text >> name >> type;
+    if (line.starts_with("  ") && name.starts_with("--")) found.push_back({name, type == "TEXT"});
+  }
+  return found;
+}
+
+std::string quoted_shell(const std::string& word) { return '\'' + word + '\''; }
+
+}  // namespace
+
+TEST_CASE("an option without a value is refused by its name, whichever it is and however it is left out") {
+  const scratch_file urdf(".urdf", R"(<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
+  const scratch_file cloud(".xyz", "0.1 0.1 0.1\n"), obj(".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  const std::pair<std::string, std::string> asked[] = {
+      {"query", "--robot " + urdf.path + " --cloud " + cloud.path + " --model triangles --backend host"},
+      {"run", "--robot " + urdf.path + " --frames " + cloud.path + " --model triangles --backend host"},
+      {"pack", obj.path + " --spheres 5"},
+      {"demo", ""},
+      {"info", ""}};
+  std::size_t with_value = 0;
+  for (const auto& [subcommand, rest] : asked)
+    for (const auto& [name, takes_value] : options_of(subcommand)) {
+      if (!takes_value) continue;
+      ++with_value;
+      for (const std::string& without : {name + " ''", name + "=", name + "=' '", name + " '\t'", name + " --json", name}) {
+        const std::string line = subcommand + ' ' + rest + ' ' + without;
+        const outcome o = run_command(line);
+        INFO(line << " said: " << o.err);
+        CHECK(o.code == 1);
+        CHECK(o.out.empty());
+        CHECK(o.err.find(name) != std::string::npos);
+        CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+      }
+    }
+  CHECK(with_value >= 45);
+  for (const std::string line : {"info ''", "pack '' --spheres 5", "query ''", "'' query", "pack ' ' --spheres 5"})
+    refuses(line, "is empty");
+}
+
+TEST_CASE("an option takes one word each time, and a word in brackets is that word") {
+  const scratch_file urdf(".urdf", R"(<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
+  const scratch_file cloud(".xyz", "3 0.1 0.1\n"), other(".xyz", "4 0 0\n");
+  const std::string ask = "query --model triangles --backend host --json --robot " + urdf.path;
+  const auto both = parsed(run_command(ask + " --cloud " + cloud.path + " --cloud " + other.path));
+  CHECK(both.at("clouds").size() == 2);
+  refuses(ask + " --cloud " + cloud.path + ' ' + other.path, other.path);
+  refuses(ask + " --cloud " + quoted_shell("[" + cloud.path + "," + other.path + "]"), "[");
+  refuses(ask + " --cloud " + cloud.path + " --exclude-link '[]'", "[]");
+  CHECK(run_command(ask + " --cloud " + cloud.path + " --check -.5").code == 0);
+  CHECK(run_command(ask + " --cloud " + cloud.path + " --check=-1e-3").code == 0);
+  // A number that is too small for a double is 0, however it is spelt; one that is too large is refused.
+  CHECK(run_command(ask + " --cloud " + cloud.path + " --check 0." + std::string(330, '0') + "1").code == 0);
+  refuses(ask + " --cloud " + cloud.path + " --check 1" + std::string(330, '0'), "--check");
+}
+
+TEST_CASE("the attack's empty --check is refused", "[data]") {
+  const std::string folder = CLEARANCE_TEST_DATA "/attack/";
+  if (!std::filesystem::exists(folder)) {
+    WARN("SKIPPED: no folder " << folder);
+    return;
+  }
+  const std::string ask = "query --model triangles --robot " + folder + "box.urdf --cloud " + folder + "in.xyz";
+  refuses(ask + " --check ''", "--check");
+  CHECK(run_command(ask + " --check 0").code == 2);
+}
