@@ -1,0 +1,295 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the command must answer to a case, worked out from its files and options alone. `expected(case)` gives a list of Frame
+(one for `query`, one a frame for `run`), a dict of parts for `info`, None where only manners count; or raises Invalid or
+Unknown."""
+
+import math
+import os
+from dataclasses import dataclass, field
+
+import clouds
+import packings
+import robots
+from geometry import IDENTITY, apply, compose, distance_range, inverse, quaternion
+from strict import Unknown, demand, lines_of, number, text_of, whole
+
+FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache", "--json", "--merge", "--allow-overlap"}
+PER_CLOUD = {"--camera-pose", "--camera-link", "--intrinsics", "--depth-scale", "--range", "--use-viewpoint", "--zero-is-missing"}
+SINGLE = {
+    "query": {"--robot", "--joints", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend",
+              "--check", "--scene"},
+    "run": {"--robot", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend", "--check",
+            "--frames", "--trajectory"},
+}
+MANY = {"query": {"--joint", "--package", "--cloud", "--exclude-link"}, "run": {"--joint", "--package", "--exclude-link"}}
+FAR = 1e18  # metres; the square of what is beyond it is no float, and it may count as not finite
+
+
+@dataclass
+class Case:
+    format: str
+    command: str  # query, run, pack, info, demo
+    options: list  # [name, value] in their order; value None for a flag; name "" for a word by itself
+    files: dict  # name in the scratch folder: bytes
+    target: str  # which file is damaged, or "options"
+    outputs: list = field(default_factory=list)  # files that the command may write
+    file_limit: int = 0  # bytes a written file may have, as on a full disk; 0: no limit
+    cpu: float = 20.0
+    believes: bool = True  # False: the damaged file carries a certificate of its own, so its bracket may be anything
+
+    def words(self):
+        return [self.command] + [word for name, value in self.options for word in ((name, value) if name else (value,))
+                                 if word is not None]
+
+
+@dataclass
+class Frame:
+    low: float
+    high: float
+    seen: int
+    valid: range  # how many points may count
+    parts: list
+
+
+def _real(text, finite=True):
+    value = number(text.strip(" "), finite=False)
+    demand(not math.isnan(value) and (not finite or math.isfinite(value)), f"{text[:40]!r} is no number here")
+    return value
+
+
+def _reals(text, count, finite=True):
+    words = text.split(",")
+    demand(len(words) == count, f"{count} numbers wanted")
+    return [_real(word, finite) for word in words]
+
+
+def _pose(text):
+    x, y, z, *q = _reals(text, 7)
+    demand(abs(math.sqrt(sum(v * v for v in q)) - 1) <= 1e-3, "a quaternion that is not of unit length")
+    return quaternion(*q), (x, y, z)
+
+
+def _assignment(text):
+    name, equals, value = text.partition("=")
+    demand(name and equals and value, "no name=value")
+    return name, value
+
+
+class _Options:
+    """The options of `query` and `run`."""
+
+    def __init__(self, case):
+        self.command, self.one, self.many, self.flags, self.sensors = case.command, {}, {}, set(), []
+        before, current = {}, None
+        for name, value in case.options:
+            if name in FLAGS:
+                demand(value is None, f"{name} takes no value")
+            else:
+                demand(name and value is not None, "a word that belongs to no option")
+                demand(value != "", f"{name} is empty")
+            if name in PER_CLOUD:
+                (before if current is None else current)[name] = value
+            elif name == "--cloud" and case.command == "query":
+                current = dict(before, file=value)
+                self.sensors.append(current)
+            elif name in FLAGS:
+                self.flags.add(name)
+            elif name in MANY[case.command]:
+                self.many.setdefault(name, []).append(value)
+            else:
+                demand(name in SINGLE[case.command], f"no option {name}")
+                demand(name not in self.one, f"{name} twice")
+                self.one[name] = value
+        self.before = before
+        for name, choices in (("--model", "spheres triangles"), ("--volume", "sphere aabb obb"), ("--backend", "host"),
+                              ("--geometry", "collision visual")):
+            demand(self.one.get(name, choices.split()[0]) in choices.split(), f"{name} is none of its choices")
+        demand("--robot" in self.one, "no robot")
+        demand("--packing" not in self.one or self.one.get("--model", "spheres") == "spheres", "--packing with triangles")
+        self.base = _pose(self.one["--base-pose"]) if "--base-pose" in self.one else IDENTITY
+        whole(self.one.get("--spheres", "1"), 1, 10_000_000)
+        if "--check" in self.one:
+            _real(self.one["--check"])
+        for sensor in [before] + self.sensors:
+            for name, reader in (("--camera-pose", _pose), ("--intrinsics", lambda t: _reals(t, 4)), ("--depth-scale", _real),
+                                 ("--range", lambda t: _reals(t, 2, False))):
+                if name in sensor:
+                    reader(sensor[name])
+
+    def joints(self, robot):
+        ignore = "--ignore-limits" in self.flags
+        given = {}
+        for text in self.many.get("--joint", []):
+            name, value = _assignment(text)
+            demand(name not in given, "a joint twice")
+            given[name] = _real(value)
+        if "--joints" in self.one:
+            demand(not given, "--joints and --joint")
+            values = _reals(self.one["--joints"], len(robot.movable))
+            given = {joint.name: value for joint, value in zip(robot.movable, values)}
+        robot.check(given, ignore)
+        return given
+
+
+def _points(sensor, files):
+    """(points in the cloud's frame or None where they do not count, how many are seen)."""
+    name = sensor["file"]
+    data = files.get(name.removeprefix("./"))
+    demand(data, f"there is no {name[:40]!r}, or it is empty")
+    ending = os.path.splitext(name)[1].lower()
+    near, far = _reals(sensor["--range"], 2, False) if "--range" in sensor else (0.0, math.inf)
+    demand(0 <= near < far, "a range that is none")
+    if ending == ".png":
+        demand("--intrinsics" in sensor, "an image without intrinsics")
+        demand("--use-viewpoint" not in sensor and "--zero-is-missing" not in sensor, "an option of clouds for an image")
+        fx, fy, cx, cy = _reals(sensor["--intrinsics"], 4)
+        scale = _real(sensor.get("--depth-scale", "0.001"))
+        demand(fx > 0 and fy > 0 and scale > 0, "a camera that is none")
+        width, height, pixels = clouds.read_png(data)
+        made = []
+        for i, raw in enumerate(pixels):
+            z = raw * scale
+            if raw not in (0, 65535) and near <= z <= far:
+                made.append(((i % width - cx) / fx * z, (i // width - cy) / fy * z, z))
+        return made, len(pixels), IDENTITY
+    demand("--intrinsics" not in sensor and "--depth-scale" not in sensor, "an option of images for a cloud")
+    readers = {".pcd": clouds.read_pcd, ".ply": clouds.read_ply, ".xyz": clouds.read_xyz, ".txt": clouds.read_xyz}
+    demand(ending in readers, "no cloud by its name")
+    points, view = readers[ending](data)
+    placed = IDENTITY
+    if "--use-viewpoint" in sensor:
+        demand(view and abs(math.sqrt(sum(v * v for v in view[3:])) - 1) <= 1e-3, "no proper VIEWPOINT")
+        placed = (quaternion(view[4], view[5], view[6], view[3]), tuple(view[:3]))
+    made = [p for p in points if all(map(math.isfinite, p)) and near <= math.hypot(*p) <= far
+            and not ("--zero-is-missing" in sensor and not any(p))]
+    return made, len(points), placed
+
+
+def _frame(robot, given, base, sensors, carriers, files):
+    low = high = math.inf
+    seen = least = most = 0
+    poses = {name: compose(base, robot.link_pose(name, given)) for name in robot.bodies}
+    for sensor, carrier in zip(sensors, carriers):
+        points, count, placed = _points(sensor, files)
+        seen, most = seen + count, most + len(points)
+        world = compose(compose(carrier, _pose(sensor["--camera-pose"]) if "--camera-pose" in sensor else IDENTITY), placed)
+        for p in points:
+            at = apply(world, p)
+            if not max(map(abs, p)) < FAR:
+                continue
+            least += 1
+            for name, bodies in robot.bodies.items():
+                a, b = distance_range(bodies, apply(inverse(poses[name]), at))
+                low, high = min(low, a), min(high, b)
+    return Frame(low, high, seen, range(least, most + 1), list(robot.bodies))
+
+
+def _robot(options, files):
+    name = options.one["--robot"]
+    demand(name.removeprefix("./") in files, f"there is no {name[:40]!r}")
+    for text in options.many.get("--package", []):
+        _assignment(text)
+    return robots.Robot(files[name.removeprefix("./")], files, options.one.get("--geometry") == "visual",
+                        options.many.get("--exclude-link", []))
+
+
+def _check_packing(options, robot, files):
+    if "--packing" not in options.one:
+        return
+    name = options.one["--packing"]
+    ending = os.path.splitext(name)[1]
+    demand(name in files and ending in packings.readers, f"there is no {name[:40]!r}")
+    parts = packings.readers[ending](files[name])
+    if not (len(parts) == 1 and len(robot.bodies) == 1):
+        for part in parts:
+            demand(part in robot.bodies or part in options.many.get("--exclude-link", []), "spheres of an unknown link")
+
+
+def _carrier(robot, given, base, sensor):
+    if "--camera-link" not in sensor:
+        return IDENTITY
+    return compose(base, robot.link_pose(sensor["--camera-link"], given))
+
+
+def _query(case):
+    options = _Options(case)
+    demand(options.sensors, "no cloud")
+    robot = _robot(options, case.files)
+    given = options.joints(robot)
+    _check_packing(options, robot, case.files)
+    if "--scene" in options.one:
+        demand(options.one["--scene"] in case.outputs or options.one["--scene"] not in case.files, "the scene would replace an input")
+        if not options.one["--scene"].endswith(".glb"):
+            raise Unknown("a scene by another name")
+    carriers = [_carrier(robot, given, options.base, sensor) for sensor in options.sensors]
+    return [_frame(robot, given, options.base, options.sensors, carriers, case.files)]
+
+
+def _trajectory(data, robot, fixed, ignore):
+    lines = lines_of(data)
+    while lines and not lines[-1].strip(" \t"):
+        lines.pop()
+    demand(lines, "no line")
+    names = [word.strip(" \t") for word in lines[0].split(",")]
+    if not robot.movable:
+        raise Unknown("a robot without joints")
+    demand(sorted(names + list(fixed)) == sorted(j.name for j in robot.movable), "columns other than the joints")
+    demand(len(lines) > 1, "no row")
+    rows = []
+    for line in lines[1:]:
+        given = dict(fixed, **dict(zip(names, _reals(line.replace("\t", " "), len(names)))))
+        robot.check(given, ignore)
+        rows.append(given)
+    return rows
+
+
+def _run(case):
+    options = _Options(case)
+    robot = _robot(options, case.files)
+    for needed in ("--frames", "--trajectory"):
+        demand(needed in options.one and options.one[needed] in case.files, f"no {needed}")
+    fixed = dict(_assignment(text) for text in options.many.get("--joint", []))
+    fixed = {name: _real(value) for name, value in fixed.items()}
+    rows = _trajectory(case.files[options.one["--trajectory"]], robot, fixed, "--ignore-limits" in options.flags)
+    listed = [line.strip(" \t") for line in lines_of(case.files[options.one["--frames"]])]
+    listed = [line for line in listed if line]
+    demand(listed and all(os.path.normpath(name) in case.files for name in listed), "a frame that does not exist")
+    demand(len(rows) in (1, len(listed)), "rows for other than the frames")
+    sensors = [dict(options.before, file=os.path.normpath(name)) for name in listed]
+    rows = rows if len(rows) > 1 else rows * len(listed)
+    frames, carriers = [], [_carrier(robot, row, options.base, sensor) for row, sensor in zip(rows, sensors)]
+    for k, row in enumerate(rows):
+        merged = "--merge" in options.flags
+        frames.append(_frame(robot, row, options.base, sensors if merged else sensors[k:k + 1], carriers if merged else carriers[k:k + 1],
+                             case.files))
+    return frames
+
+
+def _info(case):
+    words = [value for name, value in case.options if name == ""]
+    demand(len(words) <= 1 and all(word for word in words) and all(name in ("", "--json") for name, _ in case.options), "other words")
+    if not words:
+        return None
+    ending = os.path.splitext(words[0])[1]
+    demand(words[0] in case.files and ending in packings.readers, "no such file")
+    return packings.readers[ending](case.files[words[0]])
+
+
+def _pack(case):
+    words = [value for name, value in case.options if name == ""]
+    given = {}
+    for name, value in case.options:
+        demand(value != "" and (value is None) == (name in FLAGS), f"{name} is empty")
+        demand(name in ("", "--out", "--package", "--exclude-link") or name not in given, f"{name} twice")
+        given[name] = value
+    demand(len(words) == 1 and words[0] in case.files, "no such input")
+    whole(given.get("--spheres", ""), 1, 10_000_000)
+    for name in ("--gap", "--smallest-radius", "--seconds"):
+        demand(name not in given or _real(given[name]) > 0, f"{name} is not above 0")
+    if not words[0].endswith(".urdf"):
+        robots.load_mesh(words[0], case.files)
+    return None
+
+
+def expected(case):
+    return {"query": _query, "run": _run, "info": _info, "pack": _pack, "demo": lambda _: None}[case.command](case)

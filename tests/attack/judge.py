@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Is what the command did right? The verdicts are the columns of the table."""
+
+import json
+import math
+import os
+import re
+import struct
+from dataclasses import dataclass
+
+import expect
+import execute
+import packings
+import scenes
+from strict import Invalid, Unknown
+
+FAULTS = ["crash", "hang", "memory", "message", "silent", "file"]
+PASSES = ["refused", "same", "explained"]
+LONGEST = 400
+NO_ANSWER = "no answer"  # of an undamaged case that was refused
+
+
+@dataclass
+class Answer:
+    state: str
+    low: float
+    high: float
+    seen: int
+    valid: int
+    parts: list  # None where the answer does not name all
+
+    def like(self, other):
+        return (self.state, self.low, self.high) == (other.state, other.low, other.high)
+
+
+def _once(pairs):
+    if len({key for key, _ in pairs}) != len(pairs):
+        raise ValueError("a key twice")
+    return dict(pairs)
+
+
+def _json_answer(text):
+    top = json.loads(text, object_pairs_hook=_once)
+    high = math.inf if top["upper"] is None else top["upper"]
+    low = math.inf if top["state"] == "no_data" else -math.inf if top["lower"] is None else top["lower"]
+    parts = [part["name"] for part in top["parts"]] if "parts" in top else None
+    return Answer(top["state"], low, high, top["points"]["seen"], top["points"]["valid"], parts)
+
+
+def _text_answer(text):
+    state = re.search(r"^state     (collision|possible|free|no data)", text, re.M)[1].replace(" ", "_")
+    bracket = re.search(r"certainly (\S+) to (\S+) m$", text, re.M)
+    low, high = (float(bracket[1]), float(bracket[2])) if bracket else (math.inf, math.inf)
+    seen = re.search(r"^points    (\d+) seen, (\d+) valid", text, re.M)
+    return Answer(state, low, high, int(seen[1]), int(seen[2]), None)
+
+
+def answers(case, outcome):
+    """What the command printed, or None for the commands that answer something else."""
+    text = outcome.out.decode("utf-8")
+    if case.command == "query":
+        return [_json_answer(text) if ["--json", None] in case.options else _text_answer(text)]
+    if case.command == "run":
+        return [_json_answer(each) for each in text.splitlines()]
+    if case.command == "pack" and ["--json", None] in case.options:
+        return re.sub(r'"(seconds|cached|mesh)": [^\n]*', "", text)
+    if case.command == "info" and ["--json", None] in case.options and any(name == "" for name, _ in case.options):
+        return {part["name"]: (part["spheres"], part["radius_min"], part["radius_max"]) for part in json.loads(text)["parts"]}
+    return None
+
+
+def _bad_text(data, what, sentences=False):
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError:
+        return f"{what} is not UTF-8"
+    bad = re.search(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]", text)
+    if bad:
+        return f"{what} has the control character {ord(bad[0])}"
+    for each in text.splitlines() if sentences else ():
+        if len(each.removeprefix("clearance: ").removeprefix("note: ")) > LONGEST:
+            return f"{what} has a sentence of {len(each)} characters"
+    return None
+
+
+def _message(case, outcome):
+    """What is wrong with how the command speaks, or None."""
+    bad = _bad_text(outcome.err, "stderr", sentences=True) or _bad_text(outcome.out, "stdout")
+    if bad:
+        return bad
+    said = [each for each in outcome.err.decode().splitlines() if not each.startswith("note: ")]
+    if outcome.code != 1:
+        return f"stderr says {said[0][:80]!r} with exit code {outcome.code}" if said else None
+    if len(said) != 1 or not said[0].startswith("clearance: "):
+        return f"{len(said)} sentences for one error: {said[:2]!r}"
+    named = list(case.files) + [name for name, value in case.options if name] + [value for _, value in case.options if value]
+    first = said[0].removeprefix("clearance: ").split(": ")[0]
+    quoted = first and " " not in first and any(first.encode() in data for data in case.files.values())  # a file that a file names
+    if "--help says more" not in said[0] and not quoted and not any(name[:30] in said[0] for name in named) and " --" not in said[0]:
+        return f"names neither file nor option: {said[0][:120]!r}"
+    return None
+
+
+def _written(case, outcome):
+    for name in outcome.changed:
+        return f"the input {name} was changed"
+    for name, data in outcome.written.items():
+        if name not in case.outputs and case.command in ("query", "pack") and case.target != "options":
+            return f"left {name} behind"
+        if data is None or case.files.get(name) == data:
+            if name in case.outputs and outcome.code in (0, 2, 3) and any(value == name for _, value in case.options):
+                return f"exit code {outcome.code}, but {name} was not written"
+            continue
+        try:
+            if name.endswith(".glb"):
+                json.loads(scenes.split_glb(data)[0])
+            elif os.path.splitext(name)[1] in packings.readers:
+                packings.readers[os.path.splitext(name)[1]](data)
+        except (Invalid, ValueError, struct.error) as error:
+            return f"{name} was half written: {error}"
+        except Unknown:
+            pass
+    return None
+
+
+def _disagrees(case, wanted, found, outcome):
+    """Why an answer is not what the files mean, or None."""
+    if wanted is None or found is None or isinstance(found, str):
+        return None
+    if isinstance(wanted, dict):
+        for name, spheres in wanted.items():
+            count, low, high = found.get(name, (None, 0, 0)) if len(found) > 1 else next(iter(found.values()))
+            if count != len(spheres):
+                return f"{count} spheres of {name!r}, the file has {len(spheres)}"
+            radii = [s[3] for s in spheres]
+            if not (math.isclose(low, min(radii), rel_tol=1e-6, abs_tol=1e-37) and math.isclose(high, max(radii), rel_tol=1e-6)):
+                return f"radii {low} to {high}, the file has {min(radii)} to {max(radii)}"
+        return None if len(wanted) == len(found) else f"{len(found)} parts, the file has {len(wanted)}"
+    if len(wanted) != len(found):
+        return f"{len(found)} answers, {len(wanted)} frames"
+    for frame, answer in zip(wanted, found):
+        if answer.seen != frame.seen or answer.valid not in frame.valid:
+            return f"{answer.seen} points, {answer.valid} valid; the files have {frame.seen}, {frame.valid.start} valid"
+        if answer.parts is not None and len(answer.parts) != len(frame.parts):
+            return f"{len(answer.parts)} parts, the file has {len(frame.parts)}"
+        if answer.state == "no_data":
+            if frame.valid.start > 0:
+                return "no data, but there are valid points"
+            continue
+        slack = 2e-6 + 1e-6 * min(frame.high, 1e30)
+        if case.believes and frame.high < 1e15 and (answer.low > frame.high + slack or answer.high < frame.low - slack):
+            return f"bracket {answer.low:.6g} to {answer.high:.6g} ({answer.state}), the files say {frame.low:.6g} to {frame.high:.6g}"
+    margin = next((value for name, value in case.options if name == "--check"), None)
+    codes = [3 if a.state == "no_data" else 2 if margin is not None and not a.low > float(margin) else 0 for a in found]
+    return None if outcome.code == max(codes) else f"exit code {outcome.code}, the answers say {max(codes)}"
+
+
+def judge(case, outcome, base, manners=False):
+    """(verdict, one line). `base` are the answers to the undamaged case. With `manners`, what is answered does not count."""
+    if b"Sanitizer" in outcome.err or b"runtime error:" in outcome.err:
+        return "crash", "a sanitizer reports " + outcome.err.decode("latin-1").strip().splitlines()[0][:160]
+    if outcome.hung:
+        return "hang", "no end in time"
+    if outcome.memory > execute.MEMORY:
+        return "memory", f"{outcome.memory / 2**30:.1f} GiB"
+    if outcome.code not in (0, 1, 2, 3):
+        return "crash", f"exit code {outcome.code}: " + outcome.err.decode("latin-1").strip()[:160]
+    wrong = _written(case, outcome)
+    if wrong:
+        return "file", wrong
+    try:
+        wanted, why = Unknown if manners else expect.expected(case), None
+    except Invalid as error:
+        wanted, why = Invalid, str(error)
+    except (Unknown, RecursionError, OverflowError, MemoryError):
+        wanted, why = Unknown, None
+    message = _message(case, outcome)
+    if outcome.code == 1:
+        return ("message", message) if message else ("refused", "" if why else "though valid")
+    try:
+        found = answers(case, outcome)
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        return ("message", message) if message else ("silent", f"exit code {outcome.code}, but no answer can be read: {error!r}"[:160])
+    if base == NO_ANSWER:
+        same = False
+    elif isinstance(found, list):
+        same = len(found) == len(base) and all(a.like(b) for a, b in zip(found, base))
+    else:
+        same = found == base
+    if wanted is Invalid and not same:
+        said = str(found)[:110] if found is not None else f"exit code {outcome.code}"
+        if found is not None or base == NO_ANSWER:
+            return "silent", f"the file is damaged ({why[:100]}), the answer another: {said}"
+    if wanted not in (Invalid, Unknown):
+        disagrees = _disagrees(case, wanted, found, outcome)
+        if disagrees:
+            return "silent", disagrees
+    if message:
+        return "message", message
+    return ("same" if same else "explained"), ""

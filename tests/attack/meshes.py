@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Strict readers of meshes without a scene graph: each gives (vertices, faces)."""
+
+import math
+import re
+import struct
+
+import ply
+from geometry import cross, dot, length, sub
+from strict import Unknown, demand, lines_of, number, text_of, whole, words_of
+
+_obj_words = set("""v vt vn vp f l p g o s usemtl mtllib usemap maplib mg bevel c_interp d_interp lod shadow_obj trace_obj cstype
+deg bmat step curv curv2 surf parm trim hole scrv sp end con ctech stech call csh bsp bzp cdc cdp res maxsize""".split())
+
+
+def read_obj(data):
+    demand(b"\0" not in data, "zero bytes")
+    text = re.sub(r"\\(\r\n|\n|\r)", " ", text_of(data))
+    vertices, faces = [], []
+    for line in lines_of(text.encode("latin-1")):
+        words = words_of(line.split("#")[0])
+        if not words:
+            continue
+        demand(words[0] in _obj_words, f"{words[0][:20]!r} is no statement")
+        if words[0] == "v":
+            values = [number(word) for word in words[1:]]
+            demand(len(values) in (3, 4, 6, 7), "a vertex of other than 3, 4, 6 or 7 numbers")
+            vertices.append(tuple(values[:3]))
+        elif words[0] == "f":
+            face = []
+            for word in words[1:]:
+                parts = word.split("/")
+                demand(len(parts) <= 3 and parts[0], "a damaged corner")
+                for part in parts[1:]:
+                    part == "" or whole(part, -(2**32), 2**32)
+                index = whole(parts[0], -(2**32), 2**32)
+                face.append(index - 1 if index > 0 else len(vertices) + index)
+                demand(index != 0 and face[-1] >= 0, "an index before the first")
+            demand(len(face) >= 3, "a face of fewer than three corners")
+            faces.append(face)
+    return vertices, faces
+
+
+def read_off(data):
+    lines = [line.split("#")[0].split() for line in lines_of(data)]
+    lines = [line for line in lines if line]
+    demand(lines and lines[0][0] in ("OFF", "COFF", "NOFF", "STOFF"), "no OFF file")
+    plain, head = lines[0][0] == "OFF", lines[0][1:]
+    at = 1
+    if not head:
+        demand(len(lines) > 1, "no counts")
+        head, at = lines[1], 2
+    demand(len(head) in (2, 3), "no counts")
+    count, faces_count = whole(head[0]), whole(head[1])
+    demand(at + count + faces_count == len(lines), "the counts are not those of the lines")
+    vertices, faces = [], []
+    for line in lines[at:at + count]:
+        values = [number(word) for word in line]
+        demand(len(values) == 3 if plain else len(values) >= 3, "a vertex of other than three numbers")
+        vertices.append(tuple(values[:3]))
+    for line in lines[at + count:]:
+        n = whole(line[0], 3)
+        demand(n < len(line), "a face is cut short")
+        faces.append([whole(word) for word in line[1:n + 1]])
+        for word in line[n + 1:]:  # a colour
+            number(word)
+    return vertices, faces
+
+
+def _stl_text(data):
+    vertices, faces, words, name = [], [], [], True
+    lines = lines_of(data)
+    state = 0  # outside of a solid
+    for line in lines:
+        found = line.split()
+        if state == 0 and found:
+            demand(found[0].lower() == "solid", f"{found[0][:20]!r} instead of solid")
+            state = 1
+        elif state == 1 and found and found[0].lower() == "endsolid":
+            demand(not words, "a facet is cut short")
+            state = 0
+        elif state == 1:
+            words += found
+            if len(words) >= 21:
+                demand(len(words) == 21, "words that belong to no facet")
+                small = [w.lower() for w in words]
+                demand(small[:2] == ["facet", "normal"] and small[5:7] == ["outer", "loop"] and small[19:] == ["endloop", "endfacet"]
+                       and all(small[k] == "vertex" for k in (7, 11, 15)), "a damaged facet")
+                for word in words[2:5]:
+                    number(word, finite=False)
+                faces.append([len(vertices), len(vertices) + 1, len(vertices) + 2])
+                vertices += [tuple(number(w) for w in words[k:k + 3]) for k in (8, 12, 16)]
+                words = []
+    demand(state == 0, "no endsolid")
+    return vertices, faces
+
+
+def read_stl(data):
+    if len(data) >= 84 and len(data) == 84 + 50 * struct.unpack_from("<I", data, 80)[0]:
+        vertices = []
+        for at in range(84, len(data), 50):
+            values = struct.unpack_from("<9f", data, at + 12)
+            demand(all(map(math.isfinite, values)), "a vertex that is not finite")
+            vertices += [values[0:3], values[3:6], values[6:9]]
+        return vertices, [[i, i + 1, i + 2] for i in range(0, len(vertices), 3)]
+    demand(b"\0" not in data, "neither text nor as long as a binary STL file says")
+    return _stl_text(data)
+
+
+def _flat_and_convex(corners):
+    total = [0.0, 0.0, 0.0]
+    for k in range(1, len(corners) - 1):
+        part = cross(sub(corners[k], corners[0]), sub(corners[k + 1], corners[0]))
+        total = [a + b for a, b in zip(total, part)]
+    size = max(length(sub(c, corners[0])) for c in corners)
+    turns = [dot(cross(sub(b, a), sub(c, b)), total) for a, b, c in zip(corners, corners[1:] + corners[:1], corners[2:] + corners[:2])]
+    return length(total) > 0 and all(t > 0 for t in turns) and all(
+        abs(dot(sub(c, corners[0]), total)) <= 1e-9 * size * length(total) for c in corners)
+
+
+def triangles(mesh):
+    """The triangles of a mesh; polygons that can be cut into triangles in several ways are not for these readers."""
+    vertices, faces = mesh
+    made = []
+    for face in faces:
+        demand(len(face) >= 3 and all(0 <= i < len(vertices) for i in face), "an index beyond the vertices")
+        corners = [vertices[i] for i in face]
+        if len(face) > 3 and not _flat_and_convex(corners):
+            raise Unknown("a polygon that is bent or not convex")
+        made += [(corners[0], corners[k], corners[k + 1]) for k in range(1, len(corners) - 1)]
+    demand(made, "no triangles")
+    return made
+
+
+readers = {".stl": read_stl, ".obj": read_obj, ".off": read_off, ".ply": ply.read_mesh}

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The files that once broke the command (../shared/data/attack, see its SOURCES.md), and what is right for them. Where no verdict
+stands, expect.py has it."""
+
+import json
+import os
+import shlex
+import struct
+import zlib
+
+import scenes
+import writers
+from expect import Case
+
+_near = "--cloud near.xyz --model triangles --json"
+_in = "--cloud in.xyz --model triangles --json"
+_meshes = ["dae-no-vcount", "dae-no-p", "dae-selfnode-entity", "dae-instance-lost", "dae-index-wraps"]
+_TABLE = {
+    "link-ref": (f"query --robot link-ref.urdf {_near}", "answered"),
+    "link-capsule": (f"query --robot link-capsule.urdf {_near}", None),
+    "link-box-comma": (f"query --robot link-box-comma.urdf {_near}", "refused"),
+    "link-second-lost": (f"query --robot link-second-lost.urdf {_near}", None),
+    "far-inside": ("query --robot box.urdf --base-pose 0.25,0.25,0,0,0,0,1 --cloud far-inside.xyz --model triangles --json", "answered"),
+    "plate": ("pack plate.urdf --spheres 5 --no-cache --json", None),
+    "near-coplanar": ("pack near-coplanar.obj --spheres 5 --no-cache --json", None),
+    "check-empty": (f"query --robot box.urdf {_in} --check ''", "refused"),
+    **{name: (f"query --robot {name}.urdf {_near}", "refused") for name in _meshes},
+    "dae-instance-ok": (f"query --robot dae-instance-ok.urdf {_near}", "answered"),
+    "glb-ok": (f"query --robot glb-ok.urdf {_near}", "answered"),
+    "glb-child-lost": (f"query --robot glb-child-lost.urdf {_near}", "refused"),
+    "glb-chain20000": (f"query --robot glb-chain20000.urdf {_near}", None),
+    "ply-ok": ("query --robot box.urdf --cloud ply-ok.ply --model triangles --json", "answered"),
+    **{name: (f"query --robot box.urdf --cloud {name}.ply --model triangles --json", "refused") for name in ("ply-neg", "ply-int-shift", "ply-count-low")},
+    "xyz-ok": ("query --robot box.urdf --cloud xyz-ok.xyz --model triangles --json", "answered"),
+    "xyz-cr": ("query --robot box.urdf --cloud xyz-cr.xyz --model triangles --json", None),
+    "order-plain": ("query --robot order-plain.urdf --joints 2.5,0 --cloud one.xyz --model triangles --json", "answered"),
+    "order-entity": ("query --robot order-entity.urdf --joints 2.5,0 --cloud one.xyz --model triangles --json", None),
+    "esc": ("query --robot esc.urdf --cloud in.xyz --model triangles", "manners"),
+    "mimic-inf": ("query --robot mimic-inf.urdf --joint 1=3 --cloud one.xyz --model triangles --json", "refused"),
+    "yamll": ("info yamll.yaml --json", "refused"),
+}
+
+
+def _sizes():
+    """Small files that unfold to much: they end in time and memory, by an answer or a sentence."""
+    cloud = {"c.xyz": b"3 0 0\n"}
+    query = [["--robot", "r.urdf"], ["--cloud", "c.xyz"], ["--model", "triangles"], ["--json", None]]
+    robot = lambda shapes: b'<robot name="r"><link name="a">' + b"".join(
+        b"<collision><geometry>" + s + b"</geometry></collision>" for s in shapes) + b"</link></robot>"
+    for name, shapes in (("spheres", [b'<sphere radius="1"/>'] * 300), ("sphere-large", [b'<sphere radius="1e6"/>']), ("cylinder-large", [b'<cylinder radius="1e9" length="1"/>']),
+                         ("dev-zero", [b'<mesh filename="file:///dev/zero"/>']), ("thin", [b'<box size="1 1 1e-7"/>'])):
+        yield name, Case("regression", "query", query, dict(cloud, **{"r.urdf": robot(shapes)}), "", cpu=20)
+    for name, side in (("plate-1e-4", b"1 1 1e-4"), ("needle-1e-5", b"1 1e-5 1e-5")):
+        packed = [["", "r.urdf"], ["--spheres", "5"], ["--no-cache", None], ["--json", None]]
+        yield name, Case("regression", "pack", packed, {"r.urdf": robot([b'<box size="' + side + b'"/>'])}, "")
+    # A graph of nodes in which each holds the next twice.
+    nodes = [{"children": [k + 1, k + 1]} for k in range(26)] + [{"mesh": 0}]
+    glb = writers.glb(writers.halved(writers.box(1, 1, 1)))
+    top = json.loads(scenes.split_glb(glb)[0])
+    top["nodes"], binary = nodes, scenes.split_glb(glb)[1]
+    mesh = robot([b'<mesh filename="m.glb"/>'])
+    yield "glb-unfolds", Case("regression", "query", query, dict(cloud, **{"r.urdf": mesh, "m.glb": writers.pack_glb(json.dumps(top).encode(), binary)}), "")
+    dae = writers.dae(writers.halved(writers.box(1, 1, 1)))
+    many = dae.replace(b'<param name="Z" type="float"/>', b'<param name="Z" type="float"/>' + b'<param name="W" type="float"/>' * 100_000, 1)
+    mesh = robot([b'<mesh filename="m.dae"/>'])
+    yield "dae-params", Case("regression", "query", query, dict(cloud, **{"r.urdf": mesh, "m.dae": many}), "")
+    side = 22_000
+    packer, row = zlib.compressobj(1), bytes(2 * side + 1)
+    data = b"".join(packer.compress(row * 100) for _ in range(side // 100)) + packer.flush()
+    head = writers.png_chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 16, 0, 0, 0, 0))
+    image = b"\x89PNG\r\n\x1a\n" + head + writers.png_chunk(b"IDAT", data) + writers.png_chunk(b"IEND", b"")
+    seen = [["--robot", "r.urdf"], ["--cloud", "c.png"], ["--intrinsics", "10,10,1,1"], ["--model", "triangles"], ["--json", None]]
+    box = robot([b'<box size="1 1 1"/>'])
+    yield "png-unfolds", Case("regression", "query", seen, {"r.urdf": box, "c.png": image}, "")
+    repeats = 120_000_000 * 3 // 264  # three bytes a point; each reference repeats 264 zeros
+    packed = b"\x02\0\0\0" + b"\xe0\xff\0" * repeats
+    points = 1 + 264 * repeats // 3
+    head = f"FIELDS x y z\nSIZE 1 1 1\nTYPE I I I\nWIDTH {points}\nHEIGHT 1\nDATA binary_compressed\n".encode()
+    seen = [[name, "c.pcd" if name == "--cloud" else value] for name, value in query]
+    yield "pcd-unfolds", Case("regression", "query", seen, {"r.urdf": box, "c.pcd": head + struct.pack("<II", len(packed), 3 * points) + packed}, "")
+
+
+def cases(data):
+    """[(name, case, what is right or None), ...]; those with files of their own everywhere, the others where the data is."""
+    return [(name, case, "manners") for name, case in _sizes()] + _recorded(os.path.join(data, "attack") if data else "")
+
+
+def _recorded(folder):
+    made, held = [], {}
+    if not os.path.isdir(folder):
+        return []
+    for name in sorted(os.listdir(folder)):
+        with open(os.path.join(folder, name), "rb") as file:
+            held[name] = file.read()
+    for name, (line, right) in _TABLE.items():
+        command, *words = shlex.split(line)
+        options = []
+        while words:
+            word = words.pop(0)
+            if not word.startswith("--"):
+                options.append(["", word])
+            else:
+                options.append([word, None if word in ("--json", "--no-cache") else words.pop(0)])
+        if any(value in held or value.startswith(name) for _, value in options if value):
+            files = {k: v for k, v in held.items() if k.startswith(name) or k in [value for _, value in options]}
+            made.append((name, Case("regression", command, options, files, ""), right))
+    return made
