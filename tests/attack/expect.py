@@ -20,8 +20,13 @@ SINGLE = {
               "--check", "--scene"},
     "run": {"--robot", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend", "--check",
             "--frames", "--trajectory"},
+    "pack": {"", "--spheres", "--gap", "--smallest-radius", "--seconds", "--seed", "--cache", "--geometry", "--joints"},
+    "demo": {"--spheres", "--cache", "--scene"},
+    "info": {""},
 }
-MANY = {"query": {"--joint", "--package", "--cloud", "--exclude-link"}, "run": {"--joint", "--package", "--exclude-link"}}
+MANY = {"query": {"--joint", "--package", "--cloud", "--exclude-link"}, "run": {"--joint", "--package", "--exclude-link"},
+        "pack": {"--out", "--package", "--exclude-link"}, "demo": set(), "info": set()}
+OWN_FLAGS = {"pack": {"--no-cache", "--json", "--allow-overlap"}, "demo": {"--no-cache"}, "info": {"--json"}}
 FAR = 1e18  # metres; the square of what is beyond it is no float, and it may count as not finite
 
 
@@ -265,31 +270,41 @@ def _run(case):
     return frames
 
 
+def _plain(case):
+    """The options of the other commands, each once, by name; "" is the word by itself."""
+    given = {}
+    for name, value in case.options:
+        known = OWN_FLAGS[case.command] if value is None else SINGLE[case.command] | MANY[case.command]
+        demand(name in known and value != "", f"{name} is none of its options, or is empty")
+        demand(name in MANY[case.command] or value is None or name not in given, f"{name} twice")
+        given[name] = value
+    demand("--spheres" not in given or whole(given["--spheres"], 1, 10_000_000), "--spheres")
+    return given
+
+
 def _info(case):
-    words = [value for name, value in case.options if name == ""]
-    demand(len(words) <= 1 and all(word for word in words) and all(name in ("", "--json") for name, _ in case.options), "other words")
-    if not words:
+    name = _plain(case).get("")
+    if name is None:
         return None
-    ending = os.path.splitext(words[0])[1]
-    demand(words[0] in case.files and ending in packings.readers, "no such file")
-    return packings.readers[ending](case.files[words[0]])
+    ending = os.path.splitext(name)[1]
+    demand(name in case.files and ending in packings.readers, "no such file")
+    return packings.readers[ending](case.files[name])
 
 
 def _pack(case):
-    words = [value for name, value in case.options if name == ""]
-    given = {}
-    for name, value in case.options:
-        demand(value != "" and (value is None) == (name in FLAGS), f"{name} is empty")
-        demand(name in ("", "--out", "--package", "--exclude-link") or name not in given, f"{name} twice")
-        given[name] = value
-    demand(len(words) == 1 and words[0] in case.files, "no such input")
-    whole(given.get("--spheres", ""), 1, 10_000_000)
+    given = _plain(case)
+    demand(given.get("", "") in case.files and "--spheres" in given, "no such input, or no --spheres")
     for name in ("--gap", "--smallest-radius", "--seconds"):
         demand(name not in given or _real(given[name]) > 0, f"{name} is not above 0")
-    if not words[0].endswith(".urdf"):
-        robots.load_mesh(words[0], case.files)
+    if not given[""].endswith(".urdf"):
+        robots.load_mesh(given[""], case.files)
+    return None
+
+
+def _demo(case):
+    _plain(case)
     return None
 
 
 def expected(case):
-    return {"query": _query, "run": _run, "info": _info, "pack": _pack, "demo": lambda _: None}[case.command](case)
+    return {"query": _query, "run": _run, "info": _info, "pack": _pack, "demo": _demo}[case.command](case)

@@ -95,7 +95,9 @@ def _message(case, outcome):
         return f"{len(said)} sentences for one error: {said[:2]!r}"
     named = list(case.files) + [name for name, value in case.options if name] + [value for _, value in case.options if value]
     first = said[0].removeprefix("clearance: ").split(": ")[0]
-    quoted = first and " " not in first and any(first.encode() in data for data in case.files.values())  # a file that a file names
+    quoted = first.strip("?") and (" " not in first or case.command == "run") and any(  # a file that a file names
+        re.search(re.escape(first).replace("\\?", ".{1,4}").encode(), data) for data in case.files.values())
+    named += ['joint "'] if any(name in ("--joint", "--joints") for name, _ in case.options) else []
     if "--help says more" not in said[0] and not quoted and not any(name[:30] in said[0] for name in named) and " --" not in said[0]:
         return f"names neither file nor option: {said[0][:120]!r}"
     return None
@@ -176,7 +178,7 @@ def judge(case, outcome, base, manners=False):
         wanted, why = Unknown, None
     message = _message(case, outcome)
     if outcome.code == 1:
-        return ("message", message) if message else ("refused", "" if why else "though valid")
+        return ("message", message) if message else ("refused", "" if why or wanted is Unknown else "refused, though valid: " + outcome.err.decode("latin-1").strip()[:140])
     try:
         found = answers(case, outcome)
     except (ValueError, KeyError, TypeError, AttributeError) as error:

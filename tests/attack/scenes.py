@@ -224,7 +224,7 @@ class _Gltf:
         if "sparse" in accessor or "bufferView" not in accessor:
             raise Unknown("a sparse accessor")
         component, shape = accessor.get("componentType"), accessor.get("type")
-        demand((component, shape) in kinds, f"an accessor of {component!r:.20} {shape!r:.20}")
+        demand(isinstance(component, int) and isinstance(shape, str) and (component, shape) in kinds, f"an accessor of {component!r:.20} {shape!r:.20}")
         letter, width = kinds[component, shape]
         size = struct.calcsize(letter)
         view = self.item("bufferViews", accessor["bufferView"])
@@ -273,9 +273,9 @@ class _Gltf:
         return [float(v) for v in values]
 
     def node(self, index, pose, depth):
-        demand(index not in self.seen, "a node in two places")
-        self.seen.add(index) if isinstance(index, int) else None
         node = self.item("nodes", index)
+        demand(index not in self.seen, "a node in two places")
+        self.seen.add(index)
         if depth > 150 or len(self.made) > _most or "skin" in node or "extensions" in node:
             raise Unknown("a scene too deep or too large, or a skin")
         demand("matrix" not in node or not {"translation", "rotation", "scale"} & set(node), "a matrix beside other motions")
