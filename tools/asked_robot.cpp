@@ -52,15 +52,19 @@ io::robot load_robot(const query_options& asked) {
   options.geometry = asked.visual.value_or(false) ? io::robot_geometry::visual : io::robot_geometry::collision;
   for (const auto& [name, folder] : asked.packages) options.packages[name] = folder;
   options.exclude_links = asked.excluded;
-  return io::within_memory(asked.robot, [&] { return io::load_robot(asked.robot, options); });
+  return io::within_memory(asked.robot, [&] { return about_file(asked.robot, [&] { return io::load_robot(asked.robot, options); }); });
 }
 
 std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const io::robot& robot,
                                             const std::vector<double>& joints, const std::string& when) {
-  auto poses = robot.poses(joints, {asked.ignore_limits});
-  for (std::size_t k = 0; k < poses.size(); ++k)
-    poses[k] = rigid(asked.base * poses[k], ("link " + io::quoted(robot.parts()[k].name) + when).c_str());
-  return poses;
+  return about_file(asked.robot, [&] {
+    auto poses = robot.poses(joints, {asked.ignore_limits});
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      poses[k] = asked.base * poses[k];
+      rigid(poses[k], ("link " + io::quoted(robot.parts()[k].name) + when).c_str());
+    }
+    return poses;
+  });
 }
 
 std::vector<body> make_bodies(const query_options& asked, const io::robot& robot, progress& shown,

@@ -50,7 +50,7 @@ int run(const query_options& asked) {
   shown.show("reading " + asked.robot);
   io::files_read inputs;
   const io::robot robot = load_robot(asked);
-  const auto joints = configuration(asked, robot.kinematics());
+  const auto joints = about_file(asked.robot, [&] { return configuration(asked, robot.kinematics()); });
   const io::joint_options limits{asked.ignore_limits};
   query_report report;
   report.notes = robot.notes();
@@ -61,11 +61,16 @@ int run(const query_options& asked) {
     clouds.push_back(observe(from));
     for (const auto& note : clouds.back().notes) report.notes.push_back(note);
   }
-  for (observation& cloud : clouds)  // they stay where they are from here on
-    q.clouds.push_back(cloud.seen(cloud.from.link.empty() ? Eigen::Isometry3d::Identity()
-                                                          : asked.base * robot.link_pose(cloud.from.link, joints, limits),
-                                  q.poses));
-  for (std::size_t i = 0; i < clouds.size(); ++i) rigid(q.clouds[i].pose, ("cloud " + io::quoted(clouds[i].from.file)).c_str());
+  for (observation& cloud : clouds) {  // they stay where they are from here on
+    Eigen::Isometry3d carrier = Eigen::Isometry3d::Identity();
+    if (const auto& link = cloud.from.link; !link.empty())
+      carrier = asked.base * about_file(asked.robot, [&] { return robot.link_pose(link, joints, limits); });
+    q.clouds.push_back(about_file(cloud.from.file, [&] {
+      const seen_points seen = cloud.seen(carrier, q.poses);
+      rigid(seen.pose, "cloud");
+      return seen;
+    }));
+  }
   if (!asked.scene.empty()) io::check_output(asked.scene, inputs);  // known before the robot is packed
   report.load = clock.lap();
 

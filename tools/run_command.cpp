@@ -35,7 +35,7 @@ class motion {
   Eigen::Isometry3d carrier(std::size_t frame) const {
     const std::string& link = asked_.recording.camera.link;
     if (link.empty()) return Eigen::Isometry3d::Identity();
-    return asked_.base * robot_.link_pose(link, row(frame), limits());
+    return asked_.base * about_file(asked_.robot, [&] { return robot_.link_pose(link, row(frame), limits()); });
   }
 
  private:
@@ -86,7 +86,11 @@ int run(const query_options& asked) {
     if (!asked.recording.merge) {
       observation next = load(k);
       frame.emplace(std::move(next));  // it stays while it is asked about
-      upload = prepared->see(frame->seen(moves.carrier(k), moves.poses(k)));
+      upload = prepared->see(about_file(frames[k].file, [&] {
+        const seen_points seen = frame->seen(moves.carrier(k), moves.poses(k));
+        rigid(seen.pose, "cloud");
+        return seen;
+      }));
     }
     frame_report report{.frame = k, .file = frames[k].file, .found = prepared->ask(moves.poses(k)), .bodies = &bodies};
     report.found.upload = std::exchange(upload, 0);

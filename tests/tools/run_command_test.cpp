@@ -208,3 +208,42 @@ TEST_CASE("what is wrong with a recording is one sentence and exit code 1") {
   CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
   refuses(r.run() + " --merge", "2.xyz:1: ");
 }
+
+TEST_CASE("a trajectory may begin with a byte order mark, end in blank lines, and end its lines anyhow") {
+  const recording r;
+  const std::string expected = run_command(r.run() + " --check 0").out;
+  const auto states = [](const std::string& text) {
+    std::string all;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) all += nlohmann::json::parse(line).at("distance").dump() + ' ';
+    return all;
+  };
+  for (const std::string end : {"\n", "\r\n", "\r"})
+    for (const std::string mark : {"", "\xEF\xBB\xBF"})
+      for (const std::string& last : {std::string(), end, end + end, end + " \t" + end}) {
+        const scratch_file csv(".csv", mark + "turn, slide" + end + "0,0" + end + "0.5,0.1" + end + "-1,3e-1" + last);
+        const scratch_file list(".txt", mark + r.frame(0) + end + end + r.frame(1) + end + r.frame(2) + last);
+        const outcome o = run_command(r.run(list.path, csv.path));
+        INFO(o.err);
+        CHECK(o.code == 0);
+        CHECK(states(o.out) == states(expected));
+      }
+}
+
+TEST_CASE("a robot whose joints are all fixed needs no trajectory, and one without columns will do") {
+  const recording r;
+  const scratch_file box(".urdf", R"(<robot name="r"><link name="a"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link></robot>)");
+  const std::string ask = "run --backend host --model triangles --frames " + r.folder.string() + " --robot ";
+  const auto expected = lines(run_command(ask + box.path));
+  REQUIRE(expected.size() == 3);
+  for (const std::string text : {"\n", "\r\n", "\xEF\xBB\xBF\n\n", " "}) {
+    const scratch_file csv(".csv", text);
+    const auto all = lines(run_command(ask + box.path + " --trajectory " + csv.path));
+    REQUIRE(all.size() == 3);
+    for (int k = 0; k < 3; ++k) CHECK(all[k].at("distance") == expected[k].at("distance"));
+  }
+  const scratch_file values(".csv", "\n1\n");
+  refuses(ask + box.path + " --trajectory " + values.path, values.path);
+  CHECK(lines(run_command(ask + r.urdf.path + " --joint turn=0 --joint slide=0")).size() == 3);
+  refuses(ask + r.urdf.path + " --joint turn=0", "joint \"slide\" has no value");
+}

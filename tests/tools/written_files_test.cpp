@@ -114,7 +114,7 @@ TEST_CASE("nothing is written onto an input, whatever name it goes by, nor throu
   const workplace w;
   for (const auto& [ending, write] : w.writers()) {
     const bool query = write.starts_with("query");
-    for (const std::string input : query ? std::vector<std::string>{"robot.urdf", "cube.obj", "cloud.xyz"} : std::vector<std::string>{"cube.obj"}) {
+    for (const std::string& input : query ? std::vector<std::string>{"robot.urdf", "cube.obj", "cloud.xyz"} : std::vector<std::string>{"cube.obj"}) {
       const std::string before = w.read(input), hard = w.at("hard" + ending);
       fs::create_hard_link(w.folder / input, hard);
       refuses(write + hard, "hard" + ending + ": is a file that this reads");
