@@ -96,9 +96,9 @@ def _message(case, outcome):
     named = list(case.files) + [name for name, value in case.options if name] + [value for _, value in case.options if value]
     first = said[0].removeprefix("clearance: ").split(": ")[0]
     quoted = first.strip("?") and (" " not in first or case.command == "run") and any(  # a file that a file names
-        re.search(re.escape(first).replace("\\?", ".{1,4}").encode(), data) for data in case.files.values())
+        re.search(re.sub(r"\\\\x[0-9a-f]{2}|\\\?", ".{1,4}", re.escape(first)).encode(), data, re.DOTALL) for data in case.files.values())
     named += ['joint "'] if any(name in ("--joint", "--joints") for name, _ in case.options) else []
-    if "--help says more" not in said[0] and not quoted and not any(name[:30] in said[0] for name in named) and " --" not in said[0]:
+    if first != "the command line" and "--help says more" not in said[0] and not quoted and not any(name[:30] in said[0] for name in named) and " --" not in said[0]:
         return f"names neither file nor option: {said[0][:120]!r}"
     return None
 
