@@ -14,10 +14,18 @@ packages_all="$packages_test libbenchmark-dev"
 say() { printf '%s\n' "$*"; }
 fail() { say "$*" >&2; exit 1; }
 
-# install_packages yes|no names...: does nothing where all are there; "no" only says what is missing.
+# need_room FOLDER MIB: says so in one sentence where less is free.
+need_room() {
+  free=$(df -Pk "$1" 2>/dev/null | awk 'NR == 2 { print int($4 / 1024) }')
+  [ -z "$free" ] || [ "$free" -ge "$2" ] || fail "Only $free MiB are free in $1, and $2 are needed."
+}
+
+# install_packages yes|no names...: does nothing where all are there; "no" only says what is missing. Nothing is unpacked
+# before all of it has been fetched, so that without a network nothing is half installed.
 install_packages() {
   may_install=$1
   shift
+  need_cmake
   if ! command -v dpkg-query >/dev/null 2>&1; then
     say "This is no Debian or Ubuntu; make sure that you have the equivalents of: $*"
     return 0
@@ -40,10 +48,27 @@ install_packages() {
     [ -n "$become" ] || may_install=no
   fi
   [ "$may_install" = yes ] || fail "Please install first: apt-get install --no-install-recommends$missing"
+  need_room /usr 1500
   say "Installing from your distribution:$missing"
-  $become env DEBIAN_FRONTEND=noninteractive apt-get update -q >/dev/null &&
-    $become env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing >/dev/null ||
-    fail "The installation failed; please install: apt-get install --no-install-recommends$missing"
+  log=$(mktemp) || fail "There is no room for a temporary file."
+  get="$become env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get -q -y --no-install-recommends"
+  if $get update >"$log" 2>&1 && $get install --download-only $missing >>"$log" 2>&1 && $get install $missing >>"$log" 2>&1; then
+    rm -f "$log"
+    need_cmake
+  else
+    why=$(sed -n 's/^E: //p' "$log" | head -n 1 | cut -c 1-200)
+    rm -f "$log"
+    fail "The installation failed (${why:-apt-get gave no reason}); please install: apt-get install --no-install-recommends$missing"
+  fi
+}
+
+# An older CMake is refused before anything is installed; the least that will do stands in CMakeLists.txt.
+need_cmake() {
+  command -v cmake >/dev/null 2>&1 || return 0
+  least=$(sed -n 's/^cmake_minimum_required(VERSION \([0-9.]*\))$/\1/p' "$root/CMakeLists.txt")
+  have=$(cmake --version | sed -n '1s/[^0-9]*\([0-9.]*\).*/\1/p')
+  [ "$(printf '%s\n%s\n' "$least" "$have" | sort -V | head -n 1)" = "$least" ] ||
+    fail "The cmake on the PATH is $have, and $least is needed (a newer one: pip install cmake)."
 }
 
 # A CUDA toolkit is used where there is one, also if it is not on the PATH.
