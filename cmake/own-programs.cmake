@@ -63,6 +63,12 @@ if(CLEARANCE_SANITIZE)
   target_link_options(clearance_own INTERFACE -fsanitize=address,undefined)
 endif()
 
+# clearance_compile_faster(language): from here on and in this folder, a release is -O1 on the host. For CUDA that halves
+# the time of what only tests; code for the GPU stays optimised, as nvcc's -O is the host's alone.
+macro(clearance_compile_faster language)
+  string(REPLACE "-O3" "-O1" CMAKE_${language}_FLAGS_RELEASE "${CMAKE_${language}_FLAGS_RELEASE}")
+endmacro()
+
 # The GPU check, linked into device programs that CTest runs: exit code 77 ("skipped") where there is no GPU.
 if(CLEARANCE_HAS_CUDA AND CLEARANCE_BUILD_TESTS)
   add_library(clearance_require_device OBJECT ${PROJECT_SOURCE_DIR}/tests/support/require_device.cu)

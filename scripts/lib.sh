@@ -58,7 +58,7 @@ install_packages() {
   else
     why=$(sed -n 's/^E: //p' "$log" | head -n 1 | cut -c 1-200)
     rm -f "$log"
-    fail "The installation failed (${why:-apt-get gave no reason}); please install: apt-get install --no-install-recommends$missing"
+    fail "The installation of these packages failed: ${why:-apt-get gave no reason}"
   fi
 }
 
