@@ -4,7 +4,7 @@
 
 set(clearance_io_missing)
 
-# Packages name files for the linker that another package brings: Debian's assimp asks for libz.so and does not bring it.
+# Packages may name files for the linker that another package brings.
 # Appends to `absent` what a target and those behind it ask for and what is not there.
 function(clearance_io_link_files target absent)
   set(targets ${target})
@@ -25,22 +25,17 @@ function(clearance_io_link_files target absent)
       endif()
     endforeach()
   endwhile()
-  list(TRANSFORM lacking REPLACE "^/.*/libz[.](so|a)$" zlib1g-dev)
   list(REMOVE_DUPLICATES lacking)
   set(${absent} ${lacking} PARENT_SCOPE)
 endfunction()
 
-find_package(assimp CONFIG QUIET)
-if(TARGET assimp::assimp)
-  clearance_io_link_files(assimp::assimp clearance_io_missing)
-else()
-  list(APPEND clearance_io_missing libassimp-dev zlib1g-dev)
+find_package(EXPAT QUIET)
+if(NOT TARGET EXPAT::EXPAT)
+  list(APPEND clearance_io_missing libexpat1-dev)
 endif()
-find_package(urdfdom CONFIG QUIET)
-if(TARGET urdfdom::urdfdom_model)
-  clearance_io_link_files(urdfdom::urdfdom_model clearance_io_missing)
-else()
-  list(APPEND clearance_io_missing liburdfdom-dev)
+find_package(nlohmann_json CONFIG QUIET)
+if(NOT TARGET nlohmann_json::nlohmann_json)
+  list(APPEND clearance_io_missing nlohmann-json3-dev)
 endif()
 find_package(yaml-cpp CONFIG QUIET)
 set(clearance_yaml yaml-cpp::yaml-cpp)  # its name since 0.8
@@ -71,6 +66,7 @@ if(NOT clearance_io_missing AND NOT TARGET clearance::io)
   add_library(clearance::io INTERFACE IMPORTED GLOBAL)
   target_include_directories(clearance::io SYSTEM INTERFACE ${CLEARANCE_STB_INCLUDE_DIR} ${CLEARANCE_XXHASH_INCLUDE_DIR}
                                                           ${CLEARANCE_LZF_INCLUDE_DIR})
-  target_link_libraries(clearance::io INTERFACE clearance::clearance assimp::assimp urdfdom::urdfdom_model ${clearance_yaml}
+  target_link_libraries(clearance::io INTERFACE clearance::clearance EXPAT::EXPAT
+                                                nlohmann_json::nlohmann_json ${clearance_yaml}
                                                 ${CLEARANCE_LZF_LIBRARY})
 endif()

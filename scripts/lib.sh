@@ -4,10 +4,10 @@
 root=$(cd "$(dirname "$0")/.." && pwd)
 
 # What each part needs on a Debian 12 that has nothing; each list holds the one before. README.md names the same.
-# (zlib1g-dev: libassimp-dev links its libz.so and does not bring it.) Ubuntu 24.04 has the same names (untried there).
+# Ubuntu 24.04 has the same names (untried there).
 packages_library="cmake g++ make libeigen3-dev libtbb-dev"
-packages_io="$packages_library libassimp-dev zlib1g-dev liburdfdom-dev libstb-dev liblzf-dev libyaml-cpp-dev libxxhash-dev"
-packages_command="$packages_io libcli11-dev nlohmann-json3-dev ninja-build"
+packages_io="$packages_library libexpat1-dev nlohmann-json3-dev libstb-dev liblzf-dev libyaml-cpp-dev libxxhash-dev"
+packages_command="$packages_io libcli11-dev ninja-build"
 packages_test="$packages_command catch2 libfcl-dev python3 ccache"
 packages_all="$packages_test libbenchmark-dev"
 

@@ -55,7 +55,7 @@ bool closed(const triangle_mesh& m) {
 
 TEST_CASE("shapes become closed meshes that face out, and the error stated is the error there is") {
   for (const double r : {0.003, 0.05, 0.4, 2.0}) {
-    const auto sphere = io::tessellate_sphere(r);
+    const auto sphere = io::tessellate_sphere(r, 1e-4, 1u << 20);
     CHECK(closed(sphere.mesh));
     CHECK(sphere.error <= 1e-4);
     CHECK(volume(sphere.mesh) > 4.1 * std::pow(r - sphere.error, 3));
@@ -82,12 +82,54 @@ TEST_CASE("shapes become closed meshes that face out, and the error stated is th
     }
     CHECK(worst <= cylinder.error);
     CHECK(worst > 0.99 * cylinder.error);
+
+    const auto capsule = io::tessellate_capsule(r, 0.7, 1e-4, 1u << 20);
+    CHECK(closed(capsule.mesh));
+    CHECK(capsule.error <= 1e-4);
+    const double whole = std::numbers::pi * r * r * (0.7 + 4 * r / 3);
+    CHECK(volume(capsule.mesh) < whole);
+    CHECK(volume(capsule.mesh) > 0.9 * whole);
+    worst = 0;
+    const auto depth = [&](const Eigen::Vector3d& p) {  // how far a point is inside the capsule
+      return r - (p - Eigen::Vector3d(0, 0, std::clamp(p.z(), -0.35, 0.35))).norm();
+    };
+    for (const auto& v : capsule.mesh.vertices) CHECK(std::abs(depth(v)) < 1e-14);
+    for (const auto& [a, b, c] : capsule.mesh.triangles) {
+      const auto& m = capsule.mesh.vertices;
+      for (const Eigen::Vector3d& p : {Eigen::Vector3d((m[a] + m[b]) / 2), Eigen::Vector3d((m[b] + m[c]) / 2),
+                                       Eigen::Vector3d((m[c] + m[a]) / 2), Eigen::Vector3d((m[a] + m[b] + m[c]) / 3)})
+        worst = std::max(worst, depth(p));
+    }
+    CHECK(worst <= capsule.error);
+    CHECK(worst > 0.8 * capsule.error);
   }
   const auto cuboid = io::tessellate_box({1, 2, 3});
   CHECK(closed(cuboid.mesh));
   CHECK(volume(cuboid.mesh) == Approx(6));
   CHECK(cuboid.error == 0);
-  CHECK(io::tessellate_sphere(1e6).error > 1e-4);  // the limit on its size shows
+}
+
+TEST_CASE("a shape of any size has a bounded number of triangles, and states the error that this costs") {
+  for (const double r : {1e-9, 1e-3, 1.0, 1e6})
+    for (const std::uint32_t most : {200u, io::most_triangles})
+      for (const auto& made : {io::tessellate_sphere(r, 1e-4, most), io::tessellate_cylinder(r, 0.7 * r, 1e-4, most),
+                               io::tessellate_capsule(r, 0.7 * r, 1e-4, most)}) {
+        INFO(r << " m in at most " << most);
+        CHECK(closed(made.mesh));
+        CHECK(made.mesh.triangles.size() <= most);
+        CHECK(made.error <= 0.15 * r);
+        if (most == io::most_triangles) CHECK(made.error < std::max(1.1e-4, 1.5e-3 * r));
+      }
+  CHECK(io::tessellate_sphere(1).error > 5e-4);  // the bound on the triangles shows
+  const robot_folder folder;
+  std::string spheres;
+  for (int i = 0; i < 300; ++i) spheres += collision("<sphere radius=\"1\"/>");
+  const io::robot r = load_robot(folder.put("s.urdf", robot(a_link("a", spheres))));
+  CHECK(r.parts()[0].mesh.triangles.size() <= 300 * io::most_triangles);
+  CHECK(r.parts()[0].tessellation_error == io::tessellate_sphere(1).error);
+  io::robot_options fewer;
+  fewer.limits.triangles = 100'000;
+  CHECK(says(sentence([&] { load_robot(folder.path / "s.urdf", fewer); }), "link \"a\": with it the robot has more than 100000 triangles"));
 }
 
 TEST_CASE("a part is all shapes of one link, each at its origin, and links without geometry are none") {
@@ -233,8 +275,8 @@ TEST_CASE("a bad robot file is refused in one sentence with its name") {
   for (std::size_t cut = 30; cut + 12 < good.size(); cut += 7) CHECK_FALSE(refusal(good.substr(0, cut)).empty());
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<a>";
-  CHECK(says(refusal("<robot name=\"r\">" + deep), "inside one another"));
-  CHECK(says(refusal(robot("")), "valid URDF"));
+  CHECK(says(refusal("<robot name=\"r\">" + deep), "elements inside one another"));
+  CHECK(says(refusal(robot("")), "no link"));
   CHECK(says(refusal(robot(a_link("a"))), "no link has geometry"));
   CHECK(says(refusal(robot(a_link("a", collision(box)) + "<xacro:arm/>")), "xacro"));
   CHECK_FALSE(refusal(robot(a_link("a", collision(box)) + a_link("a"))).empty());
@@ -244,9 +286,9 @@ TEST_CASE("a bad robot file is refused in one sentence with its name") {
                            joint("k", "fixed", "c", "b"))),
              "ring"));
   CHECK(says(refusal(robot(a_link("a", collision(box)) + a_link("b") + joint("jay", "floating", "a", "b"))),
-             "\"jay\" is floating"));
+             "\"jay\": <joint> is floating"));
   CHECK(says(refusal(robot(a_link("a", collision(box)) + a_link("b") + joint("jay", "planar", "a", "b"))),
-             "\"jay\" is planar"));
+             "\"jay\": <joint> is planar"));
   CHECK_FALSE(refusal(robot(a_link("a", collision(box)) + a_link("b") + joint("j", "helical", "a", "b"))).empty());
   CHECK_FALSE(refusal(robot(a_link("a", collision(box)) + a_link("b") + joint("j", "revolute", "a", "b", ""))).empty());
   CHECK_FALSE(refusal(robot(a_link("a", collision(box)) + a_link("b") +
@@ -254,11 +296,10 @@ TEST_CASE("a bad robot file is refused in one sentence with its name") {
                   .empty());
   CHECK_FALSE(refusal(robot(a_link("a", collision(box, "<origin xyz=\"0 1e999 0\"/>")))).empty());
   CHECK_FALSE(refusal(robot(a_link("a", collision(box, "<origin xyz=\"0 0\"/>")))).empty());
-  CHECK_FALSE(refusal(robot(a_link("a", collision("<capsule radius=\"1\" length=\"1\"/>")))).empty());
   CHECK_FALSE(refusal(robot(a_link("a", "<collision/>"))).empty());
-  CHECK(says(refusal(robot(a_link("a", collision("<box size=\"1 0 1\"/>")))), "box side"));
-  CHECK(says(refusal(robot(a_link("a", collision("<sphere radius=\"-1\"/>")))), "sphere radius"));
-  CHECK(says(refusal(robot(a_link("a", collision("<cylinder radius=\"1\" length=\"0\"/>")))), "cylinder length"));
+  CHECK(says(refusal(robot(a_link("a", collision("<box size=\"1 0 1\"/>")))), "side that is not above 0"));
+  CHECK(says(refusal(robot(a_link("a", collision("<sphere radius=\"-1\"/>")))), "radius that is not above 0"));
+  CHECK(says(refusal(robot(a_link("a", collision("<cylinder radius=\"1\" length=\"0\"/>")))), "length that is not above 0"));
   CHECK(says(refusal(robot(a_link("a", collision(mesh("t.obj", "scale=\"1 0 1\""))))), "scale"));
   CHECK(says(sentence([&] { load_robot(folder.put("r.urdf", robot(a_link("a", collision(mesh("gone.stl")))))); }),
              "gone.stl"));

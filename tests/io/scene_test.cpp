@@ -5,11 +5,38 @@
 #include <clearance/io/packing_scene.hpp>
 #include <clearance/io/scene.hpp>
 
-#include <assimp/Importer.hpp>
+#include <nlohmann/json.hpp>
 
+#include <clearance/io/mesh.hpp>
+
+#include <cstring>
 #include <map>
+#include <set>
 
 using namespace clearance;
+
+namespace {
+
+/// The JSON of a binary glTF file, with nodes, meshes and materials by name.
+struct gltf_file {
+  nlohmann::json all;
+  std::map<std::string, nlohmann::json> nodes, meshes, materials;
+
+  explicit gltf_file(const std::string& file) {
+    const std::string bytes = io::read_bytes(file);
+    std::uint32_t size;
+    std::memcpy(&size, bytes.data() + 12, 4);
+    all = nlohmann::json::parse(bytes.substr(20, size));
+    for (const auto& each : all["nodes"]) nodes[each["name"]] = each;
+    for (const auto& each : all["meshes"]) meshes[each["name"]] = each;
+    for (const auto& each : all["materials"]) materials[each["name"]] = each;
+  }
+  std::size_t faces(const std::string& mesh) const {
+    return all["accessors"][std::size_t(meshes.at(mesh)["primitives"][0]["indices"])]["count"].get<std::size_t>() / 3;
+  }
+};
+
+}  // namespace
 
 TEST_CASE("a scene file holds every body, point and segment where it is, z up, away from a far origin") {
   io::scene world;
@@ -24,24 +51,37 @@ TEST_CASE("a scene file holds every body, point and segment where it is, z up, a
   const scratch_file file(".glb");
   io::save_scene(world, file.path);
 
-  Assimp::Importer importer;
-  const aiScene* read = importer.ReadFile(file.path, 0);
-  REQUIRE(read);
-  std::map<std::string, const aiMesh*> meshes;
-  for (unsigned i = 0; i < read->mNumMeshes; ++i) meshes[read->mMeshes[i]->mName.C_Str()] = read->mMeshes[i];
-  REQUIRE(meshes.size() == 4);
-  CHECK(meshes.at("link")->mNumFaces == 20);
-  CHECK(meshes.at("balls")->mNumFaces == 1280 + 320);
-  CHECK(meshes.at("cloud")->mNumVertices == 2);
-  CHECK(meshes.at("cloud")->mPrimitiveTypes == aiPrimitiveType_POINT);
-  CHECK(meshes.at("cloud")->mColors[0] != nullptr);
-  CHECK(meshes.at("witness")->mNumFaces == 12);
-  const aiNode* link = read->mRootNode->FindNode("link");
-  REQUIRE(link);
-  CHECK(link->mTransformation.a4 == 1);
-  CHECK(link->mTransformation.c4 == 3);
-  aiVector3D up = read->mRootNode->mTransformation * aiVector3D(0, 0, 1);
-  CHECK(up.y == Approx(1));
+  const gltf_file read(file.path);
+  REQUIRE(read.meshes.size() == 4);
+  CHECK(read.faces("link") == 20);
+  CHECK(read.faces("balls") == 1280 + 320);
+  CHECK(read.faces("witness") == 12);
+  const auto points = read.meshes.at("cloud")["primitives"][0];
+  CHECK(points["mode"] == 0);
+  CHECK(read.all["accessors"][std::size_t(points["attributes"]["POSITION"])]["count"] == 2);
+  CHECK(read.all["accessors"][std::size_t(points["attributes"]["COLOR_0"])]["count"] == 2);
+  CHECK(read.nodes.at("link")["matrix"][12] == 1.0);
+  CHECK(read.nodes.at("link")["matrix"][14] == 3.0);
+  CHECK(read.nodes.at("world")["matrix"][9] == 1);  // z becomes y
+  CHECK(read.nodes.at("world")["matrix"][6] == -1);
+  CHECK(read.nodes.at("world")["children"].size() == 4);
+}
+
+TEST_CASE("the mesh of a scene file is the mesh that went in, turned so that y is up") {
+  io::scene world;
+  world.bodies.push_back({.name = "a\xffname", .mesh = io::icosphere(1), .pose = Eigen::Isometry3d(Eigen::Translation3d(1, 2, 3))});
+  world.bodies.push_back({.name = "grouped", .mesh = io::icosphere(0), .group = "g"});
+  const scratch_file file(".glb");
+  io::save_scene(world, file.path);
+  const triangle_mesh read = io::load_mesh(file.path);
+  REQUIRE(read.triangles.size() == 100);
+  for (std::size_t t = 0; t < 80; ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector3d in = world.bodies[0].mesh.vertices[world.bodies[0].mesh.triangles[t][k]] + Eigen::Vector3d(1, 2, 3);
+      CHECK((read.vertices[read.triangles[t][k]] - Eigen::Vector3d(in.x(), in.z(), -in.y())).norm() < 1e-6);
+    }
+  const gltf_file json(file.path);
+  CHECK(json.nodes.count("a\\xffname") == 1);
 }
 
 TEST_CASE("drawn balls are where they are, and look outward") {
@@ -49,19 +89,19 @@ TEST_CASE("drawn balls are where they are, and look outward") {
   for (int i = 0; i < 600; ++i) balls.push_back({{real(20 * i), 1, 2}, real(0.5 + i % 7)});
   const auto mesh = io::faces_of(balls);
   std::vector<int> corners(balls.size(), 0);
-  for (unsigned v = 0; v < mesh->mNumVertices; ++v) {
-    const aiVector3D& p = mesh->mVertices[v];
-    const ball& b = balls[std::size_t(std::lround(p.x / 20))];
-    ++corners[std::size_t(std::lround(p.x / 20))];
-    const aiVector3D out = p - aiVector3D(b.center.x, b.center.y, b.center.z);
-    if (!(std::abs(out.Length() - b.radius) < 5e-3) || !((out / b.radius - mesh->mNormals[v]).Length() < 1e-2)) FAIL("vertex " << v);
+  const auto eigen = [](vec3 v) { return Eigen::Vector3f(v.x, v.y, v.z); };
+  REQUIRE(mesh.normals.size() == mesh.positions.size());
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const auto nearest = std::size_t(std::lround(mesh.positions[v].x / 20));
+    const ball& b = balls[nearest];
+    ++corners[nearest];
+    const Eigen::Vector3f out = eigen(mesh.positions[v]) - eigen(b.center);
+    if (!(std::abs(out.norm() - b.radius) < 5e-3) || !((out / b.radius - eigen(mesh.normals[v])).norm() < 1e-2)) FAIL("vertex " << v);
   }
   for (const int count : corners) CHECK(count >= 12);
-  for (unsigned f = 0; f < mesh->mNumFaces; ++f) {
-    const aiVector3D *v = mesh->mVertices, *n = mesh->mNormals;
-    const unsigned* i = mesh->mFaces[f].mIndices;
-    const aiVector3D e = v[i[1]] - v[i[0]], g = v[i[2]] - v[i[0]];
-    if (!((e ^ g) * n[i[0]] > 0)) FAIL("face " << f);
+  for (std::size_t f = 0; f < mesh.corners.size(); f += 3) {
+    const auto at = [&](std::size_t k) { return eigen(mesh.positions[mesh.corners[f + k]]); };
+    if (!((at(1) - at(0)).cross(at(2) - at(0)).dot(eigen(mesh.normals[mesh.corners[f]])) > 0)) FAIL("face " << f);
   }
 }
 
@@ -71,20 +111,15 @@ TEST_CASE("a packing is drawn as its mesh, its spheres by size, and a node for e
   part.pose = Eigen::Translation3d(1, 2, 3);
   const scratch_file file(".glb");
   io::save_scene(io::packing_scene({part}), file.path);
-  Assimp::Importer importer;
-  const aiScene* read = importer.ReadFile(file.path, 0);
-  REQUIRE(read);
-  const aiNode* group = read->mRootNode->FindNode("arm");
-  REQUIRE(group);
+  const gltf_file read(file.path);
   const auto tree = build<sphere>(part.spheres.spheres);
-  CHECK(group->mNumChildren == 1 + 2 + tree.depth + 1);
-  for (std::uint32_t level = 0; level <= tree.depth; ++level) CHECK(group->FindNode(("arm level " + std::to_string(level)).c_str()));
-  const aiNode* mesh = group->FindNode("arm mesh");
-  REQUIRE(mesh);
-  CHECK(mesh->mTransformation.b4 == 2);
-  aiString blend;
-  CHECK(read->mMaterials[read->mMeshes[mesh->mMeshes[0]]->mMaterialIndex]->Get(AI_MATKEY_GLTF_ALPHAMODE, blend) == aiReturn_SUCCESS);
-  CHECK(std::string(blend.C_Str()) == "BLEND");
+  std::set<std::string> members;
+  for (const std::size_t child : read.nodes.at("arm")["children"]) members.insert(read.all["nodes"][child]["name"]);
+  CHECK(members.size() == 1 + 2 + tree.depth + 1);
+  for (std::uint32_t level = 0; level <= tree.depth; ++level) CHECK(members.count("arm level " + std::to_string(level)));
+  REQUIRE(members.count("arm mesh"));
+  CHECK(read.nodes.at("arm mesh")["matrix"][13] == 2.0);
+  CHECK(read.materials.at("arm mesh")["alphaMode"] == "BLEND");
   // Every node of the tree is drawn once, on its level.
   std::size_t drawn = 0;
   for (const auto& level : io::levels_of(tree.view())) drawn += level.size();

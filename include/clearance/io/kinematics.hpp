@@ -106,7 +106,7 @@ class kinematic_tree {
   }
 
   /// base-from-link for every link, composed in double. Throws std::invalid_argument if there are too many or too few
-  /// values, or if one is not finite or beyond its limits.
+  /// values, or if one is not finite or beyond its limits, or puts a link where no number can say.
   std::vector<Eigen::Isometry3d> link_poses(std::span<const double> q, joint_options options = {}) const {
     if (q.size() != size())
       throw std::invalid_argument("the robot has " + std::to_string(size()) + " movable joints, here are " +
@@ -116,8 +116,12 @@ class kinematic_tree {
       check_value(joints_[movable_[i]], q[i], options);
       value[movable_[i]] = q[i];
     }
-    for (const auto& [j, leader] : followers_)
+    for (const auto& [j, leader] : followers_) {
       value[j] = joints_[j].follows->multiplier * value[leader] + joints_[j].follows->offset;
+      if (!std::isfinite(value[j]))
+        throw std::invalid_argument("joint \"" + joints_[j].name + "\" follows \"" + joints_[leader].name +
+                                    "\" to a value that is not finite");
+    }
     std::vector<Eigen::Isometry3d> poses(links_.size(), Eigen::Isometry3d::Identity());
     for (const auto& [j, parent, child] : steps_) {
       const joint& by = joints_[j];
@@ -125,6 +129,8 @@ class kinematic_tree {
       if (by.kind == joint_kind::prismatic) poses[child].translate(value[j] * by.axis);
       if (by.kind == joint_kind::revolute || by.kind == joint_kind::continuous)
         poses[child].rotate(Eigen::AngleAxisd(value[j], by.axis));
+      if (!poses[child].matrix().allFinite())
+        throw std::invalid_argument("joint \"" + by.name + "\" puts its link beyond what a number can hold");
     }
     return poses;
   }

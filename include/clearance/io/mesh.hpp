@@ -2,14 +2,17 @@
 #pragma once
 
 #include <clearance/io/mesh_dae.hpp>
+#include <clearance/io/mesh_glb.hpp>
 #include <clearance/io/mesh_obj.hpp>
 #include <clearance/io/mesh_off.hpp>
 #include <clearance/io/mesh_ply.hpp>
-#include <clearance/io/mesh_scene.hpp>
 #include <clearance/io/mesh_stl.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <system_error>
+#include <utility>
 
 namespace clearance::io {
 
@@ -28,28 +31,30 @@ inline std::string mesh_format(const std::filesystem::path& path, std::string_vi
 
 /// Reads a mesh file: all its meshes, with the transforms of its scene graph, its faces in their order as triangles.
 /// Metres, except that a COLLADA file's unit is honoured. Throws std::runtime_error with a sentence that names the file
-/// if it is missing, damaged, has indices out of range or coordinates that are not finite, or has no triangle.
-inline triangle_mesh load_mesh(const std::filesystem::path& path) {
-  const std::string file = path.string(), bytes = read_bytes(file), format = mesh_format(path, bytes);
-  polygon_mesh mesh;
-  if (format == "obj") {
-    mesh = read_obj(bytes, file);
-  } else if (format == "off") {
-    mesh = read_off(bytes, file);
-  } else if (format == "ply") {
-    mesh = read_ply_mesh(bytes, file);
-  } else if (format == "stl") {
-    if (const std::size_t count = check_stl(bytes, file); count > 0) {
-      mesh = read_scene(bytes, format, file);
-      if (mesh.ends.size() != count)
-        refuse(file, "has " + std::to_string(count) + " triangles, read were " + std::to_string(mesh.ends.size()));
+/// if it is missing, no regular file, damaged, beyond a limit, has indices out of range, coordinates that are not finite,
+/// or meshes that its scene does not place, or has no triangle.
+inline triangle_mesh load_mesh(const std::filesystem::path& path, const mesh_limits& limits = {}) {
+  const std::string file = path.string();
+  return within_memory(file, [&] {
+    std::error_code failed;
+    const auto there = std::filesystem::status(path, failed);
+    if (std::filesystem::exists(there) && !std::filesystem::is_directory(there)) {
+      if (!std::filesystem::is_regular_file(there)) refuse(file, "is no regular file, and meshes are only read from those");
+      if (std::filesystem::file_size(path, failed) > limits.bytes)
+        refuse(file, "is longer than the limit of " + std::to_string(limits.bytes) + " bytes (mesh_limits::bytes)");
     }
-  } else {
-    format == "dae" ? check_dae(bytes, file) : check_glb(bytes, file);
-    mesh = read_scene(bytes, format, file);
-  }
-  if (mesh.ends.empty()) refuse(file, "has no triangles");
-  return triangulate(std::move(mesh));
+    const std::string bytes = read_bytes(file), format = mesh_format(path, bytes);
+    polygon_mesh mesh = format == "obj"   ? read_obj(bytes, file)
+                        : format == "off" ? read_off(bytes, file)
+                        : format == "ply" ? read_ply_mesh(bytes, file)
+                        : format == "stl" ? read_stl(bytes, file)
+                        : format == "dae" ? read_dae(bytes, file, limits)
+                                          : read_glb(bytes, file, limits);
+    if (mesh.ends.empty()) refuse(file, "has no triangles");
+    if (mesh.corners.size() - 2 * mesh.ends.size() > limits.triangles)
+      refuse(file, "has more than " + std::to_string(limits.triangles) + " triangles (mesh_limits::triangles)");
+    return triangulate(std::move(mesh));
+  });
 }
 
 }  // namespace clearance::io

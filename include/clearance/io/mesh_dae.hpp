@@ -1,121 +1,150 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What must hold of a COLLADA file before assimp reads it: assimp 5.2 reads beyond the end of arrays that are too
-// short, reserves whatever a count says, goes round for ever where an index is no number, and follows nodes that
-// contain themselves until the stack ends.
+// COLLADA as robot descriptions use it. What would change the shape and is not understood (skins, morphs, splines,
+// other files) is refused by name; what has no shape (materials, lights, cameras, physics, animations) is passed over.
 
-#include <clearance/io/cloud_text.hpp>
-#include <clearance/io/error.hpp>
-#include <clearance/io/xml_scan.hpp>
+#include <clearance/io/dae_mesh.hpp>
+#include <clearance/io/mesh_scene.hpp>
 
-#include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
 #include <map>
+#include <numbers>
+#include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 namespace clearance::io {
 
-/// The nodes of a COLLADA file and which contain which, directly or by instance_node.
-class dae_nodes {
+class dae_reader {
  public:
-  void add(const xml_tag& tag) {
-    while (!open_.empty() && nodes_[open_.back()].depth >= tag.depth) open_.pop_back();
-    if (tag.element == "node") {
-      if (!open_.empty()) nodes_[open_.back()].inside.push_back(nodes_.size());
-      nodes_.push_back({tag.depth, {}, {}, 0, 0, false});
-      if (const auto id = tag.attribute("id"); !id.empty()) by_id_["#" + std::string(id)] = nodes_.size() - 1;
-      open_.push_back(nodes_.size() - 1);
-    } else if (tag.element == "instance_node" && !open_.empty()) {
-      nodes_[open_.back()].instances.emplace_back(tag.attribute("url"));
-    }
-  }
+  dae_reader(const xml_element& root, const std::string& file, const mesh_limits& limits)
+      : root_{root, file, ""}, scene_(file, limits) {}
 
-  /// A node inside itself, more than 200 inside one another, or more than a million in all, are errors.
-  void check(const std::string& file) {
-    double all = 0;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) all += measure(i, file, 0).size;
-    if (!(all < 1e6)) refuse(file, "its nodes contain one another more than a million times");
+  polygon_mesh read() {
+    if (root_.element.name != "COLLADA") root_.refuse("begins the file, which is not a COLLADA file");
+    root_.only({"version", "xmlns", "base"},
+               {"asset", "library_animations", "library_animation_clips", "library_cameras", "library_controllers",
+                "library_effects", "library_force_fields", "library_formulas", "library_geometries", "library_images",
+                "library_joints", "library_kinematics_models", "library_kinematics_scenes",
+                "library_articulated_systems", "library_lights", "library_materials", "library_nodes",
+                "library_physics_materials", "library_physics_models", "library_physics_scenes",
+                "library_visual_scenes", "scene", "extra"});
+    for (const auto& library : root_.element.children) {
+      const auto each = [&](const char* name, const char* item, auto act) {
+        if (library.name != name) return;
+        root_.in(library).only({"id", "name"}, {"asset", item, "extra"});
+        for (const xml_element* found : dae_children(library, item)) act(*found);
+      };
+      each("library_geometries", "geometry", [&](const xml_element& g) {
+        geometries_.add(g);
+        meshes_.emplace(&g, std::nullopt);
+      });
+      each("library_visual_scenes", "visual_scene", [&](const xml_element& scene) {
+        scenes_.add(scene);
+        for (const xml_element* node : dae_children(scene, "node")) add_node(*node);
+      });
+      each("library_nodes", "node", [&](const xml_element& node) { add_node(node); });
+    }
+    const xml_element* shown = root_.child("scene");
+    if (!shown) root_.refuse("has no <scene>, so nothing in it has a place");
+    root_.in(*shown).only({}, {"instance_visual_scene", "instance_physics_scene", "instance_kinematics_scene", "extra"});
+    const xml_element* instance = root_.in(*shown).child("instance_visual_scene");
+    if (!instance) root_.in(*shown).refuse("has no visual scene");
+    const auto visual = root_.in(scenes_.find(root_.in(*instance), "url"));
+    visual.only({"id", "name"}, {"asset", "node", "evaluate_scene", "extra"});
+    const Eigen::Affine3d metres(Eigen::Scaling(unit()));
+    for (const xml_element* node : dae_children(visual.element, "node")) walk(visual.in(*node), metres, 1);
+    for (const auto& [geometry, mesh] : meshes_)
+      if (!mesh) root_.in(*geometry).refuse("has no place in the scene, so it would be lost");
+    return scene_.take();
   }
 
  private:
-  struct node {
-    std::size_t depth;
-    std::vector<std::size_t> inside;
-    std::vector<std::string> instances;
-    double size;         // of all it contains, itself included; 0 if not yet known
-    std::size_t height;  // of the same
-    bool entered;
-  };
-
-  node& measure(std::size_t i, const std::string& file, int level) {
-    node& n = nodes_[i];
-    if (n.size > 0) return n;
-    if (n.entered) refuse(file, "a node contains itself");
-    n.entered = true;
-    double size = 1;
-    const auto add = [&](std::size_t child) {
-      const node& c = level < 200 ? measure(child, file, level + 1) : n;
-      if (level >= 200 || c.height >= 200) refuse(file, "has more than 200 nodes inside one another");
-      size += c.size;
-      n.height = std::max(n.height, c.height + 1);
-    };
-    for (const std::size_t child : n.inside) add(child);
-    for (const auto& url : n.instances)
-      if (const auto found = by_id_.find(url); found != by_id_.end()) add(found->second);
-    n.size = size;
-    return n;
+  double unit() const {
+    const xml_element* asset = root_.child("asset");
+    if (!asset) return 1;
+    root_.in(*asset).only({}, {"contributor", "coverage", "created", "keywords", "modified", "revision", "subject", "title",
+                               "unit", "up_axis", "extra"});
+    const xml_element* unit = root_.in(*asset).child("unit");
+    if (!unit) return 1;
+    root_.in(*unit).only({"meter", "name"}, {});
+    const double metres = root_.in(*unit).number_or("meter", 1);
+    if (!(metres > 0)) root_.in(*unit).refuse("of " + std::to_string(metres) + " metres is no length");
+    return metres;
   }
 
-  std::vector<node> nodes_;
-  std::vector<std::size_t> open_;
-  std::map<std::string, std::size_t> by_id_;
+  void add_node(const xml_element& node) {
+    nodes_.add(node);
+    for (const xml_element* below : dae_children(node, "node")) add_node(*below);
+  }
+
+  template <std::size_t N>
+  static std::array<double, N> numbers(const xml_place& at) {
+    constexpr std::uint64_t count = N;
+    const auto all = dae_numbers<double>(at, &count);
+    std::array<double, N> made;
+    std::ranges::copy(all, made.begin());
+    for (const double x : made)
+      if (!std::isfinite(x)) at.refuse("has a number that is not finite");
+    return made;
+  }
+
+  static Eigen::Affine3d transform(const xml_place& at) {
+    const std::string& kind = at.element.name;
+    Eigen::Affine3d made = Eigen::Affine3d::Identity();
+    if (kind == "matrix") {
+      const auto m = numbers<16>(at);
+      for (int i = 0; i < 16; ++i) made.matrix()(i / 4, i % 4) = m[std::size_t(i)];
+      if (made.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1)) at.refuse("does not end in 0 0 0 1");
+    } else if (kind == "translate") {
+      const auto v = numbers<3>(at);
+      made.translate(Eigen::Vector3d(v[0], v[1], v[2]));
+    } else if (kind == "scale") {
+      const auto v = numbers<3>(at);
+      made.scale(Eigen::Vector3d(v[0], v[1], v[2]));
+    } else if (kind == "rotate") {
+      const auto v = numbers<4>(at);
+      const Eigen::Vector3d axis(v[0], v[1], v[2]);
+      if (v[3] != 0 && !(axis.norm() > 0)) at.refuse("has an axis without direction");
+      if (v[3] != 0) made.rotate(Eigen::AngleAxisd(v[3] * std::numbers::pi / 180, axis.normalized()));
+    }
+    return made;
+  }
+
+  void walk(const xml_place& node, Eigen::Affine3d here, std::size_t depth) {
+    scene_.visit(depth);
+    node.only({"id", "name", "sid", "type", "layer"},
+              {"asset", "matrix", "rotate", "scale", "translate", "node", "instance_node", "instance_geometry",
+               "instance_camera", "instance_light", "extra"});
+    for (const auto& child : node.element.children) here = here * transform(node.in(child));
+    for (const auto& child : node.element.children) {
+      const auto at = node.in(child);
+      if (child.name == "node") walk(at, here, depth + 1);
+      if (child.name == "instance_node") {
+        at.only({"url", "sid", "name", "proxy"}, {"extra"});
+        walk(node.in(nodes_.find(at, "url")), here, depth + 1);
+      }
+      if (child.name == "instance_geometry") {
+        at.only({"url", "sid", "name"}, {"bind_material", "extra"});
+        const xml_element& found = geometries_.find(at, "url");
+        std::optional<polygon_mesh>& mesh = meshes_[&found];
+        if (!mesh) mesh = dae_geometry(root_.in(found));
+        scene_.place(*mesh, here);
+      }
+    }
+  }
+
+  const xml_place root_;
+  mesh_scene scene_;
+  dae_ids geometries_, scenes_, nodes_;
+  std::map<const xml_element*, std::optional<polygon_mesh>> meshes_;  // of each geometry, once it has a place
 };
 
-/// Ends with a sentence where a COLLADA file has what would make assimp read wrong values or exhaust memory or stack.
-inline void check_dae(std::string_view bytes, const std::string& file) {
-  struct accessor {
-    std::string source;
-    double needed;
-    std::size_t line;
-  };
-  std::vector<accessor> accessors;
-  std::map<std::string, double> arrays;
-  dae_nodes nodes;
-  scan_xml(bytes, file, [&](const xml_tag& tag) {
-    if (tag.depth == 0 && tag.element != "COLLADA") refuse(file, "is not a COLLADA file", tag.line);
-    if (const auto metres = tag.attribute("meter"); tag.element == "unit" && !metres.empty()) {
-      const auto value = number<double>(metres);
-      if (!value || !(*value > 0) || !std::isfinite(*value))
-        refuse(file, "the unit of " + std::string(metres.substr(0, 40)) + " metres is no length", tag.line);
-    }
-    const auto counted = [&](const char* name, std::uint64_t otherwise) {
-      const auto word = tag.attribute(name);
-      const auto value = number<std::uint64_t>(word);
-      if (!word.empty() && !(value && *value <= bytes.size()))
-        refuse(file,
-               std::string("the ") + name + " of " + std::string(word.substr(0, 40)) + " is more than the file holds",
-               tag.line);
-      return double(value.value_or(otherwise));
-    };
-    const double count = counted("count", 0), offset = counted("offset", 0);
-    if (tag.element == "input" && offset > 31) refuse(file, "an input has an offset above 31", tag.line);
-    if (tag.element == "triangles" && 6 * count > double(bytes.size()))  // each has three indices
-      refuse(file, "says it has more triangles than the file holds", tag.line);
-    if (tag.element.ends_with("_array")) arrays["#" + std::string(tag.attribute("id"))] = count;
-    if (tag.element == "accessor")
-      accessors.push_back({std::string(tag.attribute("source")), offset + count * counted("stride", 1), tag.line});
-    const bool indices = tag.element == "p" || tag.element == "h" || tag.element == "v" || tag.element == "vcount";
-    if (indices && tag.content.find_first_not_of("0123456789- \t\r\n") != std::string_view::npos)
-      refuse(file, "a list of indices has something in it that is no number", tag.line);
-    nodes.add(tag);
-  });
-  for (const auto& [source, needed, line] : accessors)
-    if (const auto array = arrays.find(source); array != arrays.end() && needed > array->second)
-      refuse(file, "an accessor needs more values than the array " + source.substr(0, 80) + " has", line);
-  nodes.check(file);
+/// All meshes of a COLLADA file's scene, each at every place where the scene has it. The file's unit counts and its up
+/// axis does not, as in ROS tools.
+inline polygon_mesh read_dae(std::string_view bytes, const std::string& file, const mesh_limits& limits = {}) {
+  const xml_element root = read_xml(bytes, file, limits);
+  return dae_reader(root, file, limits).read();
 }
 
 }  // namespace clearance::io

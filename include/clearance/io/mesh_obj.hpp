@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Own readers for OBJ, OFF and PLY meshes: assimp 5.2 loses triangle order among materials, refuses ".8e-1", reads
-// "1.#IND" as 1, and hangs or crashes on damaged OFF and PLY headers. Being our own, they keep doubles too.
+// Mesh readers are our own: assimp 5.2 loses triangle order among materials, refuses ".8e-1", reads "1.#IND" as 1, drops
+// what it does not understand, and hangs or crashes on damaged files. These keep doubles too.
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>

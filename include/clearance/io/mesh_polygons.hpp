@@ -50,6 +50,7 @@ inline void clip_ears(const std::vector<Eigen::Vector3d>& vertices, std::span<co
     } else {
       ++i;
       ++tried;
+      patience -= patience > 0;
     }
   }
   for (std::size_t i = 1; i + 1 < left.size(); ++i) triangles.push_back({left[0], left[i], left[i + 1]});

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What must hold of an STL file before assimp reads it: assimp passes over what is missing in a file cut short.
 
+#include <clearance/io/bytes.hpp>
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
+#include <clearance/io/mesh_polygons.hpp>
 
+#include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <string_view>
 
 namespace clearance::io {
 
-/// Walks an ASCII STL file and counts its triangles, or ends with a sentence.
-inline std::size_t check_ascii_stl(std::string_view rest, const std::string& file) {
-  std::size_t triangles = 0, at = 0;
+inline polygon_mesh read_ascii_stl(std::string_view rest, const std::string& file) {
+  polygon_mesh mesh;
+  std::size_t at = 0;
   std::string_view line;
   const auto next = [&] {  // the next word in small letters, empty at the end of the file
     std::string_view word;
@@ -27,55 +28,77 @@ inline std::size_t check_ascii_stl(std::string_view rest, const std::string& fil
     if (const std::string got = next(); got != wanted)
       refuse(file,
              std::string("expected \"") + wanted + "\", " +
-                 (got.empty() ? "but the file ends" : "found \"" + got.substr(0, 40) + '"'),
+                 (got.empty() ? "but the file ends" : "found " + io::quoted(got)),
              at);
   };
-  const auto three_numbers = [&](bool must_be_finite) {
-    for (int i = 0; i < 3; ++i) {
+  const auto three_numbers = [&] {
+    Eigen::Vector3d v;
+    for (double& x : v) {
       const std::string word = next();
       const auto value = number<double>(word);
-      if (!value) refuse(file, "expected a number, found \"" + word.substr(0, 40) + '"', at);
-      if (must_be_finite && !std::isfinite(float(*value)))
-        refuse(file, "a vertex has a coordinate that is not finite", at);
+      if (!value) refuse(file, "expected a number, found " + io::quoted(word), at);
+      x = *value;
     }
+    return v;
   };
   for (std::string word = next(); !word.empty(); word = next()) {
-    if (word != "solid") refuse(file, "expected \"solid\", found \"" + word.substr(0, 40) + '"', at);
+    if (word != "solid") refuse(file, "expected \"solid\", found " + io::quoted(word), at);
     line = {};  // its name
-    for (word = next(); word != "endsolid"; word = next(), ++triangles) {
+    for (word = next(); word != "endsolid"; word = next()) {
       if (word != "facet")
         refuse(file,
                "expected \"facet\" or \"endsolid\", " +
-                   (word.empty() ? "but the file ends" : "found \"" + word.substr(0, 40) + '"'),
+                   (word.empty() ? "but the file ends" : "found " + io::quoted(word)),
                at);
       expect("normal");
-      three_numbers(false);
+      three_numbers();  // a normal, which may be anything
       expect("outer");
       expect("loop");
       for (int i = 0; i < 3; ++i) {
         expect("vertex");
-        three_numbers(true);
+        mesh.corners.push_back(std::uint32_t(mesh.vertices.size()));
+        mesh.vertices.push_back(three_numbers());
+        if (!mesh.vertices.back().allFinite()) refuse(file, "a vertex has a coordinate that is not finite", at);
       }
+      mesh.ends.push_back(mesh.corners.size());
       expect("endloop");
       expect("endfacet");
     }
     line = {};
   }
-  return triangles;
+  return mesh;
 }
 
-/// Checks that an STL file is whole, and counts its triangles.
-inline std::size_t check_stl(std::string_view bytes, const std::string& file) {
+/// Of `count` triangles, after the header.
+inline polygon_mesh read_binary_stl(std::string_view bytes, std::uint64_t count, const std::string& file) {
+  polygon_mesh mesh;
+  if (count > UINT32_MAX / 3) refuse(file, "has more vertices than can be counted");
+  byte_reader reader(bytes.substr(84), file);
+  mesh.vertices.reserve(3 * count);
+  for (std::uint64_t t = 0; t < count; ++t) {
+    reader.take(12);  // its normal
+    for (int k = 0; k < 3; ++k) {
+      Eigen::Vector3d v;
+      for (double& x : v) x = double(reader.take<float>());
+      if (!v.allFinite()) refuse(file, "triangle " + std::to_string(t) + " has a coordinate that is not finite");
+      mesh.corners.push_back(std::uint32_t(mesh.vertices.size()));
+      mesh.vertices.push_back(v);
+    }
+    mesh.ends.push_back(mesh.corners.size());
+    reader.take(2);  // flags
+  }
+  return mesh;
+}
+
+/// All triangles of an STL file of either kind, which must be whole.
+inline polygon_mesh read_stl(std::string_view bytes, const std::string& file) {
   const std::string_view start = bytes.substr(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
   const bool says_solid = start.starts_with("solid") || start.starts_with("SOLID") || start.starts_with("Solid");
-  std::uint64_t count = 0;
-  if (bytes.size() >= 84) {
-    std::uint32_t stored;
-    std::memcpy(&stored, bytes.data() + 80, 4);
-    count = stored;
-  }
-  if (bytes.size() >= 84 && bytes.size() == 84 + 50 * count) return count;  // even where the header says "solid"
-  if (says_solid && bytes.find('\0') == bytes.npos) return check_ascii_stl(bytes, file);
+  const std::uint64_t count =
+      bytes.size() < 84 ? 0 : byte_reader(bytes.substr(80, 4), file).take<std::uint32_t>();
+  if (bytes.size() >= 84 && bytes.size() == 84 + 50 * count)  // even where the header says "solid"
+    return read_binary_stl(bytes, count, file);
+  if (says_solid && bytes.find('\0') == bytes.npos) return read_ascii_stl(bytes, file);
   if (bytes.size() < 84) refuse(file, "is shorter than the 84 bytes that begin a binary STL file");
   refuse(file, "as a binary STL file of " + std::to_string(count) + " triangles it would have " +
                    std::to_string(84 + 50 * count) + " bytes, but it has " + std::to_string(bytes.size()));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <clearance/io/error.hpp>
+#include <clearance/io/xml.hpp>
 
 #include <cstdlib>
 #include <filesystem>
@@ -17,14 +18,15 @@ inline bool is_package(const std::filesystem::path& folder, std::string_view nam
   std::error_code failed;
   const auto file = folder / "package.xml";
   if (!std::filesystem::is_regular_file(file, failed)) return false;
-  const std::string text = read_bytes(file.string());
-  std::string_view found = text;
-  const std::size_t begin = found.find("<name>");
-  if (begin == found.npos) return false;
-  found.remove_prefix(begin + 6);
-  found = found.substr(0, found.find('<'));
-  const std::size_t first = found.find_first_not_of(" \t\r\n");
-  return first != found.npos && found.substr(first, found.find_last_not_of(" \t\r\n") + 1 - first) == name;
+  try {
+    const xml_element root = read_xml(read_bytes(file.string()), file.string());
+    for (const auto& child : root.children) {
+      std::string_view found = child.text;
+      if (root.name == "package" && child.name == "name" && take_word(found, " \t\r\n") == name) return true;
+    }
+  } catch (const std::runtime_error&) {  // a package that cannot be read is none; if it was needed, that will be said
+  }
+  return false;
 }
 
 /// Where a package may be, the likeliest first: as given, the folders above `urdf` (one of that name, or whose
@@ -74,17 +76,17 @@ inline std::filesystem::path resolve_uri(const std::string& uri, const std::file
   if (scheme == uri.npos) return urdf.parent_path() / uri;
   if (uri.starts_with("file:///")) return uri.substr(7);
   if (!uri.starts_with("package://"))
-    refuse(urdf.string(), "\"" + uri + "\" is none of package://name/path, file:///path and a relative path");
+    refuse(urdf.string(), io::quoted(uri) + " is none of package://name/path, file:///path and a relative path");
   const std::string name = uri.substr(10, uri.find('/', 10) - 10);
   const std::string inside = uri.size() > 11 + name.size() ? uri.substr(11 + name.size()) : "";
-  if (name.empty() || inside.empty()) refuse(urdf.string(), "\"" + uri + "\" names no file in a package");
+  if (name.empty() || inside.empty()) refuse(urdf.string(), io::quoted(uri) + " names no file in a package");
   const auto folders = find_package(name, urdf, packages);
   std::error_code failed;
   for (const auto& folder : folders)
     if (std::filesystem::exists(folder / inside, failed)) return folder / inside;
   if (!folders.empty()) return folders.front() / inside;  // whoever opens it says that it is missing
-  refuse(urdf.string(), "the package of \"" + uri +
-                            "\" is neither given, nor a folder above, nor in ROS_PACKAGE_PATH or AMENT_PREFIX_PATH");
+  refuse(urdf.string(), "the package of " + io::quoted(uri) +
+                            " is neither given, nor a folder above, nor in ROS_PACKAGE_PATH or AMENT_PREFIX_PATH");
 }
 
 }  // namespace clearance::io

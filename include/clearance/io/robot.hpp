@@ -48,29 +48,26 @@ class robot {
 /// std::runtime_error if a file is damaged or missing, std::invalid_argument if a link to exclude does not exist.
 inline robot load_robot(const std::filesystem::path& urdf, const robot_options& options = {}) {
   if (!(options.tessellation > 0)) throw std::invalid_argument("the tessellation error must be above 0");
-  const urdf_file file = read_urdf(urdf.string());
+  const urdf_file file = within_memory(urdf.string(), [&] { return read_urdf(urdf.string(), options.limits); });
   for (const auto& name : options.exclude_links)
-    if (std::none_of(file.links.begin(), file.links.end(), [&](const auto& link) { return link->name == name; }))
-      throw std::invalid_argument("the robot has no link \"" + name + "\" to exclude");
+    if (std::none_of(file.links.begin(), file.links.end(), [&](const auto& link) { return link.name == name; }))
+      throw std::invalid_argument("the robot has no link " + io::quoted(name) + " to exclude");
   std::vector<robot_part> parts;
   std::vector<std::string> notes;
-  for (const auto& link : file.links) {
-    if (std::find(options.exclude_links.begin(), options.exclude_links.end(), link->name) !=
-        options.exclude_links.end())
-      continue;
-    if (link->collision_array.empty() && link->visual_array.empty()) continue;
-    robot_part part{link->name, {}, 0, options.geometry, file.tree.link(link->name)};
-    if (part.used == robot_geometry::collision && link->collision_array.empty()) {
+  robot_reader reader(urdf, options);
+  for (const urdf_link& link : file.links) {
+    if (std::ranges::find(options.exclude_links, link.name) != options.exclude_links.end()) continue;
+    if (link.collision.empty() && link.visual.empty()) continue;
+    robot_part part{link.name, {}, 0, options.geometry, file.tree.link(link.name)};
+    if (part.used == robot_geometry::collision && link.collision.empty()) {
       part.used = robot_geometry::visual;
       notes.push_back("link \"" + part.name + "\" has no collision geometry: its visual is used");
-    } else if (part.used == robot_geometry::visual && link->visual_array.empty()) {
+    } else if (part.used == robot_geometry::visual && link.visual.empty()) {
       part.used = robot_geometry::collision;
       notes.push_back("link \"" + part.name + "\" has no visual geometry: its collision is used");
     }
-    if (part.used == robot_geometry::collision)
-      for (const auto& shape : link->collision_array) add_geometry(part, *shape, urdf, options);
-    else
-      for (const auto& shape : link->visual_array) add_geometry(part, *shape, urdf, options);
+    for (const urdf_shape& shape : part.used == robot_geometry::collision ? link.collision : link.visual)
+      within_memory(urdf.string(), [&] { reader.add(part, shape); });
     parts.push_back(std::move(part));
   }
   if (parts.empty())

@@ -6,9 +6,12 @@
 #include <clearance/io/tessellate.hpp>
 #include <clearance/io/urdf.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace clearance::io {
@@ -19,7 +22,9 @@ struct robot_options {
   robot_geometry geometry = robot_geometry::collision;      // a link that has none of it gives the other, with a note
   std::map<std::string, std::filesystem::path> packages{};  // where package://name is
   std::vector<std::string> exclude_links{};
-  double tessellation = 1e-4;  // metres; boxes, cylinders and spheres become meshes no farther from them
+  double tessellation = 1e-4;  // metres; round shapes become meshes no farther from them,
+  std::uint32_t shape_triangles = 8000;  // except where one would need more triangles than this
+  mesh_limits limits{};                  // of the description and all its meshes together
 };
 
 /// One link that has geometry: all its meshes and shapes as one mesh in the link's frame, triangles in the file's
@@ -32,49 +37,65 @@ struct robot_part {
   std::size_t link = 0;  // its number in the kinematic tree
 };
 
-/// One shape or mesh of a link, before its origin is applied.
-inline tessellation load_geometry(const urdf::Geometry& geometry, const std::string& link,
-                                  const std::filesystem::path& urdf, const robot_options& options) {
-  const auto length = [&](double value, const char* what) {
-    if (!(value > 0) || !std::isfinite(value))
-      refuse(urdf.string(), "link \"" + link + "\" has a " + what + " of " + std::to_string(value) + " m");
-    return value;
-  };
-  if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry))
-    return tessellate_box(
-        {length(box->dim.x, "box side"), length(box->dim.y, "box side"), length(box->dim.z, "box side")});
-  if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(&geometry))
-    return tessellate_sphere(length(sphere->radius, "sphere radius"), options.tessellation);
-  if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(&geometry))
-    return tessellate_cylinder(length(cylinder->radius, "cylinder radius"), length(cylinder->length, "cylinder length"),
-                               options.tessellation);
-  const auto* mesh = dynamic_cast<const urdf::Mesh*>(&geometry);
-  if (!mesh) refuse(urdf.string(), "link \"" + link + "\" has a geometry of a kind that is not supported");
-  tessellation made{load_mesh(resolve_uri(mesh->filename, urdf, options.packages)), 0};
-  const Eigen::Vector3d scale(mesh->scale.x, mesh->scale.y, mesh->scale.z);
-  if (!scale.allFinite() || scale.prod() == 0)
-    refuse(urdf.string(), "link \"" + link + "\" has a mesh scale that is 0 or not finite");
-  for (auto& v : made.mesh.vertices) v = v.cwiseProduct(scale);
-  if (scale.prod() < 0)  // a mirror image: turn the triangles, so that they face out again
-    for (auto& t : made.mesh.triangles) std::swap(t[1], t[2]);
-  return made;
-}
+/// Reads the links of one robot, which share its limits.
+class robot_reader {
+ public:
+  robot_reader(const std::filesystem::path& urdf, const robot_options& options)
+      : urdf_(urdf), file_(urdf.string()), options_(options), left_(options.limits) {}
 
-/// Adds one visual or collision to a part.
-template <class Shape>
-void add_geometry(robot_part& part, const Shape& shape, const std::filesystem::path& urdf,
-                  const robot_options& options) {
-  Eigen::Isometry3d origin;
-  if (!rigid_pose(shape.origin, origin))
-    refuse(urdf.string(), "link \"" + part.name + "\" has an origin that is not finite");
-  if (!shape.geometry) refuse(urdf.string(), "link \"" + part.name + "\" has a visual or collision without geometry");
-  const tessellation added = load_geometry(*shape.geometry, part.name, urdf, options);
-  const auto first = std::uint32_t(part.mesh.vertices.size());
-  if (part.mesh.vertices.size() + added.mesh.vertices.size() > UINT32_MAX)
-    refuse(urdf.string(), "link \"" + part.name + "\" has more vertices than can be counted");
-  for (const auto& v : added.mesh.vertices) part.mesh.vertices.push_back(origin * v);
-  for (const auto& t : added.mesh.triangles) part.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  part.tessellation_error = std::max(part.tessellation_error, added.error);
-}
+  /// Adds one visual or collision to a part.
+  void add(robot_part& part, const urdf_shape& shape) {
+    const std::string owner = "link " + io::quoted(part.name) + ": ";
+    tessellation added;
+    try {
+      added = std::visit([&](const auto& geometry) { return make(geometry); }, shape.geometry);
+    } catch (const std::runtime_error& error) {
+      refuse(file_, owner + error.what(), shape.line);
+    }
+    const std::uint64_t triangles = added.mesh.triangles.size();
+    if (triangles > left_.triangles)
+      refuse(file_, owner + "with it the robot has more than " + std::to_string(options_.limits.triangles) +
+                        " triangles (mesh_limits::triangles)",
+             shape.line);
+    left_.triangles -= triangles;
+    const auto first = std::uint32_t(part.mesh.vertices.size());
+    if (part.mesh.vertices.size() + added.mesh.vertices.size() > UINT32_MAX)
+      refuse(file_, owner + "it has more vertices than can be counted", shape.line);
+    for (const auto& v : added.mesh.vertices) {
+      part.mesh.vertices.push_back(shape.origin * v);
+      if (!part.mesh.vertices.back().allFinite())
+        refuse(file_, owner + "its origin or scale puts a vertex beyond what a number can hold", shape.line);
+    }
+    for (const auto& t : added.mesh.triangles)
+      part.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    part.tessellation_error = std::max(part.tessellation_error, added.error);
+  }
+
+ private:
+  tessellation make(const urdf_box& box) const { return tessellate_box(box.size); }
+  tessellation make(const urdf_sphere& s) const {
+    return tessellate_sphere(s.radius, options_.tessellation, options_.shape_triangles);
+  }
+  tessellation make(const urdf_cylinder& c) const {
+    return tessellate_cylinder(c.radius, c.length, options_.tessellation, options_.shape_triangles);
+  }
+  tessellation make(const urdf_capsule& c) const {
+    return tessellate_capsule(c.radius, c.length, options_.tessellation, options_.shape_triangles);
+  }
+  tessellation make(const urdf_mesh& mesh) {
+    const auto file = resolve_uri(mesh.uri, urdf_, options_.packages);
+    tessellation made{load_mesh(file, left_), 0};
+    left_.bytes -= std::min(left_.bytes, std::uint64_t(std::filesystem::file_size(file)));
+    for (auto& v : made.mesh.vertices) v = v.cwiseProduct(mesh.scale);
+    if ((mesh.scale.array() < 0).count() % 2)  // a mirror image: turn the triangles, so that they face out again
+      for (auto& t : made.mesh.triangles) std::swap(t[1], t[2]);
+    return made;
+  }
+
+  const std::filesystem::path& urdf_;
+  const std::string file_;
+  const robot_options& options_;
+  mesh_limits left_;
+};
 
 }  // namespace clearance::io

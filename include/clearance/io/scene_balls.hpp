@@ -46,7 +46,7 @@ inline triangle_mesh icosphere(int cuts) {
 }
 
 /// Balls, smoothly shaded; only the largest are fine, because thousands of them must stay a file that viewers open.
-inline std::unique_ptr<aiMesh> faces_of(const std::vector<ball>& balls) {
+inline drawn_mesh faces_of(const std::vector<ball>& balls) {
   static const triangle_mesh shapes[4] = {icosphere(0), icosphere(1), icosphere(2), icosphere(3)};
   std::vector<std::size_t> order(balls.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
@@ -54,29 +54,16 @@ inline std::unique_ptr<aiMesh> faces_of(const std::vector<ball>& balls) {
   const auto shape = [](std::size_t rank) -> const triangle_mesh& {
     return shapes[rank < 1 ? 3 : rank < 6 ? 2 : rank < 48 ? 1 : 0];
   };
-  auto out = std::make_unique<aiMesh>();
-  unsigned vertices = 0, faces = 0;
-  for (std::size_t i = 0; i < balls.size(); ++i)
-    vertices += unsigned(shape(i).vertices.size()), faces += unsigned(shape(i).triangles.size());
-  if (faces == 0) return out;
-  out->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
-  out->mNumVertices = vertices;
-  out->mVertices = new aiVector3D[vertices];
-  out->mNormals = new aiVector3D[vertices];
-  out->mNumFaces = faces;
-  out->mFaces = new aiFace[faces];
-  unsigned vertex = 0, face = 0;
+  drawn_mesh out;
   for (std::size_t i = 0; i < order.size(); ++i) {
     const ball& b = balls[order[i]];
-    for (const auto& [p, q, r] : shape(i).triangles) {
-      out->mFaces[face].mNumIndices = 3;
-      out->mFaces[face++].mIndices = new unsigned[3]{vertex + p, vertex + q, vertex + r};
-    }
+    const auto first = std::uint32_t(out.positions.size());
+    for (const auto& t : shape(i).triangles)
+      for (const std::uint32_t corner : t) out.corners.push_back(first + corner);
     for (const auto& n : shape(i).vertices) {
-      out->mNormals[vertex] = aiVector3D(ai_real(n.x()), ai_real(n.y()), ai_real(n.z()));
-      out->mVertices[vertex] =
-          aiVector3D(b.center.x, b.center.y, b.center.z) + out->mNormals[vertex] * ai_real(b.radius);
-      ++vertex;
+      out.normals.push_back(to_vec3(n));
+      const vec3 m = out.normals.back();
+      out.positions.push_back({b.center.x + b.radius * m.x, b.center.y + b.radius * m.y, b.center.z + b.radius * m.z});
     }
   }
   return out;

@@ -21,6 +21,12 @@ struct tessellation {
   double error = 0;
 };
 
+/// How far a ball around the origin reaches beyond the plane of a triangle.
+inline double beyond(const triangle_mesh& mesh, const std::array<std::uint32_t, 3>& t, double radius) {
+  const Eigen::Vector3d& p = mesh.vertices[t[0]];
+  return radius - (mesh.vertices[t[1]] - p).cross(mesh.vertices[t[2]] - p).normalized().dot(p);
+}
+
 /// Twelve triangles; exact.
 inline tessellation tessellate_box(const Eigen::Vector3d& size) {
   tessellation made;
@@ -32,11 +38,18 @@ inline tessellation tessellate_box(const Eigen::Vector3d& size) {
   return made;
 }
 
-/// Along z, its middle at the origin. As many sides as keep the error below `tolerance`, though at most 4096.
-inline tessellation tessellate_cylinder(double radius, double length, double tolerance = 1e-4) {
+/// How many triangles one shape becomes at most, if its maker is not told otherwise: a sphere of 14 cm needs as many
+/// for an error of 0.1 mm, and one of 1 m is off by 0.73 mm.
+inline constexpr std::uint32_t most_triangles = 8000;
+
+/// Along z, its middle at the origin. As many sides as keep the error below `tolerance`, though at least 12, and at most
+/// `triangles` triangles.
+inline tessellation tessellate_cylinder(double radius, double length, double tolerance = 1e-4,
+                                        std::uint32_t triangles = most_triangles) {
   using std::numbers::pi;
   const double half_angle = std::acos(std::clamp(1 - tolerance / radius, -1.0, 1.0));
-  const auto n = std::uint32_t(std::clamp(std::ceil(pi / std::max(half_angle, 1e-9)), 12.0, 4096.0));
+  const auto n = std::uint32_t(
+      std::clamp(std::ceil(pi / std::max(half_angle, 1e-9)), 12.0, std::max(12.0, std::floor(triangles / 4.0))));
   tessellation made;
   made.error = radius * (1 - std::cos(pi / n)) + 1e-15 * (radius + length);  // the second for rounding
   made.mesh.vertices = {{0, 0, -0.5 * length}, {0, 0, 0.5 * length}};
@@ -51,9 +64,10 @@ inline tessellation tessellate_cylinder(double radius, double length, double tol
   return made;
 }
 
-/// Around the origin: an icosahedron, its faces split evenly until the error is below `tolerance`, though into at most
-/// 128 by 128 each.
-inline tessellation tessellate_sphere(double radius, double tolerance = 1e-4) {
+/// Around the origin: an icosahedron, its faces split evenly until the error is below `tolerance`, though into at least
+/// 80 and at most `triangles` triangles.
+inline tessellation tessellate_sphere(double radius, double tolerance = 1e-4,
+                                      std::uint32_t triangles = most_triangles) {
   const double g = std::numbers::phi;
   const std::array<Eigen::Vector3d, 12> corner{{{-1, g, 0},
                                                 {1, g, 0},
@@ -72,7 +86,8 @@ inline tessellation tessellate_sphere(double radius, double tolerance = 1e-4) {
                                           {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
                                           {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
   // In the middle of a face, where triangles are largest, the error is 0.292 radius / n^2.
-  const auto n = std::uint32_t(std::clamp(std::ceil(std::sqrt(0.292 * radius / tolerance)), 2.0, 128.0));
+  const double most = std::max(2.0, std::floor(std::sqrt(triangles / 20.0)));
+  const auto n = std::uint32_t(std::clamp(std::ceil(std::sqrt(0.292 * radius / tolerance)), 2.0, most));
   tessellation made;
   // Faces share the vertices on their edges: a vertex is known by its corners and their weights.
   std::map<std::array<std::uint32_t, 6>, std::uint32_t> known;
@@ -97,12 +112,47 @@ inline tessellation tessellate_sphere(double radius, double tolerance = 1e-4) {
         if (i + j + 1 < n) made.mesh.triangles.push_back({vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
       }
   }
-  for (const auto& [a, b, c] : made.mesh.triangles) {  // from the sphere to each triangle's plane
-    const Eigen::Vector3d& p = made.mesh.vertices[a];
-    const Eigen::Vector3d normal = (made.mesh.vertices[b] - p).cross(made.mesh.vertices[c] - p).normalized();
-    made.error = std::max(made.error, radius - normal.dot(p));
-  }
+  for (const auto& t : made.mesh.triangles) made.error = std::max(made.error, beyond(made.mesh, t, radius));
   made.error += 1e-15 * radius;
+  return made;
+}
+
+/// Along z, its middle at the origin: half a ball on either end of a cylinder of this length. At least 64 and at most
+/// `triangles` triangles, otherwise as many as keep the error below `tolerance`.
+inline tessellation tessellate_capsule(double radius, double length, double tolerance = 1e-4,
+                                       std::uint32_t triangles = most_triangles) {
+  using std::numbers::pi;
+  // Patches of pi / 2 / rings either way: in the middle of one the error is (pi / 4 / rings)^2 radius.
+  const double most = std::max(2.0, std::floor(std::sqrt(triangles / 16.0)));
+  const auto rings = std::uint32_t(std::clamp(std::ceil(pi / 4 * std::sqrt(radius / tolerance)), 2.0, most));
+  const std::uint32_t n = 4 * rings;  // sides: 4 n rings triangles
+  tessellation made;
+  made.mesh.vertices = {{0, 0, 0.5 * length + radius}, {0, 0, -0.5 * length - radius}};
+  for (std::uint32_t k = 1; k <= 2 * rings; ++k) {  // rings from the upper pole down; the equator is there twice
+    const double up = k <= rings ? 0.5 : -0.5, at = pi / 2 * (k <= rings ? k : k - 1) / rings;
+    for (std::uint32_t i = 0; i < n; ++i)
+      made.mesh.vertices.emplace_back(radius * std::sin(at) * std::cos(2 * pi * i / n),
+                                      radius * std::sin(at) * std::sin(2 * pi * i / n),
+                                      up * length + radius * std::cos(at));
+  }
+  const auto vertex = [&](std::uint32_t k, std::uint32_t i) { return 2 + (k - 1) * n + i % n; };
+  for (std::uint32_t i = 0; i < n; ++i) {
+    made.mesh.triangles.push_back({0, vertex(1, i), vertex(1, i + 1)});
+    for (std::uint32_t k = 1; k < 2 * rings; ++k) {
+      made.mesh.triangles.push_back({vertex(k, i), vertex(k + 1, i), vertex(k + 1, i + 1)});
+      made.mesh.triangles.push_back({vertex(k, i), vertex(k + 1, i + 1), vertex(k, i + 1)});
+    }
+    made.mesh.triangles.push_back({1, vertex(2 * rings, i + 1), vertex(2 * rings, i)});
+  }
+  triangle_mesh ball = made.mesh;  // without the cylinder, whose sides are as far in as the corners of a ring leave them
+  for (std::uint32_t v = 0; v < ball.vertices.size(); ++v)
+    ball.vertices[v].z() += (v == 0 || (v > 1 && v < 2 + rings * n) ? -0.5 : 0.5) * length;
+  const auto upper = [&](std::uint32_t v) { return v >= 2 && v < 2 + rings * n; };
+  for (const auto& t : made.mesh.triangles) {
+    const bool side = t[0] > 1 && (upper(t[0]) != upper(t[1]) || upper(t[1]) != upper(t[2]));
+    if (!side) made.error = std::max(made.error, beyond(ball, t, radius));
+  }
+  made.error = std::max(made.error, radius * (1 - std::cos(pi / n))) + 1e-15 * (radius + length);
   return made;
 }
 

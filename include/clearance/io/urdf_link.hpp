@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/io/xml.hpp>
+
+#include <Eigen/Geometry>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace clearance::io {
+
+struct urdf_box {
+  Eigen::Vector3d size;
+};
+struct urdf_sphere {
+  double radius;
+};
+struct urdf_cylinder {
+  double radius, length;
+};
+/// A cylinder along z with half a ball on either end, which its length does not count.
+struct urdf_capsule {
+  double radius, length;
+};
+struct urdf_mesh {
+  std::string uri;
+  Eigen::Vector3d scale;
+};
+using urdf_geometry = std::variant<urdf_box, urdf_sphere, urdf_cylinder, urdf_capsule, urdf_mesh>;
+
+/// One visual or collision of a link.
+struct urdf_shape {
+  urdf_geometry geometry;
+  Eigen::Isometry3d origin;  // link-from-shape
+  std::size_t line;          // of its geometry
+};
+
+struct urdf_link {
+  std::string name;
+  std::vector<urdf_shape> collision, visual;
+};
+
+/// A name that can be shown: at most 100 bytes, without control characters.
+inline std::string urdf_name(const xml_place& at, std::string_view attribute = "name") {
+  const std::string& name = at.attribute(attribute);
+  if (name.empty()) at.refuse("has an empty " + std::string(attribute));
+  if (name.size() > 100) at.refuse("has a name of more than 100 bytes: " + io::quoted(name));
+  for (std::size_t i = 0; i < name.size(); ++i)
+    if (const auto c = std::uint8_t(name[i]);
+        c < ' ' || c == 0x7f || (c == 0xc2 && i + 1 < name.size() && std::uint8_t(name[i + 1]) < 0xa0))
+      at.refuse("has control characters in its name");
+  return name;
+}
+
+/// The pose that <origin> says: fixed axes, roll about x first, then pitch about y, then yaw about z.
+inline Eigen::Isometry3d urdf_origin(const xml_place& around) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  const xml_element* element = around.child("origin");
+  if (!element) return pose;
+  const xml_place origin = around.in(*element);
+  origin.only({"xyz", "rpy"}, {});
+  if (element->attribute("xyz")) {
+    const auto xyz = origin.numbers<3>("xyz");
+    pose.translation() << xyz[0], xyz[1], xyz[2];
+  }
+  if (element->attribute("rpy")) {
+    const auto rpy = origin.numbers<3>("rpy");
+    pose.linear() = (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) *
+                     Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
+                     Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
+                        .toRotationMatrix();
+  }
+  return pose;
+}
+
+inline urdf_geometry read_urdf_geometry(const xml_place& around) {
+  around.only({"name"}, {"box", "sphere", "cylinder", "capsule", "mesh"});
+  if (around.element.children.size() != 1)
+    around.refuse("has " + std::to_string(around.element.children.size()) + " shapes, not one");
+  const xml_place shape = around.in(around.element.children.front());
+  const std::string& kind = shape.element.name;
+  const auto length = [&](double value, const char* what) {
+    if (!(value > 0)) shape.refuse("has a " + std::string(what) + " that is not above 0");
+    return value;
+  };
+  if (kind == "box") {
+    shape.only({"size"}, {});
+    const auto size = shape.numbers<3>("size");
+    return urdf_box{{length(size[0], "side"), length(size[1], "side"), length(size[2], "side")}};
+  }
+  if (kind == "sphere") {
+    shape.only({"radius"}, {});
+    return urdf_sphere{length(shape.numbers<1>("radius")[0], "radius")};
+  }
+  if (kind == "cylinder" || kind == "capsule") {
+    shape.only({"radius", "length"}, {});
+    const double radius = length(shape.numbers<1>("radius")[0], "radius");
+    const double along = length(shape.numbers<1>("length")[0], "length");
+    if (kind == "cylinder") return urdf_cylinder{radius, along};
+    return urdf_capsule{radius, along};
+  }
+  if (kind != "mesh") shape.refuse("is no shape of URDF");
+  shape.only({"filename", "scale"}, {});
+  urdf_mesh mesh{shape.attribute("filename"), {1, 1, 1}};
+  if (mesh.uri.empty() || mesh.uri.find('\0') != mesh.uri.npos) shape.refuse("has an empty file name");
+  if (shape.element.attribute("scale")) {
+    const auto scale = shape.numbers<3>("scale");
+    mesh.scale << scale[0], scale[1], scale[2];
+  }
+  if ((mesh.scale.array() == 0).any()) shape.refuse("has a scale of 0");
+  return mesh;
+}
+
+inline urdf_link read_urdf_link(const xml_place& at) {
+  urdf_link made{urdf_name(at), {}, {}};
+  const std::string owner = "link " + io::quoted(made.name);
+  const xml_place link{at.element, at.file, owner};
+  link.only({"name", "type"}, {"inertial", "visual", "collision", "contact", "self_collision_checking", "sensor"});
+  for (const auto& child : link.element.children) {
+    if (child.name != "visual" && child.name != "collision") continue;
+    const xml_place shape = link.in(child);
+    shape.only({"name", "group"}, {"origin", "geometry", "material", "contact_coefficients", "verbose"});
+    const xml_element* geometry = shape.child("geometry");
+    if (!geometry) shape.refuse("has no geometry");
+    (child.name == "visual" ? made.visual : made.collision)
+        .push_back({read_urdf_geometry(shape.in(*geometry)), urdf_origin(shape), geometry->line});
+  }
+  return made;
+}
+
+}  // namespace clearance::io
