@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
   for (const auto add : {add_query, add_run, add_pack, add_demo, add_info}) run.push_back(add(app));
   take_one_value_each(app);
   try {
-    const auto words = checked_words(argc, argv, app);
+    auto words = checked_words(argc, argv, app);
     check_subcommand(argc, argv, app);
     app.parse(words);
     for (std::size_t i = 0; i < run.size(); ++i) {

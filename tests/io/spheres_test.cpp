@@ -158,10 +158,33 @@ TEST_CASE("YAML that holds no spheres is refused with its line") {
   for (const std::string radius : {"0", "-10.0", "nan"})
     begins(one("{center: [0, 0, 0], radius: " + radius + "}"), ":3: sphere 0 of link \"a\" has a radius of");
   const std::string a = "  a: [{center: [0,0,0], radius: 1}]\n";
-  CHECK(yaml_refusal("collision_spheres:\n" + a + a) == ": has link \"a\" twice");
+  CHECK(yaml_refusal("collision_spheres:\n" + a + a) == ":3: has the key \"a\" twice");
   CHECK(!yaml_refusal(std::string(200000, '[')).empty());
   CHECK(!yaml_refusal("collision_spheres: &x {a: *x}\n").empty());
   CHECK(!yaml_refusal(std::string("\0\xff\xfe\x80 a: 1", 9)).empty());
+}
+
+TEST_CASE("a key that a YAML file has twice is refused at every level, and so is what it unfolds to or hides") {
+  const std::string keys[] = {"robot_cfg", "kinematics", "collision_spheres", "link", "center", "radius"};
+  for (const std::string& twice : keys) {
+    const auto entry = [&](const std::string& key, const std::string& value) {
+      return key + ": " + value + (key == twice ? ", " + key + ": " + value : "");
+    };
+    const std::string sphere = "{" + entry("center", "[0, 0, 0]") + ", " + entry("radius", "1") + "}";
+    std::string text = "[" + sphere + "]";
+    for (const char* key : {"link", "collision_spheres", "kinematics", "robot_cfg"}) text = "{" + entry(key, text) + "}";
+    CHECK(yaml_refusal(text + "\n") == ":1: has the key \"" + twice + "\" twice");
+  }
+  const std::string good = "collision_spheres:\n  a: &x [{center: [0,0,0], radius: 1}]\n";
+  CHECK(yaml_refusal(good).empty());
+  CHECK(yaml_refusal(good + "---\n" + good) == ":4: has more than one YAML document");
+  std::string many = good;
+  for (int i = 0; i < 3; ++i) many += "  b" + std::to_string(i) + ": *x\n";
+  CHECK(yaml_refusal(many).empty());
+  std::string list = "collision_spheres:\n  a: &x\n";
+  for (int i = 0; i < 1000; ++i) list += "    - {center: [0,0,0], radius: 1}\n";
+  for (int i = 0; i < 1000; ++i) list += "  b" + std::to_string(i) + ": *x\n";
+  CHECK(yaml_refusal(list).find("by aliases") != std::string::npos);
 }
 
 TEST_CASE(

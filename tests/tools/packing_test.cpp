@@ -207,7 +207,7 @@ TEST_CASE("files of spheres that are damaged, foreign or of something else are o
   const std::string pack = "pack " + s.urdf + " --spheres 5 ";
   refuses(pack + "--out x.stl", "--out: x.stl is none of .ist, .csv, .yaml, .yml and .glb by its name");
   refuses(pack + "--out " + s.path("two.csv"), "a CSV file holds the spheres of one part, here are 2");
-  refuses(pack + "--out /nonexistent/x.ist", "/nonexistent/x.ist: cannot be opened for writing");
+  refuses(pack + "--out /nonexistent/x.ist", "/nonexistent/x.ist: cannot be written");
   refuses(pack + "--gap -1", "--gap: must be above 0");
   refuses(pack + "--joints 1,2", "the robot has 1 movable joints, here are 2 values");
   refuses(pack + "--exclude-link nobody", "nobody");
