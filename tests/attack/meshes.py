@@ -9,7 +9,7 @@ import ply
 from geometry import cross, dot, length, sub
 from strict import Unknown, demand, lines_of, number, text_of, whole, words_of
 
-_obj_words = set("""v vt vn vp f l p g o s usemtl mtllib usemap maplib mg bevel c_interp d_interp lod shadow_obj trace_obj cstype
+_obj_words = set("""v vw vt vn vp f l p g o s usemtl mtllib usemap maplib mg bevel c_interp d_interp lod shadow_obj trace_obj cstype
 deg bmat step curv curv2 surf parm trim hole scrv sp end con ctech stech call csh bsp bzp cdc cdp res maxsize""".split())
 
 
@@ -21,7 +21,7 @@ def read_obj(data):
         words = words_of(line.split("#")[0])
         if not words:
             continue
-        demand(words[0] in _obj_words, f"{words[0][:20]!r} is no statement")
+        demand(words[0] in _obj_words or not vertices, f"{words[0][:20]!r} is no statement")  # FCL's files begin with two counts
         if words[0] == "v":
             values = [number(word) for word in words[1:]]
             demand(len(values) in (3, 4, 6, 7), "a vertex of other than 3, 4, 6 or 7 numbers")

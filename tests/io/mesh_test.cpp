@@ -200,6 +200,9 @@ TEST_CASE("damaged meshes are refused in one sentence that names the file") {
   CHECK(says(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n"), ":4:"));
   CHECK(says(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n"), "fewer than three"));
   CHECK(says(refusal("a.obj", "v 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), ":1:"));
+  for (const std::string rest : {"\n3", " 2\n3", "\nx 3", "\nF 1 2 3"})  // of a face that was broken over two lines
+    CHECK(says(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3" + rest + "\n"), "no statement"));
+  CHECK(load_mesh(folder.put("counts.obj", "3 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvw 1 0 1\nf 1 2 3\n#x\n")).triangles.size() == 1);
   CHECK(says(refusal("a.obj", "v 0 0 inf\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "not finite"));
   CHECK(says(refusal("a.obj", "v 0 0 1.#IND\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "not a number"));
   CHECK(says(refusal("a.obj", "v 0 0 0\n"), "no triangles"));

@@ -27,7 +27,20 @@ inline Eigen::Vector3d take_vertex(std::string_view& line, const std::string& fi
   return v;
 }
 
-/// Vertices and faces of a Wavefront OBJ file; all else (normals, materials, groups, lines, points) is passed over.
+/// Is this the first word of an OBJ statement? Of all that the format has, and skin weights, which some tools add.
+inline bool obj_statement(std::string_view word) {
+  for (const std::string_view known :
+       {"v",        "vt",       "vn",         "vp",        "vw",     "f",      "l",      "p",     "g",
+        "o",        "s",        "usemtl",     "mtllib",    "usemap", "maplib", "mg",     "bevel", "lod",
+        "c_interp", "d_interp", "shadow_obj", "trace_obj", "cstype", "deg",    "bmat",   "step",  "curv",
+        "curv2",    "surf",     "parm",       "trim",      "hole",   "scrv",   "sp",     "end",   "con",
+        "ctech",    "stech",    "call",       "csh",       "bsp",    "bzp",    "cdc",    "cdp",   "res"})
+    if (word == known) return true;
+  return false;
+}
+
+/// Vertices and faces of a Wavefront OBJ file; normals, materials, groups, lines and points are passed over, and so is
+/// what stands before the first vertex. A later line that is no statement may be what is left of a face: an error.
 inline polygon_mesh read_obj(std::string_view rest, const std::string& file) {
   polygon_mesh mesh;
   if (rest.find('\0') != rest.npos) refuse(file, "is not an OBJ file: it has zero bytes, so it is not plain text");
@@ -62,6 +75,8 @@ inline polygon_mesh read_obj(std::string_view rest, const std::string& file) {
       }
       if (mesh.corners.size() < begin + 3) refuse(file, "a face has fewer than three vertices", first);
       mesh.ends.push_back(mesh.corners.size());
+    } else if (!mesh.vertices.empty() && !key.empty() && key.front() != '#' && !obj_statement(key)) {
+      refuse(file, quoted(key) + " begins no statement of an OBJ file", first);
     }
   }
   if (largest > mesh.vertices.size())
