@@ -10,7 +10,7 @@ endif()
 # What it needs is what scripts/lib.sh says: the library's packages it depends on, those of io it suggests.
 foreach(list library io)
   file(STRINGS scripts/lib.sh names REGEX "^packages_${list}=")
-  string(REGEX MATCHALL "lib[^ \"]+-dev|zlib1g-dev" clearance_${list}_packages "${names}")
+  string(REGEX MATCHALL "[^ \"]+-dev" clearance_${list}_packages "${names}")
   list(JOIN clearance_${list}_packages ", " clearance_${list}_packages)
 endforeach()
 set(CPACK_DEBIAN_PACKAGE_DEPENDS ${clearance_library_packages})

@@ -45,7 +45,7 @@ class Clearance(ConanFile):
         lists = pathlib.Path(self.recipe_folder, "lib.sh").read_text()
         part = "(?:library|io)" if self.options.io else "library"
         names = " ".join(re.findall(rf"^packages_{part}=(.*)", lists, re.MULTILINE))
-        Apt(self).install(re.findall(r"\b(?:lib|zlib)[\w+.-]*-dev\b", names))
+        Apt(self).install(re.findall(r"[\w+.-]+-dev\b", names))
 
     def generate(self):
         toolchain = CMakeToolchain(self)
