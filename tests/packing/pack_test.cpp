@@ -45,6 +45,7 @@ TEST_CASE("packing stops for each of its reasons") { stops_for_each_reason(one_b
 
 TEST_CASE("spheres that may overlap leave a smaller gap") { lets_spheres_overlap(one_by_one); }
 
+TEST_CASE("packing ends on thin plates and needles, with spheres or with a reason") { ends_on_thin_bodies(one_by_one); }
 TEST_CASE("an implicit solid is packed by the same code") {
   const auto torus = [](const Vector3d& p) { return std::hypot(std::hypot(p.x(), p.y()) - 1, p.z()) - 0.25; };
   const implicit_solid s(torus, Eigen::AlignedBox3d(Vector3d(-1.25, -1.25, -0.25), Vector3d(1.25, 1.25, 0.25)));

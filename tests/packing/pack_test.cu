@@ -23,6 +23,7 @@ TEST_CASE("a GPU's packing is the same bits on every run") { repeats_itself(on_g
 TEST_CASE("a GPU stops packing for each reason") { stops_for_each_reason(on_gpu); }
 TEST_CASE("a GPU lets spheres overlap if asked to") { lets_spheres_overlap(on_gpu); }
 TEST_CASE("a GPU refuses to pack what makes no sense") { refuses_what_makes_no_sense(on_gpu); }
+TEST_CASE("a GPU ends on thin plates and needles, with spheres or with a reason") { ends_on_thin_bodies(on_gpu); }
 TEST_CASE("a GPU packs real links", "[data]") {
   packs_real_links(on_gpu, 2048, {"base.STL", "link_2.STL", "link_7.STL"});
 }

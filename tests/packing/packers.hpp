@@ -122,6 +122,34 @@ void refuses_what_makes_no_sense(Pack pack) {
   CHECK_THROWS_AS(pack(bad, {}), std::invalid_argument);
 }
 
+/// Plates, needles and wedges that are thinner and thinner: spheres that keep the laws, or none and a reason; and an end.
+template <class Pack>
+void ends_on_thin_bodies(Pack pack, double thinnest = 1e-7) {
+  int packed = 0, given_up = 0;
+  for (double thin = 1e-2; thin > 0.9 * thinnest; thin /= 10) {
+    auto wedge = shapes::box({0, 0, 0}, {1, 1, thin});
+    for (auto& v : wedge.vertices)
+      if (v.x() > 0.5) v.z() *= 0.5, v.y() += 0.3;  // nearly coplanar, and askew
+    for (const auto& mesh : {shapes::box({0, 0, 0}, {1, 1, thin}), shapes::box({0, 0, 0}, {1, thin, thin}), wedge}) {
+      INFO(thin << " of " << mesh.vertices.back().transpose());
+      const packing p = pack(mesh, {.count = 5});
+      if (p.spheres.empty()) {
+        ++given_up;
+        CHECK((p.stopped_by == pack_stop::search_limit || p.stopped_by == pack_stop::no_room));
+        CHECK(std::isinf(p.gap));
+        CHECK(p.room >= thin / 4);  // the largest that fits is not above what is said; a wedge is half as thick on average
+        CHECK(thin < 1e-5);         // thicker ones have room
+      } else {
+        ++packed;
+        CHECK(p.radius_max <= thin / 2);
+        check_laws(mesh, p, 300);
+      }
+    }
+  }
+  CHECK(packed >= 9);
+  CHECK((given_up > 0) == (thinnest < 1e-6));
+}
+
 template <class Pack>
 void packs_real_links(Pack pack, std::size_t count, std::initializer_list<const char*> names) {
   const std::filesystem::path folder = std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/meshes";

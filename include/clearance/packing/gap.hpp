@@ -20,7 +20,8 @@ class gap_search {
   gap_search(const S& s, const sphere_field& spheres, double least, double relative, double absolute)
       : solid_(s), spheres_(spheres), least_(least), relative_(relative), absolute_(absolute) {}
 
-  /// An upper bound of the gap over the solid's points in the cell; infinite if that takes more than `visits` cubes.
+  /// An upper bound of the gap over the solid's points in the cell; infinite if that takes more than `visits` cubes, of
+  /// which each costs one.
   double operator()(const solid_cell& root, std::size_t visits) {
     left_ = visits;
     std::vector<std::uint32_t> near(spheres_.size());
@@ -81,7 +82,7 @@ gap_report measure_gap(const S& s, const sphere_field& spheres, double tolerance
     std::nth_element(gaps.begin(), at, gaps.end());
     report.p95 = *at;
   }
-  // Finer and finer, until it is as fine as asked or takes too long: the gap of a ball in a ball, say, is the same all over
+  // Finer and finer by a quarter, until it is as fine as asked or takes too long: the gap of a ball in a ball, say, is the same all over
   // the surface, which no search can narrow down.
   const double finest = std::min(1e-5, 1e-5 * diagonal);
   const std::vector<solid_cell> roots = cover(s, 16);

@@ -112,7 +112,7 @@ gap_report measure_gap(const B& on, Steps& steps, const mesh_solid& s, const roo
   std::size_t n = grid.size();
   on.for_each(n, detail::gap_roots{grid, cells.reserve(n)});
   double upper = 0;
-  while (n > 0) {
+  while (n > 0) {  // cells become half as large, until 4 * reach <= slack, which is at least `finest`
     const double slack = std::max(least * tolerance, finest);
     on.for_each(n, detail::gap_visit{in, cells.data(), met.reserve(n), open.reserve(n), closed.reserve(n),
                                      least + slack, slack});

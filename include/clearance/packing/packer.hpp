@@ -23,7 +23,7 @@ class packer {
  public:
   packer(const S& s, const pack_options& options)
       : solid_(s), options_(options), limits_(s.bounds(), options),
-        rules_{options.gap_per_radius, std::isfinite(options.gap_per_radius)} {}
+        rules_(options.gap_per_radius, limits_.smallest) {}
 
   packing run() {
     const auto start = std::chrono::steady_clock::now();
@@ -31,7 +31,7 @@ class packer {
     packing out;
     out.stopped_by = fill(seconds);
     for (std::size_t i = 0; i < spheres_.size(); ++i) out.spheres.push_back(rounded(spheres_[i]));
-    out.room = limits_.smallest;
+    out.room = std::max(limits_.smallest, given_up_);
     for (const turn& t : turns_) out.room = std::max(out.room, cells_[t.at].bound());
     const gap_report gap = measure_gap(solid_, spheres_, options_.gap_tolerance);
     out.gap = gap.certified, out.gap_mean = gap.mean, out.gap_p95 = gap.p95;
@@ -60,7 +60,8 @@ class packer {
 
     friend bool operator<(const turn& a, const turn& b) { return a.key != b.key ? a.key < b.key : a.number > b.number; }
   };
-  static constexpr std::size_t batch = 256, most_cells = 1u << 22;
+  static constexpr std::size_t batch = 256, most_cells = 1u << 22;  // alive,
+  static constexpr std::size_t most_divided = 1u << 20;              // and between two spheres
 
   static inner_sphere rounded(const sphere_field::sphere& s) {
     return {{real(s.center.x()), real(s.center.y()), real(s.center.z())}, real(s.radius)};  // floats already: see `fit`
@@ -106,6 +107,10 @@ class packer {
     std::make_heap(turns_.begin(), turns_.end());
   }
 
+  /// Ends, because each turn of the loop does one of these to the cell whose key is the largest, and none for ever: it is
+  /// divided or given up (a cell becomes half as large, down to `finest`); a sphere is added (there are at most `count`); or the
+  /// cell comes back having met all spheres (once a cell and sphere). It does not take for ever either: of a plate that is
+  /// thinner than any sphere looked for there are 1e12 cells, so the search also ends where so many find no sphere.
   template <class Clock>
   pack_stop fill(Clock seconds) {
     std::mt19937_64 random(options_.seed);
@@ -120,7 +125,7 @@ class packer {
     for (;;) {
       if (const auto why = check(spheres_.size(), seconds, certified)) return *why;
       if (turns_.empty()) return limits_.exhausted();
-      if (turns_.size() > most_cells) return pack_stop::search_limit;
+      if (turns_.size() > most_cells || divided_ > most_divided) return pack_stop::search_limit;
       if (turns_.size() > pile_) trust_less();
 
       works.clear();
@@ -143,7 +148,6 @@ class packer {
           w.sphere = ascend(solid_, spheres_, e.cell.middle, e.room(), way);
           if (options_.allow_overlap) w.grown = grow(solid_, w.sphere);
         } else {
-          w.what = work::divided;
           divide(w);
         }
       });
@@ -161,11 +165,14 @@ class packer {
           const double least = std::max(limits_.smallest, 0.98 * w.sphere.radius);
           if (spheres_.size() < options_.count && (untouched || spheres_.distance(w.sphere.center, least) >= least)) {
             const sphere_field::sphere s = options_.allow_overlap ? fit(w.grown) : fit(w.sphere);
-            if (s.radius >= least) spheres_.insert(s);
+            if (s.radius >= least) spheres_.insert(s), divided_ = 0;
           }
-          if (untouched && spheres_.size() == seen) w.what = work::divided, divide(w);  // too small, or lost in rounding
+          if (untouched && spheres_.size() == seen) divide(w);  // too small, or lost in rounding
         }
-        if (w.what == work::divided) {
+        if (w.what == work::given_up) {
+          given_up_ = std::max(given_up_, w.from.bound());
+        } else if (w.what == work::divided) {
+          ++divided_;
           for (const auto& [cell, gap] : w.eighths) push(cell, gap, seen);
         } else {
           push(w.from.cell, w.from.gap, w.from.seen);
@@ -176,11 +183,12 @@ class packer {
 
   struct work {
     entry from;
-    enum { stale, divided, climbed } what;
+    enum { stale, divided, climbed, given_up } what;
     std::array<std::pair<solid_cell, double>, 8> eighths;
     sphere_field::sphere sphere = {Eigen::Vector3d::Zero(), 0}, grown = sphere;
   };
   void divide(work& w) const {
+    w.what = rules_.finest(w.from.cell.reach()) ? work::given_up : work::divided;
     for (int k = 0; k < 8; ++k) {
       const solid_cell c = eighth(solid_, w.from.cell, k);
       const double bound = c.depth + c.reach();
@@ -198,6 +206,8 @@ class packer {
   pack_rules rules_;
   std::size_t pile_ = 1u << 20;
   std::uint32_t numbers_ = 0;
+  std::size_t divided_ = 0;  // since the last sphere
+  double given_up_ = 0;  // the largest bound of cells that are neither divided nor climbed from any more
 };
 
 }  // namespace clearance

@@ -31,13 +31,10 @@ struct offer {
 struct field {
   room_view in;
   pack_rules rules;
-  double smallest, scale;
+  double scale;
 
-  CLEARANCE_HD double key(const cell& c) const {
-    if (!(c.bound() >= smallest)) return 0;  // nothing fits
-    const double key = rules.key(c.depth, c.reach(), c.gap), last = 1e-3 * smallest;
-    return key > last ? key : last;  // with little trust in bounds a key may be negative
-  }
+  /// 0: nothing fits. Of a cell that is given up the key is its bound, negative.
+  CLEARANCE_HD double key(const cell& c) const { return c.bound() >= rules.smallest ? rules.key(c.depth, c.reach(), c.gap) : 0; }
 };
 
 struct cover {
@@ -83,10 +80,11 @@ struct divide {
     cell c = {eighth_middle(from.middle, from.half, std::uint32_t(i % 8)), from.half / 2, 0, 0, f.in.count};
     c.depth = signed_depth(f.in.solid, c.middle, from.depth, c.reach());
     const double bound = c.depth + c.reach();
-    if (bound >= f.smallest) c.gap = f.in.gap(c.middle, f.rules.farthest_gap(bound), -c.reach());
+    const bool finest = f.rules.finest(from.reach());
+    if (bound >= f.rules.smallest) c.gap = f.in.gap(c.middle, f.rules.farthest_gap(bound), -c.reach());
     cells[first + i] = c;
-    keys[first + i] = f.key(c);
-    if (i % 8 == 0) keys[parent] = 0;
+    keys[first + i] = finest ? 0 : f.key(c);
+    if (i % 8 == 0) keys[parent] = finest ? -from.bound() : 0;
   }
 };
 
@@ -118,7 +116,7 @@ struct climb_cells {
     if (lanes.rank() != 0) return;
     const double least = 0.98 * found.radius;
     if (!overlap) found = grown;
-    if (grown.radius < f.smallest || grown.radius < least) {  // too small, or lost in rounding
+    if (grown.radius < f.rules.smallest || grown.radius < least) {  // too small, or lost in rounding
       found.radius = 0;
       deeds[these[i]] = deed::divide;
     }
@@ -170,7 +168,7 @@ struct weigh_again {
   field f;
   const cell* cells;
   double* keys;
-  CLEARANCE_HD void operator()(std::size_t i) const { keys[i] = keys[i] > 0 ? f.key(cells[i]) : 0; }
+  CLEARANCE_HD void operator()(std::size_t i) const { keys[i] = keys[i] > 0 ? f.key(cells[i]) : keys[i]; }
 };
 
 struct key_of {
@@ -180,12 +178,16 @@ struct key_of {
 struct bound_of {
   const cell* cells;
   const double* keys;
-  CLEARANCE_HD double operator()(std::size_t i) const { return keys[i] > 0 ? cells[i].bound() : 0; }
+  CLEARANCE_HD double operator()(std::size_t i) const { return keys[i] > 0 ? cells[i].bound() : -keys[i]; }
 };
 struct at_least {
   const double* keys;
   double least;
   CLEARANCE_HD bool operator()(std::size_t i) const { return keys[i] > 0 && keys[i] >= least; }
+};
+struct is_kept {
+  const double* keys;
+  CLEARANCE_HD bool operator()(std::size_t i) const { return keys[i] != 0; }
 };
 struct is_deed {
   const deed* deeds;

@@ -26,7 +26,7 @@ class round_packer {
         options_(options),
         limits_(s.bounds(), options),
         there_(s.on(on)),
-        rules_{options.gap_per_radius, std::isfinite(options.gap_per_radius)} {}
+        rules_(options.gap_per_radius, limits_.smallest) {}
 
   packing run() {
     packing out;
@@ -44,14 +44,14 @@ class round_packer {
 
  private:
   static constexpr double nearly = 0.9;  // of the largest key; how much is done in a round
-  static constexpr std::size_t most_climbers = 8192, most_cells = 1u << 25;
+  static constexpr std::size_t most_climbers = 8192, most_cells = 1u << 25;  // alive,
+  static constexpr std::size_t most_divided = 1u << 22;                                 // and between two spheres
 
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
   rounds::field field() {
     const box_tree_view tree = {nodes_.data(), order_.data(), tree_.view().items, tree_.view().root};
     return {{there_.view(), spheres_there_.data(), std::uint32_t(spheres_.size()), tree},
             rules_,
-            limits_.smallest,
             limits_.scale};
   }
   gap_report certify() {
@@ -72,6 +72,9 @@ class round_packer {
     on_.stage(tree_.order(), order_.reserve(tree_.order().size()));
   }
 
+  /// Ends, because in each round every cell with nearly the largest key is brought up to date (once a cell and sphere), or
+  /// divided or given up (half as large, down to `finest`), or offers a sphere; and of those the largest is taken (at most
+  /// `count` times). And where very many cells find no sphere it ends, as `packer` does.
   pack_stop fill() {
     std::mt19937_64 random(options_.seed);
     Eigen::Vector3d shift;
@@ -84,7 +87,7 @@ class round_packer {
     for (;;) {
       if (const auto why = check(spheres_.size(), [this] { return seconds(); }, [this] { return certify().certified; })) return *why;
       if (alive_ > tidy_at) tidy(), tidy_at = std::max(tidy_at, 2 * alive_);
-      if (alive_ > most_cells) return pack_stop::search_limit;
+      if (alive_ > most_cells || divided_ > most_divided) return pack_stop::search_limit;
       if (alive_ > pile) trust_less(), pile += pile / 2;
       const double top = steps_.largest(alive_, rounds::key_of{keys_.data()});
       if (!(top > 0)) return limits_.exhausted();
@@ -95,6 +98,7 @@ class round_packer {
   void one_round(double least) {
     plant(128 + spheres_.size() / 16);
     const rounds::field f = field();
+    const std::size_t before = spheres_.size();
     const std::size_t some = steps_.select(alive_, rounds::at_least{keys_.data(), least}, some_.reserve(alive_));
     on_.for_each(some, rounds::refresh{f, some_.data(), cells_.data(), keys_.data(), least, deeds_.reserve(some)});
     const rounds::is_deed climbing{deeds_.data(), rounds::deed::climb}, dividing{deeds_.data(), rounds::deed::divide};
@@ -110,6 +114,7 @@ class round_packer {
     on_.for_each(8 * divided,
                  rounds::divide{field(), some_.data(), these_.data(), cells_.data(), keys_.data(), alive_});
     alive_ += 8 * divided;
+    divided_ = spheres_.size() > before ? 0 : divided_ + divided;
   }
 
   void take(std::size_t climbers) {
@@ -128,7 +133,7 @@ class round_packer {
   }
 
   void tidy() {
-    const std::size_t kept = steps_.select(alive_, rounds::at_least{keys_.data(), 0}, some_.reserve(alive_));
+    const std::size_t kept = steps_.select(alive_, rounds::is_kept{keys_.data()}, some_.reserve(alive_));
     growing<rounds::cell, B> cells(on_);
     growing<double, B> keys(on_);
     on_.for_each(kept, rounds::keep_cells{some_.data(), cells_.data(), keys_.data(), cells.reserve(2 * kept),
@@ -158,7 +163,7 @@ class round_packer {
   growing<rounds::deed, B> deeds_{on_};
   growing<rounds::offer, B> offers_{on_};
   growing<unsigned char, B> verdicts_{on_};
-  std::size_t alive_ = 0;
+  std::size_t alive_ = 0, divided_ = 0;  // cells, and those divided since the last sphere
   pack_rules rules_;
 };
 
