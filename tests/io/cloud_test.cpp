@@ -63,17 +63,30 @@ TEST_CASE("an XYZ file is refused with the number of its line") {
   contains(refused(".las", "1 2 3\n"), "is no point cloud by its name");
 }
 
-TEST_CASE("float clouds near 0 are kept as they are, and a shift of far ones is exact") {
+TEST_CASE("floats for a query are exact where floats can be, and say what they lost where not") {
   std::mt19937 random(3);
   for (const double away : {0.0, 5.0, 70.0, 1e4, 5e6}) {
     std::uniform_real_distribution<float> along(float(away) - 5, float(away) + 5);
     std::vector<Eigen::Vector3d> points;
     for (int i = 0; i < 500; ++i) points.emplace_back(double(along(random)), double(along(random)), double(along(random)));
     const io::cloud c = io::make_cloud("", points, points.size(), 1);
-    CHECK(c.origin.isZero(0) == (away < 16));
-    for (std::size_t i = 0; i < points.size(); ++i)
-      CHECK(Eigen::Vector3d(c.origin + Eigen::Vector3d(double(c.points[i].x), double(c.points[i].y), double(c.points[i].z))) == points[i]);
+    Eigen::Isometry3d robot = Eigen::Isometry3d::Identity();
+    robot.translation().setConstant(away);
+    const io::float_cloud near = c.near(std::vector{robot});
+    CHECK(near.origin.isZero(0) == (away <= 32));
+    CHECK(near.pose.translation() == near.origin);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const vec3 f = near.points[i];
+      const Eigen::Vector3d p(f.x, f.y, f.z);
+      CHECK((near.origin + p - points[i]).norm() <= near.off.absolute + near.off.relative * p.norm());
+      if (away > 5) CHECK((near.off.relative == 0 && near.origin + p == points[i]));
+    }
+    const io::float_cloud far = c.relative_to({-5e6, 1, 0});
+    CHECK(far.off.relative > 0);
+    CHECK(far.off.absolute > 0);
   }
+  CHECK(io::make_cloud("", {{0.5, 0.25, 3}}, 1, 1).relative_to({0, 0, 0}).off.relative == 0);
+  CHECK(io::make_cloud("", {{0.1, 0.25, 3}}, 1, 1).relative_to({0, 0, 0}).off.relative > 0);
 }
 
 TEST_CASE("the points of a PLY file come in the file's order, from text and from bytes") {

@@ -82,13 +82,13 @@ class round_packer {
     const cube_grid grid(solid_.bounds(), 8, shift);
     alive_ = grid.size();
     on_.for_each(alive_, rounds::cover{field(), grid, cells_.reserve(alive_), keys_.reserve(alive_)});
-    std::size_t tidy_at = 1u << 16, pile = 1u << 22;
+    std::size_t tidy_at = 1u << 16;
     stop_check check(options_);
     for (;;) {
       if (const auto why = check(spheres_.size(), [this] { return seconds(); }, [this] { return certify().certified; })) return *why;
       if (alive_ > tidy_at) tidy(), tidy_at = std::max(tidy_at, 2 * alive_);
       if (alive_ > most_cells || divided_ > most_divided) return pack_stop::search_limit;
-      if (alive_ > pile) trust_less(), pile += pile / 2;
+      while (alive_ > pile_) trust_less(), pile_ += pile_ / 2;
       const double top = steps_.largest(alive_, rounds::key_of{keys_.data()});
       if (!(top > 0)) return limits_.exhausted();
       one_round(nearly * top);
@@ -99,7 +99,9 @@ class round_packer {
     plant(128 + spheres_.size() / 16);
     const rounds::field f = field();
     const std::size_t before = spheres_.size();
-    const std::size_t some = steps_.select(alive_, rounds::at_least{keys_.data(), least}, some_.reserve(alive_));
+    // All of a thin plate's cells have nearly one key. Before they pile up bounds shall be trusted less, and then some go deep.
+    const std::size_t room = (pile_ - alive_) / 8 + most_climbers;
+    const std::size_t some = std::min(room, steps_.select(alive_, rounds::at_least{keys_.data(), least}, some_.reserve(alive_)));
     on_.for_each(some, rounds::refresh{f, some_.data(), cells_.data(), keys_.data(), least, deeds_.reserve(some)});
     const rounds::is_deed climbing{deeds_.data(), rounds::deed::climb}, dividing{deeds_.data(), rounds::deed::divide};
     const std::size_t climbers = std::min(most_climbers, steps_.select(some, climbing, these_.reserve(some)));
@@ -163,6 +165,7 @@ class round_packer {
   growing<rounds::deed, B> deeds_{on_};
   growing<rounds::offer, B> offers_{on_};
   growing<unsigned char, B> verdicts_{on_};
+  std::size_t pile_ = 1u << 22;
   std::size_t alive_ = 0, divided_ = 0;  // cells, and those divided since the last sphere
   pack_rules rules_;
 };

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// On a device the bracket is true wherever most points, the origin of their floats, or the poses are: plain, prepared, by
+// parts, of several clouds, and with poses in device memory.
+#include "search/far_scenes.hpp"
+#include "support/product_device.cuh"
+
+#include <clearance/min_distance_query.cuh>
+
+using namespace testing;
+using clearance::device, clearance::host, clearance::placed;
+
+namespace {
+
+struct ask_device {
+  verdict& v;
+
+  template <class Body, class Source>
+  void operator()(const std::vector<Body>& robot, const std::vector<Eigen::Isometry3d>& poses, const Source& source, const truth& t,
+                  const std::string& name) const {
+    const auto on_host = model_of(robot);
+    const wide distance = t.distance(robot, poses);
+    const placed cloud{source, t.pose};
+    const auto expected = clearance::min_distance(host{}, on_host, poses, cloud);
+    const auto by_parts = clearance::min_distance_per_part(host{}, on_host, poses, cloud).first;
+    const device gpu;
+    const auto model = on_host.on(gpu);
+    const auto check = [&](const clearance::min_distance_result& r, const clearance::min_distance_result& as, const char* how) {
+      require_bracket(r, distance, v, name + how);
+      v.require(same_result(r, as), name, how, ": differs from the host's result");
+    };
+    // A table of rays is read where it lies: such a source is asked on the host alone.
+    if constexpr (!requires { source.rays; }) {
+      check(clearance::min_distance(gpu, model, poses, cloud), expected, ", plain");
+      check(clearance::min_distance_per_part(gpu, model, poses, cloud).first, by_parts, ", plain, by parts");
+      clearance::min_distance_query query(gpu, model);
+      std::vector<clearance::part_minimum> minima(poses.size());
+      for (const char* when : {", cold", ", warm"}) {
+        check(query(poses, cloud), expected, when);
+        check(query(poses, cloud, minima), by_parts, when);
+      }
+      const std::vector<placed<Source>> twice = {cloud, {source, t.pose}};
+      check(query(poses, twice), clearance::min_distance(host{}, on_host, poses, twice), ", twice");
+      const auto bytes = gpu.copy_in(source.bytes());
+      std::vector<clearance::world_transform> all(poses.begin(), poses.end());
+      all.emplace_back(t.pose);
+      const auto there = gpu.copy_in(std::span<const clearance::world_transform>(all));
+      auto result = gpu.template make_scratch<clearance::min_distance_result>(1);
+      query.enqueue(there.data(), source.at(bytes.data()), there.data() + poses.size(), result.data());
+      check(gpu.copy_out(result.data(), 1)[0], expected, ", poses in device memory");
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("On a device the bracket contains the distance however far most points, and the origin of their floats, are") {
+  verdict v;
+  each_far_question<ball_body>(60, ask_device{v});
+  each_far_question<box_body>(60, ask_device{v});
+}
+
+TEST_CASE("On a device the bracket contains the distance at poses as far away as poses may be") {
+  verdict v;
+  each_far_pose<ball_body>(60, ask_device{v});
+  each_far_pose<box_body>(60, ask_device{v});
+}
