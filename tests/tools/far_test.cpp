@@ -45,7 +45,8 @@ TEST_CASE("placeholders a thousand kilometres away change no answer, in any file
         const std::string lines = q.lines(far, inside);
         const scratch_file xyz(".xyz", lines);
         const scratch_file pcd(".pcd", "VERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 21\nHEIGHT 1\nPOINTS 21\nDATA ascii\n" + lines);
-        for (const auto* cloud : {&xyz, &pcd}) check(parsed(run_command("query " + q.base() + "--joints 0 --json --cloud " + cloud->path)), inside);
+        const scratch_file ply(".ply", "ply\nformat ascii 1.0\nelement vertex 21\nproperty double x\nproperty double y\nproperty double z\nend_header\n" + lines);
+        for (const auto* cloud : {&xyz, &pcd, &ply}) check(parsed(run_command("query " + q.base() + "--joints 0 --json --cloud " + cloud->path)), inside);
         const scratch_file list(".txt", xyz.path + '\n' + pcd.path + '\n'), row(".csv", "j\n0\n");
         const outcome merged = run_command("run " + q.base() + "--merge --frames " + list.path + " --trajectory " + row.path);
         INFO(merged.err);
