@@ -138,7 +138,7 @@ void ends_on_thin_bodies(Pack pack, double thinnest = 1e-7) {
         CHECK((p.stopped_by == pack_stop::search_limit || p.stopped_by == pack_stop::no_room));
         CHECK(std::isinf(p.gap));
         CHECK(p.room >= thin / 4);  // the largest that fits is not above what is said; a wedge is half as thick on average
-        CHECK(thin < 1e-5);         // thicker ones have room
+        CHECK(thin < 5e-5);         // in thicker ones every packer finds spheres
       } else {
         ++packed;
         CHECK(p.radius_max <= thin / 2);
