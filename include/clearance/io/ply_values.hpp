@@ -4,7 +4,6 @@
 #include <clearance/io/ply_header.hpp>
 
 #include <bit>
-#include <cstring>
 #include <utility>
 
 namespace clearance::io {
@@ -91,24 +90,21 @@ class ply_values {
   double packed(ply_type type) {
     const std::size_t size = ply_size(type);
     if (rest_.size() < size) refuse(file_, "is cut short in " + record());
-    char bytes[8] = {};
-    std::memcpy(bytes, rest_.data(), size);
+    std::uint64_t bits = 0;
+    for (std::size_t k = 0; k < size; ++k) {
+      const std::size_t place = format_ == ply_header::encoding::big_endian ? size - 1 - k : k;
+      bits |= std::uint64_t(static_cast<unsigned char>(rest_[k])) << 8 * place;
+    }
     rest_.remove_prefix(size);
-    if ((format_ == ply_header::encoding::big_endian) != (std::endian::native == std::endian::big))
-      std::reverse(bytes, bytes + size);
-    const auto as = [&]<class T>(T value) {
-      std::memcpy(&value, bytes, sizeof value);
-      return double(value);
-    };
     switch (type) {
-      case ply_type::int8: return as(std::int8_t());
-      case ply_type::uint8: return as(std::uint8_t());
-      case ply_type::int16: return as(std::int16_t());
-      case ply_type::uint16: return as(std::uint16_t());
-      case ply_type::int32: return as(std::int32_t());
-      case ply_type::uint32: return as(std::uint32_t());
-      case ply_type::float32: return as(float());
-      default: return as(double());
+      case ply_type::int8: return double(std::int8_t(bits));
+      case ply_type::uint8: return double(std::uint8_t(bits));
+      case ply_type::int16: return double(std::int16_t(bits));
+      case ply_type::uint16: return double(std::uint16_t(bits));
+      case ply_type::int32: return double(std::int32_t(bits));
+      case ply_type::uint32: return double(std::uint32_t(bits));
+      case ply_type::float32: return double(std::bit_cast<float>(std::uint32_t(bits)));
+      default: return std::bit_cast<double>(bits);
     }
   }
 
