@@ -177,7 +177,7 @@ TEST_CASE("a key that a YAML file has twice is refused at every level, and so is
   }
   const std::string good = "collision_spheres:\n  a: &x [{center: [0,0,0], radius: 1}]\n";
   CHECK(yaml_refusal(good).empty());
-  CHECK(yaml_refusal(good + "---\n" + good) == ":4: has more than one YAML document");
+  CHECK(yaml_refusal(good + "---\n" + good) == ":3: has more than one YAML document");
   std::string many = good;
   for (int i = 0; i < 3; ++i) many += "  b" + std::to_string(i) + ": *x\n";
   CHECK(yaml_refusal(many).empty());

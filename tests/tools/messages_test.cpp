@@ -51,10 +51,15 @@ void names_it(const std::string& arguments, const std::string& file) {
   CHECK(o.err.find(file) != std::string::npos);
 }
 
-/// Names that XML, YAML and text files can hold, spelt for XML.
+/// Names that a URDF may hold, spelt for XML; and names that are refused: control characters, and very long ones.
 const std::vector<std::string>& xml_names() {
-  static const std::vector<std::string> names = {"plain", "a&#27;[2J&#10;state     free", "tab&#9;bell&#7;", "del&#127;", "csi&#155;2J", "turned &#x202E;eerf",
-                                                 "gr\xc3\xb6\xc3\x9f" "e \xe2\x82\xac \xf0\x9f\xa4\x96", std::string(70000, 'n'), std::string(2000000, 'm'), "mark&#xFEFF;"};
+  static const std::vector<std::string> names = {"plain", "turned &#x202E;eerf", "gr\xc3\xb6\xc3\x9f" "e \xe2\x82\xac \xf0\x9f\xa4\x96",
+                                                 std::string(100, 'n'), "mark&#xFEFF;"};
+  return names;
+}
+const std::vector<std::string>& refused_names() {
+  static const std::vector<std::string> names = {"a&#27;[2J&#10;state     free", "tab&#9;", "bell&#7;", "del&#127;", "csi&#155;2J",
+                                                 "", std::string(101, 'n'), std::string(2000000, 'm')};
   return names;
 }
 
@@ -114,6 +119,15 @@ TEST_CASE("names of links and joints reach terminal, JSON and scene in a form th
     CHECK(checked("info " + yaml.path).code == 0);
     CHECK(checked("query --backend host --robot " + urdf.path + " --cloud " + cloud.path + " --packing " + spheres.path + " --json").code == 0);
   }
+}
+
+TEST_CASE("names that would steer a terminal, and names longer than a line, are refused of links and joints") {
+  const scratch_file cloud(".xyz", "3 0.1 0.1\n");
+  for (const std::string& name : refused_names())
+    for (const std::string& text : {robot(name), robot("a", name)}) {
+      const scratch_file urdf(".urdf", text);
+      names_it("query --model triangles --backend host --joints 0 --cloud " + cloud.path + " --robot " + urdf.path, urdf.path);
+    }
 }
 
 TEST_CASE("a refusal is one short printable line that names its file, whatever is in it") {

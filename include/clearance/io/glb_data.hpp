@@ -107,6 +107,7 @@ class glb_data {
                         length = from["byteLength"].integer(), offset = accessor.integer("byteOffset", 0),
                         count = accessor["count"].integer(), stride = from.integer("byteStride", size);
     if (whole > data_.size()) buffer.refuse("is longer than the data in the file");
+    if (data_.size() - whole > 3) buffer.refuse("is shorter than the data in the file");  // which are padded to fours
     if (at > whole || length > whole - at) from.refuse("is not inside its buffer");
     if (count == 0) accessor.refuse("has the count 0");
     if (stride < size || stride > 252) from.refuse("has the stride " + std::to_string(stride));

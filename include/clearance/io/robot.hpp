@@ -52,12 +52,22 @@ inline robot load_robot(const std::filesystem::path& urdf, const robot_options& 
   for (const auto& name : options.exclude_links)
     if (std::none_of(file.links.begin(), file.links.end(), [&](const auto& link) { return link.name == name; }))
       throw std::invalid_argument("the robot has no link " + io::quoted(name) + " to exclude");
+  const auto asked = [&](const urdf_link& link) {
+    return std::ranges::find(options.exclude_links, link.name) == options.exclude_links.end() &&
+           !(link.collision.empty() && link.visual.empty());
+  };
+  const auto shapes = [&](const urdf_link& link) -> const std::vector<urdf_shape>& {
+    const bool visual = options.geometry == robot_geometry::visual;
+    return (visual ? link.visual.empty() : !link.collision.empty()) ? link.collision : link.visual;
+  };
+  std::size_t round = 0;
+  for (const urdf_link& link : file.links)
+    if (asked(link)) round += std::size_t(std::ranges::count_if(shapes(link), &urdf_shape::round));
   std::vector<robot_part> parts;
   std::vector<std::string> notes;
-  robot_reader reader(urdf, options);
+  robot_reader reader(urdf, options, round);
   for (const urdf_link& link : file.links) {
-    if (std::ranges::find(options.exclude_links, link.name) != options.exclude_links.end()) continue;
-    if (link.collision.empty() && link.visual.empty()) continue;
+    if (!asked(link)) continue;
     robot_part part{link.name, {}, 0, options.geometry, file.tree.link(link.name)};
     if (part.used == robot_geometry::collision && link.collision.empty()) {
       part.used = robot_geometry::visual;
@@ -66,7 +76,7 @@ inline robot load_robot(const std::filesystem::path& urdf, const robot_options& 
       part.used = robot_geometry::collision;
       notes.push_back("link \"" + part.name + "\" has no visual geometry: its collision is used");
     }
-    for (const urdf_shape& shape : part.used == robot_geometry::collision ? link.collision : link.visual)
+    for (const urdf_shape& shape : shapes(link))
       within_memory(urdf.string(), [&] { reader.add(part, shape); });
     parts.push_back(std::move(part));
   }

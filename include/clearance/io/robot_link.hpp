@@ -23,7 +23,8 @@ struct robot_options {
   std::map<std::string, std::filesystem::path> packages{};  // where package://name is
   std::vector<std::string> exclude_links{};
   double tessellation = 1e-4;  // metres; round shapes become meshes no farther from them,
-  std::uint32_t shape_triangles = 8000;  // except where one would need more triangles than this
+  std::uint32_t shape_triangles = 8000;  // except where one would need more triangles than this,
+  std::uint32_t all_shape_triangles = 400'000;  // or more than its share of these
   mesh_limits limits{};                  // of the description and all its meshes together
 };
 
@@ -40,8 +41,10 @@ struct robot_part {
 /// Reads the links of one robot, which share its limits.
 class robot_reader {
  public:
-  robot_reader(const std::filesystem::path& urdf, const robot_options& options)
-      : urdf_(urdf), file_(urdf.string()), options_(options), left_(options.limits) {}
+  /// `round`: how many spheres, cylinders and capsules will be added.
+  robot_reader(const std::filesystem::path& urdf, const robot_options& options, std::size_t round)
+      : urdf_(urdf), file_(urdf.string()), options_(options), left_(options.limits),
+        each_(std::uint32_t(std::min<std::size_t>(options.shape_triangles, options.all_shape_triangles / std::max<std::size_t>(round, 1)))) {}
 
   /// Adds one visual or collision to a part.
   void add(robot_part& part, const urdf_shape& shape) {
@@ -74,13 +77,13 @@ class robot_reader {
  private:
   tessellation make(const urdf_box& box) const { return tessellate_box(box.size); }
   tessellation make(const urdf_sphere& s) const {
-    return tessellate_sphere(s.radius, options_.tessellation, options_.shape_triangles);
+    return tessellate_sphere(s.radius, options_.tessellation, each_);
   }
   tessellation make(const urdf_cylinder& c) const {
-    return tessellate_cylinder(c.radius, c.length, options_.tessellation, options_.shape_triangles);
+    return tessellate_cylinder(c.radius, c.length, options_.tessellation, each_);
   }
   tessellation make(const urdf_capsule& c) const {
-    return tessellate_capsule(c.radius, c.length, options_.tessellation, options_.shape_triangles);
+    return tessellate_capsule(c.radius, c.length, options_.tessellation, each_);
   }
   tessellation make(const urdf_mesh& mesh) {
     const auto file = resolve_uri(mesh.uri, urdf_, options_.packages);
@@ -96,6 +99,7 @@ class robot_reader {
   const std::string file_;
   const robot_options& options_;
   mesh_limits left_;
+  std::uint32_t each_;  // triangles of a round shape
 };
 
 }  // namespace clearance::io

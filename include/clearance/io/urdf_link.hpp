@@ -35,6 +35,9 @@ struct urdf_shape {
   urdf_geometry geometry;
   Eigen::Isometry3d origin;  // link-from-shape
   std::size_t line;          // of its geometry
+
+  /// Becomes triangles that are not quite it.
+  bool round() const { return !std::holds_alternative<urdf_box>(geometry) && !std::holds_alternative<urdf_mesh>(geometry); }
 };
 
 struct urdf_link {
