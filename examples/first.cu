@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // first.cpp on a GPU: three lines differ.
-#include <clearance/backend/device.cuh>
 #include <clearance/bvh/build.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/min_distance.cuh>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 

@@ -11,33 +11,33 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+/// A cloud as the library takes it.
+using placed_points = std::variant<clearance::placed<clearance::point_span>, clearance::placed<clearance::depth_image<std::uint16_t>>>;
+
+/// It where `on` can read it; `copies` keeps what had to be copied.
+template <class Backend>
+placed_points here(const Backend& on, const seen_points& cloud, std::vector<typename Backend::template buffer<std::byte>>& copies) {
+  const clearance::minimum::readable_on<Backend> readable{on, copies};
+  return std::visit([&](const auto& source) { return placed_points(clearance::placed{readable(source, 0), cloud.pose}); }, cloud.points);
+}
+
 template <class Backend, class Part>
-answer ask_model(const Backend& on, const question& asked, const clearance::model<Part>& built) {
-  answer out;
+reply ask_model(const Backend& on, const question& asked, const clearance::model<Part>& built) {
+  reply out;
   stopwatch clock;
   const auto model = built.on(on);
   std::vector<typename Backend::template buffer<std::byte>> copies;
-  std::vector<seen_points> clouds = asked.clouds;
-  for (auto& cloud : clouds)
-    std::visit(
-        [&](auto& source) {
-          if (source.size() == 0 || on.reads(source.bytes().data())) return;
-          copies.push_back(on.copy_in(source.bytes()));
-          source = source.at(copies.back().data());
-        },
-        cloud.points);
-  auto result = on.template make_scratch<clearance::min_distance_result>(1);
-  auto minima = on.template make_scratch<clearance::part_minimum>(model.size());
+  std::vector<placed_points> clouds;
+  for (const auto& cloud : asked.clouds) clouds.push_back(here(on, cloud, copies));
+  clearance::min_distance_query query(on, model);
   on.wait();
   out.upload = clock.lap();
+  out.parts.resize(model.size());
   double spent = 0;
   for (int round = 0; round < asked.repeat && spent < 0.3; ++round) {
+    query.forget();
     clock.lap();
-    clearance::minimum_search search(on, model.view(), asked.poses, clearance::near_first{}, result.data(), minima.data());
-    for (const auto& cloud : clouds) std::visit([&](const auto& source) { search.add(source, cloud.pose); }, cloud.points);
-    search.conclude();
-    out.result = on.copy_out(result.data(), 1)[0];
-    out.parts = on.copy_out(minima.data(), minima.size());
+    out.result = query.per_part(asked.poses, clouds, out.parts);
     const double seconds = clock.lap();
     spent += seconds;
     out.query = round == 0 ? seconds : std::min(out.query, seconds);
@@ -53,22 +53,16 @@ class prepared final : public prepared_question {
 
   double see(const seen_points& cloud) override {
     stopwatch clock;
-    cloud_ = cloud;
-    std::visit(
-        [&](auto& source) {
-          if (source.size() == 0 || on_.reads(source.bytes().data())) return;
-          copy_ = on_.copy_in(source.bytes());
-          source = source.at(copy_.data());
-        },
-        cloud_.points);
+    copies_.clear();
+    cloud_ = here(on_, cloud, copies_);
     on_.wait();
     return clock.lap();
   }
 
-  answer ask(const std::vector<Eigen::Isometry3d>& poses) override {
-    answer out;
+  reply ask(const std::vector<Eigen::Isometry3d>& poses) override {
+    reply out;
     stopwatch clock;
-    out.result = std::visit([&](const auto& source) { return query_(poses, source, cloud_.pose); }, cloud_.points);
+    out.result = query_(poses, cloud_);
     out.query = clock.lap();
     return out;
   }
@@ -77,21 +71,18 @@ class prepared final : public prepared_question {
   Backend on_;
   Model model_;
   decltype(clearance::min_distance_query(std::declval<const Backend&>(), std::declval<const Model&>())) query_;
-  seen_points cloud_;
-  typename Backend::template buffer<std::byte> copy_;
+  placed_points cloud_;
+  std::vector<typename Backend::template buffer<std::byte>> copies_;
 };
 
 /// Calls `use` with the model that is asked for, in host memory.
 template <class V, class Use>
 auto with_volume(const question& asked, Use use) {
-  const auto with = [&](auto make) {
-    std::vector<decltype(make((*asked.bodies)[0]))> parts;
-    for (const body& b : *asked.bodies) parts.push_back(make(b));
-    return use(clearance::model(std::move(parts)));
-  };
+  const auto& bodies = *asked.bodies;
+  const auto tolerance = [&](std::size_t k) { return clearance::part_options{.tolerance = bodies[k].tolerance}; };
   if (asked.model == model_kind::spheres)
-    return with([](const body& b) { return clearance::make_part<V>(b.packed, {.tolerance = b.tolerance}); });
-  return with([](const body& b) { return clearance::make_part<V>(b.closed, {.tolerance = b.tolerance}); });
+    return use(clearance::make_model<V>(bodies | std::views::transform(&body::packed), tolerance));
+  return use(clearance::make_model<V>(bodies | std::views::transform(&body::closed), tolerance));
 }
 
 template <class Use>
@@ -104,11 +95,11 @@ auto with_model(const question& asked, Use use) {
 }
 
 template <class Backend>
-answer ask(const Backend& on, const question& asked) {
+reply ask(const Backend& on, const question& asked) {
   stopwatch clock;
   return with_model(asked, [&](const auto& built) {
     const double seconds = clock.lap();
-    answer out = ask_model(on, asked, built);
+    reply out = ask_model(on, asked, built);
     out.build = seconds;
     return out;
   });

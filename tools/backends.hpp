@@ -47,16 +47,16 @@ struct question {
   int repeat = 1;  // ask up to so often, while that takes little, and report the shortest time
 };
 
-struct answer {
+struct reply {
   clearance::min_distance_result result;
   std::vector<clearance::part_minimum> parts;
   double build = 0, upload = 0, query = 0;  // seconds
 };
 
-answer ask_host(const question& asked);
+reply ask_host(const question& asked);
 
 /// Throws std::runtime_error if no device is compiled in.
-answer ask_device(const question& asked);
+reply ask_device(const question& asked);
 
 /// A question that is asked again and again, of the same bodies: the library's prepared query.
 class prepared_question {
@@ -67,7 +67,7 @@ class prepared_question {
   virtual double see(const seen_points& cloud) = 0;
 
   /// The minimum over what was seen last; .query is the time of that alone, and no .parts are told.
-  virtual answer ask(const std::vector<Eigen::Isometry3d>& poses) = 0;
+  virtual reply ask(const std::vector<Eigen::Isometry3d>& poses) = 0;
 };
 
 /// Builds the models that are asked for; poses and clouds come later.

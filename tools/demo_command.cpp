@@ -25,7 +25,7 @@ struct demo_settings {
 struct demo_row {
   bool on_device;
   question asked;
-  answer found;
+  reply found;
 };
 
 void draw(const demo_scene& world, const demo_row& row, const std::string& file) {

@@ -11,7 +11,7 @@ __global__ void probe() {}
 
 }  // namespace
 
-answer ask_device(const question& asked) { return ask(clearance::device{}, asked); }
+reply ask_device(const question& asked) { return ask(clearance::device{}, asked); }
 
 std::unique_ptr<prepared_question> prepare_device(const question& asked) { return prepare(clearance::device{}, asked); }
 

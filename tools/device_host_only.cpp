@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-answer ask_device(const question&) { throw std::runtime_error("this clearance was built without CUDA"); }
+reply ask_device(const question&) { throw std::runtime_error("this clearance was built without CUDA"); }
 
 std::unique_ptr<prepared_question> prepare_device(const question&) {
   throw std::runtime_error("this clearance was built without CUDA");

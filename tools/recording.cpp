@@ -131,9 +131,9 @@ seen_points merged_cloud::finish(const std::vector<Eigen::Isometry3d>& robot) {
   // From its sensor a point is no farther than by way of the origin; and the sensor's pose has moved it in double.
   position_error worst;
   for (const sensor& s : sensors_) {
-    const double off = s.relative + search::pose_error;
+    const double off = s.relative + frames::pose_error;
     worst.relative = std::max(worst.relative, off);
-    worst.absolute = std::max(worst.absolute, off * (s.at - cloud_.origin).norm() + search::pose_error * s.at.norm());
+    worst.absolute = std::max(worst.absolute, off * (s.at - cloud_.origin).norm() + frames::pose_error * s.at.norm());
   }
   cloud_.off.relative += worst.relative, cloud_.off.absolute += worst.absolute;
   const auto [source, pose] = cloud_.view();

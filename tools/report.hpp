@@ -10,7 +10,7 @@ struct query_report {
   const query_options* asked = nullptr;
   const std::vector<observation>* clouds = nullptr;
   const std::vector<body>* bodies = nullptr;
-  answer found;
+  reply found;
   double load = 0, pack = 0;  // seconds
   std::vector<std::string> notes;
 };
@@ -19,7 +19,7 @@ struct query_report {
 struct frame_report {
   std::size_t frame = 0;  // from 0
   std::string file;
-  answer found;
+  reply found;
   const observation* cloud = nullptr;  // the witness's, and its number there; null if there is no valid point
   std::uint32_t point = 0;
   const std::vector<body>* bodies = nullptr;

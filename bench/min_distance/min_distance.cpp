@@ -23,7 +23,9 @@ void ask(benchmark::State& state, const Model& model, const Source& source, kind
   clearance::min_distance_result r;
   for (auto _ : state) {
     if (how == cold) query.forget();
-    r = how == plain ? clearance::min_distance(cpu, model, s.poses, cloud) : query(s.poses, cloud, minima);
+    r = how == plain   ? clearance::min_distance(cpu, model, s.poses, cloud)
+        : how == parts ? query.per_part(s.poses, cloud, minima)
+                       : query(s.poses, cloud);
   }
   state.counters["distance_mm"] = r.distance * 1e3;
   state.counters["points"] = double(source.size());

@@ -26,7 +26,8 @@ class cache_flush {
 /// How a frame is asked and timed.
 struct manner {
   bool cold = false;     ///< Nothing is known of the last frame.
-  bool plain = false;    ///< By min_distance_async, which prepares nothing.
+  bool plain = false;    ///< The loop over points, with a traversal.
+  bool once = false;     ///< By min_distance_async, which prepares nothing.
   bool each = false;     ///< Every part's minimum too.
   bool flushed = false;  ///< Nothing is in the cache.
   bool queued = false;   ///< Behind other work.
@@ -70,11 +71,16 @@ void ask(benchmark::State& state, const bench::scene& s, const Model& model, man
   const clearance::device_buffer<clearance::part_minimum> minima(s.poses.size(), gpu.id);
   const device_clock clock(how.queued);
   const cache_flush flush;
+  const clearance::placed cloud{view, s.world_from_camera};
   const auto frame = [&] {
     if (how.plain)
-      clearance::min_distance_async(gpu, placed_there, s.poses, clearance::placed<clearance::point_span>{view, s.world_from_camera}, result.data());
+      clearance::min_distance_async(clearance::plain{gpu, clearance::near_first{}}, placed_there, s.poses, cloud, result.data());
+    else if (how.once)
+      clearance::min_distance_async(gpu, placed_there, s.poses, cloud, result.data());
+    else if (how.each)
+      query.enqueue_per_part(s.poses, cloud, result.data(), minima.data());
     else
-      query.enqueue(s.poses, view, s.world_from_camera, result.data(), how.each ? minima.data() : nullptr);
+      query.enqueue(s.poses, cloud, result.data());
   };
   frame();
   for (auto _ : state) {
@@ -111,6 +117,10 @@ void spheres_cold(benchmark::State& state) {
 template <class V>
 void spheres_plain(benchmark::State& state) {
   if (!no_device(state)) ask(state, spheres<V>(), {.plain = true});
+}
+template <class V>
+void spheres_once(benchmark::State& state) {
+  if (!no_device(state)) ask(state, spheres<V>(), {.once = true});
 }
 template <class V>
 void spheres_warm_flushed(benchmark::State& state) {
@@ -181,6 +191,7 @@ BENCHMARK(every_part_warm<clearance::sphere>) MORE;
 BENCHMARK(every_part_cold<clearance::sphere>) MORE;
 BENCHMARK(every_part_warm_queued<clearance::sphere>) MORE;
 BENCHMARK(spheres_plain<clearance::sphere>) FRAME;
+BENCHMARK(spheres_once<clearance::sphere>) FRAME;
 BENCHMARK(spheres_warm<clearance::aabb>) FRAME;
 BENCHMARK(spheres_warm<clearance::obb>) FRAME;
 BENCHMARK(triangles_warm<clearance::sphere>) FRAME;

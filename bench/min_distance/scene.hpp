@@ -96,16 +96,12 @@ const scene& the_scene() {
 
 template <class V>
 auto sphere_model(const scene& s, clearance::build_options options = {}) {
-  std::vector<decltype(clearance::make_part<V>(s.packings[0]))> parts;
-  for (const auto& p : s.packings) parts.push_back(clearance::make_part<V>(p, {.build = options}));
-  return clearance::model(std::move(parts));
+  return clearance::make_model<V>(s.packings, clearance::part_options{.build = options});
 }
 
 template <class V>
 auto triangle_model(const scene& s, clearance::build_options options = {}) {
-  std::vector<decltype(clearance::make_part<V>(s.meshes[0]))> parts;
-  for (const auto& m : s.meshes) parts.push_back(clearance::make_part<V>(m, {.build = options}));
-  return clearance::model(std::move(parts));
+  return clearance::make_model<V>(s.meshes, clearance::part_options{.build = options});
 }
 
 }  // namespace bench

@@ -5,7 +5,7 @@
 #include <clearance/model.hpp>
 #include <clearance/pose.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
-#include <clearance/query/nearest.hpp>
+#include <clearance/visitor/nearest.hpp>
 #include <clearance/traversal/near_first.hpp>
 
 namespace bench {

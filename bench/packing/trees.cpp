@@ -7,7 +7,7 @@
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/io/robot.hpp>
-#include <clearance/query/nearest.hpp>
+#include <clearance/visitor/nearest.hpp>
 #include <clearance/traversal/near_first.hpp>
 #include <clearance/volume/sphere.hpp>
 

@@ -147,7 +147,7 @@ void seeds(lab& l, const Parts& parts, double reference) {
 template <class Model, class Parts>
 void culling(lab& l, const Model& on_host, const Parts& parts, double reference) {
   l.out.begin("culling", l.scene->name, l.points.size());
-  const clearance::search::cloud_frame frame(on_host.view().facts, l.poses, l.scene->world_from_cloud);
+  const clearance::frames::cloud_frame frame(on_host.view().facts, l.poses, l.scene->world_from_cloud);
   counts one{}, near{};
   l.out.expect("recursive; sequential",
                sequential<recursive, true>(on_host.view(), frame, clearance::point_span(l.points), {}, &one),

@@ -24,7 +24,7 @@ struct own_bound {
   }
   CLEARANCE_HD real result() const { return best; }
 };
-static_assert(clearance::query<own_bound>);
+static_assert(clearance::visitor<own_bound>);
 
 /// A block, or the whole query: one word in shared or in global memory, as in the paper's Algorithms 4 and 5. Their
 /// `distance(s, p)` means `s_i`, and a root that is a leaf has its distance too: leaves are asked, never passed a `d`.
@@ -46,7 +46,7 @@ struct word_bound {
   }
   CLEARANCE_HD real result() const { return reach(); }
 };
-static_assert(clearance::query<word_bound>);
+static_assert(clearance::visitor<word_bound>);
 
 /// What walks did, summed.
 struct counts {

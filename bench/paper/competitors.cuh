@@ -48,7 +48,7 @@ class frames {
   /// The paper's octree + GPU: each part its own filtered set, copied and tested in its own stream.
   template <class Tree, class View>
   double octree_then_gpu(Tree& tree, const View& host_model) {
-    const clearance::search::cloud_frame frame(host_model.facts, l_.poses, l_.scene->world_from_cloud);
+    const clearance::frames::cloud_frame frame(host_model.facts, l_.poses, l_.scene->world_from_cloud);
     const auto sets = tree.filtered(host_model, frame);
     l_.enqueue_reset();
     auto parts = l_.parts(binary_, views_);
@@ -110,7 +110,7 @@ void device_competitors(lab& l, const HostModel& on_host, const Model& model, co
   measure("GPU ours, pageable", [&] { return all.ours(l.points); });
   measure("GPU ours, resident", [&] { return all.ours(l.cloud()); });
 #ifdef CLEARANCE_BENCH_OCTOMAP
-  const clearance::search::cloud_frame frame(view.facts, l.poses, l.scene->world_from_cloud);
+  const clearance::frames::cloud_frame frame(view.facts, l.poses, l.scene->world_from_cloud);
   octree<typename HostModel::view_type> tree(clearance::point_span(l.points), frame.origin, l.scene->cell);
   measure("octree + GPU", [&] { return all.octree_then_gpu(tree, view); });
   l.out.row("octree + GPU", "copied_points", double(all.copied()));
@@ -129,7 +129,7 @@ void along_motion(lab& l, const HostModel& on_host, const Model& model, const Bi
   frames all(l, model, binary);
   const auto view = on_host.view();
 #ifdef CLEARANCE_BENCH_OCTOMAP
-  const clearance::search::cloud_frame start(view.facts, l.scene->poses(0), l.scene->world_from_cloud);
+  const clearance::frames::cloud_frame start(view.facts, l.scene->poses(0), l.scene->world_from_cloud);
   octree<typename HostModel::view_type> tree(clearance::point_span(l.points), start.origin, l.scene->cell);
 #endif
   std::vector<runner> everybody = {{"GPU the paper's", [&] { return all.papers(all.pinned().points); }, passes},
@@ -139,7 +139,7 @@ void along_motion(lab& l, const HostModel& on_host, const Model& model, const Bi
   everybody.push_back({"CPU octree query",
                        [&] {
                          return double(tree.distance(
-                             view, clearance::search::cloud_frame(view.facts, l.poses, l.scene->world_from_cloud)));
+                             view, clearance::frames::cloud_frame(view.facts, l.poses, l.scene->world_from_cloud)));
                        },
                        3});
   everybody.push_back({"octree + GPU", [&] { return all.octree_then_gpu(tree, view); }, 3});

@@ -23,7 +23,7 @@ void host_competitors(report& out, const scenario& scene, std::size_t count, con
   const clearance::point_span cloud(points);
   const clearance::placed<clearance::point_span> placed{cloud, scene.world_from_cloud};
   const auto view = model.view();
-  const clearance::search::cloud_frame frame(view.facts, poses, scene.world_from_cloud);
+  const clearance::frames::cloud_frame frame(view.facts, poses, scene.world_from_cloud);
   const double reference = clearance::min_distance(clearance::host{.threads = 1}, model, poses, placed).distance;
 
   out.begin("competitors", scene.name, count);

@@ -6,7 +6,7 @@
 #include "policies.cuh"
 
 #include <clearance/backend/device.cuh>
-#include <clearance/search/frame.hpp>
+#include <clearance/frame/frame.hpp>
 
 #include <array>
 

@@ -58,7 +58,7 @@ class lab {
   }
   template <class Model, class View>
   auto parts(const Model& model, const std::vector<View>& views) const {
-    const clearance::search::cloud_frame frame(model.view().facts, poses, scene->world_from_cloud);
+    const clearance::frames::cloud_frame frame(model.view().facts, poses, scene->world_from_cloud);
     const Eigen::Isometry3d shift(Eigen::Translation3d(frame.origin.x, frame.origin.y, frame.origin.z));
     parts_at<decltype(View::tree)> all;
     if (model.size() > all.most) throw std::runtime_error("too many parts for this benchmark");
@@ -146,7 +146,7 @@ class lab {
     const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
     const auto once = [&] {
       if (cold) query.forget();
-      return clock.microseconds([&] { query.enqueue(poses, source, scene->world_from_cloud, result.data()); });
+      return clock.microseconds([&] { query.enqueue(poses, clearance::placed<Source>{source, scene->world_from_cloud}, result.data()); });
     };
     once();
     auto all = repeat(once, budget, 5);

@@ -6,8 +6,8 @@
 #if __has_include(<octomap/OccupancyOcTreeBase.h>)
 #define CLEARANCE_BENCH_OCTOMAP
 #include <clearance/model.hpp>
-#include <clearance/query/nearest.hpp>
-#include <clearance/search/frame.hpp>
+#include <clearance/visitor/nearest.hpp>
+#include <clearance/frame/frame.hpp>
 #include <clearance/traversal/near_first.hpp>
 
 #include <octomap/OcTreeNode.h>
@@ -44,7 +44,7 @@ class octree {
   }
 
   /// The least distance, cells and children nearest first.
-  clearance::real distance(clearance::model_view<PartView> model, const clearance::search::cloud_frame& frame) {
+  clearance::real distance(clearance::model_view<PartView> model, const clearance::frames::cloud_frame& frame) {
     start(model, frame);
     visit(root(), [&](const bucket_node& leaf, std::uint64_t parts) { evaluate(leaf, parts); });
     return best_;
@@ -52,7 +52,7 @@ class octree {
 
   /// For each part the points that may be as near as a first greedy guess: what is left to test on the GPU.
   std::vector<std::vector<clearance::vec3>> filtered(clearance::model_view<PartView> model,
-                                                     const clearance::search::cloud_frame& frame) {
+                                                     const clearance::frames::cloud_frame& frame) {
     start(model, frame);
     greedy(root());
     std::vector<std::vector<clearance::vec3>> sets(model.size());
@@ -75,7 +75,7 @@ class octree {
     real lower = 0;
   };
 
-  void start(clearance::model_view<PartView> model, const clearance::search::cloud_frame& frame) {
+  void start(clearance::model_view<PartView> model, const clearance::frames::cloud_frame& frame) {
     model_ = model, frame_ = &frame, best_ = clearance::infinity;
   }
 
@@ -138,7 +138,7 @@ class octree {
 
   bucket_tree tree_;
   clearance::model_view<PartView> model_ = {};
-  const clearance::search::cloud_frame* frame_ = nullptr;
+  const clearance::frames::cloud_frame* frame_ = nullptr;
   real best_ = clearance::infinity;
 };
 

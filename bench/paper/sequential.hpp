@@ -5,12 +5,12 @@
 #include "bounds.hpp"
 
 #include <clearance/model.hpp>
-#include <clearance/search/frame.hpp>
+#include <clearance/frame/frame.hpp>
 
 namespace bench::paper {
 
 template <class Walk, bool Count = false, class PartView, clearance::point_source Source>
-real sequential(clearance::model_view<PartView> model, const clearance::search::cloud_frame& frame, const Source& cloud,
+real sequential(clearance::model_view<PartView> model, const clearance::frames::cloud_frame& frame, const Source& cloud,
                 Walk walk, counts* all = nullptr) {
   own_bound bound;
   for (std::size_t k = 0; k < model.size(); ++k)

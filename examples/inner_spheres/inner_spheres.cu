@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "inner_spheres.hpp"
 
-#include <clearance/backend/device.cuh>
+#include <clearance/min_distance.cuh>
 
 int main() { return example(clearance::device{.id = 0}); }

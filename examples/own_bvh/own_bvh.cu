@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "own_bvh.hpp"
 
-#include <clearance/backend/device.cuh>
+#include <clearance/min_distance.cuh>
 
 int main() {
   theirs::node* memory = nullptr;  // managed: their pointers mean the same on the CPU and on the GPU

@@ -33,10 +33,8 @@ int main() {
   // [pack]
   const auto packed = clearance::pack(links | std::views::transform(&clearance::io::robot_part::mesh), {.count = 100});
   // [pack]
-  std::vector<decltype(clearance::make_part<clearance::sphere>(packed[0]))> parts;
-  for (std::size_t k = 0; k < links.size(); ++k)
-    parts.push_back(clearance::make_part<clearance::sphere>(packed[k], {.tolerance = links[k].tessellation_error}));
-  const clearance::model arm(std::move(parts));
+  const auto arm = clearance::make_model<clearance::sphere>(
+      packed, [&](std::size_t k) { return clearance::part_options{.tolerance = links[k].tessellation_error}; });
   // [load]
   std::filesystem::remove(file);
 

@@ -15,6 +15,17 @@ struct bvh_node {
   CLEARANCE_HD constexpr std::uint32_t count() const { return count_and_kind & ~leaf_bit; }
 };
 
+/// A hierarchy that shows its arrays, in which children and primitives are contiguous and parents come before their children,
+/// level by level. A scan then keeps what a node says instead of its handle, and the first nodes of every tree at hand.
+template <class H>
+concept array_hierarchy = hierarchy<H> && requires(const H h) {
+  { h.volumes } -> std::convertible_to<const typename H::volume_type*>;
+  { h.nodes } -> std::convertible_to<const bvh_node*>;
+  { h.primitives } -> std::convertible_to<const typename H::primitive_type*>;
+  { h.ids } -> std::convertible_to<const std::uint32_t*>;
+  { h.node_count } -> std::convertible_to<std::uint32_t>;
+};
+
 /// Non-owning, trivially copyable handle to our own wide tree: what a kernel receives by value.
 template <bounding_volume V, primitive P>
 struct bvh_view {

@@ -16,8 +16,8 @@
 #include <clearance/points/strided_points.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/primitive/triangle.hpp>
-#include <clearance/query/any_within.hpp>
-#include <clearance/query/nearest.hpp>
+#include <clearance/visitor/any_within.hpp>
+#include <clearance/visitor/nearest.hpp>
 #include <clearance/solid/implicit.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/traversal/near_first.hpp>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The whole contract of the library on one page. A model of a concept lives in one header and includes this one.
+// The contract of the library, with point_source.hpp. A model of a concept lives in one header and includes this one.
 
 #include <clearance/indices.hpp>
 #include <clearance/math.hpp>
+#include <clearance/point_source.hpp>
 
 #include <concepts>
 #include <cstddef>
@@ -111,10 +112,14 @@ concept hierarchy = std::is_trivially_copyable_v<H> && requires(const H h, const
   { h.width() } -> std::same_as<std::uint32_t>;
 };
 
-/// Entries that a depth-first walk of `tree` can have pending.
+/// Entries that a depth-first walk of a tree can have pending.
+CLEARANCE_HD constexpr std::uint64_t stack_need(std::uint32_t depth, std::uint32_t width) {
+  return width == 0 ? 1 : std::uint64_t(depth) * (width - 1) + 1;
+}
+
 template <hierarchy H>
-CLEARANCE_HD std::uint32_t stack_need(const H& tree) {
-  return tree.width() == 0 ? 1 : tree.depth() * (tree.width() - 1) + 1;
+CLEARANCE_HD std::uint64_t stack_need(const H& tree) {
+  return stack_need(tree.depth(), tree.width());
 }
 
 /// `hierarchy<H>` with reasons.
@@ -141,83 +146,39 @@ consteval bool explain_hierarchy() {
   return hierarchy<H>;
 }
 
-/// Why a record or pixel gave no point.
-enum class drop_reason : std::uint8_t { none, not_finite, missing, saturated, out_of_range };
-inline constexpr int drop_reasons = 5;
-
-/// What a point source says about one index: a position in its own frame, or why there is none.
-struct sample {
-  vec3 position;
-  drop_reason dropped = drop_reason::none;
-
-  CLEARANCE_HD constexpr bool valid() const { return dropped == drop_reason::none; }
-};
-
-/// Where points come from: a view that is read in place, and never written to memory just to be read again.
+/// The solid of a part, besides its primitives: a view.
 ///
-/// Law: `s[i]` is pure; a valid sample has a finite position; positions are metres in the source's own frame.
-template <class S>
-concept point_source = std::is_trivially_copyable_v<S> && requires(const S s, std::size_t i) {
-  { s.size() } -> std::convertible_to<std::size_t>;
-  { s[i] } -> std::same_as<sample>;
-};
+/// Law: `inside(q)` tells whether q is inside; a point that is is 0 away from the part.
+template <class I>
+concept interior = std::is_trivially_copyable_v<I> && requires(const I i, vec3 q) { { i.inside(q) } -> std::same_as<bool>; };
 
-/// How far from its point a position may be: at most `absolute + relative * (its distance from the source's (0,0,0))`, in
-/// metres. What was lost before a source was made, or is lost when it is read; the bracket of every distance carries it.
-struct position_error {
-  double absolute = 0, relative = 0;
-};
-
-/// A source with the optional member `position_error rounding() const`, called on the host, says so; any other is exact.
-template <point_source S>
-position_error rounding_of(const S& source) {
-  if constexpr (requires { { source.rounding() } -> std::same_as<position_error>; })
-    return source.rounding();
-  else
-    return {};
-}
-
-/// `point_source<S>` with reasons.
-template <class S>
-consteval bool explain_point_source() {
-  static_assert(std::is_trivially_copyable_v<S>, "a point source must be a trivially copyable view");
-  static_assert(requires(const S s) { { s.size() } -> std::convertible_to<std::size_t>; },
-                "a point source needs: CLEARANCE_HD std::size_t size() const");
-  static_assert(requires(const S s, std::size_t i) { { s[i] } -> std::same_as<sample>; },
-                "a point source needs: CLEARANCE_HD sample operator[](std::size_t) const");
-  if constexpr (requires(const S s) { s.rounding(); })
-    static_assert(requires(const S s) { { s.rounding() } -> std::same_as<position_error>; },
-                  "what a point source has by the name rounding must be: position_error rounding() const");
-  return point_source<S>;
-}
-
-/// What a traversal is looking for. One object per query point; it starts as a copy of the user's.
+/// What a traversal shows primitives to. One object per point and walk; it starts as a copy of the user's.
 ///
 /// Law: `reach()` never grows, and an offer farther than `reach()` leaves `result()` unchanged.
 /// Law: the order of offers does not matter; of equally distant ones the lowest id wins.
 template <class Q>
-concept query = requires(Q q, const Q c, std::uint32_t id, real distance) {
+concept visitor = requires(Q q, const Q c, std::uint32_t id, real distance) {
   typename Q::result_type;
   { c.reach() } -> std::same_as<real>;
   q.offer(id, distance);
   { c.result() } -> std::same_as<typename Q::result_type>;
 };
 
-/// `query<Q>` with reasons.
+/// `visitor<Q>` with reasons.
 template <class Q>
-consteval bool explain_query() {
-  static_assert(requires { typename Q::result_type; }, "a query needs: a type result_type");
-  static_assert(requires(const Q q) { { q.reach() } -> std::same_as<real>; }, "a query needs: CLEARANCE_HD real reach() const");
+consteval bool explain_visitor() {
+  static_assert(requires { typename Q::result_type; }, "a visitor needs: a type result_type");
+  static_assert(requires(const Q q) { { q.reach() } -> std::same_as<real>; }, "a visitor needs: CLEARANCE_HD real reach() const");
   static_assert(requires(Q q, std::uint32_t id, real distance) { q.offer(id, distance); },
-                "a query needs: CLEARANCE_HD void offer(std::uint32_t id, real distance)");
+                "a visitor needs: CLEARANCE_HD void offer(std::uint32_t id, real distance)");
   static_assert(requires(const Q q) { { q.result() } -> std::same_as<typename Q::result_type>; },
-                "a query needs: CLEARANCE_HD result_type result() const");
-  return query<Q>;
+                "a visitor needs: CLEARANCE_HD result_type result() const");
+  return visitor<Q>;
 }
 
-/// Shows a query every primitive of a leaf: the one place where a traversal meets a primitive. A query may also take
+/// Shows a visitor every primitive of a leaf: the one place where a traversal meets a primitive. A visitor may also take
 /// `offer(id, distance, primitive)`, if it wants the primitive itself.
-template <hierarchy H, query Q>
+template <hierarchy H, visitor Q>
 CLEARANCE_HD void offer_leaf(const H& tree, const typename H::node_type n, vec3 p, Q& q) {
   const std::uint32_t size = tree.size(n);
   for (std::uint32_t k = 0; k < size; ++k) {
@@ -229,13 +190,50 @@ CLEARANCE_HD void offer_leaf(const H& tree, const typename H::node_type n, vec3 
   }
 }
 
+/// A pair of a point and a part, and how far they are apart.
+struct pair_distance {
+  std::uint32_t cloud, point;  ///< The point's number as in its cloud.
+  std::uint32_t part;
+  std::uint32_t primitive;  ///< The part's nearest; of equally near ones the lowest. ~0u: the point is inside the part's solid.
+  real distance;
+};
+
+/// What is kept of all pairs (point, part) of a frame: a view, to memory that the scan's backend writes.
+///
+/// Law: `reach(part)` is how near the part must be to a point for the pair to matter; it never grows while a scan runs, and a
+///      stale one costs time and nothing else.
+/// Law: `take(pair)` is called once for every pair that is within reach, and perhaps for others that were so before; by any
+///      thread, in any order, which changes nothing in the end.
+template <class A>
+concept answer = std::is_trivially_copyable_v<A> && requires(const A a, std::uint32_t part, const pair_distance pair) {
+  { a.reach(part) } -> std::same_as<real>;
+  a.take(pair);
+};
+
+/// `answer<A>` with reasons.
+template <class A>
+consteval bool explain_answer() {
+  static_assert(std::is_trivially_copyable_v<A>, "an answer must be a trivially copyable view");
+  static_assert(requires(const A a, std::uint32_t part) { { a.reach(part) } -> std::same_as<real>; },
+                "an answer needs: CLEARANCE_HD real reach(std::uint32_t part) const");
+  static_assert(requires(const A a, const pair_distance pair) { a.take(pair); }, "an answer needs: CLEARANCE_HD void take(const pair_distance&) const");
+  return answer<A>;
+}
+
 /// Walks a hierarchy for one point.
 ///
-/// Law: shows the query each primitive that is no farther from the point than `reach()` at that moment (strict > prunes,
+/// Law: shows the visitor each primitive that is no farther from the point than `reach()` at that moment (strict > prunes,
 ///      so ties are shown; NaN prunes).
 template <class T, class H, class Q>
-concept traversal = std::is_trivially_copyable_v<T> && hierarchy<H> && query<Q> &&
+concept traversal = std::is_trivially_copyable_v<T> && hierarchy<H> && visitor<Q> &&
                     requires(const T walk, const H h, vec3 p, Q q) { walk(h, p, q); };
+
+/// A traversal with a stack of so many entries; deeper trees are refused before it starts.
+template <class T>
+concept bounded_traversal = requires { { T::capacity } -> std::convertible_to<std::uint64_t>; };
+/// A traversal that calls itself: `device_stack(depth)` is what a launch needs of cudaLimitStackSize, in bytes.
+template <class T>
+concept recursing_traversal = requires(std::uint32_t depth) { { T::device_stack(depth) } -> std::same_as<std::size_t>; };
 
 /// Where work runs and where its memory lives: a value, and the first argument of every operation.
 ///

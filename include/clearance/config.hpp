@@ -20,8 +20,11 @@
 /// Before a short loop whose arrays shall live in registers.
 #if defined(__CUDA_ARCH__)
 #define CLEARANCE_UNROLL _Pragma("unroll")
+/// And before one that seldom goes round.
+#define CLEARANCE_ROLLED _Pragma("unroll 1")
 #else
 #define CLEARANCE_UNROLL
+#define CLEARANCE_ROLLED
 #endif
 
 #if defined(__FAST_MATH__)

@@ -8,6 +8,8 @@
 #include <clearance/primitive/triangle.hpp>
 #include <clearance/solid/winding.hpp>
 
+#include <ranges>
+
 namespace clearance {
 
 struct part_options {
@@ -42,11 +44,25 @@ auto make_part(const closed_mesh& mesh, const part_options& options = {}, Fit fi
   return part<bvh<V, triangle>, winding<>>{std::move(surface.tree), std::move(interior), surface.facts};
 }
 
-/// The parts of a robot, one a packing or one a mesh, in the order given.
-template <class V, class Source>
-auto make_model(const std::vector<Source>& sources, const part_options& options = {}) {
-  std::vector<decltype(make_part<V>(sources[0], options))> parts;
-  for (const Source& s : sources) parts.push_back(make_part<V>(s, options));
+/// Primitives of any kind, which are all there is of the solid.
+template <class V, primitive P, class Fit = wrapped>
+auto make_part(const std::vector<P>& primitives, const part_options& options = {}, Fit fit = {}) {
+  return make_part(build<V>(primitives, options.build, fit), options.certified ? 0 : infinity, options.tolerance);
+}
+
+/// A robot: of each body, in the order given, its part. Bodies are packings, closed meshes, or vectors of primitives; `V` is the
+/// volume of their trees; `options` are the same for all, or `options(k)` those of body k. Throws std::invalid_argument if there
+/// is no body, or one has nothing in it.
+template <class V, std::ranges::forward_range Bodies, class Options = part_options>
+auto make_model(const Bodies& bodies, const Options& options = {}) {
+  const auto of = [&](std::size_t k) -> part_options {
+    if constexpr (std::is_invocable_v<const Options&, std::size_t>)
+      return options(k);
+    else
+      return options;
+  };
+  std::vector<decltype(make_part<V>(*std::ranges::begin(bodies), part_options{}))> parts;
+  for (const auto& body : bodies) parts.push_back(make_part<V>(body, of(parts.size())));
   return model(std::move(parts));
 }
 

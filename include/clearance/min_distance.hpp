@@ -1,129 +1,75 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// How far is a robot from everything that its sensors see? On the host; min_distance.cuh has a device, too.
 
-#include <clearance/points/point_span.hpp>
-#include <clearance/query/nearest.hpp>
-#include <clearance/search/host_search.hpp>
-#include <clearance/traversal/near_first.hpp>
+#include <clearance/answer/search_on.hpp>
 
 namespace clearance {
 
 namespace detail {
 
-/// What callers may pass for a cloud, as sources with poses: one source, one placed source, or a range of those.
-template <point_source S>
-std::array<placed<S>, 1> as_clouds(const S& source) {
-  return {{{source}}};
-}
-template <point_source S>
-std::span<const placed<S>> as_clouds(const placed<S>& cloud) {
-  return {&cloud, 1};
-}
-template <point_source S>
-std::span<const placed<S>> as_clouds(const std::vector<placed<S>>& clouds) {
-  return clouds;
-}
-inline std::array<placed<point_span>, 1> as_clouds(const std::vector<vec3>& points) { return {{{point_span(points)}}}; }
+template <class On>
+using backend_of = std::remove_cvref_t<decltype(minimum::search_on<On>::backend_of(std::declval<const On&>()))>;
 
-/// The source itself if the backend can read its memory, else one over a copy that `copies` keeps.
-template <backend B, point_source S>
-S readable(const B& on, const S& source, std::vector<typename B::template buffer<std::byte>>& copies) {
-  if constexpr (requires { source.at(source.bytes().data()); }) {
-    if (source.size() != 0 && !on.reads(source.bytes().data())) {
-      copies.push_back(on.copy_in(source.bytes()));
-      return source.at(copies.back().data());
-    }
-  }
-  return source;
+/// One frame, waited for.
+template <bool PerPart, class On, class PartView, class Clouds>
+min_distance_result least_distance(const On& on, const model_view<PartView>& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                   std::vector<part_minimum>* minima = nullptr) {
+  const auto& there = minimum::search_on<On>::backend_of(on);
+  auto result = there.template make_scratch<min_distance_result>(1);
+  auto each = there.template make_scratch<part_minimum>(PerPart ? robot.size() : 0);
+  std::vector<typename backend_of<On>::template buffer<std::byte>> copies;
+  minimum::search_on<On>::template once<PerPart>(on, robot, poses, clouds, result.data(), PerPart ? each.data() : nullptr,
+                                                 minimum::readable_on<backend_of<On>>{there, copies});
+  if constexpr (PerPart) *minima = there.copy_out(each.data(), each.size());
+  return there.copy_out(result.data(), 1)[0];
 }
-
-template <class Model>
-decltype(auto) view_of(const Model& m) {
-  if constexpr (requires { m.view().facts.size(); })
-    return m.view();
-  else
-    return m;
-}
-
-template <class Model>
-using part_view_of = typename std::remove_cvref_t<decltype(view_of(std::declval<const Model&>()))>::part_type;
-
-template <class T, class PartView>
-concept traversal_of = traversal<T, typename PartView::hierarchy_type, nearest>;
 
 }  // namespace detail
 
-/// Enqueues the least distance over all parts and points; `result` is device, pinned or managed memory, and is written in
-/// the order of the backend's stream, so that what follows there may read it. Clouds must be readable where it runs.
-template <backend B, class Model, class Clouds, detail::traversal_of<detail::part_view_of<Model>> Traversal = near_first>
-void min_distance_async(const B& on, const Model& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                        min_distance_result* result, part_minimum* minima = nullptr, Traversal traversal = {}) {
-  minimum_search search(on, detail::view_of(model), poses, traversal, result, minima);
-  for (const auto& cloud : detail::as_clouds(clouds)) search.add(cloud.source, cloud.pose);
-  search.conclude();
-}
-/// Of one source, `cloud_pose` world-from-source.
-template <backend B, class Model, point_source S, detail::traversal_of<detail::part_view_of<Model>> Traversal = near_first>
-void min_distance_async(const B& on, const Model& model, std::span<const Eigen::Isometry3d> poses, const S& source,
-                        const Eigen::Isometry3d& cloud_pose, min_distance_result* result, part_minimum* minima = nullptr, Traversal traversal = {}) {
-  min_distance_async(on, model, poses, placed<S>{source, cloud_pose}, result, minima, traversal);
-}
-
 /// The least distance over all parts and all points, with its bracket and witness. `poses` are world-from-part, one a part;
-/// `clouds` a point source, a `placed` one, or a vector of those; memory that the backend cannot read is copied.
-/// Throws std::invalid_argument if the number of poses is wrong or one is not rigid.
-template <backend B, class Model, class Clouds, detail::traversal_of<detail::part_view_of<Model>> Traversal = near_first>
-min_distance_result min_distance(const B& on, const Model& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                 Traversal traversal = {}, std::vector<part_minimum>* minima = nullptr) {
-  const auto view = detail::view_of(model);
-  auto result = on.template make_scratch<min_distance_result>(1);
-  auto each = on.template make_scratch<part_minimum>(minima == nullptr ? 0 : view.size());
-  std::vector<typename B::template buffer<std::byte>> copies;
-  minimum_search search(on, view, poses, traversal, result.data(), minima == nullptr ? nullptr : each.data());
-  for (const auto& cloud : detail::as_clouds(clouds)) search.add(detail::readable(on, cloud.source, copies), cloud.pose);
-  search.conclude();
-  if (minima != nullptr) *minima = on.copy_out(each.data(), each.size());
-  return on.copy_out(result.data(), 1)[0];
-}
-/// Of one source, `cloud_pose` world-from-source.
-template <backend B, class Model, point_source S, detail::traversal_of<detail::part_view_of<Model>> Traversal = near_first>
-min_distance_result min_distance(const B& on, const Model& model, std::span<const Eigen::Isometry3d> poses, const S& source,
-                                 const Eigen::Isometry3d& cloud_pose, Traversal traversal = {}, std::vector<part_minimum>* minima = nullptr) {
-  return min_distance(on, model, poses, placed<S>{source, cloud_pose}, traversal, minima);
+/// `clouds` a point source, a `placed` one, a range or a tuple of those, or a source and its pose; memory that `on` cannot read
+/// is copied. Throws std::invalid_argument if the number of poses is wrong or one is not rigid.
+template <class On, robot Robot, class... Clouds>
+min_distance_result min_distance(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds&... clouds)
+  requires clouds_given<Clouds...>
+{
+  return detail::least_distance<false>(on, view_of(robot), poses, as_clouds(clouds...));
 }
 
 /// The same for one part.
-template <backend B, class Tree, class Interior, class Clouds,
-          detail::traversal_of<decltype(std::declval<const part<Tree, Interior>&>().view())> Traversal = near_first>
-min_distance_result min_distance(const B& on, const part<Tree, Interior>& body, const Eigen::Isometry3d& pose, const Clouds& clouds,
-                                 Traversal traversal = {}) {
+template <class On, class Tree, class Interior, class... Clouds>
+min_distance_result min_distance(const On& on, const part<Tree, Interior>& body, const Eigen::Isometry3d& pose, const Clouds&... clouds)
+  requires clouds_given<Clouds...>
+{
   const auto view = body.view();
-  const auto there = on.copy_in(std::span(&view, 1));
+  const auto there = minimum::search_on<On>::backend_of(on).copy_in(std::span(&view, 1));
   const model_view<std::remove_const_t<decltype(view)>> one{there.data(), {&body.facts, 1}, view.tree.depth(), view.tree.width()};
-  return min_distance(on, one, std::span(&pose, 1), clouds, traversal);
-}
-template <backend B, class Tree, class Interior, point_source S,
-          detail::traversal_of<decltype(std::declval<const part<Tree, Interior>&>().view())> Traversal = near_first>
-min_distance_result min_distance(const B& on, const part<Tree, Interior>& body, const Eigen::Isometry3d& pose, const S& source,
-                                 const Eigen::Isometry3d& cloud_pose, Traversal traversal = {}) {
-  return min_distance(on, body, pose, placed<S>{source, cloud_pose}, traversal);
+  return detail::least_distance<false>(on, one, std::span(&pose, 1), as_clouds(clouds...));
 }
 
 /// With the minimum of every part beside the robot's: one bound a part instead of one for all, and a tighter `lower`.
-template <backend B, class Model, class Clouds, detail::traversal_of<detail::part_view_of<Model>> Traversal = near_first>
-std::pair<min_distance_result, std::vector<part_minimum>> min_distance_per_part(const B& on, const Model& model,
-                                                                                std::span<const Eigen::Isometry3d> poses,
-                                                                                const Clouds& clouds, Traversal traversal = {}) {
-  std::vector<part_minimum> minima;
-  const auto result = min_distance(on, model, poses, clouds, traversal, &minima);
-  return {result, std::move(minima)};
+template <class On, robot Robot, class... Clouds>
+std::pair<min_distance_result, std::vector<part_minimum>> min_distance_per_part(const On& on, const Robot& robot,
+                                                                                std::span<const Eigen::Isometry3d> poses, const Clouds&... clouds)
+  requires clouds_given<Clouds...>
+{
+  std::pair<min_distance_result, std::vector<part_minimum>> all;
+  all.first = detail::least_distance<true>(on, view_of(robot), poses, as_clouds(clouds...), &all.second);
+  return all;
 }
-/// Of one source, `cloud_pose` world-from-source.
-template <backend B, class Model, point_source S, detail::traversal_of<detail::part_view_of<Model>> Traversal = near_first>
-std::pair<min_distance_result, std::vector<part_minimum>> min_distance_per_part(const B& on, const Model& model,
-                                                                                std::span<const Eigen::Isometry3d> poses, const S& source,
-                                                                                const Eigen::Isometry3d& cloud_pose, Traversal traversal = {}) {
-  return min_distance_per_part(on, model, poses, placed<S>{source, cloud_pose}, traversal);
+
+/// Enqueues it: `result` is memory that `on` can write, and is written in the order of its stream, so that what follows there
+/// may read it. Clouds must be readable where it runs.
+template <class On, robot Robot, clouds_of_any_kind Clouds>
+void min_distance_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result) {
+  minimum::search_on<On>::template once<false>(on, view_of(robot), poses, clouds, result, nullptr, minimum::as_it_is{});
+}
+/// With the minimum of every part, one a part.
+template <class On, robot Robot, clouds_of_any_kind Clouds>
+void min_distance_per_part_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                 min_distance_result* result, part_minimum* minima) {
+  minimum::search_on<On>::template once<true>(on, view_of(robot), poses, clouds, result, minima, minimum::as_it_is{});
 }
 
 }  // namespace clearance

@@ -21,6 +21,18 @@ struct model_view {
   std::size_t size() const { return facts.size(); }
 };
 
+/// What operations take for a robot: a `model` or its view. `view_of` gives the view.
+template <class Robot>
+concept robot = requires(const Robot r) { { r.facts } -> std::convertible_to<std::span<const part_facts>>; r.parts; } ||
+                requires(const Robot r) { r.view().facts; };
+template <robot Robot>
+auto view_of(const Robot& r) {
+  if constexpr (requires { r.view(); })
+    return r.view();
+  else
+    return r;
+}
+
 /// Owns the parts of a robot in the memory of one backend. Parts are numbered as given.
 template <class Part, backend B = host>
 class model {

@@ -17,13 +17,11 @@ struct part_facts {
 
 /// For primitives that know their own inside: nothing else is asked.
 struct no_interior {
-  static constexpr bool empty = true;
-
   CLEARANCE_HD bool inside(vec3) const { return false; }
 };
 
 /// One rigid body as a kernel sees it: a tree, the test for points inside (or none), and the facts.
-template <hierarchy H, class Interior = no_interior>
+template <hierarchy H, interior Interior = no_interior>
 struct part_view {
   using hierarchy_type = H;
   using interior_type = Interior;

@@ -24,6 +24,24 @@ struct point_filter {
     }
     return {p, drop_reason::none};
   }
+
+  /// Four of them, x y z one after another: where they are, and why they do not count, a drop_reason in each byte.
+  CLEARANCE_HD unsigned look(const real (&f)[12], vec3 (&out)[4]) const {
+    bool told = plain();
+    unsigned reasons = 0;
+    CLEARANCE_UNROLL
+    for (int j = 0; j < 4; ++j) {
+      out[j] = {f[3 * j], f[3 * j + 1], f[3 * j + 2]};
+      const real square = dot(out[j], out[j]);  // a kernel needs it, too; NaN if a coordinate is
+      told &= !(square >= 0x1p116f);            // all are finite
+      reasons |= unsigned(square == square ? drop_reason::none : drop_reason::not_finite) << 8 * j;
+    }
+    if (told) return reasons;
+    reasons = 0;
+    CLEARANCE_UNROLL
+    for (int j = 0; j < 4; ++j) reasons |= unsigned((*this)(out[j]).dropped) << 8 * j;
+    return reasons;
+  }
 };
 
 /// What a pixel that holds `d` says, if its point is `p`: 0 is missing, 65535 in 16 bits saturated; z is bounded, in metres.

@@ -27,6 +27,12 @@ struct part_minimum {
   std::uint32_t cloud = none, point = none, primitive = none;
 };
 
+/// How many points a scan has seen, how many of them count, and why the others do not.
+struct point_counts {
+  std::uint64_t seen = 0, valid = 0;
+  std::uint64_t dropped[drop_reasons] = {};  ///< Counts by drop_reason; [none] stays 0.
+};
+
 /// The clearance of a robot, its bracket and its witness; plain data, that a kernel may write or read.
 ///
 /// `lower <= distance to the solid <= upper` (0 inside it), float errors included. With `no_data` the distance is NaN,

@@ -49,7 +49,7 @@ struct least_hierarchy {
 
 static_assert(clearance::explain_primitive<least_primitive>());
 static_assert(clearance::explain_bounding_volume<least_volume>());
-static_assert(clearance::explain_query<least_query>());
+static_assert(clearance::explain_visitor<least_query>());
 static_assert(clearance::explain_hierarchy<least_hierarchy>());
 
 template <class Traversal, class Tree>

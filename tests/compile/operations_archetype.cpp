@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The least that a point source must offer to the operations, and the least part.
+// The least that a point source and an answer must offer to the operations, and the least part; and a backend that is not ours.
 #include <clearance/backend/host.hpp>
+#include <clearance/collect.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/bvh/build.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
@@ -15,11 +16,39 @@ struct least_source {
 
 static_assert(clearance::explain_point_source<least_source>());
 
+struct least_answer {
+  int* pairs;
+  CLEARANCE_HD clearance::real reach(std::uint32_t) const { return 2; }
+  CLEARANCE_HD void take(const clearance::pair_distance&) const { ++*pairs; }
+};
+
+static_assert(clearance::explain_answer<least_answer>());
+
 }  // namespace
+
+/// One thread, and memory that remembers nothing: it takes the plain loop.
+struct in_line : clearance::host {
+  template <class F>
+  void for_ranges(std::size_t n, F body) const {
+    body(clearance::indices{0, n, 1});
+  }
+  template <class F>
+  void for_each(std::size_t n, F body) const {
+    for (std::size_t i = 0; i < n; ++i) body(i);
+  }
+};
+static_assert(clearance::backend<in_line>);
+
 
 int main() {
   const std::vector<clearance::inner_sphere> ball = {{{0, 0, 0}, 1}};
   const auto part = clearance::make_part(clearance::build<clearance::sphere>(ball));
   const auto r = clearance::min_distance(clearance::host{}, part, Eigen::Isometry3d::Identity(), least_source{});
-  return r.distance == 1 ? 0 : 1;
+  const auto same = clearance::min_distance(in_line{}, part, Eigen::Isometry3d::Identity(), least_source{});
+  const clearance::model robot(std::vector{part});
+  const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()};
+  int pairs = 0, in_line_pairs = 0;
+  const auto seen = clearance::collect(clearance::host{1}, robot, poses, least_source{}, least_answer{&pairs});
+  clearance::collect(in_line{}, robot, poses, least_source{}, least_answer{&in_line_pairs});
+  return r.distance == 1 && same.distance == 1 && pairs == 2 && in_line_pairs == 2 && seen.valid == 3 ? 0 : 1;
 }

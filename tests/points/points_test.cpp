@@ -4,6 +4,7 @@
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/points/ray_image.hpp>
+#include <clearance/points/slice.hpp>
 #include <clearance/points/strided_points.hpp>
 
 #include <limits>
@@ -183,23 +184,20 @@ TEST_CASE("The range of a depth image is along z, both ends included") {
 
 namespace {
 
-template <class S>
-void check_fours(const S& source) {
-  REQUIRE(source.fours() != nullptr);
+template <clearance::fetched_source S>
+void check_fetches(const S& source) {
+  REQUIRE(source.fetches());
   verdict v;
-  for (std::size_t i = 0; i + 4 <= source.size(); i += 4) {
-    clearance::sample four[4];
-    source.look4(source.fours()[i / 4], i, four);
-    for (int j = 0; j < 4; ++j) {
-      const clearance::sample one = source[i + j];
-      v.require(four[j].dropped == one.dropped && same_bytes(four[j].position, one.position), "sample", i + j, " of four differs");
+  typename S::cursor walking = source.seek(0);
+  for (std::size_t i = 0; i + 4 <= source.size(); i += 4, walking = source.skip(walking, 4))
+    for (const auto& from : {source.seek(i), walking, source.skip(source.seek(0), i)}) {
+      clearance::vec3 at[4];
+      const unsigned reasons = source.look(source.fetch(from), i, at);
+      for (int j = 0; j < 4; ++j) {
+        const clearance::sample one = source[i + j];
+        v.require((reasons >> 8 * j & 0xff) == unsigned(one.dropped) && same_bytes(at[j], one.position), "sample", i + j, " of four differs");
+      }
     }
-    clearance::vec3 at[4];
-    const unsigned reasons = source.positions4(source.fours()[i / 4], i, at);
-    if (reasons == ~0u) continue;  // look4 must be asked
-    for (int j = 0; j < 4; ++j)
-      v.require((reasons >> 8 * j & 0xff) == unsigned(four[j].dropped) && same_bytes(at[j], four[j].position), "sample", i + j, " in short differs");
-  }
 }
 
 }  // namespace
@@ -209,34 +207,53 @@ TEST_CASE("Four samples at once are the same four") {
   alignas(16) std::array<vec3, 256> points;
   const auto holes = with_holes(d, points.size());
   std::copy(holes.begin(), holes.end(), points.begin());
-  check_fours(point_span(points.data(), points.size()));
-  check_fours(point_span(points.data(), points.size(), {.nearest = 1, .farthest = 6, .zero_is_missing = true}));
-  CHECK(point_span(points.data() + 1, 8).fours() == nullptr);
+  check_fetches(point_span(points.data(), points.size()));
+  check_fetches(point_span(points.data(), points.size(), {.nearest = 1, .farthest = 6, .zero_is_missing = true}));
+  CHECK(!point_span(points.data() + 1, 8).fetches());
   alignas(16) std::array<std::uint16_t, 64 * 12> raw;
   alignas(16) std::array<float, 64 * 12> metres;
   for (std::size_t k = 0; k < raw.size(); ++k) raw[k] = std::uint16_t(d.below(65536)), metres[k] = k % 5 ? d.number(-1, 5) : missing;
   raw[5] = 0, raw[9] = 65535;
   depth_image<std::uint16_t> a(raw.data(), 64, 12, {525, 525, 30, 6});
-  check_fours(a);
-  check_fours(depth_image<float>(metres.data(), 64, 12, {525, 525, 30, 6}));
+  check_fetches(a);
+  check_fetches(depth_image<float>(metres.data(), 64, 12, {525, 525, 30, 6}));
+  check_fetches(clearance::slice(a, 8, 700));
+  CHECK(!clearance::slice(a, 6, 700).fetches());
+  check_fetches(clearance::slice(point_span(points.data(), points.size()), 12, 100));
   a.width = 60;  // rows with padding are not one array
-  CHECK(a.fours() == nullptr);
+  CHECK(!a.fetches());
+  alignas(16) std::array<clearance::ray, 64 * 12> rays;
+  for (auto& r : rays) r = {d.number(-1, 1), d.number(-1, 1)};
+  check_fetches(clearance::ray_image<std::uint16_t>(raw.data(), rays.data(), 64, 12));
+  check_fetches(clearance::ray_image<float>(metres.data(), rays.data(), 64, 12));
+  CHECK(!clearance::ray_image<float>(metres.data(), rays.data() + 1, 63, 12).fetches());
+  alignas(8) std::array<std::byte, 32 * 64> bytes;
+  const auto put = [&](auto scalar, std::uint32_t step, std::array<std::uint32_t, 3> offset) {
+    using number = decltype(scalar);
+    for (std::size_t i = 0; i < bytes.size() / step; ++i)
+      for (int k = 0; k < 3; ++k) {
+        const number x = d.below(20) == 0 ? number(missing) : number(d.number(-9, 9));
+        std::memcpy(bytes.data() + i * step + offset[k], &x, sizeof x);
+      }
+    return clearance::strided_points<number>{.data = bytes.data(), .count = bytes.size() / step, .step = step, .offset = {offset[0], offset[1], offset[2]},
+                                             .origin = {1, 2, 3}, .filter = {.nearest = 1}};
+  };
+  check_fetches(put(float(), 32, {0, 4, 8}));
+  check_fetches(put(float(), 20, {12, 0, 8}));
+  check_fetches(put(double(), 32, {8, 0, 24}));
+  CHECK(!put(float(), 22, {0, 4, 8}).fetches());
 }
 
-TEST_CASE("The short way tells ordinary points and holes, and leaves what is near the largest coordinates to the long one") {
+TEST_CASE("Four at once are told holes and the largest coordinates as one by one") {
   constexpr float nan = clearance::not_a_number, inf = clearance::infinity;
   const std::array<float, 12> edges = {0, -0.0f, 1e-38f, 5, 1e16f, 2.9e17f, 1e18f, 1.0000001e18f, 2e19f, 3e38f, inf, nan};
   alignas(16) std::array<vec3, 4> points;
-  verdict v;
   for (const float x : edges)
     for (const float y : edges)
       for (const float z : edges) {
         points = {vec3{1, 2, 3}, vec3{x, y, z}, vec3{-y, z, -x}, vec3{4, 5, 6}};
         const point_span source(points.data(), points.size());
-        check_fours(source);
-        vec3 at[4];
-        const auto large = [](float c) { return clearance::absolute(c) > 1e16f; };
-        if (!large(x) && !large(y) && !large(z)) v.require(source.positions4(source.fours()[0], 0, at) != ~0u, "point", 1, " needs the long way");
+        check_fetches(source);
       }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a caller's streams, devices and memory may rely on.
+#include "support/held_stream.cuh"
 #include "support/linked_tree.hpp"
 #include "support/product_device.cuh"
 #include "support/volumes.hpp"
@@ -14,40 +15,6 @@ using namespace testing;
 using clearance::device, clearance::min_distance, clearance::min_distance_async, clearance::min_distance_result, clearance::point_span;
 
 namespace {
-
-void check(cudaError_t status) { clearance::check_cuda(status, "a call of the test"); }
-
-/// A stream of its own, on the current device.
-struct own_stream {
-  cudaStream_t handle = nullptr;
-  own_stream() { check(cudaStreamCreateWithFlags(&handle, cudaStreamNonBlocking)); }
-  ~own_stream() { cudaStreamDestroy(handle); }
-  own_stream(const own_stream&) = delete;
-};
-
-/// Holds a stream until it is released, and releases it in any case. Kernels must have run once before: loading them
-/// may wait for everything.
-class gate {
- public:
-  explicit gate(cudaStream_t stream) : stream_(stream) {
-    check(cudaLaunchHostFunc(stream, [](void* open) {
-      while (!*static_cast<std::atomic<bool>*>(open)) std::this_thread::sleep_for(std::chrono::microseconds(50));
-    }, &open_));
-  }
-  void release() {
-    open_ = true;
-    check(cudaStreamSynchronize(stream_));
-  }
-  ~gate() {
-    open_ = true;
-    cudaStreamSynchronize(stream_);
-  }
-  gate(const gate&) = delete;
-
- private:
-  cudaStream_t stream_;
-  std::atomic<bool> open_{false};
-};
 
 /// Memory of one kind, with one result in it.
 struct answer {
@@ -116,7 +83,7 @@ TEST_CASE("Part minima arrive in device memory too") {
   const auto points = gpu.copy_in(std::span<const vec3>(given.s.points));
   const answer result(true);
   auto minima = gpu.make_scratch<clearance::part_minimum>(model.size());
-  min_distance_async(gpu, model, given.s.poses, point_span(points.data(), points.size()), result.at, minima.data());
+  clearance::min_distance_per_part_async(gpu, model, given.s.poses, point_span(points.data(), points.size()), result.at, minima.data());
   const auto got = gpu.copy_out(minima.data(), minima.size());
   const auto [r, expected] = clearance::min_distance_per_part(clearance::host{}, given.on_host, given.s.poses, point_span(given.s.points));
   CHECK(same_result(result.read(), r));
@@ -199,7 +166,7 @@ TEST_CASE("A recursion is refused while the stack limit is too small, leaves the
     std::size_t limit = 0;
     check(cudaDeviceGetLimit(&limit, cudaLimitStackSize));
     try {
-      min_distance(gpu, model, poses, points, clearance::recursive{});
+      min_distance(clearance::plain{gpu, clearance::recursive{}}, model, poses, points);
       FAIL("not refused");
     } catch (const std::invalid_argument& e) {
       CHECK(std::string(e.what()).find("cudaLimitStackSize") != std::string::npos);
@@ -208,10 +175,10 @@ TEST_CASE("A recursion is refused while the stack limit is too small, leaves the
     std::size_t after = 0;
     check(cudaDeviceGetLimit(&after, cudaLimitStackSize));
     CHECK(after == limit);
-    CHECK(min_distance(gpu, model, poses, points, clearance::stack{}).primitive == 57);  // needs none
+    CHECK(min_distance(clearance::plain{gpu, clearance::stack{}}, model, poses, points).primitive == 57);  // needs none
   }
   const deep_stack enough(clearance::recursive::device_stack(tree.view().depth()));
-  const auto r = min_distance(gpu, model, poses, points, clearance::recursive{});
+  const auto r = min_distance(clearance::plain{gpu, clearance::recursive{}}, model, poses, points);
   CHECK(r.primitive == 57);
   CHECK(r.distance == 0.75f);
   check(cudaDeviceSynchronize());
@@ -223,8 +190,8 @@ TEST_CASE("A tree too deep for a stack is refused before anything is launched") 
   using view = clearance::part_view<linked_view<clearance::sphere, inner_sphere>>;
   const clearance::model_view<view> model{nullptr, {&facts, 1}, 64, 2};
   const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()};
-  CHECK_THROWS_AS(min_distance(gpu, model, poses, std::vector<vec3>{{1, 2, 3}}, clearance::near_first{}), std::invalid_argument);
-  CHECK_THROWS_AS(min_distance(gpu, model, poses, std::vector<vec3>{{1, 2, 3}}, clearance::stack{}), std::invalid_argument);
+  CHECK_THROWS_AS(min_distance(clearance::plain{gpu, clearance::near_first{}}, model, poses, std::vector<vec3>{{1, 2, 3}}), std::invalid_argument);
+  CHECK_THROWS_AS(min_distance(clearance::plain{gpu, clearance::stack{}}, model, poses, std::vector<vec3>{{1, 2, 3}}), std::invalid_argument);
 }
 
 TEST_CASE("A model may go as soon as its queries are enqueued") {
@@ -263,16 +230,11 @@ TEST_CASE("Clouds of different kinds share one search on the device too") {
     const sources<inner_sphere> all(s);
     const auto on_host = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     const auto model = on_host.on(gpu);
-    const answer result(true);
-    std::vector<device::buffer<std::byte>> copies;
-    clearance::minimum_search search(gpu, model.view(), std::span<const Eigen::Isometry3d>(s.poses), clearance::near_first{}, result.at);
-    search.add(clearance::detail::readable(gpu, all.raw, copies), all.camera_pose);
-    search.add(clearance::detail::readable(gpu, all.span, copies), s.cloud_pose);
-    search.add(clearance::detail::readable(gpu, all.span, copies), s.cloud_pose);
-    search.conclude();
-    gpu.wait();
+    const clearance::placed span{all.span, s.cloud_pose};
+    const auto clouds = std::tuple(clearance::placed{all.raw, all.camera_pose}, span, span);
     const auto expected = brute_force(brute_parts(s), s.poses, {brute_cloud(all.raw, all.camera_pose), brute_cloud(all.span, s.cloud_pose),
                                                                brute_cloud(all.span, s.cloud_pose)});
-    require_equal(result.read(), expected, v, s.name);
+    require_equal(min_distance(gpu, model, s.poses, clouds), expected, v, s.name);
+    require_equal(min_distance(clearance::plain{gpu, clearance::near_first{}}, model, s.poses, clouds), expected, v, s.name + ", plain");
   }
 }

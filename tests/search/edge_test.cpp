@@ -39,7 +39,7 @@ void ask(const Model& model, const scene<inner_sphere>& s, verdict& v, const std
     require_equal(min_distance(host{}, model, poses, cloud), expected, v, what + ", plain, " + when);
     require_equal(query(poses, cloud), expected, v, what + ", " + when);
     std::vector<clearance::part_minimum> minima(model.size());
-    const auto r = alone(poses, cloud, minima);
+    const auto r = alone.per_part(poses, cloud, minima);
     require_equal(r, expected, v, what + ", per part, " + when);
     require_equal(minima, expected, v, what + ", " + when);
   };
@@ -103,7 +103,7 @@ TEST_CASE("Where every point is inside a solid the distance is 0, at the first p
       require_equal(r, expected, v, when);
       CHECK((r.distance == 0 && r.point == 1 && r.part == 0 && r.state == clearance::state::collision && r.upper == 0 && r.lower == 0));
       std::vector<clearance::part_minimum> minima(3);
-      require_equal(query(poses, points, minima), expected, v, when);
+      require_equal(query.per_part(poses, points, minima), expected, v, when);
       require_equal(minima, expected, v, when);
     }
   }

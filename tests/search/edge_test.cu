@@ -38,7 +38,7 @@ void ask(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const std::
       const std::string at = ", " + when + std::to_string(k);
       v.require(same_result((*query)(poses, cloud), expected), what, at, ": differs from the host's result");
       std::vector<clearance::part_minimum> minima(poses.size());
-      v.require(same_result((*query)(poses, cloud, minima), robot), what, at, ": differs from the host's result by parts");
+      v.require(same_result(query->per_part(poses, cloud, minima), robot), what, at, ": differs from the host's result by parts");
       v.require(std::ranges::equal(minima, each, same_minimum), what, at, ": some part's minimum differs");
     }
   };
@@ -133,7 +133,7 @@ TEST_CASE("A hundred million points: the one that is near is found wherever it i
     v.require(plain.seen == n && plain.valid == endless_points{n, at}.valid(), what, ": the counts");
     for (const char* when : {", before this one was there", ", warm"}) v.require(same_result(query(s.poses, all), plain), what, when);
     const auto [robot, each] = clearance::min_distance_per_part(gpu, model, s.poses, all);
-    v.require(same_result(query(s.poses, all, minima), robot) && std::ranges::equal(minima, each, same_minimum), what, ": by parts");
+    v.require(same_result(query.per_part(s.poses, all, minima), robot) && std::ranges::equal(minima, each, same_minimum), what, ": by parts");
     if (at == n - 1) {
       v.require(same_result(min_distance(host{}, on_host, s.poses, endless_points{n, at}), plain), what, ": differs from the host's result");
       const point_span but_one(cloud.data() + 1, n - 1);
@@ -145,7 +145,7 @@ TEST_CASE("A hundred million points: the one that is near is found wherever it i
     }
   }
   clearance::check_cuda(cudaMemset(cloud.data(), 0xff, n * sizeof(vec3)), "cudaMemset");  // all bits set: no numbers
-  const auto r = query(s.poses, all, minima);
+  const auto r = query.per_part(s.poses, all, minima);
   CHECK((r.state == clearance::state::no_data && r.seen == n && r.valid == 0 && r.dropped[int(clearance::drop_reason::not_finite)] == n));
   CHECK((minima[0].point == clearance::none && minima[2].point == clearance::none));
 }

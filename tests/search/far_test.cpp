@@ -27,11 +27,9 @@ struct ask_host {
     const std::vector<vec3> other = {{0, 0, real(distance) + 3}};
     for (const bool before : {true, false}) {
       clearance::min_distance_result r;
-      clearance::minimum_search search(host{}, model.view(), std::span<const Eigen::Isometry3d>(poses), clearance::near_first{}, &r);
-      if (before) search.add(clearance::point_span(other), poses[0]);
-      search.add(source, t.pose);
-      if (!before) search.add(clearance::point_span(other), poses[0]);
-      search.conclude();
+      const placed beside{clearance::point_span(other), poses[0]};
+      r = before ? clearance::min_distance(host{}, model, poses, std::tuple(beside, cloud))
+                 : clearance::min_distance(host{}, model, poses, std::tuple(cloud, beside));
       const wide both = std::min(distance, truth{{oracle::vec{0, 0, wide(other[0].z)}}, poses[0]}.distance(robot, poses));
       require_bracket(r, both, v, name + (before ? ", the second" : ", the first"));
     }

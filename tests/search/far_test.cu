@@ -36,7 +36,7 @@ struct ask_device {
       std::vector<clearance::part_minimum> minima(poses.size());
       for (const char* when : {", cold", ", warm"}) {
         check(query(poses, cloud), expected, when);
-        check(query(poses, cloud, minima), by_parts, when);
+        check(query.per_part(poses, cloud, minima), by_parts, when);
       }
       const std::vector<placed<Source>> twice = {cloud, {source, t.pose}};
       check(query(poses, twice), clearance::min_distance(host{}, on_host, poses, twice), ", twice");

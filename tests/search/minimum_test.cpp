@@ -68,9 +68,10 @@ std::string refusal(Words call) {
   }
   return "";
 }
-/// Can this be asked with that as the traversal?
-template <class Walk, class... Given>
-concept asks = requires(const Walk& walk, const Given&... given) { min_distance(host{}, given..., walk); };
+
+/// Can this be asked?
+template <class... Given>
+concept asks = requires(const Given&... given) { min_distance(host{}, given...); };
 
 bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
 
@@ -92,21 +93,22 @@ TEST_CASE("Clouds of different kinds share one search; ties go to the lowest clo
     for (const bool images_first : {false, true}) {
       clearance::min_distance_result r;
       std::vector<clearance::part_minimum> minima(model.size());
-      clearance::minimum_search search(host{}, model.view(), std::span<const Eigen::Isometry3d>(s.poses), clearance::near_first{}, &r, minima.data());
-      std::vector<brute_cloud> clouds;
-      const auto add = [&](const auto& source, const Eigen::Isometry3d& pose) {
-        search.add(source, pose);
-        clouds.emplace_back(source, pose);
+      const placed raw{all.raw, all.camera_pose};
+      const placed metres{all.metres, all.camera_pose};
+      const auto points = std::tuple(placed{all.floats, s.cloud_pose}, placed{all.span, s.cloud_pose}, placed{all.doubles, s.cloud_pose});
+      const auto ask = [&](const auto& given) {
+        std::vector<brute_cloud> clouds;
+        clearance::for_each_cloud(given, [&](const auto& source, const Eigen::Isometry3d& pose) { clouds.emplace_back(source, pose); });
+        const auto expected = brute_force(parts, s.poses, clouds);
+        clearance::min_distance_per_part_async(host{}, model, s.poses, given, &r, minima.data());
+        require_equal(r, expected, v, s.name);
+        require_equal(minima, expected, v, s.name);
+        require_equal(min_distance(clearance::plain{host{}, clearance::stack{}}, model, s.poses, given), expected, v, s.name + ", plain");
       };
-      if (images_first) add(all.raw, all.camera_pose), add(all.metres, all.camera_pose);
-      add(all.floats, s.cloud_pose);
-      add(all.span, s.cloud_pose);  // the same points again
-      add(all.doubles, s.cloud_pose);
-      if (!images_first) add(all.raw, all.camera_pose);
-      search.conclude();
-      const auto expected = brute_force(parts, s.poses, clouds);
-      require_equal(r, expected, v, s.name);
-      require_equal(minima, expected, v, s.name);
+      if (images_first)
+        ask(std::tuple(raw, metres, points));  // the second and third are the same points
+      else
+        ask(std::tuple(points, raw));
     }
     std::vector<placed<point_span>> several = {{all.span, s.cloud_pose}, {all.span, all.camera_pose}, {all.span, s.cloud_pose}};
     std::vector<brute_cloud> clouds;
@@ -124,15 +126,16 @@ TEST_CASE("A source with its pose beside it is asked as the placed one is, by ev
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     const auto check = [&](const auto& source, const Eigen::Isometry3d& pose) {
       const auto expected = brute_force(parts, s.poses, {brute_cloud(source, pose)});
-      std::vector<clearance::part_minimum> minima;
       require_equal(min_distance(host{}, model, s.poses, source, pose), expected, v, s.name);
-      require_equal(min_distance(host{}, model, s.poses, source, pose, clearance::stack{}, &minima), expected, v, s.name + ", stack");
-      require_equal(minima, expected, v, s.name + ", stack");
-      const auto [r, each] = clearance::min_distance_per_part(host{}, model, s.poses, source, pose, clearance::recursive{});
+      require_equal(min_distance(clearance::plain{host{}, clearance::stack{}}, model, s.poses, source, pose), expected, v, s.name + ", stack");
+      const auto [r, each] = clearance::min_distance_per_part(clearance::plain{host{}, clearance::recursive{}}, model, s.poses, source, pose);
       require_equal(r, expected, v, s.name + ", per part");
       require_equal(each, expected, v, s.name + ", per part");
       clearance::min_distance_result later;
-      clearance::min_distance_async(host{}, model, s.poses, source, pose, &later, minima.data());
+      clearance::min_distance_async(host{}, model, s.poses, placed{source, pose}, &later);
+      require_equal(later, expected, v, s.name + ", enqueued");
+      std::vector<clearance::part_minimum> minima(model.size());
+      clearance::min_distance_per_part_async(host{}, model, s.poses, placed{source, pose}, &later, minima.data());
       require_equal(later, expected, v, s.name + ", enqueued");
       require_equal(minima, expected, v, s.name + ", enqueued");
       require_equal(min_distance(host{}, model.parts()[0], s.poses[0], source, pose),
@@ -147,13 +150,15 @@ TEST_CASE("What walks no tree is not taken for a traversal") {
   using part = clearance::part<clearance::bvh<clearance::sphere, inner_sphere>>;
   using model = clearance::model<part>;
   using poses = std::vector<Eigen::Isometry3d>;
-  STATIC_REQUIRE(asks<clearance::near_first, model, poses, std::vector<vec3>>);
-  STATIC_REQUIRE(asks<clearance::near_first, part, Eigen::Isometry3d, std::vector<vec3>>);
-  STATIC_REQUIRE(asks<Eigen::Isometry3d, model, poses, point_span>);  // the cloud's pose
-  STATIC_REQUIRE_FALSE(asks<Eigen::Isometry3d, model, poses, placed<point_span>>);  // it has one
-  STATIC_REQUIRE_FALSE(asks<Eigen::Isometry3d, part, Eigen::Isometry3d, placed<point_span>>);
-  STATIC_REQUIRE_FALSE(asks<int, model, poses, point_span>);
-  STATIC_REQUIRE_FALSE(asks<int, part, Eigen::Isometry3d, point_span>);
+  STATIC_REQUIRE(asks<model, poses, std::vector<vec3>>);
+  STATIC_REQUIRE(asks<part, Eigen::Isometry3d, std::vector<vec3>>);
+  STATIC_REQUIRE(asks<model, poses, point_span, Eigen::Isometry3d>);  // the cloud's pose
+  STATIC_REQUIRE_FALSE(asks<model, poses, placed<point_span>, Eigen::Isometry3d>);  // it has one
+  STATIC_REQUIRE_FALSE(asks<part, Eigen::Isometry3d, placed<point_span>, Eigen::Isometry3d>);
+  STATIC_REQUIRE_FALSE(asks<model, poses, point_span, int>);
+  STATIC_REQUIRE_FALSE(asks<part, Eigen::Isometry3d, point_span, int>);
+  STATIC_REQUIRE_FALSE(asks<model, poses, int>);
+  STATIC_REQUIRE_FALSE(asks<int, poses, point_span>);
 }
 
 TEST_CASE("Volumes that the library does not know give the same bits") {
@@ -190,10 +195,10 @@ TEST_CASE("A pointer-linked tree and a flat list of somebody else give the same 
     const placed cloud{point_span(s.points), s.cloud_pose};
     const clearance::model_view<linked> binary{linked_parts.data(), facts, depth, 2};
     const clearance::model_view<list> flat{lists.data(), facts, 0, 1};
-    check_query<clearance::recursive>(binary, s.poses, cloud, expected, v, s.name + ", linked");
-    check_query<clearance::stack>(binary, s.poses, cloud, expected, v, s.name + ", linked");
-    check_query<clearance::near_first>(binary, s.poses, cloud, expected, v, s.name + ", linked");
-    check_query<clearance::near_first>(flat, s.poses, cloud, expected, v, s.name + ", flat");
+    check_query(clearance::plain{host{}, clearance::recursive{}}, binary, s.poses, cloud, expected, v, s.name + ", linked");
+    check_query(clearance::plain{host{}, clearance::stack{}}, binary, s.poses, cloud, expected, v, s.name + ", linked");
+    check_query(host{}, binary, s.poses, cloud, expected, v, s.name + ", linked");
+    check_query(host{}, flat, s.poses, cloud, expected, v, s.name + ", flat");
   }
 }
 
@@ -203,14 +208,14 @@ TEST_CASE("A tree too deep for a stack is refused with its numbers, and the recu
   const linked_tree<clearance::sphere, inner_sphere> tree(line, true);
   clearance::part<linked_tree<clearance::sphere, inner_sphere>> deep{tree, {}, {{32, 0, 0}, 40, 0, 0}};
   const std::vector<vec3> points = {{40, 2, 0}, {64, 1, 0}};
-  for (const std::string& words : {refusal([&] { min_distance(host{}, deep, identity(), points, clearance::near_first{}); }),
-                                   refusal([&] { min_distance(host{}, deep, identity(), points, clearance::stack{}); })}) {
+  for (const std::string& words : {refusal([&] { min_distance(clearance::plain{host{}, clearance::near_first{}}, deep, identity(), points); }),
+                                   refusal([&] { min_distance(clearance::plain{host{}, clearance::stack{}}, deep, identity(), points); })}) {
     CHECK(has(words, "depth 64"));
     CHECK(has(words, "65 entries"));
   }
-  CHECK(min_distance(host{}, deep, identity(), points, clearance::recursive{}).primitive == 64);
-  CHECK(min_distance(host{}, deep, identity(), points, clearance::basic_stack<65>{}).primitive == 64);
-  CHECK(min_distance(host{}, deep, identity(), points, clearance::basic_near_first<65>{}).distance == 0.75f);
+  CHECK(min_distance(clearance::plain{host{}, clearance::recursive{}}, deep, identity(), points).primitive == 64);
+  CHECK(min_distance(clearance::plain{host{}, clearance::basic_stack<65>{}}, deep, identity(), points).primitive == 64);
+  CHECK(min_distance(clearance::plain{host{}, clearance::basic_near_first<65>{}}, deep, identity(), points).distance == 0.75f);
 }
 
 TEST_CASE("The number of threads changes nothing") {

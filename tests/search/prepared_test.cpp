@@ -42,7 +42,7 @@ void ask_often(const Model& model, const scene<P>& s, const S& source, const Eig
     const auto expected = brute_force(parts, poses, {brute_cloud(source, pose)});
     require_equal(query(poses, source, pose), expected, v, what + ", " + when);
     std::vector<clearance::part_minimum> minima(model.size());
-    require_equal(query(poses, placed<S>{source, pose}, minima), expected, v, what + ", per part, " + when);
+    require_equal(query.per_part(poses, placed<S>{source, pose}, minima), expected, v, what + ", per part, " + when);
     require_equal(minima, expected, v, what + ", " + when);
   };
   same("cold");
@@ -186,7 +186,7 @@ TEST_CASE("After its first frames a prepared query asks for no memory") {
     if (frame == 2) before = allocations;
     poses[0].translation().x() += 0.01;
     query(poses, points);
-    query(poses, points, minima);
+    query.per_part(poses, points, minima);
   }
   CHECK(before > 0);
   CHECK(allocations == before);
@@ -200,7 +200,7 @@ TEST_CASE(
   const auto points = d.points(500, 2, {0, 0, 3});
   min_distance_query query(host{}, model);
   std::vector<clearance::part_minimum> minima(3);
-  CHECK_THROWS_AS(query(s.poses, points, minima), std::invalid_argument);
+  CHECK_THROWS_AS(query.per_part(s.poses, points, minima), std::invalid_argument);
   CHECK_THROWS_AS(query(std::vector(s.poses.begin(), s.poses.begin() + 1), points), std::invalid_argument);
   auto bent = s.poses;
   bent[1].linear() *= 2;

@@ -30,7 +30,7 @@ void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const
     v.require(same_result(query(poses, source, pose), expected), what + ", " + when, ": differs from the host's result");
     const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, cloud);
     std::vector<clearance::part_minimum> minima(poses.size());
-    v.require(same_result(query(poses, cloud, minima), robot), what + ", " + when, ": differs from the host's result by parts");
+    v.require(same_result(query.per_part(poses, cloud, minima), robot), what + ", " + when, ": differs from the host's result by parts");
     v.require(std::ranges::equal(minima, each, same_minimum), what + ", " + when, ": some part's minimum differs");
   };
   same("cold");
@@ -145,10 +145,11 @@ TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are cou
       const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, clouds);
       std::vector<clearance::part_minimum> minima(5);
       v.require(same_result(query(poses, clouds), min_distance(host{}, on_host, poses, clouds)), std::to_string(rotation) + when, ": differs");
-      v.require(same_result(query(poses, clouds, minima), robot), std::to_string(rotation) + when, ": differs by parts");
+      v.require(same_result(query.per_part(poses, clouds, minima), robot), std::to_string(rotation) + when, ": differs by parts");
       v.require(std::ranges::equal(minima, each, same_minimum), std::to_string(rotation) + when, ": some part's minimum differs");
     }
-  REQUIRE_THROWS_AS(query(poses, std::vector<clearance::placed<clearance::point_span>>()), std::invalid_argument);
+  const std::vector<clearance::placed<clearance::point_span>> no_cloud;
+  REQUIRE(same_result(query(poses, no_cloud), min_distance(host{}, on_host, poses, no_cloud)));
   // What was enqueued before a cloud is refused leaves nothing behind: the near points are in the first cloud alone.
   auto near = clouds;
   std::ranges::sort(near, std::greater{}, [](const auto& cloud) { return cloud.source.size(); });
@@ -182,7 +183,7 @@ TEST_CASE("A frame in the caller's graph reads poses from memory when it runs, a
     cudaGraph_t graph = nullptr;
     cudaGraphExec_t frame = nullptr;
     clearance::check_cuda(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal), "cudaStreamBeginCapture");
-    query.enqueue(poses.data(), view, poses.data() + 14, result.data(), minima.data());
+    query.enqueue_per_part(poses.data(), view, poses.data() + 14, result.data(), minima.data());
     clearance::check_cuda(cudaStreamEndCapture(stream, &graph), "cudaStreamEndCapture");
     clearance::check_cuda(cudaGraphInstantiate(&frame, graph, 0), "cudaGraphInstantiate");
     const auto run = [&] {
@@ -280,19 +281,9 @@ TEST_CASE("A query in a stream of its own leaves the caller's device alone, and 
   const auto cloud = d.points(100, 2);
   REQUIRE_THROWS_AS(query(std::span(poses).first(1), clearance::point_span(cloud)), std::invalid_argument);
   std::vector<clearance::part_minimum> three(3);
-  REQUIRE_THROWS_AS(query(poses, cloud, three), std::invalid_argument);
+  REQUIRE_THROWS_AS(query.per_part(poses, cloud, three), std::invalid_argument);
   Eigen::Isometry3d skewed = poses[0];
   skewed.linear() *= 1.01;
   REQUIRE_THROWS_AS(query(std::vector{skewed, poses[1]}, clearance::point_span(cloud)), std::invalid_argument);
   REQUIRE(same_result(query(poses, clearance::point_span(cloud)), min_distance(host{}, on_host, poses, clearance::point_span(cloud))));
-  auto wide = clearance::build<clearance::sphere>(ball_of_spheres(d, 20));
-  wide.width = 16;
-  std::vector<decltype(clearance::make_part(wide))> one;
-  one.push_back(clearance::make_part(std::move(wide)));
-  const auto by_hand = clearance::model(std::move(one));
-  const auto by_hand_there = by_hand.on(gpu);
-  REQUIRE_THROWS_AS(clearance::min_distance_query(gpu, by_hand_there), std::invalid_argument);
-  const auto crowd = robot_of<clearance::sphere>(d, 129, 2);
-  const auto crowd_there = crowd.on(gpu);
-  REQUIRE_THROWS_AS(clearance::min_distance_query(gpu, crowd_there), std::invalid_argument);
 }

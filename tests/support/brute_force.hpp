@@ -43,7 +43,7 @@ brute_answer brute_force(const std::vector<brute_part<P, Interior>>& parts, cons
   std::vector<clearance::part_facts> facts;
   for (const auto& p : parts) facts.push_back(p.facts);
   for (std::uint32_t c = 0; c < clouds.size(); ++c) {
-    const clearance::search::cloud_frame frame(facts, poses, clearance::rigid(clouds[c].pose));
+    const clearance::frames::cloud_frame frame(facts, poses, clearance::rigid(clouds[c].pose));
     for (std::uint32_t i = 0; i < clouds[c].samples.size(); ++i) {
       const clearance::sample& s = clouds[c].samples[i];
       ++a.seen;

@@ -120,9 +120,9 @@ void check_volume_laws() {
 }
 
 /// `reach()` never grows, a farther offer changes nothing, and the order of offers does not matter.
-template <clearance::query Q, class Same>
+template <clearance::visitor Q, class Same>
 void check_query_laws(const Q& start, Same same) {
-  static_assert(clearance::explain_query<Q>());
+  static_assert(clearance::explain_visitor<Q>());
   dice d(11);
   verdict v;
   for (int round = 0; round < 300; ++round) {

@@ -5,7 +5,7 @@
 
 #include "support/product.hpp"
 
-#include <clearance/backend/device.cuh>
+#include <clearance/min_distance.cuh>
 
 namespace testing {
 
@@ -48,13 +48,17 @@ void check_on_device(Pick pick) {
         const auto on_host = layered ? make_model<V>(s, options, clearance::layered{}) : make_model<V>(s, options, clearance::wrapped{});
         const auto model = on_host.on(gpu);
         const std::string what = s.name + ", width " + std::to_string(width);
-        const auto r = clearance::min_distance(gpu, model, s.poses, cloud, Walk{});
-        require_equal(r, expected, v, what);
-        v.require(same_result(r, clearance::min_distance(clearance::host{}, on_host, s.poses, cloud, clearance::near_first{})), what,
-                  ": something differs from the host's result");
-        const auto [each, minima] = clearance::min_distance_per_part(gpu, model, s.poses, cloud, Walk{});
-        require_equal(each, expected, v, what + ", per part");
-        require_equal(minima, expected, v, what);
+        const auto same = clearance::min_distance(clearance::host{}, on_host, s.poses, cloud);
+        const auto check = [&](const auto& on, const std::string& how) {
+          const auto r = clearance::min_distance(on, model, s.poses, cloud);
+          require_equal(r, expected, v, what + how);
+          v.require(same_result(r, same), what + how, ": something differs from the host's result");
+          const auto [each, minima] = clearance::min_distance_per_part(on, model, s.poses, cloud);
+          require_equal(each, expected, v, what + how + ", per part");
+          require_equal(minima, expected, v, what + how);
+        };
+        check(clearance::plain{gpu, Walk{}}, ", plain");
+        check(gpu, ", kernel");
       }
   }
 }

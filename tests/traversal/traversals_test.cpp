@@ -5,8 +5,8 @@
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/bvh/flat_list.hpp>
-#include <clearance/query/any_within.hpp>
-#include <clearance/query/nearest.hpp>
+#include <clearance/visitor/any_within.hpp>
+#include <clearance/visitor/nearest.hpp>
 #include <clearance/traversal/near_first.hpp>
 #include <clearance/traversal/recursive.hpp>
 #include <clearance/traversal/stack.hpp>

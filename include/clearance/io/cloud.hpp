@@ -3,7 +3,8 @@
 // A point cloud in memory that keeps the numbering and the precision of its file.
 
 #include <clearance/points/strided_points.hpp>
-#include <clearance/search/minimum_search.hpp>
+#include <clearance/frame/clouds.hpp>
+#include <clearance/frame/frame.hpp>
 
 #include <optional>
 #include <string>
@@ -54,7 +55,7 @@ struct cloud {
 inline float_cloud cloud::relative_to(const Eigen::Vector3d& origin, const Eigen::Isometry3d& world_from_cloud) const {
   float_cloud made{.points = {}, .origin = origin, .pose = rigid(world_from_cloud, "cloud"), .off = {}};
   if (!origin.isZero(0)) {  // what moving the frame costs, since nobody sees it later
-    made.off.absolute = search::pose_error * (made.pose.translation().norm() + origin.norm());
+    made.off.absolute = frames::pose_error * (made.pose.translation().norm() + origin.norm());
     made.pose.translation() = made.pose * origin;
   }
   made.points.reserve(points.size());
@@ -71,7 +72,7 @@ inline float_cloud cloud::relative_to(const Eigen::Vector3d& origin, const Eigen
 
 inline float_cloud cloud::near(std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& world_from_cloud) const {
   const std::vector<world_transform> parts(poses.begin(), poses.end());
-  const auto [x, y, z] = search::middle_of(rigid_transform_of(world_from_cloud, "cloud"), parts.data(), parts.size());
+  const auto [x, y, z] = frames::middle_of(rigid_transform_of(world_from_cloud, "cloud"), [&](std::uint32_t k) -> const world_transform& { return parts[k]; }, parts.size());
   const Eigen::Vector3d middle(x, y, z);
   if (middle.cwiseAbs().maxCoeff() > 32) return relative_to(middle.array().round(), world_from_cloud);
   return relative_to(Eigen::Vector3d::Zero(), world_from_cloud);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <clearance/point_filter.hpp>
+#include <clearance/points/survey_depths.hpp>
+#include <clearance/read_only.hpp>
 
 namespace clearance {
 
@@ -36,27 +38,25 @@ struct depth_image {
     return deproject(pixels[std::size_t(v) * row + u], u, v);
   }
 
-  /// Four pixels as they lie in memory, which a kernel may fetch before it looks at them: an array of these, or null.
-  struct alignas(4 * sizeof(Pixel)) raw4 {
+  /// Four pixels of a row as they lie in memory; see `fetched_source`.
+  struct alignas(4 * sizeof(Pixel)) four {
     Pixel d[4];
   };
-  CLEARANCE_HD const raw4* fours() const {
-    const bool packed = row == width && width % 4 == 0 && reinterpret_cast<std::uintptr_t>(pixels) % 16 == 0;
-    return packed ? reinterpret_cast<const raw4*>(pixels) : nullptr;
+  CLEARANCE_HD bool fetches() const {
+    return row == width && width % 4 == 0 && reinterpret_cast<std::uintptr_t>(pixels) % 16 == 0;
   }
-  CLEARANCE_HD void look4(const raw4& r, std::size_t i, sample (&out)[4]) const {
+  using cursor = const four*;
+  CLEARANCE_HD cursor seek(std::size_t i) const { return reinterpret_cast<const four*>(pixels) + i / 4; }
+  CLEARANCE_HD cursor skip(cursor c, std::size_t n) const { return c + n / 4; }
+  CLEARANCE_HD four fetch(cursor c) const { return read_only(c); }
+  CLEARANCE_HD unsigned look(const four& r, std::size_t i, vec3 (&out)[4]) const {
     const std::uint32_t v = std::uint32_t(i) / width, u = std::uint32_t(i) - v * width;
-    CLEARANCE_UNROLL
-    for (std::uint32_t j = 0; j < 4; ++j) out[j] = deproject(r.d[j], u + j, v);
-  }
-
-  /// As `look4`: where they are, and their reasons, a byte each; or ~0: ask `look4`.
-  CLEARANCE_HD unsigned positions4(const raw4& r, std::size_t i, vec3 (&out)[4]) const {
-    sample s[4];
-    look4(r, i, s);
     unsigned reasons = 0;
     CLEARANCE_UNROLL
-    for (int j = 0; j < 4; ++j) out[j] = s[j].position, reasons |= unsigned(s[j].dropped) << 8 * j;
+    for (std::uint32_t j = 0; j < 4; ++j) {
+      const sample s = deproject(r.d[j], u + j, v);
+      out[j] = s.position, reasons |= unsigned(s.dropped) << 8 * j;
+    }
     return reasons;
   }
 
@@ -64,6 +64,30 @@ struct depth_image {
   CLEARANCE_HD sample deproject(Pixel d, std::uint32_t u, std::uint32_t v) const {
     const real z = product(real(d), scale);
     return depth_sample(d, {product((real(u) - cx) * inverse_fx, z), product((real(v) - cy) * inverse_fy, z), z}, nearest, farthest);
+  }
+
+  /// See `surveyed_source`. Pixels are compared, and only the corners of what they span are deprojected: rounded arithmetic is
+  /// monotonic too.
+  bool survey(std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) const {
+    const std::size_t end = begin + surveyed_points - 1;
+    const std::uint32_t v[2] = {std::uint32_t(begin / width), std::uint32_t(end / width)};
+    if (v[0] != v[1] && row != width) return false;
+    const std::uint32_t u[2] = {v[0] == v[1] ? std::uint32_t(begin % width) : 0, v[0] == v[1] ? std::uint32_t(end % width) : width - 1};
+    const detail::depths<Pixel> seen(pixels + std::size_t(v[0]) * row + begin % width);
+    if (seen.strange) return false;
+    box = {};
+    if (seen.missing + seen.saturated + seen.not_finite < surveyed_points)
+      for (const Pixel d : seen.ends)
+        for (const std::uint32_t column : u)
+          for (const std::uint32_t line : v) {
+            const sample s = deproject(d, column, line);
+            if (!s.valid()) return false;
+            box.add(s.position);
+          }
+    dropped[int(drop_reason::missing)] += seen.missing;
+    dropped[int(drop_reason::saturated)] += seen.saturated;
+    dropped[int(drop_reason::not_finite)] += seen.not_finite;
+    return true;
   }
 
   /// Scale, focal length and three products cost x and y six roundings, z two; and what cx and cy lost is as much of z.
@@ -83,6 +107,6 @@ struct depth_image {
   }
 };
 
-static_assert(point_source<depth_image<std::uint16_t>> && point_source<depth_image<float>>);
+static_assert(fetched_source<depth_image<std::uint16_t>> && surveyed_source<depth_image<float>>);
 
 }  // namespace clearance

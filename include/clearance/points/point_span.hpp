@@ -2,6 +2,8 @@
 #pragma once
 
 #include <clearance/point_filter.hpp>
+#include <clearance/points/survey_floats.hpp>
+#include <clearance/read_only.hpp>
 
 namespace clearance {
 
@@ -20,34 +22,30 @@ struct point_span {
   CLEARANCE_HD std::size_t size() const { return count; }
   CLEARANCE_HD sample operator[](std::size_t i) const { return filter(points[i]); }
 
-  /// Four points as they lie in memory, which a kernel may fetch before it looks at them: an array of these, or null.
-  struct alignas(16) raw4 {
+  /// Four points as they lie in memory; see `fetched_source`.
+  struct alignas(16) four {
     real f[12];
   };
-  CLEARANCE_HD const raw4* fours() const { return reinterpret_cast<std::uintptr_t>(points) % 16 == 0 ? reinterpret_cast<const raw4*>(points) : nullptr; }
-  CLEARANCE_HD void look4(const raw4& r, std::size_t, sample (&out)[4]) const {
-    const auto point = [&](int j) { return vec3{r.f[3 * j], r.f[3 * j + 1], r.f[3 * j + 2]}; };
-    if (filter.plain()) {
-      CLEARANCE_UNROLL
-      for (int j = 0; j < 4; ++j) out[j] = {point(j), is_finite(point(j)) ? drop_reason::none : drop_reason::not_finite};
-    } else {
-      CLEARANCE_UNROLL
-      for (int j = 0; j < 4; ++j) out[j] = filter(point(j));
-    }
-  }
+  CLEARANCE_HD bool fetches() const { return reinterpret_cast<std::uintptr_t>(points) % 16 == 0; }
+  using cursor = const four*;
+  CLEARANCE_HD cursor seek(std::size_t i) const { return reinterpret_cast<const four*>(points) + i / 4; }
+  CLEARANCE_HD cursor skip(cursor c, std::size_t n) const { return c + n / 4; }
+  CLEARANCE_HD four fetch(cursor c) const { return read_only(c); }
+  CLEARANCE_HD unsigned look(const four& r, std::size_t, vec3 (&out)[4]) const { return filter.look(r.f, out); }
 
-  /// As `look4`, but in few instructions: where they are, and why they do not count, a byte each; or ~0: ask `look4`.
-  CLEARANCE_HD unsigned positions4(const raw4& r, std::size_t, vec3 (&out)[4]) const {
-    bool told = filter.plain();
-    unsigned reasons = 0;
-    CLEARANCE_UNROLL
-    for (int j = 0; j < 4; ++j) {
-      out[j] = {r.f[3 * j], r.f[3 * j + 1], r.f[3 * j + 2]};
-      const real square = dot(out[j], out[j]);  // a kernel needs it, too; NaN if a coordinate is
-      told &= !(square >= 0x1p116f);            // all are finite
-      reasons |= unsigned(square == square ? drop_reason::none : drop_reason::not_finite) << 8 * j;
-    }
-    return told ? reasons : ~0u;
+  CLEARANCE_HD bool unfiltered() const { return filter.plain(); }
+  /// See `surveyed_source`.
+  bool survey(std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) const {
+    if (!unfiltered()) return false;
+    const detail::surveyed seen = detail::survey(&points[begin].x);
+    box = seen.box;
+    dropped[int(drop_reason::not_finite)] += seen.not_finite;
+    return true;
+  }
+  point_span slice(std::size_t begin, std::size_t end) const {
+    point_span some = *this;
+    some.points += begin, some.count = end - begin;
+    return some;
   }
 
   /// The memory it reads, and the same view of a copy elsewhere.
@@ -60,6 +58,6 @@ struct point_span {
   position_error rounding() const { return off; }
 };
 
-static_assert(point_source<point_span>);
+static_assert(fetched_source<point_span> && surveyed_source<point_span> && unfiltered_source<point_span>);
 
 }  // namespace clearance

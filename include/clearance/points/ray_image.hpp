@@ -2,6 +2,7 @@
 #pragma once
 
 #include <clearance/point_filter.hpp>
+#include <clearance/read_only.hpp>
 
 namespace clearance {
 
@@ -30,9 +31,41 @@ struct ray_image {
 
   CLEARANCE_HD std::size_t size() const { return std::size_t(width) * height; }
   CLEARANCE_HD sample operator[](std::size_t i) const {
-    const Pixel d = pixels[row == width ? i : i / width * row + i % width];
-    const real z = product(real(d), scale);
-    return depth_sample(d, {product(rays[i].x, z), product(rays[i].y, z), z}, nearest, farthest);
+    return along(rays[i], pixels[row == width ? i : i / width * row + i % width]);
+  }
+
+  /// Four pixels and their rays as they lie in memory; see `fetched_source`.
+  struct alignas(4 * sizeof(Pixel)) four_pixels {
+    Pixel d[4];
+  };
+  struct alignas(16) four_rays {
+    ray r[4];
+  };
+  struct four {
+    four_pixels pixels;
+    four_rays rays;
+  };
+  struct cursor {
+    const four_pixels* pixels;
+    const four_rays* rays;
+  };
+  CLEARANCE_HD bool fetches() const {
+    const auto aligned = [](const void* p) { return reinterpret_cast<std::uintptr_t>(p) % 16 == 0; };
+    return row == width && aligned(pixels) && aligned(rays);
+  }
+  CLEARANCE_HD cursor seek(std::size_t i) const {
+    return {reinterpret_cast<const four_pixels*>(pixels) + i / 4, reinterpret_cast<const four_rays*>(rays) + i / 4};
+  }
+  CLEARANCE_HD cursor skip(cursor c, std::size_t n) const { return {c.pixels + n / 4, c.rays + n / 4}; }
+  CLEARANCE_HD four fetch(cursor c) const { return {read_only(c.pixels), read_only(c.rays)}; }
+  CLEARANCE_HD unsigned look(const four& f, std::size_t, vec3 (&out)[4]) const {
+    unsigned reasons = 0;
+    CLEARANCE_UNROLL
+    for (int j = 0; j < 4; ++j) {
+      const sample s = along(f.rays.r[j], f.pixels.d[j]);
+      out[j] = s.position, reasons |= unsigned(s.dropped) << 8 * j;
+    }
+    return reasons;
   }
 
   /// Scale, ray and two products.
@@ -44,8 +77,14 @@ struct ray_image {
     moved.pixels = reinterpret_cast<const Pixel*>(copy);
     return moved;
   }
+
+ private:
+  CLEARANCE_HD sample along(ray r, Pixel d) const {
+    const real z = product(real(d), scale);
+    return depth_sample(d, {product(r.x, z), product(r.y, z), z}, nearest, farthest);
+  }
 };
 
-static_assert(point_source<ray_image<std::uint16_t>> && point_source<ray_image<float>>);
+static_assert(fetched_source<ray_image<std::uint16_t>> && fetched_source<ray_image<float>>);
 
 }  // namespace clearance

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <clearance/point_filter.hpp>
+#include <clearance/read_only.hpp>
 
 #include <cstring>
 
@@ -27,6 +28,36 @@ struct strided_points {
     return filter({load(record + offset[0], origin.x), load(record + offset[1], origin.y), load(record + offset[2], origin.z)});
   }
 
+  /// Four records' coordinates; see `fetched_source`.
+  struct four {
+    Scalar f[12];
+  };
+  CLEARANCE_HD bool fetches() const {
+    const auto odd = reinterpret_cast<std::uintptr_t>(data) | step | offset[0] | offset[1] | offset[2];
+    return width == 0 && odd % alignof(Scalar) == 0;
+  }
+  using cursor = const std::byte*;
+  CLEARANCE_HD cursor seek(std::size_t i) const { return data + i * step; }
+  CLEARANCE_HD cursor skip(cursor c, std::size_t n) const { return c + n * step; }
+  CLEARANCE_HD four fetch(cursor c) const {
+    four r;
+    CLEARANCE_UNROLL
+    for (int j = 0; j < 4; ++j) {
+      CLEARANCE_UNROLL
+      for (int k = 0; k < 3; ++k) r.f[3 * j + k] = read_only(reinterpret_cast<const Scalar*>(c + std::size_t(j) * step + offset[k]));
+    }
+    return r;
+  }
+  CLEARANCE_HD unsigned look(const four& r, std::size_t, vec3 (&out)[4]) const {
+    const real minus[3] = {origin.x, origin.y, origin.z};
+    real f[12];
+    CLEARANCE_UNROLL
+    for (int k = 0; k < 12; ++k) f[k] = real(r.f[k] - minus[k % 3]);
+    return filter.look(f, out);
+  }
+
+  CLEARANCE_HD bool unfiltered() const { return filter.plain(); }
+
   std::span<const std::byte> bytes() const { return {data, width == 0 ? count * step : (count + width - 1) / width * row_step}; }
   strided_points at(const std::byte* copy) const {
     strided_points moved = *this;
@@ -44,17 +75,13 @@ struct strided_points {
   CLEARANCE_HD static real load(const std::byte* from, real minus) {
     Scalar s;
     if (reinterpret_cast<std::uintptr_t>(from) % alignof(Scalar) == 0)
-#if defined(__CUDA_ARCH__)
-      s = __ldg(reinterpret_cast<const Scalar*>(from));  // else compilers make one load of both: the slow one
-#else
-      s = *reinterpret_cast<const Scalar*>(from);
-#endif
+      s = read_only(reinterpret_cast<const Scalar*>(from));  // else compilers make one load of both: the slow one
     else
       memcpy(&s, from, sizeof s);
     return real(s - minus);
   }
 };
 
-static_assert(point_source<strided_points<float>> && point_source<strided_points<double>>);
+static_assert(fetched_source<strided_points<float>> && fetched_source<strided_points<double>> && unfiltered_source<strided_points<float>>);
 
 }  // namespace clearance

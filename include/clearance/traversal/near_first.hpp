@@ -10,14 +10,23 @@ template <int Capacity = 64>
 struct basic_near_first {
   static constexpr std::uint32_t capacity = Capacity;
 
-  template <hierarchy H, query Q>
+  template <hierarchy H>
+  struct entry_of {
+    real bound;
+    typename H::node_type node;
+  };
+
+  template <hierarchy H, visitor Q>
   CLEARANCE_HD void operator()(const H& tree, vec3 p, Q& q) const {
+    entry_of<H> pending[Capacity];
+    walk(tree, p, q, pending);
+  }
+
+  /// The same with a stack of the caller's, of `stack_need(tree)` entries.
+  template <hierarchy H, visitor Q>
+  CLEARANCE_HD static void walk(const H& tree, vec3 p, Q& q, entry_of<H>* pending) {
     using traits = bounding_volume_traits<typename H::volume_type>;
-    struct entry {
-      real bound;
-      typename H::node_type node;
-    };
-    entry pending[Capacity];
+    using entry = entry_of<H>;
     std::uint32_t count = 0;
     pending[count++] = {traits::lower_bound(tree.volume(tree.root()), p), tree.root()};
     while (count > 0) {

@@ -14,14 +14,14 @@ struct recursive {
   /// What a launch needs of cudaLimitStackSize, with room for the kernel itself.
   static std::size_t device_stack(std::uint32_t depth) { return 512 + (depth + 1) * bytes_a_level; }
 
-  template <hierarchy H, query Q>
+  template <hierarchy H, visitor Q>
   CLEARANCE_HD void operator()(const H& tree, vec3 p, Q& q) const {
     using traits = bounding_volume_traits<typename H::volume_type>;
     if (traits::lower_bound(tree.volume(tree.root()), p) <= q.reach()) visit(tree, tree.root(), p, q);
   }
 
  private:
-  template <hierarchy H, query Q>
+  template <hierarchy H, visitor Q>
   CLEARANCE_HD static void visit(const H& tree, typename H::node_type n, vec3 p, Q& q) {
     using traits = bounding_volume_traits<typename H::volume_type>;
     if (tree.is_leaf(n)) return offer_leaf(tree, n, p, q);

@@ -10,7 +10,7 @@ template <int Capacity = 64>
 struct basic_stack {
   static constexpr std::uint32_t capacity = Capacity;
 
-  template <hierarchy H, query Q>
+  template <hierarchy H, visitor Q>
   CLEARANCE_HD void operator()(const H& tree, vec3 p, Q& q) const {
     using traits = bounding_volume_traits<typename H::volume_type>;
     typename H::node_type pending[Capacity];

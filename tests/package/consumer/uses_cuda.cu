@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/backend/device.cuh>
 #include <clearance/bvh/build.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/min_distance.cuh>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/obb.hpp>
 

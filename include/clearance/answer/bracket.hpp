@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// From minima to what is certain.
+
+#include <clearance/frame/frame.hpp>
+#include <clearance/result.hpp>
+
+namespace clearance::minimum {
+
+/// What a minimum of `distance` leaves certain for a part that may be nearer by `slop` (gap and tolerance).
+CLEARANCE_HD inline double certain_distance(real distance, double slop, const frames::float_error& error) {
+  return double(distance) - slop - error.at(distance);
+}
+
+/// And what all parts' minima leave certain: `distance(k)` and `facts(k)` are part k's.
+template <class Distance, class Facts>
+CLEARANCE_HD double certain_distance(std::uint32_t parts, Distance distance, Facts facts, const frames::float_error& error) {
+  double least = infinity;
+  for (std::uint32_t k = 0; k < parts; ++k) {
+    const double its = certain_distance(distance(k), frames::slop(facts(k)), error);
+    least = its < least ? its : least;
+  }
+  return least;
+}
+
+/// To a result that has distance and part: what is certain, if the distance is at least `lower`, and the winning part may
+/// differ by `tolerance` from its surface. `certain`: some point is certainly inside.
+CLEARANCE_HD inline void bracket(min_distance_result& r, double lower, real tolerance, bool certain, const frames::float_error& error) {
+  if (r.part == none) return;  // no data
+  const double error_here = error.at(r.distance);
+  const bool inside = certain || r.distance < -(error_here + tolerance);
+  // A point inside leaves nothing above 0, and a missing certificate (an infinite gap) nothing below.
+  r.lower = lower > 0 && !inside ? rounded_down(lower) : 0;
+  const double most = double(r.distance) + tolerance + error_here;  // below 0 only if it is certainly inside
+  r.upper = inside || most < 0 ? 0 : rounded_up(most);
+  r.state = inside ? clearance::state::collision : (r.lower > 0 ? clearance::state::free : clearance::state::possible);
+}
+
+}  // namespace clearance::minimum

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Answers that want every pair, once, as the blocks of a device give them.
+
+#include <clearance/answer/pairwise.hpp>
+#include <clearance/scan/launch.cuh>
+#include <clearance/scan/record.hpp>
+#include <clearance/scan/tally.hpp>
+
+namespace clearance::pairwise {
+
+template <class PartView, answer Answer>
+struct pairs_of {
+  using part_type = PartView;
+  using hierarchy_type = typename PartView::hierarchy_type;
+  using primitive_type = typename hierarchy_type::primitive_type;
+  using record = scan::record<typename scan::node_of<hierarchy_type>::place>;
+  using block = scan::block_memory<pairs_of>;
+  static constexpr bool bound_per_part = true;
+  static constexpr std::size_t top_bytes = 7000;  ///< Leaves room for two blocks on a processor of an H200.
+
+  struct arguments {
+    Answer answer;
+    std::uint32_t first_part;  ///< Number of the kernel's first part.
+    point_counts* counts;      ///< Or null.
+  };
+  struct memory {
+    distance_key best[scan::pair_capacity];  ///< Of each pair that is being looked at: its distance and primitive.
+
+    __device__ void clear(std::uint32_t thread) {
+      for (std::uint32_t i = thread; i < scan::pair_capacity; i += scan::block_threads) best[i] = no_key;
+    }
+  };
+
+  static __device__ real reach_of_part(const block& s, std::uint32_t part, std::uint32_t) {
+    return s.head.answer.answer.reach(s.head.answer.first_part + part);
+  }
+  static __device__ real reach_of_pair(const block& s, std::uint32_t part, std::uint32_t pair) {
+    return min(reach_of_part(s, part, 0), key_distance(scan::fresh(s.answer.best[pair])));
+  }
+  static __device__ std::uint32_t common_bound(const block&) { return 0; }
+
+  static __device__ bool settled(const block&, std::uint32_t, std::uint32_t) { return false; }
+  static __device__ void take_inside(block& s, std::uint32_t part, std::uint32_t, std::uint32_t pair) {
+    if (reach_of_part(s, part, 0) >= 0) s.answer.best[pair] = make_key(0, none);
+  }
+  static __device__ bool wants_certain(const block&) { return false; }
+  static __device__ void take_certain(block&) {}
+  static __device__ void take(block& s, const record& r, const primitive_type&, std::uint32_t pair) {
+    if (r.key != no_key) atomicMin(&s.answer.best[pair], make_key(key_distance(r.key), r.id));
+  }
+  /// All threads, when the block has nothing left to walk.
+  static __device__ void drained(block& s, std::uint32_t count) {
+    for (std::uint32_t i = threadIdx.x; i < count; i += scan::block_threads) {
+      const distance_key best = s.answer.best[i];
+      if (best == no_key) continue;
+      s.answer.best[i] = no_key;
+      s.head.answer.answer.take({s.head.cloud, s.pair_table[i].point - s.head.first, s.head.answer.first_part + s.part_of_pair[i], key_index(best),
+                                 key_distance(best)});
+    }
+  }
+
+  struct news {
+    explicit __device__ news(const block&) {}
+    __device__ void hear(block&) {}
+  };
+  struct seeds {
+    explicit __device__ seeds(const scan::scan_arguments<pairs_of>&) {}
+    template <class Source>
+    __device__ void look(const scan::scan_arguments<pairs_of>&, const Source&) {}
+    __device__ void seed(const scan::scan_arguments<pairs_of>&) const {}
+    static __device__ std::uint32_t found(std::uint32_t) { return 0; }
+  };
+  static __device__ void seed_cold(const scan::quad_points&) {}
+
+  template <class Source>
+  static __device__ void hand_in(const scan::scan_arguments<pairs_of>&, const Source&) {}
+  template <class Source>
+  static __device__ void conclude(const scan::scan_arguments<pairs_of>& a, const Source&) {
+    if (threadIdx.x != 0 || !a.last || a.answer.counts == nullptr) return;
+    unsigned long long dropped[drop_reasons];
+    for (int k = 0; k < drop_reasons; ++k) dropped[k] = scan::fresh(a.state->dropped[k]);
+    scan::count(*a.answer.counts, dropped, std::uint64_t(a.first) + a.points);
+  }
+  static __device__ void reset(const scan::scan_arguments<pairs_of>&) {}
+};
+
+/// Every pair on a device, frame after frame, one kernel a cloud: nothing is allocated and nothing waited for.
+template <class PartView>
+class device_pairs {
+ public:
+  device_pairs(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
+      : facts_(model.facts.begin(), model.facts.end()), launch_(on, model, memory) {}
+
+  /// `counts` in memory that the device can write. `here(source, cloud)` is what the device can read of a cloud.
+  template <class Clouds, answer Answer, class Here>
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer, point_counts* counts, const Here& here) {
+    try {
+      frames::for_each_turn(frame_, facts_, poses, clouds, [&](const auto& anywhere, const frames::turn& now) {
+        const auto source = here(anywhere, now.cloud);
+        for (std::uint32_t group = 0; group < launch_.groups(); ++group) {
+          auto a = launch_.template begin<pairs_of<PartView, Answer>>(group, now, {answer, group * scan::most_parts, group == 0 ? counts : nullptr});
+          launch_.put(frame_, group, a);
+          launch_(source, a);
+        }
+      });
+    } catch (...) {
+      launch_.forget();  // the clouds before this one have left their counts
+      throw;
+    }
+  }
+
+ private:
+  std::vector<part_facts> facts_;
+  scan::launcher<PartView> launch_;
+  frames::cloud_frame frame_;
+};
+
+}  // namespace clearance::pairwise

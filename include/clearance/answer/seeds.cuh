@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// A bound before the first test. Any real pair of a point and a primitive is a valid one, so nothing can be lost.
+
+#include <clearance/answer/record.hpp>
+#include <clearance/scan/descend.hpp>
+#include <clearance/scan/reader.cuh>
+#include <clearance/scan/steps.cuh>
+
+namespace clearance::minimum {
+
+using scan::all_lanes, scan::fresh, scan::least_of, scan::lower_of, scan::memory_of_block, scan::block_threads, scan::warps;
+
+/// Last frame's minima and their neighbours, looked at anew: sixteen threads a minimum, or four where each part has one.
+/// Nothing of it needs shared memory to be ready.
+template <class Answer>
+class last_frame {
+ public:
+  /// Reads what there is; nothing waits for it yet.
+  explicit __device__ last_frame(const scan::scan_arguments<Answer>& a) : w_(a.answer.witnesses[slot()]), witnesses_(a.answer.state->witnesses) {
+    if (a.first != 0 && slot() < (per_part ? a.parts : 1)) known_ = fresh(a.answer.state->bound[slot()]);
+  }
+
+  /// Reads the points that those are about, once it is known which.
+  template <class Source>
+  __device__ void look(const scan::scan_arguments<Answer>& a, const Source& source) {
+    const std::uint32_t n = threadIdx.x % each, point = key_index(w_.r.key) - a.first + n - (n == 0 ? 0 : each / 2);
+    const bool live = a.parts > w_.r.part && witnesses_ > slot() && w_.r.id != none && (!per_part || w_.r.part == slot());
+    if (live && point < a.points) p_ = source[point];
+  }
+
+  /// To the bounds of this block's warps, or of the parts.
+  __device__ void seed(const scan::scan_arguments<Answer>& a) const {
+    auto& s = memory_of_block<Answer>().answer;
+    const std::uint32_t n = threadIdx.x % each;
+    std::uint32_t bound = known_;
+    if (p_.valid()) {
+      const real d = w_.primitive.distance(a.part()[w_.r.part].part_from_cloud(p_.position - a.facts().origin));
+      if (d < infinity) bound = lower_of(bound, ordered(d));
+    }
+    if constexpr (per_part) {
+      for (int step = 1; step < int(each); step *= 2) bound = lower_of(bound, __shfl_xor_sync(all_lanes, bound, step));
+      if (n == 0) s.bound[slot()] = bound;
+    } else {
+      bound = least_of(all_lanes, bound);
+      if ((threadIdx.x & 31) == 0) s.seed_of_warp[threadIdx.x / 32] = bound;
+    }
+  }
+
+  /// The bound of all parts, to all threads, after `seed` and a barrier; where each part has its own: `no_bound` if one has none.
+  static __device__ std::uint32_t found(std::uint32_t parts) {
+    auto& s = memory_of_block<Answer>().answer;
+    const std::uint32_t lane = threadIdx.x & 31;
+    if constexpr (per_part) {
+      bool all = true;
+      for (std::uint32_t k = lane; k < parts; k += 32) all &= s.bound[k] != no_bound;
+      return __all_sync(all_lanes, all) ? 0 : no_bound;
+    } else {
+      const std::uint32_t bound = least_of(all_lanes, lane < warps ? s.seed_of_warp[lane] : no_bound);
+      if (threadIdx.x == 0) s.bound[0] = bound;
+      return bound;
+    }
+  }
+
+ private:
+  static constexpr bool per_part = Answer::bound_per_part;
+  static constexpr std::uint32_t each = block_threads / (per_part ? scan::most_parts : 32);
+  static __device__ std::uint32_t slot() { return threadIdx.x / each; }
+  typename Answer::witness_type w_;
+  std::uint32_t witnesses_, known_ = no_bound;
+  sample p_{{}, drop_reason::not_finite};
+};
+
+/// Eight lanes of a warp, which stays together all the way down: groups that part ways wait for one another at every step.
+struct eight_lanes {
+  static constexpr std::uint32_t size = 8;
+  __device__ std::uint32_t rank() const { return threadIdx.x % size; }
+  __device__ bool any(bool mine) const { return __any_sync(all_lanes, mine); }
+  __device__ real least(real mine) const {
+    for (std::uint32_t step = 1; step < size; step *= 2) mine = min(mine, __shfl_xor_sync(all_lanes, mine, step));
+    return mine;
+  }
+  __device__ int first(bool mine) const {
+    const unsigned those = __ballot_sync(all_lanes, mine) >> (threadIdx.x & 24) & 0xff;
+    return those != 0 ? int(threadIdx.x & 24) + __ffs(int(those)) - 1 : -1;
+  }
+  template <class T>
+  __device__ T from(int lane, const T& mine) const {
+    return scan::from_lane(mine, lane < 0 ? int(threadIdx.x & 31) : lane);
+  }
+};
+
+/// A part's tree as `descend` takes it.
+template <class Answer>
+struct steps_of_part {
+  using all = scan::tree_steps<Answer>;
+  using node_type = typename all::node_type;
+  using volume_type = typename Answer::hierarchy_type::volume_type;
+  std::uint32_t part;
+
+  __device__ node_type root() const { return all::root(part); }
+  __device__ bool is_leaf(const node_type& n) const { return all::is_leaf(part, n); }
+  __device__ std::uint32_t size(const node_type& n) const { return all::size(part, n); }
+  __device__ auto child(const node_type& n, std::uint32_t j) const { return all::child(part, n, j); }
+  __device__ real distance(const node_type& n, std::uint32_t j, vec3 q) const {
+    return all::primitive(part, all::place_of(n, j)).distance(q);
+  }
+};
+
+/// No last frame: eight lanes take the most promising of their points down the tree (each eight lanes another part, where
+/// every part needs a bound), and all blocks wait a little for one another. Nothing depends on that wait but speed, so it
+/// gives up rather than hang.
+template <class Answer>
+__noinline__ __device__ void seed_cold(scan::quad_points p) {
+  using parts = scan::frame_parts<Answer>;
+  constexpr int quad = scan::quad;
+  constexpr bool per_part = Answer::bound_per_part;
+  const eight_lanes team;
+#pragma unroll
+  for (int j = 0; j < quad; ++j)
+    if ((p.reasons >> 8 * j & 0xff) != 0) p.at[j].x = not_a_number;  // is no nearest point
+  auto& s = parts::here().answer;
+  const auto& a = parts::here().head;
+  // By power: the square of the distance to a ball's centre less the square of its radius. No root, and good enough. One
+  // point a thread and all parts, or all four and a few parts: a handful of tests.
+  real least_power = infinity;
+  std::uint32_t k_least = 0;
+  vec3 x = p.at[0];
+  const std::uint32_t first = per_part ? (threadIdx.x / team.size + blockIdx.x) % a.parts : 0, end = per_part ? first + 1 : a.parts;
+  const auto test = [&](std::uint32_t k, vec3 at) {
+    const ball around = parts::place(k).root.around;
+    const vec3 d = at - around.center;
+    const real power = fma(-around.radius, around.radius, dot(d, d));
+    if (power < least_power) least_power = power, k_least = k, x = at;
+  };
+  if (end - first < quad) {
+    for (std::uint32_t k = first; k < end; ++k)
+#pragma unroll
+      for (int j = 0; j < quad; ++j) test(k, p.at[j]);
+  } else {
+    for (std::uint32_t k = first; k < end; ++k) test(k, p.at[0]);
+  }
+  const real nearest = team.least(least_power);
+  const int winner = team.first(least_power < infinity && least_power == nearest);
+  k_least = team.from(winner, k_least), x = team.from(winner, x);
+  const real d = scan::descend(steps_of_part<Answer>{k_least}, parts::place(k_least).part_from_cloud(x), winner >= 0, team);
+  std::uint32_t bound = d < infinity ? ordered(d) : no_bound;
+  if constexpr (!per_part) bound = least_of(all_lanes, bound);
+  if ((per_part || (threadIdx.x & 31) == 0) && bound != no_bound) atomicMin(&s.bound[Answer::slot(k_least)], bound);
+  __syncthreads();
+  const std::uint32_t bounds = per_part ? a.parts : 1;
+  for (std::uint32_t k = threadIdx.x; k < bounds; k += block_threads) atomicMin(&a.answer.state->bound[k], s.bound[k]);
+  __syncthreads();
+  if (threadIdx.x == 0) {
+    scan::count_in(a.answer.state->seeded);
+    const long long start = clock64();
+    while (fresh(a.answer.state->seeded) < gridDim.x && clock64() - start < 20000) {
+    }
+  }
+  __syncthreads();
+  for (std::uint32_t k = threadIdx.x; k < bounds; k += block_threads) atomicMin(&s.bound[k], fresh(a.answer.state->bound[k]));
+}
+
+}  // namespace clearance::minimum

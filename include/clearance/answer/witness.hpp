@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The witness of a pair: what of a part is nearest to a point.
+
+#include <clearance/pose.hpp>
+#include <clearance/result.hpp>
+
+namespace clearance::minimum {
+
+/// The closest primitive itself, of equally close ones that with the lowest id.
+template <primitive P>
+struct nearest_primitive {
+  using result_type = std::uint32_t;
+
+  real within;
+  std::uint32_t id = none;
+  P primitive = {};
+
+  CLEARANCE_HD real reach() const { return within; }
+  CLEARANCE_HD void offer(std::uint32_t, real) {}
+  CLEARANCE_HD void offer(std::uint32_t i, real distance, const P& p) {
+    if (distance < within || (distance == within && i < id)) within = distance, id = i, primitive = p;
+  }
+  CLEARANCE_HD std::uint32_t result() const { return id; }
+};
+
+/// In world coordinates.
+struct contact {
+  position nearest;
+  vec3 normal;
+};
+
+/// Between a primitive and the point q, in the part's frame. From `inside` a solid the way out is towards the surface.
+template <primitive P>
+CLEARANCE_HD contact contact_of(const P& primitive, vec3 q, bool inside, const world_transform& world_from_part) {
+  const vec3 away = primitive.normal(q);
+  return {world_from_part(primitive.nearest(q)), world_from_part.turned(inside ? -away : away)};
+}
+
+}  // namespace clearance::minimum

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Questions of one's own: every pair (point, part) that is near enough goes to an answer. On the host; collect.cuh has a device.
+
+#include <clearance/answer/search_on.hpp>
+#include <clearance/answer/pairwise.hpp>
+
+namespace clearance {
+
+namespace pairwise {
+
+/// Any backend that has no scan of its own: a loop over points.
+template <class On>
+struct pairs_on {
+  static_assert(!requires { typename On::own_scan; }, "a device has a scan of its own: include <clearance/collect.cuh>, not the .hpp");
+
+  template <class PartView, class Clouds, answer Answer, class Here>
+  static void once(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
+                   point_counts* counts, const Here& here) {
+    const auto parts = std::uint32_t(model.size());
+    const any_depth walk{stack_need(model.depth, model.width)};
+    auto dropped = on.template make_scratch<scan::drop_counts>(1);
+    const scan::drop_counts start;
+    on.stage(std::span(&start, 1), dropped.data());
+    frames::cloud_frame frame;
+    const std::uint64_t seen = frames::for_each_turn(frame, model.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
+      const S source = here(anywhere, now.cloud);
+      auto places = on.template make_scratch<frames::placement>(parts);
+      on.stage(std::span<const frames::placement>(frame.places), places.data());
+      on.for_ranges(source.size(), scan::scan_body<PartView, S, any_depth, each_pair<Answer>>{model.parts, places.data(), parts, source, frame.origin, now.first,
+                                                                                               dropped.data(), {answer, now.cloud, now.first}, walk});
+    });
+    on.for_each(1, [from = dropped.data(), counts, seen](std::size_t) { scan::count(*counts, from->dropped, seen); });
+  }
+};
+
+}  // namespace pairwise
+
+/// Gives `answer` every pair of a point and a part that is within its reach. `poses` and `clouds` as for min_distance. Returns
+/// what points there were, once all is done. Throws std::invalid_argument if the number of poses is wrong or one is not rigid.
+template <class On, robot Robot, clouds_of_any_kind Clouds, class Answer>
+point_counts collect(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer) {
+  static_assert(explain_answer<Answer>());
+  auto counts = on.template make_scratch<point_counts>(1);
+  std::vector<typename On::template buffer<std::byte>> copies;
+  pairwise::pairs_on<On>::once(on, view_of(robot), poses, clouds, answer, counts.data(), minimum::readable_on<On>{on, copies});
+  return on.copy_out(counts.data(), 1)[0];
+}
+
+/// Enqueues it; clouds, and the memory of `answer` and `counts`, must stay until it is done.
+template <class On, robot Robot, clouds_of_any_kind Clouds, class Answer>
+void collect_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
+                   point_counts* counts) {
+  static_assert(explain_answer<Answer>());
+  pairwise::pairs_on<On>::once(on, view_of(robot), poses, clouds, answer, counts, minimum::as_it_is{});
+}
+
+}  // namespace clearance

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Clouds with their poses, of one kind or of many, and how their points are numbered.
+
+#include <clearance/frame/frame.hpp>
+#include <clearance/points/point_span.hpp>
+
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <variant>
+
+namespace clearance {
+
+/// A point source and where it stands: world-from-source.
+template <point_source S>
+struct placed {
+  S source;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+};
+// Said, because clang before 17 deduces nothing of an aggregate.
+template <point_source S>
+placed(S) -> placed<S>;
+template <point_source S>
+placed(S, Eigen::Isometry3d) -> placed<S>;
+
+namespace detail {
+
+template <class T>
+struct is_cloud : std::bool_constant<point_source<T> || std::is_convertible_v<const T&, point_span>> {};
+template <point_source S>
+struct is_cloud<placed<S>> : std::true_type {};
+template <class... T>
+struct is_cloud<std::tuple<T...>> : std::bool_constant<(is_cloud<T>::value && ...)> {};
+template <class... T>
+struct is_cloud<std::variant<T...>> : std::bool_constant<(is_cloud<T>::value && ...)> {};
+template <class T>
+  requires(!point_source<T> && !std::is_convertible_v<const T&, point_span>) && requires(const T t) { std::begin(t); }
+struct is_cloud<T> : is_cloud<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>> {};
+
+}  // namespace detail
+
+/// What callers may pass for clouds: a source, a placed one, or a vector of points; a range of any of these, a tuple, or a variant.
+template <class T>
+concept clouds_of_any_kind = detail::is_cloud<T>::value;
+
+/// Calls `f(source, pose)` for each, in order.
+template <clouds_of_any_kind Clouds, class F>
+void for_each_cloud(const Clouds& clouds, F&& f) {
+  static const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
+  if constexpr (point_source<Clouds>) {
+    f(clouds, here);
+  } else if constexpr (requires { clouds.source, clouds.pose; }) {
+    f(clouds.source, clouds.pose);
+  } else if constexpr (std::is_convertible_v<const Clouds&, point_span>) {
+    f(point_span(clouds), here);
+  } else if constexpr (requires { std::tuple_size<Clouds>::value; }) {
+    std::apply([&](const auto&... each) { (for_each_cloud(each, f), ...); }, clouds);
+  } else if constexpr (requires { std::variant_size<Clouds>::value; }) {
+    std::visit([&](const auto& it) { for_each_cloud(it, f); }, clouds);
+  } else {
+    for (const auto& cloud : clouds) for_each_cloud(cloud, f);
+  }
+}
+
+/// How many that are.
+template <class Clouds>
+std::size_t count_clouds(const Clouds& clouds) {
+  std::size_t n = 0;
+  for_each_cloud(clouds, [&](const auto&, const Eigen::Isometry3d&) { ++n; });
+  return n;
+}
+
+/// The clouds of a call, as they were given: a source and its pose are a placed source.
+template <clouds_of_any_kind Clouds>
+const Clouds& as_clouds(const Clouds& clouds) {
+  return clouds;
+}
+template <point_source S>
+placed<S> as_clouds(const S& source, const Eigen::Isometry3d& pose) {
+  return {source, pose};
+}
+
+template <class... Clouds>
+concept clouds_given = requires(const Clouds&... clouds) { as_clouds(clouds...); };
+
+namespace frames {
+
+/// Throws std::invalid_argument if there is not one minimum a part.
+inline void check_room(std::size_t parts, std::size_t minima) {
+  if (minima != parts)
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but room for " + std::to_string(minima) + " minima");
+}
+
+/// One cloud of a frame: its number, that of its first point among all clouds' points, and whether it is the last.
+struct turn {
+  std::uint32_t cloud, first;
+  bool last;
+};
+
+/// A frame, cloud by cloud: places the parts in each and calls `f(source, turn)`. Without a cloud there is one of no points. How
+/// many points there were. Throws std::invalid_argument if a pose is not rigid, or numbers run out.
+template <clouds_of_any_kind Clouds, class F>
+std::uint64_t for_each_turn(cloud_frame& frame, std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, F f) {
+  frame.start(facts, poses);
+  const std::size_t count = count_clouds(clouds);
+  std::uint64_t points = 0;
+  std::uint32_t cloud = 0;
+  const auto next = [&](const auto& source, const Eigen::Isometry3d& pose) {
+    const std::uint64_t size = source.size();
+    if (size >= ~std::uint32_t(0) - points) throw std::invalid_argument("clearance: more than 2^32 - 2 points in one call");
+    frame.put(facts, pose, cloud, rounding_of(source));
+    f(source, turn{cloud, std::uint32_t(points), cloud + 1 >= count});
+    ++cloud, points += size;
+  };
+  if (count == 0) next(point_span{}, Eigen::Isometry3d::Identity());
+  for_each_cloud(clouds, next);
+  return points;
+}
+
+}  // namespace frames
+
+}  // namespace clearance

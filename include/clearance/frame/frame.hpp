@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Clouds with their poses, parts placed in a cloud's frame, and what is certain about rounding.
+
+#include <clearance/part.hpp>
+#include <clearance/pose.hpp>
+
+namespace clearance::frames {
+
+/// A part as seen from a cloud.
+struct placement {
+  rigid_transform part_from_cloud;  ///< The exact path: one fixed sequence of operations.
+  ball around;                      ///< The part's ball in the cloud's frame, its radius enlarged by every error.
+  real error;                       ///< Most that a distance to this part can be off, at distance 0.
+  world_transform world_from_part;
+};
+
+/// Arithmetic in floats costs at most 16 units of rounding (2^-24) of |p| + |t| + part size, where p is less the origin:
+/// of |p| that subtraction one, the rotation's own floats 1.8, the sums of products two; of |t| three; of the point in the
+/// part's frame one, and a leaf formula five. That is 11; the other five may be the source's own.
+inline constexpr double unit_error = 0x1p-20, source_share = 5 * 0x1p-24;
+/// And this, because squares of lengths below 1e-19 m lose digits, and those of lengths below 2e-23 m are 0.
+inline constexpr double underflow_error = 0x1p-72;
+/// Poses are composed in double, from rotations orthonormal to 1e-14: with R' for the inverse of R a way is 1.5e-14 of itself
+/// off, that from the origin twice, and ten roundings of 2^-53 add 2e-15. All is less than this part of all ways together.
+inline constexpr double pose_error = 0x1p-44;
+
+/// Most that a distance can be off, by what the distance itself is.
+struct float_error {
+  double here = 0;                ///< At distance 0; the largest of all parts.
+  double per_metre = unit_error;  ///< And so much more for each metre.
+
+  CLEARANCE_HD double at(real distance) const { return fma(per_metre, double(absolute(distance)), here); }
+  CLEARANCE_HD void widen(const float_error& other) {
+    here = other.here > here ? other.here : here;
+    per_metre = other.per_metre > per_metre ? other.per_metre : per_metre;
+  }
+};
+
+/// What arithmetic in floats costs near a part whose size and distance from the origin sum up to `extent`.
+CLEARANCE_HD inline double arithmetic_error(double extent) { return fma(unit_error * 2, extent, underflow_error); }
+
+/// All that a distance to it can be off. `poses` is the sum of all ways between frames, `origin` that from the source's own
+/// zero to the origin. A point's position is at most extent + distance + origin long, and off by `relative` of that; what
+/// `source_share` covers of the first two is in unit_error, which counts the extent twice.
+CLEARANCE_HD inline float_error error_near(double extent, double poses, double origin, const position_error& off) {
+  const double here = arithmetic_error(extent) + fma(pose_error, poses, fma(off.relative, origin, off.absolute));
+  if (off.relative <= source_share) return {here, unit_error};
+  const double more = off.relative - source_share;
+  if (!(more < 0.5)) return {double(infinity), unit_error};
+  return {fma(more, extent, here) / (1 - more), (unit_error + more) / (1 - more)};  // of the distance as it is, said of the computed one
+}
+
+/// Where the cloud's coordinates start to be subtracted: near the robot, in steps of 64 m, so that ordinary scenes lose
+/// nothing and clouds in world coordinates of 1e6 m no more than their own coordinates have lost.
+CLEARANCE_HD inline vec3 origin_near(position robot_in_cloud) {
+  const auto step = [](double x) { return real(round(x / 64) * 64); };
+  return {step(robot_in_cloud.x), step(robot_in_cloud.y), step(robot_in_cloud.z)};
+}
+
+/// The mean of the parts' origins, in the cloud's frame; `world_from_part(k)` is part k's pose.
+template <class Pose>
+CLEARANCE_HD position middle_of(const world_transform& world_from_cloud, const Pose& world_from_part, std::size_t parts) {
+  position sum{0, 0, 0};
+  for (std::size_t k = 0; k < parts; ++k) {
+    const position at = world_from_part(std::uint32_t(k)).translation();
+    sum = {sum.x + at.x, sum.y + at.y, sum.z + at.z};
+  }
+  return world_from_cloud.inverse()(position{sum.x / double(parts), sum.y / double(parts), sum.z / double(parts)});
+}
+
+CLEARANCE_HD inline double norm(position p) { return sqrt(fma(p.x, p.x, fma(p.y, p.y, p.z * p.z))); }
+
+/// `part_from_cloud` maps positions that `origin` was subtracted from. Both transforms have passed make_rigid.
+CLEARANCE_HD inline placement place(const part_facts& facts, const world_transform& world_from_part, const world_transform& world_from_cloud,
+                                    vec3 origin, const position_error& off) {
+  const world_transform part_from_world = world_from_part.inverse();
+  world_transform part_from_cloud = part_from_world * world_from_cloud;
+  const position start = part_from_world(world_from_cloud(origin));
+  part_from_cloud.m[0][3] = start.x, part_from_cloud.m[1][3] = start.y, part_from_cloud.m[2][3] = start.z;
+  const position center = part_from_cloud.inverse()(facts.center);
+  const double extent = norm({facts.center.x, facts.center.y, facts.center.z}) + facts.radius + norm(start);
+  const double origin_away = norm({origin.x, origin.y, origin.z});
+  const double poses = norm(world_from_part.translation()) + norm(world_from_cloud.translation()) + origin_away;
+  placement p;
+  p.part_from_cloud = to_floats(part_from_cloud);
+  // Only what arithmetic can do to the points as they were read: bounds are about what is computed.
+  p.around = {{real(center.x), real(center.y), real(center.z)}, rounded_up(facts.radius + 2 * arithmetic_error(extent))};
+  p.error = rounded_up(error_near(extent, poses, origin_away, off).here);
+  p.world_from_part = world_from_part;
+  return p;
+}
+
+/// By how much a part's solid may be nearer than what a distance is computed to.
+CLEARANCE_HD inline double slop(const part_facts& f) { return double(f.gap) + double(f.tolerance); }
+
+/// What all parts of a frame have in common.
+struct frame_facts {
+  world_transform world_from_cloud;
+  vec3 origin = {0, 0, 0};
+  float_error error;
+  double slop = 0;  ///< The largest gap plus tolerance of all parts.
+
+  frame_facts() = default;
+  CLEARANCE_HD frame_facts(const world_transform& cloud, vec3 origin, const position_error& off)
+      : world_from_cloud(cloud), origin(origin), error{0, error_near(0, 0, 0, off).per_metre} {}
+
+  CLEARANCE_HD void add(const part_facts& facts, real error_of_part) {
+    const double its = frames::slop(facts);
+    error.widen({error_of_part});
+    slop = its > slop ? its : slop;
+  }
+};
+
+/// All parts as seen from one cloud, made on the host for every frame; kept, it allocates only once.
+class cloud_frame : public frame_facts {
+ public:
+  std::vector<placement> places;
+  std::vector<world_transform> poses;
+
+  cloud_frame() = default;
+  cloud_frame(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const Eigen::Isometry3d& cloud, const position_error& off = {}) {
+    start(facts, parts), put(facts, cloud, 0, off);
+  }
+
+  /// A frame begins: `parts` are world-from-part. Throws std::invalid_argument if there are not as many as parts, or one is not rigid.
+  void start(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts) {
+    if (parts.size() != facts.size())
+      throw std::invalid_argument("clearance: there are " + std::to_string(facts.size()) + " parts, but " + std::to_string(parts.size()) + " poses");
+    fast([&] {
+      error = {}, slop = 0;
+      poses.clear();
+      for (std::size_t k = 0; k < parts.size(); ++k) poses.push_back(rigid_transform_of(parts[k], "part", std::int64_t(k)));
+    });
+  }
+
+  /// The next cloud, number `cloud`, whose errors widen the frame's; `off` is its source's `rounding_of`. Throws std::invalid_argument if its pose is not rigid.
+  void put(std::span<const part_facts> facts, const Eigen::Isometry3d& pose, std::uint32_t cloud, const position_error& off) {
+    fast([&] {
+      const world_transform world = rigid_transform_of(pose, "cloud", cloud);
+      places.clear();
+      const float_error before = error;  // a bracket is over all clouds
+      frame_facts::operator=({world, origin_near(middle_of(world, [this](std::uint32_t k) -> const world_transform& { return poses[k]; }, poses.size())), off});
+      for (std::size_t k = 0; k < poses.size(); ++k) {
+        places.push_back(place(facts[k], poses[k], world, origin, off));
+        add(facts[k], places.back().error);
+      }
+      error.widen(before);
+    });
+  }
+
+ private:
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__FMA__)
+  // Without -mfma each fma is a call, which makes a frame's poses cost microseconds. Same bits, either way.
+  template <class F>
+  static void fast(const F& f) {
+    __builtin_cpu_supports("fma") ? with_fma(f) : f();
+  }
+  template <class F>
+  __attribute__((target("fma"), flatten)) static void with_fma(const F& f) {
+    f();
+  }
+#else
+  template <class F>
+  static void fast(const F& f) {
+    f();
+  }
+#endif
+};
+
+}  // namespace clearance::frames

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/math.hpp>
+
+namespace clearance::frames {
+
+/// How far from the middle of a part's ball a point within reach can be, and a little more than rounding can add.
+CLEARANCE_HD inline real limit(const ball& around, real reach) { return (reach + around.radius) * (1 + 4 * slack); }
+
+/// Cheap and conservative, from differences: for few points. NaN fails.
+CLEARANCE_HD inline bool may_reach(const ball& around, real reach, vec3 p) {
+  const vec3 d = p - around.center;
+  const real most = limit(around, reach);
+  return most >= 0 && d.x * d.x + d.y * d.y + d.z * d.z <= most * most;
+}
+
+/// A ball, and what a test against it needs whatever the reach.
+struct root_ball {
+  ball around;
+  real square, twice;  ///< |c|^2 and 2 |c|.
+
+  root_ball() = default;
+  CLEARANCE_HD explicit root_ball(const ball& b) : around(b), square(dot(b.center, b.center)), twice(2 * length(b.center)) {}
+};
+
+/// Cheap and conservative: may a point x be within reach of a part's ball? `value(x) <= -|x|^2` says perhaps, in the
+/// cloud's own frame, with three multiply-adds. Not part of the exact path, so compilers may contract it as they like.
+struct alignas(16) root_test {
+  vec3 m;  ///< -2 c
+  real w;  ///< |c|^2 - limit^2, less what rounding can do; rises as the reach falls.
+
+  root_test() = default;
+  CLEARANCE_HD root_test(const root_ball& r, real limit) {
+    const real sum = r.twice + limit;
+    const real margin = 0x1p-20f * (sum * sum + limit * limit);
+    m = {-2 * r.around.center.x, -2 * r.around.center.y, -2 * r.around.center.z};
+    w = limit >= 0 ? r.square - (limit * limit + margin) : infinity;
+  }
+  CLEARANCE_HD root_test(const ball& around, real reach) : root_test(root_ball(around), limit(around, reach)) {}
+
+  CLEARANCE_HD real value(real x, real y, real z) const { return m.x * x + (m.y * y + (m.z * z + w)); }
+  CLEARANCE_HD real value(vec3 x) const { return value(x.x, x.y, x.z); }
+  CLEARANCE_HD bool passes(vec3 x) const { return value(x) <= -(x.x * x.x + x.y * x.y + x.z * x.z); }
+};
+
+}  // namespace clearance::frames

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Least and largest of many numbers, in loops that compilers turn into vector code on every processor.
+
+#include <clearance/concepts.hpp>
+
+#include <cmath>
+
+namespace clearance {
+
+/// Lanes are side by side so that they become vectors; NaN is left out.
+template <std::size_t Lanes>
+struct extremes {
+  alignas(64) real low[Lanes], high[Lanes];
+
+  extremes() {
+    for (std::size_t j = 0; j < Lanes; ++j) low[j] = infinity, high[j] = -infinity;
+  }
+  void add(const real* f) {
+    for (std::size_t j = 0; j < Lanes; ++j) {
+      const real v = f[j];
+      low[j] = v < low[j] ? v : low[j];
+      high[j] = v > high[j] ? v : high[j];
+    }
+  }
+};
+
+/// Of as many as a survey is about.
+inline void spread(const real* values, real& low, real& high) {
+  constexpr std::size_t lanes = 16;
+  extremes<lanes> all;
+  for (std::size_t i = 0; i < surveyed_points; i += lanes) all.add(values + i);
+  for (std::size_t j = 0; j < lanes; ++j) low = min(low, all.low[j]), high = max(high, all.high[j]);
+}
+
+}  // namespace clearance

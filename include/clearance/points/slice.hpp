@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// A piece of a cloud is a cloud.
+
+#include <clearance/concepts.hpp>
+
+namespace clearance {
+
+namespace detail {
+template <class S>
+struct fetched_types {};
+template <fetched_source S>
+struct fetched_types<S> {
+  using cursor = typename S::cursor;
+  using four = typename S::four;
+};
+}  // namespace detail
+
+/// Points `begin` to `begin + count - 1` of any source, as fast as the source itself where `begin` is a multiple of four.
+template <point_source S>
+struct sliced : detail::fetched_types<S> {
+  S whole;
+  std::size_t begin, count;
+
+  CLEARANCE_HD sliced(const S& whole, std::size_t begin, std::size_t count) : whole(whole), begin(begin), count(count) {}
+
+  CLEARANCE_HD std::size_t size() const { return count; }
+  CLEARANCE_HD sample operator[](std::size_t i) const { return whole[begin + i]; }
+
+  CLEARANCE_HD bool fetches() const
+    requires fetched_source<S>
+  {
+    return begin % 4 == 0 && whole.fetches();
+  }
+  CLEARANCE_HD auto seek(std::size_t i) const
+    requires fetched_source<S>
+  {
+    return whole.seek(begin + i);
+  }
+  template <class Cursor>
+  CLEARANCE_HD auto skip(const Cursor& c, std::size_t n) const {
+    return whole.skip(c, n);
+  }
+  template <class Cursor>
+  CLEARANCE_HD auto fetch(const Cursor& c) const {
+    return whole.fetch(c);
+  }
+  template <class Four>
+  CLEARANCE_HD unsigned look(const Four& f, std::size_t i, vec3 (&at)[4]) const {
+    return whole.look(f, begin + i, at);
+  }
+
+  CLEARANCE_HD bool unfiltered() const
+    requires unfiltered_source<S>
+  {
+    return whole.unfiltered();
+  }
+  bool survey(std::size_t i, extent& box, std::uint32_t (&dropped)[drop_reasons]) const
+    requires surveyed_source<S>
+  {
+    return whole.survey(begin + i, box, dropped);
+  }
+  position_error rounding() const { return rounding_of(whole); }
+
+  std::span<const std::byte> bytes() const
+    requires requires(const S s) { s.bytes(); }
+  {
+    return whole.bytes();
+  }
+  sliced at(const std::byte* copy) const
+    requires requires(const S s, const std::byte* b) { s.at(b); }
+  {
+    return sliced(whole.at(copy), begin, count);
+  }
+};
+
+/// Points `begin` to `end - 1`; a source that has a `slice` of its own says how.
+template <point_source S>
+CLEARANCE_HD auto slice(const S& source, std::size_t begin, std::size_t end) {
+  if constexpr (requires { { source.slice(begin, end) } -> point_source; })
+    return source.slice(begin, end);
+  else
+    return sliced<S>(source, begin, end - begin);
+}
+
+}  // namespace clearance

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/math.hpp>
+
+#include <type_traits>
+
+namespace clearance {
+
+/// What nobody writes while a query runs, read in wide pieces. On a device compilers so do not mix it up with shared memory.
+template <class T>
+CLEARANCE_HD T read_only(const T* from) {
+#if defined(__CUDA_ARCH__)
+  using word = std::conditional_t<alignof(T) % 16 == 0, uint4, std::uint32_t>;
+  if constexpr (sizeof(T) % sizeof(word) == 0 && alignof(T) >= 4) {
+    union copy {
+      __device__ copy() {}
+      __device__ ~copy() {}
+      T value;
+      word words[sizeof(T) / sizeof(word)];
+    } c;
+#pragma unroll
+    for (std::size_t i = 0; i < sizeof(T) / sizeof(word); ++i) c.words[i] = __ldg(reinterpret_cast<const word*>(from) + i);
+    return c.value;
+  }
+#endif
+  return *from;
+}
+
+}  // namespace clearance

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Points of sources that fetch are read a round ahead, with few wide loads.
+
+#include <clearance/scan/reader.cuh>
+
+namespace clearance::scan {
+
+/// Rounds of all `blocks` that are read ahead: those in which no thread lacks a point.
+template <point_source Source>
+std::uint32_t rounds_ahead(const Source& source, std::uint32_t points, std::uint32_t blocks) {
+  if constexpr (fetched_source<Source>) return source.fetches() ? points / (in_block_round * blocks) : 0;
+  return 0;
+}
+
+/// The rounds that are read ahead.
+template <class Source, class Answer>
+class point_reader {
+ public:
+  __device__ point_reader(const Source&, std::uint32_t, const cards<Answer>&) {}
+  __device__ void fetch(std::uint32_t) {}
+  __device__ quad_points take(std::uint32_t) { return {}; }
+  __device__ quad_points peek() const { return {}; }
+};
+
+template <fetched_source Source, class Answer>
+class point_reader<Source, Answer> {
+ public:
+  __device__ point_reader(const Source& source, std::uint32_t rounds, const cards<Answer>& all)
+      : source_(source), rounds_(rounds), all_(all), from_(source.seek(all.index(0))) {}
+
+  /// Starts to read the points of a round, of one after the other.
+  __device__ void fetch(std::uint32_t round) {
+    if (round < rounds_) next_ = source_.fetch(from_);
+    from_ = source_.skip(from_, in_block_round * gridDim.x);
+  }
+  /// This thread's points of `round`; those of the next are on their way.
+  __device__ quad_points take(std::uint32_t round) {
+    const typename Source::four now = next_;
+    fetch(round + 1);
+    return look(now, all_.index(round));
+  }
+  /// The first round's points, before they are taken.
+  __device__ quad_points peek() const { return look(next_, all_.index(0)); }
+
+ private:
+  __device__ quad_points look(const typename Source::four& four, std::uint32_t first) const {
+    quad_points p;
+    p.reasons = source_.look(four, first, p.at);
+    return p;
+  }
+
+  const Source& source_;
+  std::uint32_t rounds_;
+  const cards<Answer>& all_;
+  typename Source::cursor from_;
+  typename Source::four next_;
+};
+
+}  // namespace clearance::scan

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What the kernel of a scan is told.
+
+#include <clearance/frame/frame.hpp>
+#include <clearance/frame/root_test.hpp>
+
+namespace clearance::scan {
+
+inline constexpr std::uint32_t most_parts = 128;    ///< In one kernel.
+inline constexpr std::uint32_t inline_parts = 12;   ///< As many as travel with the launch.
+inline constexpr std::uint32_t most_children = 8;   ///< Of a node,
+inline constexpr std::uint32_t deepest_stack = 64;  ///< and what a tree's depth-first stack may need; trees that `build` makes keep to both.
+inline constexpr std::uint32_t cluster = 8;         ///< Parts that are first tested together, as one ball.
+inline constexpr std::uint32_t most_clusters = most_parts / cluster;
+inline constexpr std::uint32_t no_bound = 0xff800000u;  ///< ordered(infinity): nothing is known of how near anything is.
+
+/// Lives in device memory from scan to scan: the last block of a scan sets it back.
+struct scan_state {
+  std::uint32_t done = 0;  ///< Blocks that have finished.
+  unsigned long long dropped[drop_reasons] = {};
+};
+
+/// Where one part is in one frame, as far as every block needs it.
+struct alignas(16) frame_part {
+  rigid_transform part_from_cloud;
+  frames::root_ball root;
+  real error;
+  real away;  ///< The farthest that its ball reaches from its cluster's centre.
+
+  frame_part() = default;
+  CLEARANCE_HD explicit frame_part(const frames::placement& p) : part_from_cloud(p.part_from_cloud), root(p.around), error(p.error) {}
+};
+
+/// Some parts of a frame, and a ball around each eight of them.
+template <std::uint32_t Most>
+struct alignas(16) frame_parts_of {
+  frames::root_ball cluster[(Most + scan::cluster - 1) / scan::cluster];
+  frame_part part[Most];
+
+  /// Sets the ball around cluster c's parts, and what they need of it; there are `count` parts.
+  CLEARANCE_HD void gather(std::uint32_t c, std::uint32_t count) {
+    const std::uint32_t begin = c * scan::cluster, end = count < begin + scan::cluster ? count : begin + scan::cluster;
+    vec3 low{infinity, infinity, infinity}, high = -low;
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const vec3 at = part[k].root.around.center;
+      low = {min(low.x, at.x), min(low.y, at.y), min(low.z, at.z)};
+      high = {max(high.x, at.x), max(high.y, at.y), max(high.z, at.z)};
+    }
+    ball all{{(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2}, 0};
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const ball& b = part[k].root.around;
+      part[k].away = (length(b.center - all.center) + b.radius) * (1 + 8 * slack);
+      all.radius = max(all.radius, part[k].away);
+    }
+    cluster[c] = frames::root_ball(all);
+  }
+};
+
+/// In device memory: all parts, if poses live there and a kernel of its own has made them ready, or if there are too many
+/// to travel with the launch.
+struct placed_parts {
+  frames::frame_facts frame;
+  bool rigid;
+  frame_parts_of<most_parts> parts;
+  world_transform world_from_part[most_parts];
+};
+
+/// One cloud, in few words: what every block keeps. `Answer` is an answer as a block gives it, such as `minimum::least`.
+template <class Answer>
+struct alignas(16) scan_head {
+  using part_type = typename Answer::part_type;
+
+  std::uint32_t points, parts;
+  std::uint32_t cloud, first;  ///< The cloud's number, and that of its first point among all clouds' points.
+  std::uint32_t rounds;        ///< Until every point has been read by some block;
+  std::uint32_t ahead;         ///< and how many of them are read a round ahead.
+  std::uint32_t top_stride;    ///< First nodes of a tree that there is room for in shared memory.
+  bool last;                   ///< No cloud follows: conclude.
+  bool far;                    ///< All parts are in `rest`,
+  bool placed;                 ///< and so is the frame.
+  std::uint32_t overflow_room;  ///< Entries that `overflow` has for each warp, and then for each block,
+  std::byte* overflow;          ///< for trees that are too deep or wide for stacks in shared memory; or null.
+  scan_state* state;
+  const part_type* views;
+  const placed_parts* rest;
+  typename Answer::arguments answer;
+};
+
+/// And all of it, but for its points. What every block reads comes first and last what one block reads.
+template <class Answer>
+struct scan_arguments : scan_head<Answer> {
+  using scan_head<Answer>::far;
+  using scan_head<Answer>::placed;
+  using scan_head<Answer>::rest;
+
+  frame_parts_of<inline_parts> near;
+  std::uint32_t* done;  ///< Pinned, written after the result with `number`; or null.
+  std::uint32_t number;
+  frames::frame_facts frame;
+  world_transform world_from_part[inline_parts];
+
+  CLEARANCE_HD const frame_part* part() const { return far ? rest->parts.part : near.part; }
+  CLEARANCE_HD const frames::root_ball* clusters() const { return far ? rest->parts.cluster : near.cluster; }
+  CLEARANCE_HD const frames::frame_facts& facts() const { return placed ? rest->frame : frame; }
+  CLEARANCE_HD world_transform pose(std::uint32_t k) const { return far ? rest->world_from_part[k] : world_from_part[k]; }
+};
+
+}  // namespace clearance::scan

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What the threads of one block share: the parts, the pairs still to be looked at, and what the answer keeps.
+
+#include <clearance/scan/arguments.hpp>
+#include <clearance/scan/nodes.hpp>
+#include <clearance/scan/threads.cuh>
+
+#include <cuda_pipeline.h>
+
+namespace clearance::scan {
+
+/// A point near a part: first in the cloud's frame, then in the part's.
+struct alignas(16) pair {
+  vec3 x;
+  std::uint32_t point;
+};
+
+/// A pair (in one word with its part) against the children or primitives of a node no nearer than `bound`.
+template <class Node>
+struct alignas(16) pending {
+  real bound;
+  Node node;
+  std::uint32_t pair;
+};
+
+inline constexpr std::uint32_t pair_capacity = 1024;
+inline constexpr std::uint32_t stack_capacity = 3 * deepest_stack;  ///< Of a warp.
+
+/// The first nodes of every tree, of trees that show them; in so many bytes.
+template <hierarchy H, std::size_t Bytes>
+struct tree_tops {
+  static constexpr std::uint32_t capacity = 0;
+};
+template <array_hierarchy H, std::size_t Bytes>
+struct tree_tops<H, Bytes> {
+  using volume_type = typename H::volume_type;
+  static constexpr std::uint32_t capacity = Bytes / (sizeof(bvh_node) + sizeof(volume_type));
+  alignas(16) bvh_node nodes[capacity];
+  alignas(16) volume_type volumes[capacity];
+};
+
+template <class Answer>
+struct block_memory {
+  using hierarchy_type = typename Answer::part_type::hierarchy_type;
+  using pending_type = pending<typename node_of<hierarchy_type>::type>;
+  static constexpr std::uint32_t given_capacity = 32 * warps;
+
+  scan_head<Answer> head;
+  typename Answer::memory answer;
+  std::uint32_t pairs, given;
+  unsigned overflow_lock;
+  std::uint32_t dropped[drop_reasons];
+  std::uint32_t last;        ///< Not 0: this is the last block to finish.
+  alignas(16) vec3 origin;   ///< Is subtracted from points, if it is not 0 (`shifted`); read as sixteen bytes, with
+  bool rigid, shifted;       ///< what nobody writes any more by then.
+  frames::root_test near_cluster[most_clusters], near_part[most_parts];
+  frames::root_ball cluster[most_clusters];
+  tree_tops<hierarchy_type, Answer::top_bytes> tops;
+  pair pair_table[pair_capacity];
+  std::uint16_t part_of_pair[pair_capacity];
+  pending_type stack[warps][stack_capacity];
+  pending_type given_nodes[given_capacity];
+};
+
+/// One part for one frame: behind `block_memory`, as many as there are.
+template <class PartView>
+struct alignas(16) block_part {
+  frame_part place;
+  PartView view;
+};
+
+/// Bytes of shared memory of a block.
+template <class Answer>
+constexpr std::size_t memory_bytes(std::uint32_t parts) {
+  static_assert(sizeof(block_memory<Answer>) % 16 == 0);
+  return sizeof(block_memory<Answer>) + parts * sizeof(block_part<typename Answer::part_type>);
+}
+
+/// A block's shared memory. Functions that are not inlined ask for it themselves, so that they know what kind of memory it is.
+template <class Answer>
+__device__ block_memory<Answer>& memory_of_block() {
+  extern __shared__ __align__(16) std::byte scan_memory[];
+  return *reinterpret_cast<block_memory<Answer>*>(scan_memory);
+}
+
+}  // namespace clearance::scan

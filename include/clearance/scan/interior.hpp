@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Points inside a part's solid: they are 0 away.
+
+#include <clearance/part.hpp>
+#include <clearance/visitor/any_within.hpp>
+#include <clearance/traversal/near_first.hpp>
+
+namespace clearance::scan {
+
+/// Does this part know a solid, besides its primitives?
+template <class PartView>
+inline constexpr bool has_interior = !std::is_same_v<typename PartView::interior_type, no_interior>;
+
+/// Is a point inside by more than it may be off? `error` is what a distance to the part can be off.
+template <class PartView, class Traversal = near_first>
+CLEARANCE_HD bool certainly_inside(const PartView& part, vec3 q, real error, const Traversal& walk = {}) {
+  any_within surface{error + part.facts.tolerance};
+  walk(part.tree, q, surface);
+  return !surface.found;
+}
+
+}  // namespace clearance::scan

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// A cloud in one kernel: a first bound, every point read once and tested against the parts' balls in its own frame, the few
+// near ones against the trees. The last block to finish writes the answer.
+
+#include <clearance/scan/ahead.cuh>
+#include <clearance/scan/filter.cuh>
+
+namespace clearance::scan {
+
+/// Rounds after which the block comes together, by how far that filled the table of pairs last time.
+CLEARANCE_HD constexpr std::uint32_t rounds_of_batch(std::uint32_t pairs, std::uint32_t capacity) {
+  return pairs <= capacity / 8 ? 32 : pairs <= capacity / 4 ? 16 : 8;
+}
+
+/// Counts this block in; by the last one the answer is given, and all is made ready for a next scan.
+template <class Answer, class Source>
+__noinline__ __device__ void finish_block(const scan_arguments<Answer>& a, const Source& source) {
+  auto& s = memory_of_block<Answer>();
+  const std::uint32_t t = threadIdx.x;
+  scan_state& state = *a.state;
+  if (t < drop_reasons && s.dropped[t] != 0) atomicAdd(&state.dropped[t], static_cast<unsigned long long>(s.dropped[t]));
+  Answer::hand_in(a, source);
+  if (t == 0) s.last = count_in(state.done) + 1 == gridDim.x;
+  __syncthreads();
+  if (!s.last) return;
+  Answer::conclude(a, source);
+  __syncthreads();
+  if (t < drop_reasons && a.last) state.dropped[t] = 0;
+  if (t != 0) return;
+  state.done = 0;
+  Answer::reset(a);
+  if (a.last && a.done != nullptr) {
+    __threadfence_system();
+    *static_cast<volatile std::uint32_t*>(a.done) = a.number;
+  }
+}
+
+template <class Answer, class Source>
+__global__ void __launch_bounds__(block_threads, 2) scan_kernel(const __grid_constant__ Source source,
+                                                                const __grid_constant__ scan_arguments<Answer> a) {
+  using pairs = pair_search<Answer>;
+  auto& s = memory_of_block<Answer>();
+  const std::uint32_t t = threadIdx.x, rounds = a.rounds, ahead = a.ahead, clusters = (a.parts + cluster - 1) / cluster;
+  typename Answer::seeds before(a);
+  const cards<Answer> all;
+  point_reader<Source, Answer> reader(source, ahead, all);
+  pairs::prepare(a, [&] { reader.fetch(0), before.look(a, source); });
+  before.seed(a);
+  __syncthreads();
+  std::uint32_t bound = Answer::seeds::found(a.parts);
+  pairs::fetch_tops(a.parts);
+  const bool cold = bound == no_bound;
+  if (cold && rounds > 0) {
+    __pipeline_wait_prior(0);
+    __syncthreads();  // the tops are there
+    quad_points p = ahead > 0 ? reader.peek() : look_closely(source, a.points, all.index(0));
+    if (s.shifted) shift<Answer>(p);
+    Answer::seed_cold(p);
+    __syncthreads();
+    bound = Answer::common_bound(s);
+  }
+  // All that these loops call is inlined: what lives across a call would be kept in memory, for every point. A warp that finds
+  // no room for a pair stops where it is, and goes on from there once the table of pairs is empty.
+  drop_counter dropped;
+  unfinished left;
+  std::uint32_t r = 0, end = 0, batch = cold ? 8 : 16;
+  for (bool crowd = false; crowd || end < rounds;) {
+    sharpen<Answer>(t, bound);
+    __syncthreads();
+    const bool shifted = s.shifted;
+    if (!crowd) end = rounds - end < batch ? rounds : end + batch;
+#pragma unroll 1
+    for (; r < end; ++r) {
+      const bool again = left.clusters != 0;
+      quad_points p = r < ahead && !again ? reader.take(r) : look_closely(source, a.points, all.index(r));
+      if (p.reasons != 0 && !again) dropped.add(p.reasons);
+      if (shifted) shift<Answer>(p);
+      if (!hand_over<Answer>(p, [&] { return all.index(r); }, clusters, left)) break;
+    }
+    __pipeline_wait_prior(0);  // the tops
+    dropped.report(s.dropped);
+    __syncthreads();
+    const std::uint32_t found = s.pairs;
+    crowd = found > pair_capacity;
+    if (end == rounds || found > pair_capacity * 3 / 4) pairs::drain(found);
+    bound = Answer::common_bound(s);
+    batch = rounds_of_batch(found, pair_capacity);
+  }
+  if (rounds == 0) __pipeline_wait_prior(0);
+  finish_block<Answer>(a, source);
+}
+
+}  // namespace clearance::scan

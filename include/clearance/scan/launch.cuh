@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The memory that the kernels of a prepared scan share, whatever is asked, and their launch.
+
+#include <clearance/backend/device.cuh>
+#include <clearance/frame/clouds.hpp>
+#include <clearance/model.hpp>
+#include <clearance/scan/kernel.cuh>
+#include <clearance/scan/place_kernel.cuh>
+
+#include <algorithm>
+#include <memory>
+
+namespace clearance::scan {
+
+template <class PartView>
+class launcher {
+ public:
+  /// Throws std::invalid_argument if trees in arrays are deeper or wider than `build` makes them.
+  launcher(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory)
+      : on_(on), parts_(std::uint32_t(model.size())), processors_(ask(cudaDevAttrMultiProcessorCount)),
+        most_shared_(ask(cudaDevAttrMaxSharedMemoryPerBlockOptin)), shared_of_processor_(ask(cudaDevAttrMaxSharedMemoryPerMultiprocessor)),
+        state_(groups(), on.id, memory), views_(model.size(), on.id, memory), placed_(groups(), on.id, memory) {
+    if (const std::uint64_t need = stack_need(model.depth, model.width); model.width > most_children || need > deepest_stack) {
+      if constexpr (!node_of<typename PartView::hierarchy_type>::any_size)
+        throw std::invalid_argument("clearance: a tree of depth " + std::to_string(model.depth) + " and width " + std::to_string(model.width) +
+                                    ", which `build` would not make; a device takes it as an any_tree");
+      overflow_room_ = std::uint32_t(std::max<std::uint64_t>(need, std::uint64_t(model.depth) * most_children + 2 * stack_capacity));
+      overflow_ = device_buffer<std::byte>(std::size_t(processors_) * (warps + 1) * overflow_room_ * sizeof(pending<linked_node>), on.id, memory);
+    }
+    const device_guard guard(on.id);
+    check_cuda(cudaMemcpyAsync(views_.data(), model.parts, model.size() * sizeof(PartView), cudaMemcpyDefault, on.stream), "cudaMemcpyAsync");
+    forget();
+  }
+
+  /// Parts beyond 128 are looked at by kernels of their own, a group each.
+  std::uint32_t groups() const { return parts_ == 0 ? 1 : (parts_ + most_parts - 1) / most_parts; }
+  /// Blocks of a kernel, at most.
+  unsigned most_blocks() const { return 2 * processors_; }
+
+  void forget() {
+    const std::vector<scan_state> fresh(groups());
+    on_.stage(std::span<const scan_state>(fresh), state_.data());
+  }
+
+  /// One cloud against a group of parts.
+  template <class Answer>
+  scan_arguments<Answer> begin(std::uint32_t group, const frames::turn& now, const typename Answer::arguments& answer) const {
+    scan_arguments<Answer> a{};
+    const std::uint32_t before = group * most_parts;
+    a.parts = std::min(parts_ - before, most_parts), a.views = views_.data() + before, a.state = state_.data() + group, a.rest = placed_.data() + group;
+    a.overflow = overflow_.data(), a.overflow_room = overflow_room_;
+    a.cloud = now.cloud, a.first = now.first, a.last = now.last, a.answer = answer;
+    return a;
+  }
+
+  /// Poses that the host has made ready: few travel with the launch, many beforehand.
+  template <class Answer>
+  void put(const frames::cloud_frame& frame, std::uint32_t group, scan_arguments<Answer>& a) {
+    const auto places = std::span(frame.places).subspan(group * most_parts, a.parts);
+    const auto fill = [&](auto& parts, world_transform* world) {
+      for (std::uint32_t k = 0; k < a.parts; ++k) parts.part[k] = frame_part(places[k]), world[k] = places[k].world_from_part;
+      for (std::uint32_t c = 0; c * cluster < a.parts; ++c) parts.gather(c, a.parts);
+    };
+    a.frame = frame;
+    a.far = a.parts > inline_parts;
+    if (!a.far) return fill(a.near, a.world_from_part);
+    if (!staged_) staged_ = std::make_unique<placed_parts>();
+    fill(staged_->parts, staged_->world_from_part);
+    const auto bytes = [](auto* from) { return reinterpret_cast<std::byte*>(from); };
+    const std::span<const std::byte> parts(bytes(&staged_->parts), bytes(staged_->parts.part + a.parts));
+    placed_parts* const there = placed_.data() + group;
+    on_.stage(parts, bytes(&there->parts));
+    on_.stage(std::span<const world_transform>(staged_->world_from_part, a.parts), there->world_from_part);
+  }
+
+  /// Poses in device or pinned memory, made ready there for all groups; `off` is the `rounding_of` the cloud's source.
+  void place(const world_transform* poses, const world_transform* cloud, const position_error& off) {
+    const device_guard guard(on_.id);
+    place_kernel<<<1, most_parts, 0, on_.stream>>>(poses, cloud, views_.data(), parts_, off, placed_.data());
+    check_cuda(cudaGetLastError(), "kernel launch");
+  }
+
+  /// Enqueues what has been begun. A kernel numbers more points than there are: those must not run over.
+  template <class Answer, point_source Source>
+  void operator()(const Source& source, scan_arguments<Answer>& a) {
+    const std::uint64_t end = std::uint64_t(a.first) + source.size();
+    if (end >= none - block_threads * 8 * processors_)
+      throw std::invalid_argument("clearance: " + std::to_string(end) + " points are too many for one call");
+    a.points = std::uint32_t(source.size());
+    const device_guard guard(on_.id);
+    start(source, a);
+  }
+
+ private:
+  unsigned ask(cudaDeviceAttr what) const {
+    int value = 0;
+    check_cuda(cudaDeviceGetAttribute(&value, what, on_.id), "cudaDeviceGetAttribute");
+    return unsigned(value);
+  }
+
+  template <class Answer, class Source>
+  void start(const Source& source, scan_arguments<Answer>& a) {
+    const std::size_t shared = memory_bytes<Answer>(a.parts);
+    a.top_stride = a.parts == 0 ? 0 : std::min(decltype(block_memory<Answer>::tops)::capacity / a.parts, 128u);
+    // Every translation unit has a kernel of its own, so what is allowed is known by its address, and not by its type.
+    const auto kernel = scan_kernel<Answer, Source>;
+    if (const auto address = reinterpret_cast<const void*>(kernel); std::find(allowed_.begin(), allowed_.end(), address) == allowed_.end()) {
+      check_cuda(cudaFuncSetAttribute(address, cudaFuncAttributeMaxDynamicSharedMemorySize, int(most_shared_)), "cudaFuncSetAttribute");
+      allowed_.push_back(address);
+    }
+    constexpr unsigned a_block = in_block_round;
+    const unsigned resident = 2 * (shared + 1024) <= shared_of_processor_ && a.overflow == nullptr ? processors_ * 2 : processors_;
+    const unsigned blocks = std::max(1u, std::min(resident, (a.points + a_block - 1) / a_block));
+    a.rounds = (a.points + a_block * blocks - 1) / (a_block * blocks);
+    a.ahead = rounds_ahead(source, a.points, blocks);
+    kernel<<<blocks, block_threads, shared, on_.stream>>>(source, a);
+    check_cuda(cudaGetLastError(), "kernel launch");
+  }
+
+  device on_;
+  std::uint32_t parts_;
+  unsigned processors_, most_shared_, shared_of_processor_;
+  device_buffer<scan_state> state_;
+  device_buffer<PartView> views_;
+  device_buffer<placed_parts> placed_;
+  device_buffer<std::byte> overflow_;  ///< Stacks of trees for which shared memory is not enough.
+  std::uint32_t overflow_room_ = 0;
+  std::vector<const void*> allowed_;      ///< Kernels whose limit of shared memory has been raised: that takes longer than a launch.
+  std::unique_ptr<placed_parts> staged_;  ///< Of many parts, on their way to `placed_`.
+};
+
+}  // namespace clearance::scan

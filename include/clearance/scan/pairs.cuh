@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The few points near a part, against the trees. Every warp walks with some of them: eight nodes at once, four lanes to a node's
+// children, from a stack that is its own, and gives away what is too much for it, to be dealt to all warps when they are done.
+
+#include <clearance/scan/alone.cuh>
+#include <clearance/ordered.hpp>
+#include <clearance/scan/interior.hpp>
+#include <clearance/scan/reader.cuh>
+#include <clearance/scan/steps.cuh>
+
+namespace clearance::scan {
+
+template <class Answer>
+struct pair_search : tree_steps<Answer> {
+  using frame = frame_parts<Answer>;
+  using steps = tree_steps<Answer>;
+  using hierarchy = typename Answer::part_type::hierarchy_type;
+  using traits = bounding_volume_traits<typename hierarchy::volume_type>;
+  using memory = block_memory<Answer>;
+  using pending = typename memory::pending_type;
+  using node_type = typename steps::node_type;
+  static constexpr bool any_size = node_of<hierarchy>::any_size;
+
+  /// Keeps those of a lane's points for `drain` that are near a part of the cluster from `first_part` on, four bits a part;
+  /// says which it has no room for. There is room for all of those that come first.
+  static __device__ unsigned add(unsigned those, const quad_points& p, std::uint32_t first, std::uint32_t first_part) {
+    static_assert(quad * cluster <= 32 && pair_capacity >= quad * cluster);
+    memory& s = frame::here();
+    std::uint32_t slot = atomicAdd(&s.pairs, std::uint32_t(__popc(those)));
+    unsigned left = 0;
+#pragma unroll
+    for (int j = 0; j < quad; ++j) {
+      unsigned its = those >> j & 0x11111111u;
+      for (; its != 0 && slot < pair_capacity; its &= its - 1, ++slot) {
+        s.pair_table[slot] = {p.at[j], s.head.first + first + j};
+        s.part_of_pair[slot] = std::uint16_t(first_part + (unsigned(__ffs(int(its))) - 1) / quad);
+      }
+      left |= its << j;
+    }
+    return left;
+  }
+
+  /// All pairs that were kept, to the end; `found` is how many there were, or more. The whole block calls it together.
+  static __device__ void drain(std::uint32_t found) {
+    memory& s = frame::here();
+    if (found == 0) return;
+    const std::uint32_t count = found < pair_capacity ? found : pair_capacity;
+    walk(count);
+    __syncthreads();
+    Answer::drained(s, count);
+    if (threadIdx.x == 0) s.pairs = s.given = 0;  // a barrier comes before the next one is kept
+  }
+
+ private:
+  static constexpr std::uint32_t mates = 4;             ///< Lanes that share a node: two children each.
+  static constexpr std::uint32_t at_once = 32 / mates;  ///< Nodes that a warp looks at together.
+
+  static __device__ std::uint32_t lane() { return threadIdx.x % mates; }
+  static __device__ std::uint32_t group() { return threadIdx.x % 32 / mates; }
+
+  /// Is the point in the part's solid? Then its distance is 0, and there is nothing to look for in the tree.
+  static __device__ bool inside(vec3 q, std::uint32_t point, std::uint32_t k, std::uint32_t pair) {
+    if constexpr (has_interior<typename Answer::part_type>) {
+      memory& s = frame::here();
+      if (Answer::settled(s, k, point)) return true;
+      const auto& view = frame::view(k);
+      if (!view.interior.inside(q)) return false;
+      Answer::take_inside(s, k, point, pair);
+      if (Answer::wants_certain(s) && certainly_inside(view, q, frame::place(k).error, walk_alone<Answer>{})) Answer::take_certain(s);
+      return true;
+    }
+    return false;
+  }
+
+  /// A pair's point into its part's frame; and onto the stack what is within reach below the root of that part's tree, or the
+  /// root if it is a leaf, unless the pair ends here. Four lanes to a pair.
+  static __device__ std::uint32_t admit(std::uint32_t i, bool live, pending* stack, std::uint32_t top) {
+    memory& s = frame::here();
+    const pair c = live ? s.pair_table[i] : pair{};
+    const std::uint32_t part = live ? s.part_of_pair[i] : 0;
+    live = live && s.near_part[part].passes(c.x);
+    const vec3 q = frame::place(part).part_from_cloud(c.x);
+    if constexpr (has_interior<typename Answer::part_type>) {
+      const unsigned gone = __ballot_sync(all_lanes, live && lane() == 0 && inside(q, c.point, part, i)) >> group() * mates;
+      live = live && (gone & 1) == 0;
+    }
+    __syncwarp();  // all have read the pair
+    if (live && lane() == 0) s.pair_table[i].x = q;
+    node_type root{};
+    if (live) root = steps::root(part);
+    const bool leaf = live && steps::is_leaf(part, root);
+    const std::uint32_t pair_and_part = part << 16 | i;
+    const real reach = Answer::reach_of_pair(s, part, i);
+    top = push({-infinity, root, pair_and_part}, leaf && lane() == 0, stack, top);
+    return push_children(-infinity, root, live && !leaf ? steps::size(part, root) : 0, pair_and_part, q, reach, stack, top);
+  }
+
+  /// A warp's share of the pairs, then of what warps have given away: a far point can be about equally far from hundreds of
+  /// nodes. It takes nodes from the end of its stack, and fewer as that fills, at last one, whose whole subtree then fits into
+  /// what is kept free: so the stack cannot overflow. Of trees for which that is not enough it takes one node at a time, and the
+  /// lower end of the stack goes to memory.
+  static __device__ void walk(std::uint32_t count) {
+    memory& s = frame::here();
+    const std::uint32_t warp = threadIdx.x / 32;
+    pending* const stack = s.stack[warp];
+    typename Answer::news elsewhere(s);
+    std::uint32_t top = 0, row = 0;
+    [[maybe_unused]] std::uint32_t below = 0;  // what is in memory
+    bool shared = false;
+#pragma unroll 1
+    for (int round = 0;; ++round) {
+#pragma unroll 1
+      for (; row * warps < count && top < at_once && (!any_size || below == 0); row += at_once) {
+        // A point's pairs follow one another, and so do neighbours': from another warp on in each row.
+        const std::uint32_t its = row + group(), i = its * warps + (its + warp) % warps;
+        top = admit(i, i < count, stack, top);
+      }
+      if constexpr (any_size)
+        if (top == 0 && below != 0) {
+          top = below < at_once ? below : at_once, below -= top;
+          raise(stack, top, below);
+        }
+      if (top == 0) {
+        if (shared) break;
+        __syncthreads();
+        shared = true;
+        top = take_share(stack);
+        continue;
+      }
+      if (round % 8 == 7) elsewhere.hear(s);
+      constexpr std::uint32_t room = stack_capacity - deepest_stack, growth = most_children - 1;
+      static_assert(at_once - 1 + at_once * most_children <= room - at_once * growth && at_once - 1 + at_once * (most_children + 1) < stack_capacity);
+      std::uint32_t taken = top < at_once ? top : at_once;
+      if (top > room - at_once * growth) taken = top + 2 * growth <= room ? 2 : 1;
+      __syncwarp();  // all that has been pushed is there
+      if constexpr (any_size)
+        if (s.head.overflow != nullptr) {
+          taken = 1;
+          if (top > room) {
+            sink(stack, top, below);
+            below += top - at_once, top = at_once;
+          }
+        }
+      const pending e = group() < taken ? stack[top - 1 - group()] : pending{not_a_number, {}, 0};  // within no reach
+      __syncwarp();
+      top = expand(e, stack, top - taken);
+      if (!shared && top > 2 * at_once) top = give(stack, top);
+    }
+  }
+
+  /// The first child of a node that is not yet looked at.
+  static __device__ std::uint32_t first_of(std::uint32_t pair) {
+    if constexpr (any_size) return steps::begin(pair);
+    return 0;
+  }
+
+  /// This warp's share of the memory for what is below the stack.
+  static __device__ pending* memory_below() {
+    const auto& head = frame::here().head;
+    return reinterpret_cast<pending*>(head.overflow) + std::size_t(blockIdx.x * warps + threadIdx.x / 32) * head.overflow_room;
+  }
+  /// All of the stack's nodes but the last eight to there. All lanes of a warp call it.
+  static __noinline__ __device__ void sink(pending* stack, std::uint32_t top, std::uint32_t below) {
+    const std::uint32_t lane = threadIdx.x % 32, some = top - at_once;
+    if (below + some > frame::here().head.overflow_room) __trap();  // the tree is deeper than it said
+    for (std::uint32_t k = lane; k < some; k += 32) memory_below()[below + k] = stack[k];
+    pending kept;
+    if (lane < at_once) kept = stack[some + lane];
+    __syncwarp();
+    if (lane < at_once) stack[lane] = kept;
+    __syncwarp();
+  }
+  /// So many of them back to the stack.
+  static __noinline__ __device__ void raise(pending* stack, std::uint32_t some, std::uint32_t below) {
+    const std::uint32_t lane = threadIdx.x % 32;
+    __syncwarp();
+    if (lane < some) stack[lane] = memory_below()[below + lane];
+    __syncwarp();
+  }
+
+  /// All but the first of a warp's nodes, if there is room for all; the stack's new size. If another warp is quicker, some are
+  /// kept and given, and looked at twice. All lanes of a warp call it.
+  static __device__ std::uint32_t give(const pending* stack, std::uint32_t top) {
+    memory& s = frame::here();
+    const std::uint32_t lane = threadIdx.x % 32, some = top - at_once;
+    std::uint32_t at = memory::given_capacity;
+    if (lane == 0 && fresh(s.given) + some <= memory::given_capacity) at = atomicAdd(&s.given, some);
+    at = __shfl_sync(all_lanes, at, 0);
+    __syncwarp();  // all that has been pushed is there
+#pragma unroll 1
+    for (std::uint32_t k = lane; k < some && at + k < memory::given_capacity; k += 32) s.given_nodes[at + k] = stack[at_once + k];
+    return at + some <= memory::given_capacity ? at_once : top;
+  }
+
+  /// This warp's share of what all have given; the stack's size.
+  static __device__ std::uint32_t take_share(pending* stack) {
+    memory& s = frame::here();
+    const std::uint32_t lane = threadIdx.x % 32, warp = threadIdx.x / 32, i = lane * warps + warp;
+    const std::uint32_t given = s.given < memory::given_capacity ? s.given : memory::given_capacity;
+    if (i < given) stack[lane] = s.given_nodes[i];
+    return (given + warps - 1 - warp) / warps;
+  }
+
+  /// Inner children within reach go onto the stack, primitives are looked at. All lanes of a warp call it.
+  static __device__ std::uint32_t expand(const pending& e, pending* stack, std::uint32_t top) {
+    memory& s = frame::here();
+    const std::uint32_t part = steps::part_of(e.pair), i = steps::pair_of(e.pair);
+    pair v{};
+    if (e.bound == e.bound) v = s.pair_table[i];  // else another warp may be writing there
+    const real reach = Answer::reach_of_pair(s, part, i);
+    const bool live = e.bound <= reach, leaf = live && steps::is_leaf(part, e.node);
+    const std::uint32_t count = live ? steps::size(part, e.node) : 0;
+    top = push_children(e.bound, e.node, leaf ? 0 : count - first_of(e.pair), e.pair, v.x, reach, stack, top);
+    look(e.node, leaf ? count : 0, part, i, v, reach);
+    return top;
+  }
+
+  /// The first of `count` children of an inner node, as far as they are within reach, and for the others the node again; the
+  /// stack's new size.
+  static __device__ std::uint32_t push_children(real bound, const node_type& node, std::uint32_t count, std::uint32_t pair_and_part, vec3 q,
+                                                real reach, pending* stack, std::uint32_t top) {
+    constexpr std::uint32_t each = most_children / mates;
+    if constexpr (any_size) {
+      pending others{bound, node, pair_and_part};
+      steps::skip(others.pair);
+      top = push(others, count > most_children && lane() == 0, stack, top);
+    }
+    pending child[each];
+    bool within[each];
+#pragma unroll
+    for (std::uint32_t j = 0; j < each; ++j) {
+      const std::uint32_t k = lane() + j * mates;
+      child[j] = {infinity, {}, pair_and_part};
+      if (k < count) {
+        const auto step = steps::child(steps::part_of(pair_and_part), node, first_of(pair_and_part) + k);
+        child[j] = {traits::lower_bound(step.volume, q), step.node, pair_and_part};
+      }
+      within[j] = k < count && child[j].bound <= reach;
+    }
+#pragma unroll
+    for (std::uint32_t j = 0; j < each; ++j) top = push(child[j], within[j], stack, top);
+    return top;
+  }
+
+  /// Those of a warp's lanes that have something to push do so at once; the stack's new size.
+  static __device__ std::uint32_t push(const pending& e, bool mine, pending* stack, std::uint32_t top) {
+    const unsigned those = __ballot_sync(all_lanes, mine);
+    pending* const place = stack + top + __popc(those & ((1u << threadIdx.x % 32) - 1));
+    if (mine) *place = e;
+    return top + std::uint32_t(__popc(those));
+  }
+
+  /// The primitives of leaves. All lanes of a warp call it.
+  static __device__ void look(const node_type& leaf, std::uint32_t count, std::uint32_t part, std::uint32_t pair, const scan::pair& v, real reach) {
+#pragma unroll 1
+    for (std::uint32_t k = lane(); __any_sync(all_lanes, k < count); k += mates) {
+      typename Answer::record r;
+      typename hierarchy::primitive_type primitive;
+      if (k < count) {
+        const auto place = steps::place_of(leaf, k);
+        const std::uint32_t id = steps::id(part, place);
+        primitive = steps::primitive(part, place);
+        if (const real distance = primitive.distance(v.x); distance <= reach) r = {make_key(distance, v.point), part, id, place};
+      }
+      if (__any_sync(all_lanes, r.key != no_key)) Answer::take(frame::here(), r, primitive, pair);
+    }
+  }
+};
+
+}  // namespace clearance::scan

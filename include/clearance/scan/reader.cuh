@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// A block's points, four a thread a round: which they are, and why some do not count.
+
+#include <clearance/scan/block.cuh>
+
+namespace clearance::scan {
+
+inline constexpr int quad = 4;     ///< Points that a thread has in hand, in a row.
+inline constexpr std::uint32_t in_block_round = block_threads * quad;
+/// Points in a row that stay together: few, where each part has a bound and so more points are near.
+template <class Answer>
+inline constexpr std::uint32_t piece = Answer::bound_per_part ? 8 : 16;
+
+/// A thread's points, less the frame's origin; and why they do not count, a byte each: a drop_reason, or `no_point`.
+struct quad_points {
+  vec3 at[quad];
+  unsigned reasons;
+};
+inline constexpr unsigned no_point = 0xff;  ///< There is none.
+
+/// Neighbouring points share their fate, and a block that gets many that are near some part keeps all others waiting: so
+/// the pieces are dealt out to the blocks like cards.
+template <class Answer>
+class cards {
+ public:
+  /// A row of cards after the other, each dealt from another block on: else a block's cards could all be of one column.
+  __device__ cards() {
+    const std::uint32_t row = threadIdx.x / lanes_of_piece;
+    std::uint32_t column = blockIdx.x + __umulhi(row * 0x9e3779b9u, gridDim.x);
+    if (column >= gridDim.x) column -= gridDim.x;
+    card_ = row * gridDim.x + column;
+  }
+  /// Of this thread's first point in a round; the others follow it.
+  __device__ std::uint32_t index(std::uint32_t round) const {
+    return card_ * piece<Answer> + threadIdx.x % lanes_of_piece * quad + round * in_block_round * gridDim.x;
+  }
+
+ private:
+  static constexpr std::uint32_t lanes_of_piece = piece<Answer> / quad;
+  std::uint32_t card_;
+};
+
+/// Counts of a thread's points that do not count, a byte a reason.
+class drop_counter {
+ public:
+  __device__ void add(unsigned reasons) {
+    static_assert(unsigned(drop_reason::not_finite) == 1);
+    if ((reasons & ~0x01010101u) == 0) {
+      dropped_ += __popc(reasons);
+    } else {
+#pragma unroll
+      for (int j = 0; j < quad; ++j)
+        dropped_ += __funnelshift_lc(0u, 1u, 8 * (reasons >> 8 * j & 0xff) - 8);  // 0 and no_point are shifted out
+    }
+  }
+
+  /// Adds this warp's to the block's; due before 63 rounds are over, or a byte is full.
+  __device__ void report(std::uint32_t (&block)[drop_reasons]) {
+    static_assert(drop_reasons <= 5);
+    if (!__any_sync(all_lanes, dropped_ != 0)) return;
+    const std::uint32_t odd = sum_of(dropped_ & 0xff00ffu), even = sum_of(dropped_ >> 8 & 0xff00ffu), lane = threadIdx.x & 31;
+    const std::uint32_t sum = (lane % 2 == 0 ? odd : even) >> (lane & 2) * 8 & 0xffffu;
+    if (lane + 1 < drop_reasons && sum != 0) atomicAdd(&block[lane + 1], sum);
+    dropped_ = 0;
+  }
+
+ private:
+  std::uint32_t dropped_ = 0;
+};
+
+/// Points one by one, from memory; there may be none.
+template <class Source>
+__device__ quad_points look_closely(const Source& source, std::uint32_t points, std::uint32_t first) {
+  quad_points p;
+  p.reasons = 0;
+#pragma unroll
+  for (std::uint32_t j = 0; j < quad; ++j) {
+    sample s{{0, 0, 0}};
+    const bool exists = first + j < points;
+    if (exists) s = source[first + j];
+    p.at[j] = s.position, p.reasons |= (exists ? unsigned(s.dropped) : no_point) << 8 * j;
+  }
+  return p;
+}
+
+}  // namespace clearance::scan

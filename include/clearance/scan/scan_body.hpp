@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/indices.hpp>
+#include <clearance/scan/interior.hpp>
+#include <clearance/scan/tile_scan.hpp>
+
+namespace clearance::scan {
+
+/// A range of points against every part, by one thread: the loop of any backend that has none of its own. `Answer` says how
+/// near something must be, what a walk carries, and takes what it found.
+template <class PartView, point_source Source, class Traversal, class Answer>
+struct scan_body {
+  const PartView* parts;
+  const frames::placement* places;
+  std::uint32_t part_count;
+  Source source;
+  vec3 origin;
+  std::uint32_t first;  ///< Number of this cloud's first point among all clouds' points.
+  drop_counts* counts;
+  Answer answer;
+  Traversal walk;
+  std::size_t stack_bytes = 0;
+
+  CLEARANCE_HD void operator()(indices range) const {
+    tally mine;
+#if defined(__CUDA_ARCH__)
+    for (std::size_t i = range.begin; i < range.end; i += range.step)
+      if (const sample s = source[i]; mine.counts(s)) visit(s.position - origin, i);
+#else
+    scan_tiles(*this, range.begin, range.end, mine);
+#endif
+    mine.add_to(*counts);
+  }
+
+  /// One point against every part.
+  CLEARANCE_HD void visit(vec3 p, std::size_t i) const {
+    for (std::uint32_t k = 0; k < part_count; ++k) visit(p, first + std::uint32_t(i), k);
+  }
+
+  std::size_t device_stack() const
+    requires recursing_traversal<Traversal>
+  {
+    return stack_bytes;
+  }
+
+ private:
+  CLEARANCE_HD void visit(vec3 p, std::uint32_t index, std::uint32_t k) const {
+    const frames::placement& place = places[k];
+    if (!frames::may_reach(place.around, answer.reach(k), p)) return;
+    const PartView& part = parts[k];
+    const vec3 q = place.part_from_cloud(p);
+    if constexpr (has_interior<PartView>) {
+      if (answer.settled(index, k)) return;
+      if (part.interior.inside(q)) {
+        if (answer.take_inside(index, k) && certainly_inside(part, q, place.error, walk)) answer.take_certain();
+        return;
+      }
+    }
+    auto ask = answer.visitor(k);
+    walk(part.tree, q, ask);
+    answer.take(index, k, ask);
+  }
+};
+
+}  // namespace clearance::scan

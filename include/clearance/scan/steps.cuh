@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How the threads of a block go down a part's tree.
+
+#include <clearance/scan/nodes.hpp>
+#include <clearance/scan/parts.cuh>
+
+namespace clearance::scan {
+
+template <class Node, class Volume>
+struct step_to {
+  Node node;
+  Volume volume;
+};
+
+/// Down any tree, by its own members.
+template <class Answer, hierarchy H>
+struct steps_down : frame_parts<Answer> {
+  using parts = frame_parts<Answer>;
+  using kind = node_of<H>;
+  using node_type = typename kind::type;
+  using place_type = typename kind::place;
+  using primitive_type = typename H::primitive_type;
+  using step = step_to<node_type, typename H::volume_type>;
+
+  static __device__ const H& tree(std::uint32_t k) { return parts::view(k).tree; }
+  static __device__ node_type root(std::uint32_t k) { return kind::pack(tree(k).root()); }
+  static __device__ bool is_leaf(std::uint32_t k, const node_type& n) { return tree(k).is_leaf(kind::unpack(n)); }
+  static __device__ std::uint32_t size(std::uint32_t k, const node_type& n) { return tree(k).size(kind::unpack(n)); }
+  static __device__ step child(std::uint32_t k, const node_type& n, std::uint32_t j) {
+    const auto c = tree(k).child(kind::unpack(n), j);
+    return {kind::pack(c), tree(k).volume(c)};
+  }
+  static __device__ primitive_type primitive(std::uint32_t k, const place_type& p) {
+    return tree(k).primitive(kind::unpack(p.leaf), p.number);
+  }
+  static __device__ std::uint32_t id(std::uint32_t k, const place_type& p) { return tree(k).id(kind::unpack(p.leaf), p.number); }
+  static __device__ place_type place_of(const node_type& leaf, std::uint32_t j) { return {leaf, j}; }
+  /// Of more than eight children the first that are not yet pushed: their number goes with the pair, in bits that it leaves.
+  static __device__ std::uint32_t begin(std::uint32_t pair) { return (pair >> 10 & 63 | pair >> 23 << 6) * most_children; }
+  static __device__ void skip(std::uint32_t& pair) {
+    const std::uint32_t eights = begin(pair) / most_children + 1;
+    pair = pair & 0x7f03ff | (eights & 63) << 10 | eights >> 6 << 23;
+  }
+  static __device__ std::uint32_t pair_of(std::uint32_t pair) { return pair & 1023; }
+  static __device__ std::uint32_t part_of(std::uint32_t pair) { return pair >> 16 & 127; }
+  static __device__ void fetch_tops(std::uint32_t) {}
+};
+
+/// Down one in arrays; its top from shared memory.
+template <class Answer, array_hierarchy H>
+struct steps_down<Answer, H> : frame_parts<Answer> {
+  using parts = frame_parts<Answer>;
+  using node_type = bvh_node;
+  using place_type = std::uint32_t;
+  using primitive_type = typename H::primitive_type;
+  using volume_type = typename H::volume_type;
+  using step = step_to<bvh_node, volume_type>;
+
+  static __device__ const H& tree(std::uint32_t k) { return parts::view(k).tree; }
+  static __device__ bvh_node root(std::uint32_t k) { return node(k, 0); }
+  static __device__ bool is_leaf(std::uint32_t, const bvh_node& n) { return n.is_leaf(); }
+  static __device__ std::uint32_t size(std::uint32_t, const bvh_node& n) { return n.count(); }
+  static __device__ step child(std::uint32_t k, const bvh_node& n, std::uint32_t j) {
+    const std::uint32_t c = n.first + j;
+    return {node(k, c), volume(k, c)};
+  }
+  static __device__ primitive_type primitive(std::uint32_t k, std::uint32_t place) { return read_only(tree(k).primitives + place); }
+  static __device__ std::uint32_t id(std::uint32_t k, std::uint32_t place) { return read_only(tree(k).ids + place); }
+  static __device__ std::uint32_t place_of(const bvh_node& leaf, std::uint32_t j) { return leaf.first + j; }
+  static __device__ std::uint32_t pair_of(std::uint32_t pair) { return pair & 0xffff; }
+  static __device__ std::uint32_t part_of(std::uint32_t pair) { return pair >> 16; }
+
+  /// Starts to copy the first nodes of each tree, its top levels: no point then waits for them. After `prepare`.
+  static __device__ void fetch_tops(std::uint32_t count) {
+    auto& tops = parts::here().tops;
+    const std::uint32_t stride = parts::here().head.top_stride;
+#pragma unroll 1
+    for (std::uint32_t k = threadIdx.x / 64; k < count; k += warps / 2) {  // two warps a tree
+      const H& from = tree(k);
+      const std::uint32_t top = stride < from.node_count ? stride : from.node_count;
+#pragma unroll 1
+      for (std::uint32_t n = threadIdx.x % 64; n < top; n += 64) {
+        fetch(tops.nodes[k * stride + n], from.nodes[n]);
+        fetch(tops.volumes[k * stride + n], from.volumes[n]);
+      }
+    }
+    __pipeline_commit();
+  }
+
+ private:
+  /// Node n of part k, and its volume: from shared memory, if it is one of the first.
+  static __device__ bvh_node node(std::uint32_t k, std::uint32_t n) {
+    const std::uint32_t stride = parts::here().head.top_stride;
+    if (n < stride) return parts::here().tops.nodes[k * stride + n];
+    return read_only(tree(k).nodes + n);
+  }
+  static __device__ volume_type volume(std::uint32_t k, std::uint32_t n) {
+    const std::uint32_t stride = parts::here().head.top_stride;
+    if (n < stride) return parts::here().tops.volumes[k * stride + n];
+    return read_only(tree(k).volumes + n);
+  }
+  template <class T>
+  static __device__ void fetch(T& to, const T& from) {
+    constexpr std::size_t step = sizeof(T) % 16 == 0 ? 16 : sizeof(T) % 8 == 0 ? 8 : 4;
+    if constexpr (sizeof(T) % step != 0 || alignof(T) < 4) {
+      to = from;
+    } else {
+#pragma unroll
+      for (std::size_t b = 0; b < sizeof(T); b += step)
+        __pipeline_memcpy_async(reinterpret_cast<char*>(&to) + b, reinterpret_cast<const char*>(&from) + b, step);
+    }
+  }
+};
+
+template <class Answer>
+struct tree_steps : steps_down<Answer, typename Answer::part_type::hierarchy_type> {};
+
+}  // namespace clearance::scan

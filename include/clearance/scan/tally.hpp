@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/concepts.hpp>
+#include <clearance/ordered.hpp>
+
+namespace clearance::scan {
+
+/// How many points of a scan do not count, by drop_reason.
+struct drop_counts {
+  unsigned long long dropped[drop_reasons] = {};
+};
+
+/// From that to how many points there were, and how many of them count. `Counts`: point_counts, or a result that has the same.
+template <class Counts>
+CLEARANCE_HD void count(Counts& r, const unsigned long long (&dropped)[drop_reasons], std::uint64_t seen) {
+  r.seen = r.valid = seen;
+  r.dropped[0] = 0;
+  for (int k = 1; k < drop_reasons; ++k) {
+    r.dropped[k] = dropped[k];
+    r.valid -= dropped[k];
+  }
+}
+
+/// What one thread met, added to the counts of all once.
+struct tally {
+  std::uint32_t dropped[drop_reasons] = {};
+
+  /// Is there a point? If not, it is counted.
+  CLEARANCE_HD bool counts(const sample& s) {
+    for (int r = 1; r < drop_reasons; ++r) dropped[r] += int(s.dropped) == r;
+    return s.valid();
+  }
+
+  CLEARANCE_HD void add_to(drop_counts& all) const {
+    for (int r = 1; r < drop_reasons; ++r) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800  // older ones have no such sum
+      const unsigned together = __activemask();
+      const unsigned sum = __reduce_add_sync(together, dropped[r]);
+      if (sum != 0 && (threadIdx.x & 31) == unsigned(__ffs(int(together)) - 1)) add_to_word(&all.dropped[r], sum);
+#else
+      if (dropped[r] != 0) add_to_word(&all.dropped[r], dropped[r]);
+#endif
+    }
+  }
+
+ private:
+  CLEARANCE_HD static void add_to_word(unsigned long long* word, std::uint32_t n) { clearance::add_to(word, n); }
+};
+
+}  // namespace clearance::scan

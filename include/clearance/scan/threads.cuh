@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How the threads of a block are divided, and what a warp agrees on.
+
+#include <clearance/math.hpp>
+
+#include <cuda/atomic>
+
+namespace clearance::scan {
+
+inline constexpr int block_threads = 512;
+inline constexpr std::uint32_t warps = block_threads / 32;
+inline constexpr std::uint32_t all_lanes = 0xffffffffu;
+
+template <class T>
+__device__ T fresh(const T& shared) {
+  return *static_cast<const volatile T*>(&shared);
+}
+
+/// Adds one to a counter of the whole device and returns what it was. What this thread has written, and read, before it is
+/// seen by who counts later; what others wrote before they counted is seen after it.
+__device__ inline std::uint32_t count_in(std::uint32_t& counter) {
+  return cuda::atomic_ref<std::uint32_t, cuda::thread_scope_device>(counter).fetch_add(1, cuda::memory_order_acq_rel);
+}
+
+__device__ inline std::uint32_t lower_of(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
+
+/// The least of the values of the lanes in `mask`, which all call it together.
+__device__ inline std::uint32_t least_of(unsigned mask, std::uint32_t value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_min_sync(mask, value);
+#else
+  std::uint32_t least = value;
+  for (unsigned left = mask; left != 0; left &= left - 1) {
+    const std::uint32_t other = __shfl_sync(mask, value, __ffs(int(left)) - 1);
+    least = other < least ? other : least;
+  }
+  return least;
+#endif
+}
+
+/// What one lane of a warp has, to all that call it.
+template <class T>
+__device__ T from_lane(const T& mine, int lane, unsigned mask = all_lanes) {
+  static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
+  union words {
+    __device__ words() {}
+    __device__ ~words() {}
+    T value;
+    std::uint32_t word[sizeof(T) / sizeof(std::uint32_t)];
+  } of;
+  of.value = mine;
+#pragma unroll
+  for (std::size_t i = 0; i < sizeof(T) / sizeof(std::uint32_t); ++i) of.word[i] = __shfl_sync(mask, of.word[i], lane);
+  return of.value;
+}
+
+/// The sum of a warp's lanes.
+__device__ inline std::uint32_t sum_of(std::uint32_t value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_add_sync(all_lanes, value);
+#else
+  for (int width = 16; width > 0; width /= 2) value += __shfl_xor_sync(all_lanes, value, width);
+  return value;
+#endif
+}
+
+}  // namespace clearance::scan

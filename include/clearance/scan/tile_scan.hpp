@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// A range of points against every part on the host. `Body` is a scan_body: where the parts are, what is asked, and the
+// exact visit for the few points that are left.
+
+#include <clearance/frame/root_test.hpp>
+#include <clearance/scan/tile.hpp>
+
+namespace clearance::scan {
+
+namespace detail {
+
+inline void mark_here(const tile& t, vec3 c, real most, std::uint32_t* near) {
+  for (std::size_t j = 0; j < tile_points; ++j) {
+    const real dx = t.x[j] - c.x, dy = t.y[j] - c.y, dz = t.z[j] - c.z;
+    near[j] |= std::uint32_t(dx * dx + dy * dy + dz * dz <= most);
+  }
+}
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__)
+__attribute__((target("avx2"), flatten)) inline void mark_avx2(const tile& t, vec3 c, real most, std::uint32_t* near) {
+  mark_here(t, c, most, near);
+}
+inline void mark(const tile& t, vec3 c, real most, std::uint32_t* near) {
+  __builtin_cpu_supports("avx2") ? mark_avx2(t, c, most, near) : mark_here(t, c, most, near);
+}
+#else
+inline void mark(const tile& t, vec3 c, real most, std::uint32_t* near) { mark_here(t, c, most, near); }
+#endif
+
+}  // namespace detail
+
+/// Which points of a tile may be within reach of some part.
+class tile_survivors {
+ public:
+  /// Conservative as `may_reach`; a reach below 0 can leave no point at all.
+  void add(const tile& t, const ball& around, real reach) {
+    const real most = frames::limit(around, reach);
+    if (most >= 0) detail::mark(t, around.center, most * most, near_);
+  }
+  template <class Visit>
+  void for_each(Visit visit) const {
+    constexpr std::size_t group = 16;
+    for (std::size_t i = 0; i < tile_points; i += group) {
+      std::uint32_t any = 0;
+      for (std::size_t j = 0; j < group; ++j) any |= near_[i + j];
+      for (std::size_t j = 0; any != 0 && j < group; ++j)
+        if (near_[i + j] != 0) visit(i + j);
+    }
+  }
+
+ private:
+  alignas(64) std::uint32_t near_[tile_points] = {};
+};
+
+using frames::may_reach;
+
+/// Is a box within reach of a ball, up to rounding?
+inline bool may_reach(const ball& around, real reach, const extent& box) {
+  const auto beyond = [](real low, real high, real c) { return max(max(low - c, c - high), 0); };
+  const vec3 c = around.center;
+  const real dx = beyond(box.lower.x, box.upper.x, c.x), dy = beyond(box.lower.y, box.upper.y, c.y),
+             dz = beyond(box.lower.z, box.upper.z, c.z);
+  const real limit = frames::limit(around, reach);
+  return limit >= 0 && dx * dx + dy * dy + dz * dz <= limit * limit;
+}
+
+/// Counts what a whole tile drops and says where the rest is, without loading it; false: this source cannot.
+template <point_source S>
+bool survey(const S& source, std::size_t begin, extent& box, tally& mine) {
+  if constexpr (surveyed_source<S>) return source.survey(begin, box, mine.dropped);
+  return false;
+}
+
+/// Points begin .. end - 1, tile by tile; nearly all tiles are far from every part, and are not looked at again.
+template <class Body>
+void scan_tiles(const Body& body, std::size_t begin, std::size_t end, tally& mine) {
+  const auto reach = [&](std::uint32_t k) { return body.answer.reach(k); };
+  for (std::size_t i = begin; i < end; i += tile_points) {
+    const std::size_t count = std::min(tile_points, end - i);
+    tile t;
+    extent box;
+    bool loaded = false;
+    if (count == tile_points && survey(body.source, i, box, mine)) {
+      box = {box.lower - body.origin, box.upper - body.origin};
+    } else {
+      t.load(body.source, i, count, 1, mine);
+      t.subtract(body.origin);
+      box = box_of(t);
+      loaded = true;
+    }
+    std::uint32_t k = 0;
+    while (k < body.part_count && !may_reach(body.places[k].around, reach(k), box)) ++k;
+    if (k == body.part_count) continue;
+    if (!loaded) {
+      tally uncounted;
+      t.load(body.source, i, count, 1, uncounted);
+      t.subtract(body.origin);
+    }
+    tile_survivors near;
+    for (; k < body.part_count; ++k)
+      if (may_reach(body.places[k].around, reach(k), box)) near.add(t, body.places[k].around, reach(k));
+    near.for_each([&](std::size_t j) { body.visit(t[j], i + j); });
+  }
+}
+
+/// A few points spread over the cloud, each taken greedily to one leaf, before all others; `descend(p, index, part)`
+/// does it. Those nearest to each part's middle go first, for a bound that makes the others few.
+template <class Body, class Descend>
+void sample_tiles(const Body& body, std::size_t tiles, Descend descend) {
+  const std::size_t stride = body.source.size() / (tiles * tile_points);
+  const auto index = [&](std::size_t n, std::size_t j) { return (n * tile_points + j) * stride; };
+  const auto reach = [&](std::uint32_t k) { return body.answer.reach(k); };
+  tile t;
+  tally uncounted;
+  for (std::size_t n = 0; n < tiles; ++n) {
+    t.load(body.source, index(n, 0), tile_points, stride, uncounted);
+    t.subtract(body.origin);
+    for (std::uint32_t k = 0; k < body.part_count; ++k) {
+      const vec3 c = body.places[k].around.center;
+      alignas(64) real away[tile_points];
+      for (std::size_t j = 0; j < tile_points; ++j) {
+        const real dx = t.x[j] - c.x, dy = t.y[j] - c.y, dz = t.z[j] - c.z;
+        away[j] = dx * dx + dy * dy + dz * dz;
+      }
+      std::size_t nearest = 0;
+      real least = infinity;
+      for (std::size_t j = 0; j < tile_points; ++j)
+        if (away[j] < least) least = away[j], nearest = j;
+      if (may_reach(body.places[k].around, reach(k), t[nearest])) descend(t[nearest], index(n, nearest), k);
+    }
+  }
+}
+
+}  // namespace clearance::scan

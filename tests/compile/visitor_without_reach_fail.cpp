@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// expected-error: a visitor needs: CLEARANCE_HD real reach() const
+#include <clearance/concepts.hpp>
+
+struct counter {
+  using result_type = int;
+  CLEARANCE_HD void offer(std::uint32_t, clearance::real) {}
+  CLEARANCE_HD int result() const { return 0; }
+};
+
+static_assert(clearance::explain_visitor<counter>());

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every pair within reach comes to an answer once: all points against all primitives, in every bit.
+#include "support/product.hpp"
+#include "support/tallied.hpp"
+
+#include <clearance/collect.hpp>
+#include <clearance/make_part.hpp>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/obb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+using clearance::host, clearance::placed, clearance::point_span;
+
+namespace {
+
+const auto nothing_inside = [](std::uint32_t, vec3) { return false; };
+
+template <class V, class P>
+void collect_all_scenes() {
+  verdict v;
+  for (const auto& s : scenes<P>()) {
+    const auto model = make_model<V>(s, {}, clearance::wrapped{});
+    for (const real farthest : {real(-0.1), real(0), real(0.3), real(5), clearance::infinity}) {
+      tally_of_pairs expected, found, of_two, one_thread;
+      brute_tally(s, s.points, s.cloud_pose, 0, farthest, nothing_inside, expected);
+      const placed cloud{point_span(s.points), s.cloud_pose};
+      const std::string what = s.name + ", within " + std::to_string(farthest);
+      const auto counts = clearance::collect(host{}, model, s.poses, cloud, tallied{farthest, found.words});
+      v.require(found == expected, what, ": other pairs than brute force's");
+      const auto r = clearance::min_distance(host{}, model, s.poses, cloud);
+      v.require(counts.seen == r.seen && counts.valid == r.valid && std::ranges::equal(counts.dropped, r.dropped), what, ": other counts");
+      clearance::collect(host{1}, model, s.poses, cloud, tallied{farthest, one_thread.words});
+      v.require(one_thread == expected, what, ": other pairs with one thread");
+      brute_tally(s, s.points, s.cloud_pose, 1, farthest, nothing_inside, expected);
+      clearance::collect(host{}, model, s.poses, std::vector(2, cloud), tallied{farthest, of_two.words});
+      v.require(of_two == expected, what, ": other pairs of two clouds");
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Every pair of a point and inner spheres within reach comes to an answer once") { collect_all_scenes<clearance::sphere, inner_sphere>(); }
+TEST_CASE("Every pair of a point and triangles within reach comes to an answer once") { collect_all_scenes<clearance::obb, triangle>(); }
+
+TEST_CASE("A point inside a solid is a pair of distance 0 without a primitive") {
+  clearance::triangle_mesh m;
+  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const clearance::model model(std::vector{clearance::make_part<clearance::aabb>(clearance::close_mesh(m))});
+  scene<triangle> s;
+  const auto& tree = model.parts()[0].tree;
+  s.parts.emplace_back(tree.primitives.size());
+  for (std::size_t k = 0; k < tree.primitives.size(); ++k) s.parts[0][tree.ids[k]] = tree.primitives[k];
+  dice d(91);
+  s.poses = {d.pose(0.2)};
+  s.points = d.points(3000, 2.5);
+  s.cloud_pose = d.pose(0.1);
+  for (const real farthest : {real(-1), real(0), real(0.5)}) {
+    tally_of_pairs expected, found;
+    const auto interior = model.parts()[0].interior.view();
+    brute_tally(s, s.points, s.cloud_pose, 0, farthest, [&](std::uint32_t, vec3 q) { return interior.inside(q); }, expected);
+    clearance::collect(host{}, model, s.poses, placed{point_span(s.points), s.cloud_pose}, tallied{farthest, found.words});
+    CHECK(found == expected);
+    CHECK((farthest < 0 || found.words[0] > 100));
+  }
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whatever is enqueued returns while its stream is held, and can be captured; several clouds too.
+#include "support/held_stream.cuh"
+#include "support/product_device.cuh"
+#include "support/tallied.hpp"
+
+#include <clearance/backend/pinned_buffer.cuh>
+#include <clearance/collect.cuh>
+#include <clearance/min_distance_query.cuh>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+using clearance::device, clearance::host, clearance::placed, clearance::point_span;
+
+namespace {
+
+/// A robot, two clouds of different kinds in device memory, and room for answers.
+struct given {
+  own_stream stream;
+  device gpu{0, stream.handle};
+  scene<inner_sphere> s = scenes<inner_sphere>()[1];
+  sources<inner_sphere> all{s};
+  decltype(make_model<clearance::sphere>(s, {}, clearance::wrapped{})) on_host = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  decltype(on_host.on(gpu)) model = on_host.on(gpu);
+  device::buffer<std::byte> points = gpu.copy_in(all.span.bytes()), pixels = gpu.copy_in(all.raw.bytes());
+  placed<point_span> cloud{all.span.at(points.data()), s.cloud_pose};
+  std::tuple<placed<point_span>, placed<clearance::depth_image<std::uint16_t>>> clouds{cloud, {all.raw.at(pixels.data()), all.camera_pose}};
+  clearance::pinned_buffer<clearance::min_distance_result> result{1, 0};
+  clearance::pinned_buffer<clearance::part_minimum> minima{model.size(), 0};
+  clearance::pinned_buffer<clearance::world_transform> poses{s.poses.size() + 1, 0};
+  clearance::pinned_buffer<unsigned long long> words{2, 0};
+  clearance::pinned_buffer<clearance::point_counts> counts{1, 0};
+  clearance::min_distance_query<device, typename decltype(model)::view_type> query{gpu, model};
+
+  given() {
+    for (std::size_t k = 0; k < s.poses.size(); ++k) poses.data()[k] = clearance::world_transform(s.poses[k]);
+    poses.data()[s.poses.size()] = clearance::world_transform(s.cloud_pose);
+  }
+
+  /// Calls `each(name, enqueue, clouds on the host)` for every way to enqueue a frame.
+  template <class Each>
+  void every_way(Each each) {
+    const placed here{all.span, s.cloud_pose};
+    const std::tuple both(here, placed{all.raw, all.camera_pose});
+    const auto one = [&](const auto& there, const auto& same, const std::string& what) {
+      each("min_distance_async" + what, [&] { clearance::min_distance_async(gpu, model, s.poses, there, result.data()); }, same);
+      each("min_distance_per_part_async" + what, [&] { clearance::min_distance_per_part_async(gpu, model, s.poses, there, result.data(), minima.data()); }, same);
+      each("enqueue" + what, [&] { query.enqueue(s.poses, there, result.data()); }, same);
+      each("enqueue_per_part" + what, [&] { query.enqueue_per_part(s.poses, there, result.data(), minima.data()); }, same);
+    };
+    one(cloud, here, "");
+    one(clouds, both, " of two clouds");
+    const auto* const of_cloud = poses.data() + s.poses.size();
+    each("enqueue of poses there", [&] { query.enqueue(poses.data(), cloud.source, of_cloud, result.data()); }, here);
+    each("enqueue_per_part of poses there", [&] { query.enqueue_per_part(poses.data(), cloud.source, of_cloud, result.data(), minima.data()); }, here);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Every frame that is enqueued returns while its stream is held, and is right when it is released", "[concurrent]") {
+  given g;
+  verdict v;
+  g.every_way([&](const std::string& name, auto enqueue, const auto& same) {
+    const bool per_part = name.find("per_part") != std::string::npos;
+    const auto expected = per_part ? clearance::min_distance_per_part(host{}, g.on_host, g.s.poses, same).first
+                                   : clearance::min_distance(host{}, g.on_host, g.s.poses, same);
+    enqueue();  // once, as loading a kernel may wait for everything
+    g.gpu.wait();
+    *g.result.data() = {};
+    gate held(g.stream.handle);
+    enqueue();
+    v.require(cudaStreamQuery(g.stream.handle) == cudaErrorNotReady, name, ": it has waited");
+    held.release();
+    v.require(same_result(*g.result.data(), expected), name, ": differs from the host's result");
+  });
+}
+
+TEST_CASE("An answer of one's own is enqueued without waiting, too", "[concurrent]") {
+  given g;
+  tally_of_pairs expected;
+  const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});
+  clearance::collect(host{}, g.on_host, g.s.poses, both, tallied{1, expected.words});
+  const auto enqueue = [&] { clearance::collect_async(g.gpu, g.model, g.s.poses, g.clouds, tallied{1, g.words.data()}, g.counts.data()); };
+  enqueue();
+  g.gpu.wait();
+  g.words.data()[0] = g.words.data()[1] = 0;
+  gate held(g.stream.handle);
+  enqueue();
+  CHECK(cudaStreamQuery(g.stream.handle) == cudaErrorNotReady);
+  held.release();
+  CHECK((g.words.data()[0] == expected.words[0] && g.words.data()[1] == expected.words[1]));
+}
+
+TEST_CASE("Every frame that is enqueued by a prepared query can be captured and launched again") {
+  given g;
+  verdict v;
+  g.every_way([&](const std::string& name, auto enqueue, const auto& same) {
+    if (name.find("async") != std::string::npos) return;  // asks for memory
+    const bool per_part = name.find("per_part") != std::string::npos;
+    const auto expected = per_part ? clearance::min_distance_per_part(host{}, g.on_host, g.s.poses, same).first
+                                   : clearance::min_distance(host{}, g.on_host, g.s.poses, same);
+    enqueue();
+    g.gpu.wait();
+    cudaGraph_t graph = nullptr;
+    cudaGraphExec_t frame = nullptr;
+    clearance::check_cuda(cudaStreamBeginCapture(g.stream.handle, cudaStreamCaptureModeThreadLocal), "cudaStreamBeginCapture");
+    enqueue();
+    clearance::check_cuda(cudaStreamEndCapture(g.stream.handle, &graph), "cudaStreamEndCapture");
+    clearance::check_cuda(cudaGraphInstantiate(&frame, graph, 0), "cudaGraphInstantiate");
+    for (int launch = 0; launch < 3; ++launch) {
+      *g.result.data() = {};
+      clearance::check_cuda(cudaGraphLaunch(frame, g.stream.handle), "cudaGraphLaunch");
+      g.gpu.wait();
+      v.require(same_result(*g.result.data(), expected), name, ", launch ", launch, ": differs from the host's result");
+    }
+    cudaGraphExecDestroy(frame), cudaGraphDestroy(graph);
+  });
+}

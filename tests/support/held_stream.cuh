@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Streams of one's own, and what holds them.
+
+#include <clearance/backend/cuda_error.cuh>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+namespace testing {
+
+inline void check(cudaError_t status) { clearance::check_cuda(status, "a call of the test"); }
+
+/// A stream of its own, on the current device.
+struct own_stream {
+  cudaStream_t handle = nullptr;
+  own_stream() { check(cudaStreamCreateWithFlags(&handle, cudaStreamNonBlocking)); }
+  ~own_stream() { cudaStreamDestroy(handle); }
+  own_stream(const own_stream&) = delete;
+};
+
+/// Holds a stream until it is released, and releases it in any case. Kernels must have run once before: loading them
+/// may wait for everything.
+class gate {
+ public:
+  explicit gate(cudaStream_t stream) : stream_(stream) {
+    check(cudaLaunchHostFunc(stream, [](void* open) {
+      while (!*static_cast<std::atomic<bool>*>(open)) std::this_thread::sleep_for(std::chrono::microseconds(50));
+    }, &open_));
+  }
+  void release() {
+    open_ = true;
+    check(cudaStreamSynchronize(stream_));
+  }
+  ~gate() {
+    open_ = true;
+    cudaStreamSynchronize(stream_);
+  }
+  gate(const gate&) = delete;
+
+ private:
+  cudaStream_t stream_;
+  std::atomic<bool> open_{false};
+};
+
+}  // namespace testing
