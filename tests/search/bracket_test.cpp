@@ -102,7 +102,7 @@ TEST_CASE("A distance below 0 by less than the error, or by less than the tolera
 }
 
 TEST_CASE("The lower end is the least over all parts, not the winner's") {
-  const clearance::model robot(std::vector{unit_ball(0.125f), unit_ball(0.875f)});
+  const auto robot = clearance::model(std::vector{unit_ball(0.125f), unit_ball(0.875f)});
   const std::vector<Eigen::Isometry3d> poses = {shifted(-2, 0, 0), shifted(2.25, 0, 0)};
   const std::vector<vec3> points = {{0, 0, 0}};
   // 1 to the first part, 1.25 to the second, which may reach as far as 0.375.
@@ -117,7 +117,7 @@ TEST_CASE("The lower end is the least over all parts, not the winner's") {
   CHECK(shared.lower == Approx(0.125).epsilon(1e-3));
   CHECK(shared.lower <= each.lower);
   // One part without a certificate spoils it for all.
-  const clearance::model half(std::vector{unit_ball(0.125f), unit_ball(infinity)});
+  const auto half = clearance::model(std::vector{unit_ball(0.125f), unit_ball(infinity)});
   CHECK(min_distance_per_part(host{}, half, poses, points).first.lower == 0);
   CHECK(min_distance(host{}, half, poses, points).lower == 0);
 }
@@ -167,7 +167,7 @@ TEST_CASE("Points inside triangle parts are brute force too, witness and ties in
   dice d(31);
   verdict v;
   const auto surface = cube_part();
-  const clearance::model robot(std::vector{surface, surface, surface});
+  const auto robot = clearance::model(std::vector{surface, surface, surface});
   const std::vector<brute_part<triangle, cube_interior>> parts(3, {cube(), surface.facts, {}});
   for (int round = 0; round < 60; ++round) {
     // Far apart, overlapping, or two in one place.

@@ -48,7 +48,7 @@ TEST_CASE("A point inside a solid is a pair of distance 0 without a primitive") 
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
   m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  const clearance::model model(std::vector{clearance::make_part<clearance::aabb>(clearance::close_mesh(m))});
+  const auto model = clearance::make_model<clearance::aabb>(std::vector<clearance::closed_mesh>{clearance::close_mesh(m)});
   scene<triangle> s;
   const auto& tree = model.parts()[0].tree;
   s.parts.emplace_back(tree.primitives.size());

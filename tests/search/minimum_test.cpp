@@ -5,6 +5,7 @@
 #include "support/volumes.hpp"
 
 #include <clearance/bvh/flat_list.hpp>
+#include <clearance/make_part.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -234,7 +235,7 @@ TEST_CASE("The number of threads changes nothing") {
 
 TEST_CASE("Poses that are not rigid, and a wrong number of them, are refused with a sentence") {
   const std::vector<inner_sphere> one = {{{0, 0, 0}, 1}};
-  const clearance::model model(std::vector{clearance::make_part(clearance::build<clearance::sphere>(one)), clearance::make_part(clearance::build<clearance::sphere>(one))});
+  const auto model = clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{one, one});
   const std::vector<vec3> points = {{3, 0, 0}};
   const auto ask = [&](std::vector<Eigen::Isometry3d> poses, Eigen::Isometry3d cloud = identity()) {
     return refusal([&] { min_distance(host{}, model, poses, placed{point_span(points), cloud}); });
