@@ -121,7 +121,7 @@ void check_volume_laws() {
 
 /// `reach()` never grows, a farther offer changes nothing, and the order of offers does not matter.
 template <clearance::visitor Q, class Same>
-void check_query_laws(const Q& start, Same same) {
+void check_visitor_laws(const Q& start, Same same) {
   static_assert(clearance::explain_visitor<Q>());
   dice d(11);
   verdict v;
