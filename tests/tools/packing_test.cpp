@@ -28,7 +28,7 @@ struct scene {
 };
 
 /// An answer without what differs from run to run.
-nlohmann::json answer(const std::string& arguments, const std::string& cache = {}) {
+nlohmann::json reply_to(const std::string& arguments, const std::string& cache = {}) {
   auto j = parsed(run_command(arguments, cache));
   j.erase("seconds"), j.erase("notes");
   return j;
@@ -51,8 +51,8 @@ TEST_CASE("clearance pack fills the links of a robot, and a query takes them fro
   // The file's packing gives what packing on the spot gives, all of it.
   const outcome from_file = run_command(s.ask + " --packing " + s.path("r.ist"));
   CHECK(from_file.err.empty());
-  const auto direct = answer(s.ask + " --spheres 300");
-  CHECK(answer(s.ask + " --packing " + s.path("r.ist")) == direct);
+  const auto direct = reply_to(s.ask + " --spheres 300");
+  CHECK(reply_to(s.ask + " --packing " + s.path("r.ist")) == direct);
   CHECK(direct.at("lower").get<double>() > 0);
   // So does YAML, but for the certificate, which is made anew and is as good.
   const outcome from_yaml = run_command(s.ask + " --packing " + s.path("r.yaml"));
@@ -106,7 +106,7 @@ TEST_CASE("a robot is packed once, and a damaged cache is packed anew") {
   CHECK(cached(pack, "") == "00");
   CHECK(cached(pack + " --cache " + where, "") == "11");
   CHECK(cached("pack " + s.urdf + " --spheres 101 --json", where) == "00");
-  const auto fresh = answer(s.ask + " --spheres 100"), kept = answer(s.ask + " --spheres 100", where);
+  const auto fresh = reply_to(s.ask + " --spheres 100"), kept = reply_to(s.ask + " --spheres 100", where);
   CHECK(fresh == kept);
   CHECK(run_command("demo --spheres 20", where).out.find("from those that were kept") == std::string::npos);
   CHECK(run_command("demo --spheres 20", where).out.find("from those that were kept") != std::string::npos);
@@ -120,7 +120,7 @@ TEST_CASE("a robot is packed once, and a damaged cache is packed anew") {
     ++damaged;
   }
   CHECK(damaged >= 4);
-  CHECK(answer(s.ask + " --spheres 100", where) == fresh);
+  CHECK(reply_to(s.ask + " --spheres 100", where) == fresh);
   CHECK(cached(pack, where) == "11");  // repaired by the query
 }
 
@@ -239,7 +239,7 @@ TEST_CASE("real robots answer from their files as they do when they are packed",
     INFO(robot);
     const std::string urdf = data + "/robots/" + robot, ask = "query --backend host --json --robot " + urdf + " --cloud " + frame + " --camera-pose -0.8,0.6,1.5,0,0.92388,0,0.38268";
     CHECK(run_command("pack " + urdf + " --spheres 100 --out " + file + " --out " + yaml).code == 0);
-    const auto direct = answer(ask + " --spheres 100"), loaded = answer(ask + " --packing " + file), measured = answer(ask + " --packing " + yaml);
+    const auto direct = reply_to(ask + " --spheres 100"), loaded = reply_to(ask + " --packing " + file), measured = reply_to(ask + " --packing " + yaml);
     CHECK(loaded == direct);
     CHECK(measured.at("distance") == direct.at("distance"));
     CHECK(measured.at("lower").get<double>() == Approx(direct.at("lower").get<double>()).margin(2e-3));
