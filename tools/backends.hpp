@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The only way from the command to the library's query: plain data in, plain data out, so that each backend is one
-// translation unit and only device.cu needs nvcc.
+// The only way from the command to what the library does on a backend: plain data in, plain data out, so that each backend
+// is one translation unit and only device.cu needs nvcc.
 
 #include <clearance/packing/packing.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/result.hpp>
-#include <clearance/solid/close_mesh.hpp>
+#include <clearance/solid/mesh_solid.hpp>
 
 #include <Eigen/Geometry>
 
@@ -73,6 +73,9 @@ class prepared_question {
 /// Builds the models that are asked for; poses and clouds come later.
 std::unique_ptr<prepared_question> prepare_host(const question& asked);
 std::unique_ptr<prepared_question> prepare_device(const question& asked);
+
+/// As clearance::pack, on the device; from any thread. Throws std::runtime_error if no device is compiled in.
+clearance::packing pack_on_device(const clearance::mesh_solid& solid, const clearance::pack_options& options);
 
 struct device_state {
   bool compiled = false, present = false;

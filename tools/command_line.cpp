@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "command_line.hpp"
 
+#include "backends.hpp"
+
 #include <clearance/io/cloud_text.hpp>
 
 #include <cmath>
@@ -72,4 +74,10 @@ std::pair<std::string, std::string> assignment(const std::string& option, const 
   if (equals == text.npos || equals == 0 || equals + 1 == text.size())
     throw usage_error(option, clearance::io::quoted(text) + " is not of the form name=value");
   return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+bool is_device(const std::string& backend) {
+  if (choice("--backend", backend, {"host", "device"}) == 0) return false;
+  if (const device_state gpu = find_device(); !gpu.present) throw usage_error("--backend", "device is not possible: " + gpu.says);
+  return true;
 }

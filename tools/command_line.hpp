@@ -50,3 +50,6 @@ std::size_t choice(const std::string& option, const std::string& text, const std
 
 /// name=value, split at the first '='.
 std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text);
+
+/// Is it --backend device? Throws if there is none.
+bool is_device(const std::string& backend);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <clearance/min_distance_query.cuh>  // the device's own prepared query
+#include <clearance/packing/pack.cuh>
 
 #include "ask.hpp"
 
@@ -14,6 +15,11 @@ __global__ void probe() {}
 reply ask_device(const question& asked) { return ask(clearance::device{}, asked); }
 
 std::unique_ptr<prepared_question> prepare_device(const question& asked) { return prepare(clearance::device{}, asked); }
+
+clearance::packing pack_on_device(const clearance::mesh_solid& solid, const clearance::pack_options& options) {
+  const clearance::own_stream stream(0);  // so that links are packed beside one another
+  return clearance::pack(stream.on(), solid, options);
+}
 
 device_state find_device() {
   int count = 0;

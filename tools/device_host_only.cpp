@@ -4,10 +4,16 @@
 
 #include <stdexcept>
 
-reply ask_device(const question&) { throw std::runtime_error("this clearance was built without CUDA"); }
+namespace {
 
-std::unique_ptr<prepared_question> prepare_device(const question&) {
-  throw std::runtime_error("this clearance was built without CUDA");
-}
+constexpr const char* without = "this clearance was built without CUDA";
 
-device_state find_device() { return {false, false, "this clearance was built without CUDA"}; }
+}  // namespace
+
+reply ask_device(const question&) { throw std::runtime_error(without); }
+
+std::unique_ptr<prepared_question> prepare_device(const question&) { throw std::runtime_error(without); }
+
+clearance::packing pack_on_device(const clearance::mesh_solid&, const clearance::pack_options&) { throw std::runtime_error(without); }
+
+device_state find_device() { return {false, false, without}; }

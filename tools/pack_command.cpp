@@ -19,7 +19,7 @@ using namespace clearance;
 namespace {
 
 struct pack_settings {
-  std::string input, spheres, gap, radius, seconds, seed, geometry, cache, joints;
+  std::string input, spheres, gap, radius, seconds, seed, geometry, cache, joints, backend = "host";
   std::vector<std::string> out, packages, excluded;
   bool overlap = false, no_cache = false, json = false;
 };
@@ -82,6 +82,7 @@ packed_subject fill(const subject& what, const pack_settings& asked, progress& s
   positive("--seconds", asked.seconds, how.pack.seconds);
   if (!asked.seed.empty()) how.pack.seed = whole_number("--seed", asked.seed);
   how.pack.allow_overlap = asked.overlap;
+  how.on_device = is_device(asked.backend);
   how.cache = chosen_cache(asked.no_cache, asked.cache);
   std::vector<body_source> sources;
   for (const io::robot_part& part : what.parts) sources.push_back({part.name, &part.mesh, part.tessellation_error});
@@ -185,7 +186,7 @@ int run(const pack_settings& asked) {
   shown.clear();
   say_notes(what.notes);
   if (asked.json) {
-    nlohmann::ordered_json out = {{what.robot ? "robot" : "mesh", asked.input}};
+    nlohmann::ordered_json out = {{what.robot ? "robot" : "mesh", asked.input}, {"backend", asked.backend}};
     if (what.robot) {
       for (std::size_t k = 0; k < made.bodies.size(); ++k) {
         out["parts"].push_back({{"name", made.bodies[k].name}});
@@ -221,6 +222,7 @@ subcommand add_pack(CLI::App& app) {
   sub->add_flag("--allow-overlap", asked->overlap, "Spheres may overlap: fewer do for the same gap");
   sub->add_flag("--no-cache", asked->no_cache, "Pack anew, and keep nothing");
   one("--cache", asked->cache, "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
+  one("--backend", asked->backend, "host (default) or device: sooner, but other spheres than those that query and run make and keep");
   one("--geometry", asked->geometry, "Of a robot: visual or collision (default)");
   sub->add_option("--package", asked->packages, "name=DIR: where package://name/ is");
   sub->add_option("--exclude-link", asked->excluded, "Leave out this link");

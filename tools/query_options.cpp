@@ -99,9 +99,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.no_cache = raw.no_cache;
   o.cache = raw.cache;
   o.excluded = raw.excluded;
-  const device_state gpu = find_device();
-  o.on_device = raw.backend.empty() ? gpu.present : choice("--backend", raw.backend, {"host", "device"}) == 1;
-  if (o.on_device && !gpu.present) throw usage_error("--backend", "device is not possible: " + gpu.says);
+  o.on_device = raw.backend.empty() ? find_device().present : is_device(raw.backend);
   if (!raw.check.empty()) o.margin = number("--check", raw.check);
   o.json = raw.json;
   o.scene = raw.scene;

@@ -43,10 +43,11 @@ void fill(std::vector<body>& bodies, const std::vector<std::size_t>& which, cons
   wanted.progress = [&](std::size_t done, std::size_t of) {
     shown.show("packing " + what + ' ' + std::to_string(done) + '/' + std::to_string(of));
   };
-  const auto closed = [&](std::size_t k) -> const closed_mesh& { return bodies[k].closed; };
+  const auto closed = which | std::views::transform([&](std::size_t k) -> const closed_mesh& { return bodies[k].closed; });
   std::vector<io::cached_packing> packings;
   try {
-    packings = io::pack_cached(which | std::views::transform(closed), wanted, options.cache);
+    packings = options.on_device ? io::pack_cached(closed, wanted, options.cache, "device", pack_on_device)
+                                 : io::pack_cached(closed, wanted, options.cache);
   } catch (const solid_error& error) {
     refuse(bodies[which[error.index]].name, error);
   }

@@ -19,6 +19,7 @@ struct body_options {
   model_kind model = model_kind::spheres;
   clearance::pack_options pack = {};  // .count spheres a body; progress is shown as well
   bool both = false;                  // pack whichever the model
+  bool on_device = false;             // pack there: sooner, but other spheres than the host's
   clearance::io::packing_cache cache = {};
 };
 

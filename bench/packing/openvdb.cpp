@@ -8,6 +8,7 @@
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/VolumeToSpheres.h>
 
+#include <array>
 #include <cstdio>
 
 namespace {
@@ -27,16 +28,18 @@ packing fill(const mesh_solid& s, int finest, int instances, double& out, double
   openvdb::tools::fillWithSpheres(*grid, found, openvdb::Vec2i(int(sphere_count), int(sphere_count)), false, 0.1f,
                                   std::numeric_limits<float>::max(), 0, instances);
   packing p;
-  sphere_field field;
+  const host here;
+  spheres_there<host> before(here);
   for (const auto& f : found) {
-    const Eigen::Vector3d c(f[0], f[1], f[2]);
+    const vec3d c(f[0], f[1], f[2]);
     if (!(f[3] > 0)) continue;
     out += !s.inside(c) || s.distance(c) < f[3];
-    overlapping += field.distance(c, f[3]) < f[3] * 0.999;
+    overlapping += before.room_in(s.view()).gap(c, f[3]) < f[3] * 0.999;
     p.spheres.push_back({{f[0], f[1], f[2]}, f[3]});
-    field.insert({c, double(f[3])});
+    before.insert(std::array{solid_sphere{c, double(f[3])}});
+    before.plant(128);
   }
-  const gap_report gap = measure_gap(s, field);
+  const gap_report gap = measure_gap(s, std::span<const inner_sphere>(p.spheres));
   p.gap = gap.certified, p.gap_mean = gap.mean, p.gap_p95 = gap.p95;
   arrange(p, s.volume());
   return p;

@@ -1,35 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Packs meshes with inner spheres on a GPU: time, fill, gaps. Mesh files are arguments; without any, the eight links of
-// the KUKA LWR 4+ from the data folder. "all" packs them on a stream each, closing the meshes included; "one_by_one" on
-// one stream; "solids" from solids made beforehand. --benchmark_format=json.
+// the KUKA LWR 4+ from the data folder. "all" packs them beside one another, on a stream each, closing the meshes included;
+// "one_by_one" on one stream; "solids" from solids made beforehand. --benchmark_format=json.
 
 #include "packing/links.hpp"
 
 #include <clearance/packing/pack.cuh>
 
 #include <cstdio>
-#include <thread>
 
 namespace {
 
 using namespace packing_bench;
-
-struct own_stream {
-  cudaStream_t stream;
-  own_stream() { check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreateWithFlags"); }
-  ~own_stream() { cudaStreamDestroy(stream); }
-};
-
-template <class M>
-std::vector<packing> at_once(const std::vector<M>& what, const pack_options& options,
-                             const std::vector<own_stream>& streams) {
-  std::vector<packing> packings(what.size());
-  std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < what.size(); ++i)
-    threads.emplace_back([&, i] { packings[i] = pack(device{0, streams[i].stream}, what[i], options); });
-  for (auto& t : threads) t.join();
-  return packings;
-}
 
 template <class F>
 void measure(const char* name, int times, F f) {
@@ -56,20 +38,19 @@ int main(int argc, char** argv) {
   std::vector<triangle_mesh> meshes;
   std::vector<mesh_solid> solids;
   for (const auto& file : files) meshes.push_back(io::load_mesh(file)), solids.emplace_back(meshes.back());
-  const std::vector<own_stream> streams(files.size());
   pack(device{}, solids.front(), {.count = 10});  // the first call loads the kernels
   const pack_options usual = {.count = sphere_count};
-  measure("pack_gpu/all", 5, [&] { return at_once(meshes, usual, streams); });
-  measure("pack_gpu/solids", 5, [&] { return at_once(solids, usual, streams); });
+  measure("pack_gpu/all", 5, [&] { return pack(device{}, meshes, usual); });
+  measure("pack_gpu/solids", 5, [&] { return pack(device{}, solids, usual); });
   measure("pack_gpu/one_by_one", 3, [&] {
     std::vector<packing> packings;
     for (const auto& m : meshes) packings.push_back(pack(device{}, m, usual));
     return packings;
   });
   measure("pack_gpu/all/strictly_largest_first", 1,
-          [&] { return at_once(meshes, {.count = sphere_count, .gap_per_radius = infinity}, streams); });
+          [&] { return pack(device{}, meshes, {.count = sphere_count, .gap_per_radius = infinity}); });
   measure("pack_gpu/all/overlapping", 1,
-          [&] { return at_once(meshes, {.count = sphere_count, .allow_overlap = true}, streams); });
+          [&] { return pack(device{}, meshes, {.count = sphere_count, .allow_overlap = true}); });
   for (std::size_t i = 0; i < files.size(); ++i)
     for (const std::size_t count : {sphere_count, std::size_t(100000)}) {
       if (count != sphere_count && i != 2 % files.size()) continue;

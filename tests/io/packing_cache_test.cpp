@@ -79,6 +79,15 @@ TEST_CASE("packings of different makers are kept apart") {
   CHECK(other().made.spheres.size() == 7);
   CHECK(made == 1);
   CHECK(io::pack_cached(box, {.count = 20}, cache).made.spheres.size() == 20);
+  const std::vector<closed_mesh> several = {box, close_mesh(shapes::globe({0, 0, 0}, 0.1))};
+  const auto three = [](const mesh_solid& s, pack_options o) {
+    o.count = 3;
+    return pack(s, o);
+  };
+  const auto both = io::pack_cached(several, {.count = 20}, cache, "mine", three);
+  REQUIRE(both.size() == 2);
+  CHECK((both[0].found && both[0].made.spheres.size() == 7));  // by the first of that name
+  CHECK((!both[1].found && both[1].made.spheres.size() == 3));
 }
 
 TEST_CASE("several are packed beside one another, and each is kept and found by itself") {

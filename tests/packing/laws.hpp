@@ -91,6 +91,53 @@ inline double met_gap(const mesh_solid& s, const packing& p) {
   return most;
 }
 
+/// A torus as a formula: any solid that says where it can be asked is packed there.
+struct ring {
+  struct view_type {
+    CLEARANCE_HD static double signed_distance(const vec3d& p) {
+      const double across = ::sqrt(p.x * p.x + p.y * p.y) - 1;
+      return ::sqrt(across * across + p.z * p.z) - 0.25;
+    }
+    CLEARANCE_HD double distance(const vec3d& p, double within, double) const {
+      const double d = ::fabs(signed_distance(p));
+      return d < within ? d : within;
+    }
+    CLEARANCE_HD bool inside(const vec3d& p) const { return signed_distance(p) < 0; }
+  };
+  Eigen::AlignedBox3d bounds() const { return {Vector3d(-1.25, -1.25, -0.25), Vector3d(1.25, 1.25, 0.25)}; }
+  double distance(const Vector3d& p) const { return std::abs(view_type::signed_distance(p)); }
+  bool inside(const Vector3d& p) const { return view_type::signed_distance(p) < 0; }
+
+  view_type view() const { return {}; }
+  template <backend B>
+  ring on(const B&) const {
+    return {};
+  }
+};
+
+/// The laws, of 200 spheres in a ring.
+inline void check_ring(const packing& p) {
+  CHECK(p.spheres.size() == 200);
+  CHECK(p.radius_max == Approx(0.25).epsilon(1e-3));
+  const auto signed_distance = [](const Vector3d& at) { return ring::view_type::signed_distance(at); };
+  int outside = 0, overlapping = 0, broken = 0;
+  for (std::size_t i = 0; i < p.spheres.size(); ++i) {
+    const auto& [c, r] = p.spheres[i];
+    outside += signed_distance({c.x, c.y, c.z}) > -double(r);
+    for (std::size_t j = 0; j < i; ++j) overlapping += gap_between(p.spheres[i], p.spheres[j]) < 0;
+  }
+  CHECK(outside == 0);
+  CHECK(overlapping == 0);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(-1.5, 1.5);
+  for (int i = 0; i < 20000; ++i) {
+    const Vector3d at(unit(random), unit(random), unit(random) / 4);
+    const double exact = std::max(0.0, signed_distance(at)), d = sphere_distance(p, at);
+    broken += !(exact >= std::max(0.0, d - p.gap) && exact <= std::max(0.0, d));
+  }
+  CHECK(broken == 0);
+}
+
 inline bool same(const packing& a, const packing& b) {
   if (a.spheres.size() != b.spheres.size()) return false;
   for (std::size_t i = 0; i < a.spheres.size(); ++i)

@@ -18,7 +18,7 @@ packing on_gpu(const triangle_mesh& mesh, const pack_options& options = {.count 
 }  // namespace
 
 TEST_CASE("a GPU's packing keeps the laws") { keeps_the_laws(on_gpu); }
-TEST_CASE("a GPU packs as well as the host") { is_as_good_as_one_by_one(on_gpu); }
+TEST_CASE("a GPU packs as well as the host") { is_as_good_as_the_host(on_gpu); }
 TEST_CASE("a GPU's packing is the same bits on every run") { repeats_itself(on_gpu); }
 TEST_CASE("a GPU stops packing for each reason") { stops_for_each_reason(on_gpu); }
 TEST_CASE("a GPU lets spheres overlap if asked to") { lets_spheres_overlap(on_gpu); }
@@ -45,4 +45,21 @@ TEST_CASE("solids are packed on several streams at once, each as if it were alon
   for (auto& t : threads) t.join();
   // [streams]
   for (int i = 0; i < 3; ++i) CHECK(same(alone[i], together[i]));
+  const auto range = pack(device{}, meshes, {.count = 500});
+  REQUIRE(range.size() == 3);
+  for (int i = 0; i < 3; ++i) CHECK(same(alone[i], range[i]));
+}
+
+TEST_CASE("the first of several that is wrong is named, on a GPU too") {
+  const triangle_mesh meshes[] = {shapes::box({0, 0, 0}, {1, 0.7, 0.9}), shapes::moebius(), triangle_mesh{}};
+  try {
+    pack(device{}, meshes, {.count = 5});
+    CHECK(false);
+  } catch (const solid_error& error) {
+    CHECK(error.index == 1);
+  }
+}
+
+TEST_CASE("a solid that is no mesh is packed on a GPU if it can be asked there") {
+  check_ring(pack(device{}, ring(), {.count = 200}));
 }

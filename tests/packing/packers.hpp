@@ -43,9 +43,9 @@ void keeps_the_laws(Pack pack, double missed = 3e-5) {
   }
 }
 
-/// Within a few per cent of the host's packer, which looks at one cell after another; it may be better.
+/// Within a few per cent of the host; it may be better.
 template <class Pack>
-void is_as_good_as_one_by_one(Pack pack) {
+void is_as_good_as_the_host(Pack pack) {
   for (const auto& mesh : {shapes::box({0, 0, 0}, {1, 0.7, 0.9}),
                            shapes::merged(shapes::box({0, 0, 0}, {1, 2, 1}), shapes::globe({0.5, 2, 0.5}, 0.7))}) {
     const packing here = pack(mesh, {.count = 600}), there = clearance::pack(mesh, {.count = 600});

@@ -350,5 +350,6 @@ TEST_CASE("clearance info says what it is and what it runs on") {
   if (j.at("device").is_null()) {
     const scene s;
     refuses(s.ask + " --backend device", "--backend: device is not possible");
+    refuses("pack " + s.urdf.path + " --spheres 5 --backend device", "--backend: device is not possible");
   }
 }

@@ -37,7 +37,7 @@ struct certified_spheres {
 /// Proves for spheres from a file what is true of them with this solid: gap, fill, excess.
 template <solid S>
 certified_spheres certify(const S& s, packing spheres, double gap_tolerance = 0.01) {
-  const gap_report gap = measure_gap(s, sphere_field(spheres.spheres), gap_tolerance);
+  const gap_report gap = measure_gap(s, std::span<const inner_sphere>(spheres.spheres), gap_tolerance);
   spheres.gap = gap.certified, spheres.gap_mean = gap.mean, spheres.gap_p95 = gap.p95;
   spheres.fill = 0;
   if constexpr (requires { s.volume(); })

@@ -11,7 +11,7 @@
 namespace clearance::io {
 
 /// To be raised whenever `pack` makes other spheres of the same solid and options.
-inline constexpr std::uint32_t packing_recipe = 2;
+inline constexpr std::uint32_t packing_recipe = 3;
 
 /// Of all that decides what packing makes: the mesh, the options, the algorithm. `maker` tells algorithms apart.
 inline digest packing_key(const closed_mesh& mesh, const pack_options& options, std::string_view maker = "host") {
@@ -104,20 +104,22 @@ cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options,
   return fresh;
 }
 
-/// By `pack` on the host.
-inline cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options, const packing_cache& cache) {
-  return pack_cached(mesh, options, cache, "host",
-                     [](const mesh_solid& s, const pack_options& o) { return pack(s, o); });
-}
-
-/// Of several closed meshes, beside one another as by `pack`; each is kept as soon as it is done.
-template <std::ranges::random_access_range R>
+/// Of several closed meshes, beside one another as by `pack`; each is kept as soon as it is done. `make` is called by
+/// several threads at once.
+template <std::ranges::random_access_range R, class Make>
   requires std::same_as<std::ranges::range_value_t<R>, closed_mesh>
-std::vector<cached_packing> pack_cached(const R& meshes, const pack_options& options, const packing_cache& cache) {
+std::vector<cached_packing> pack_cached(const R& meshes, const pack_options& options, const packing_cache& cache,
+                                        std::string_view maker, Make make) {
   const auto first = std::ranges::begin(meshes);
   return side_by_side(std::size_t(std::ranges::size(meshes)), options, [&](std::size_t i, const pack_options& own) {
-    return pack_cached(first[std::ranges::range_difference_t<const R>(i)], own, cache);
+    return pack_cached(first[std::ranges::range_difference_t<const R>(i)], own, cache, maker, make);
   });
+}
+
+/// By `pack` on the host: a closed mesh, or several.
+template <class M>
+auto pack_cached(const M& meshes, const pack_options& options, const packing_cache& cache) {
+  return pack_cached(meshes, options, cache, "host", [](const mesh_solid& s, const pack_options& o) { return pack(s, o); });
 }
 
 }  // namespace clearance::io

@@ -4,6 +4,7 @@
 #include <clearance/backend/device.cuh>
 #include <clearance/backend/pinned_buffer.cuh>
 #include <clearance/packing/growing.hpp>
+#include <clearance/packing/round_bodies.hpp>
 
 #include <thrust/iterator/counting_iterator.h>
 #include <cub/device/device_reduce.cuh>
@@ -46,8 +47,21 @@ struct larger {
 /// What packing in rounds needs besides a backend, by CUB. Counts are waited for: the host decides what comes next.
 class device_steps {
  public:
+  static constexpr std::size_t cells = 1u << 22;
+
   explicit device_steps(const device& on) : on_(on), temporary_(on), count_(1, on.id), most_(1, on.id) {}
 
+  /// All with 0.9 of the largest key at once: enough for thousands of threads.
+  std::size_t next(const double* keys, std::size_t n, std::size_t most, std::uint32_t* out, double& least) {
+    least = 0.9 * largest(n, rounds::key_of{keys});
+    return least > 0 ? std::min(most, select(n, rounds::at_least{keys, least}, out)) : 0;
+  }
+  void forget() {}
+
+  template <class F>
+  void each(std::size_t n, F f) const {
+    on_.for_each(n, f);
+  }
   template <class F>
   std::size_t select(std::size_t n, F f, std::uint32_t* out) {
     if (n == 0) return 0;

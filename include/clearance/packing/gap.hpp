@@ -1,106 +1,165 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/packing/cells.hpp>
-#include <clearance/packing/sphere_field.hpp>
+#include <clearance/packing/grid.hpp>
+#include <clearance/packing/host_steps.hpp>
+#include <clearance/packing/spheres_there.hpp>
+#include <clearance/primitive/inner_sphere.hpp>
 
 namespace clearance {
 
 struct gap_report {
-  double certified = 0;        ///< No point of the solid, surface and interior, is farther from the spheres. Metres.
-  double mean = 0, p95 = 0;    ///< Over the surface, from samples.
+  double certified = 0;      ///< No point of the solid, surface and interior, is farther from the spheres. Metres.
+  double mean = 0, p95 = 0;  ///< Over the surface, from samples.
 };
 
-/// One branch of the search: cubes are divided until none can hold a point of the solid with a larger gap than `least`
-/// (grown by the tolerance), for the gap changes by no more than the way from the cube's middle. Spheres that cannot be
-/// the nearest to any point of a cube are left out below it.
-template <solid S>
-class gap_search {
- public:
-  gap_search(const S& s, const sphere_field& spheres, double least, double relative, double absolute)
-      : solid_(s), spheres_(spheres), least_(least), relative_(relative), absolute_(absolute) {}
+namespace detail {
 
-  /// An upper bound of the gap over the solid's points in the cell; infinite if that takes more than `visits` cubes, of
-  /// which each costs one.
-  double operator()(const solid_cell& root, std::size_t visits) {
-    left_ = visits;
-    std::vector<std::uint32_t> near(spheres_.size());
-    for (std::uint32_t i = 0; i < near.size(); ++i) near[i] = i;
-    visit(root, near);
-    return left_ == 0 ? std::numeric_limits<double>::infinity() : upper_;
-  }
+struct gap_cell {
+  vec3d middle;
+  double half;
+  double depth;  ///< Signed, of the cell it was cut from; its own once visited; 0 if not known.
+};
 
- private:
-  void visit(const solid_cell& cell, const std::vector<std::uint32_t>& near) {
-    const double reach = cell.reach();
-    if (left_ == 0 || --left_ == 0) return;
-    if (cell.depth < -reach * (1 + 1e-12)) return;  // no point of the solid here
-    double gap = std::numeric_limits<double>::infinity();
-    for (const std::uint32_t i : near) gap = std::min(gap, spheres_[i].distance(cell.middle));
-    if (cell.depth >= 0) least_ = std::max(least_, gap);
-    const double bound = gap + reach, slack = std::max(least_ * relative_, absolute_);
+/// Bounds the gap over the solid's points in a cell.
+template <solid_view V>
+struct gap_visit {
+  room_view<V> in;
+  gap_cell* cells;
+  double* met;     ///< The gap at the middle, if that is in the solid.
+  double* open;    ///< An upper bound, if it is above `target` and can still be narrowed down,
+  double* closed;  ///< or if not.
+  double least, target, slack;
+
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    gap_cell& c = cells[i];
+    const double reach = corner_reach(c.half);
+    met[i] = open[i] = closed[i] = 0;
+    const double gap = in.gap(c.middle, double(infinity), least - reach), bound = gap + reach;
+    if (bound <= least) return;
+    c.depth = signed_depth(in.solid, c.middle, c.depth, reach);  // it lies as far from the middle of its parent
+    if (c.depth < -reach * (1 + 1e-12)) return;                  // no point of the solid here
+    if (c.depth >= 0) met[i] = gap;
     // The solid is less than `reach` away from the middle, so a small cell is too high by twice its reach at most.
-    if (bound <= std::max(least_ + slack, upper_) || 4 * reach <= slack) {
-      upper_ = std::max(upper_, bound);
-      return;
-    }
-    std::vector<std::uint32_t> nearer;
-    for (const std::uint32_t i : near)
-      if (spheres_[i].distance(cell.middle) <= gap + 2.0000001 * reach) nearer.push_back(i);
-    for (int k = 0; k < 8; ++k) visit(eighth(solid_, cell, k), nearer);
+    (bound <= target || 4 * reach <= slack ? closed : open)[i] = bound;
   }
-
-  const S& solid_;
-  const sphere_field& spheres_;
-  double least_, relative_, absolute_, upper_ = 0;
-  std::size_t left_ = 0;
 };
+
+struct gap_spread {
+  const gap_cell* from;
+  const std::uint32_t* some;
+  gap_cell* to;
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const gap_cell& c = from[some[i / 8]];
+    to[i] = {eighth_middle(c.middle, c.half, std::uint32_t(i % 8)), c.half / 2, c.depth};
+  }
+};
+
+struct gap_roots {
+  cube_grid grid;
+  gap_cell* to;
+  CLEARANCE_HD void operator()(std::size_t i) const { to[i] = {grid.middle(i), grid.half, 0}; }
+};
+
+template <solid_view V>
+struct gap_at {
+  room_view<V> in;
+  const vec3d* points;
+  double* gaps;
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const double g = in.gap(points[i], double(infinity));
+    gaps[i] = g > 0 ? g : 0;
+  }
+};
+
+struct value_of {
+  const double* values;
+  CLEARANCE_HD double operator()(std::size_t i) const { return values[i]; }
+};
+struct if_not_above {
+  const double* values;
+  double most;
+  CLEARANCE_HD double operator()(std::size_t i) const { return values[i] > most ? 0 : values[i]; }
+};
+struct is_above {
+  const double* values;
+  double least;
+  CLEARANCE_HD bool operator()(std::size_t i) const { return values[i] > least; }
+};
+
+}  // namespace detail
 
 /// The largest distance from any point of the solid to the nearest sphere, 0 if they cover it: a proven upper bound, by
 /// branch and bound in double rounded up, at most `tolerance` (relative) or 10 um or 1e-5 of the solid above the truth;
-/// more only where the search would take too long.
-template <solid S>
-gap_report measure_gap(const S& s, const sphere_field& spheres, double tolerance = 0.01) {
+/// more only where the search would take too long. All cells of one size at once: of the gap met so far they all know the
+/// same, so the result does not depend on their order.
+template <backend B, class Steps, solid S, solid_view V>
+gap_report measure_gap(const B& on, Steps& steps, const S& s, const room_view<V>& in, double tolerance) {
   gap_report report;
-  const double diagonal = s.bounds().diagonal().norm();
-  if (spheres.size() == 0) {
-    report.certified = report.mean = report.p95 = std::numeric_limits<double>::infinity();
+  if (in.count == 0) {
+    report.certified = report.mean = report.p95 = double(infinity);
     return report;
   }
   // Any gap that is met bounds the largest from below; the better that bound, the less is searched.
-  double least = 0;
-  const auto gap = [&](const Eigen::Vector3d& p) {
-    return std::max(0.0, spheres.distance(p, std::numeric_limits<double>::infinity()));
-  };
+  std::vector<vec3d> points;
+  if constexpr (requires { s.surface_points(std::size_t(1)); })
+    for (const auto& p : s.surface_points(20000)) points.push_back(p);
+  const std::size_t samples = points.size();
   if constexpr (requires { s.corners(); })
-    for (const auto& p : s.corners()) least = std::max(least, gap(p));
-  if constexpr (requires { s.surface_points(std::size_t(1)); }) {
-    std::vector<double> gaps;
-    for (const auto& p : s.surface_points(20000)) gaps.push_back(gap(p));
-    for (const double g : gaps) report.mean += g / double(gaps.size()), least = std::max(least, g);
-    const auto at = gaps.begin() + std::ptrdiff_t(gaps.size() * 95 / 100);
+    for (const auto& p : s.corners()) points.push_back(p);
+  double least = 0;
+  if (!points.empty()) {
+    const auto there = on.copy_in(std::span<const vec3d>(points));
+    auto gaps_there = on.template make_scratch<double>(points.size());
+    steps.each(points.size(), detail::gap_at<V>{in, there.data(), gaps_there.data()});
+    std::vector<double> gaps = on.copy_out(gaps_there.data(), gaps_there.size());
+    least = *std::max_element(gaps.begin(), gaps.end());
+    gaps.resize(samples);
+    for (const double g : gaps) report.mean += g / double(samples);
+    const auto at = gaps.begin() + std::ptrdiff_t(samples * 95 / 100);
     std::nth_element(gaps.begin(), at, gaps.end());
-    report.p95 = *at;
+    if (samples != 0) report.p95 = *at;
   }
-  // Finer and finer by a quarter, until it is as fine as asked or takes too long: the gap of a ball in a ball, say, is the same all over
-  // the surface, which no search can narrow down.
-  const double finest = std::min(1e-5, 1e-5 * diagonal);
-  const std::vector<solid_cell> roots = cover(s, 16);
-  std::vector<double> upper(roots.size(), std::numeric_limits<double>::infinity());
-  for (double absolute = 0.05 * diagonal;; absolute = std::max(finest, absolute / 4)) {
-    constexpr std::size_t visits = 10000;  // for one of about a thousand cells
-    std::vector<double> finer = upper;
-    tbb::parallel_for(std::size_t(0), roots.size(), [&](std::size_t i) {
-      if (upper[i] > least * (1 + tolerance)) finer[i] = gap_search<S>(s, spheres, least, tolerance, absolute)(roots[i], visits);
-    });
-    double bound = least;
-    for (std::size_t i = 0; i < roots.size(); ++i) bound = std::max(bound, upper[i] = std::min(upper[i], finer[i]));
-    report.certified = bound;
-    const bool gave_up = std::find(finer.begin(), finer.end(), std::numeric_limits<double>::infinity()) != finer.end();
-    if (gave_up || absolute <= std::max(finest, least * tolerance)) break;
+
+  const double diagonal = Eigen::AlignedBox3d(s.bounds()).diagonal().norm(), finest = std::min(1e-5, 1e-5 * diagonal);
+  growing<detail::gap_cell, B> cells(on), next(on);
+  growing<double, B> met(on), open(on), closed(on);
+  growing<std::uint32_t, B> some(on);
+  const cube_grid grid(s.bounds(), 16);
+  std::size_t n = grid.size();
+  steps.each(n, detail::gap_roots{grid, cells.reserve(n)});
+  double upper = 0;
+  while (n > 0) {  // cells become half as large, until 4 * reach <= slack, which is at least `finest`
+    const double slack = std::max(least * tolerance, finest);
+    steps.each(n, detail::gap_visit<V>{in, cells.data(), met.reserve(n), open.reserve(n), closed.reserve(n), least, least + slack, slack});
+    least = std::max(least, steps.largest(n, detail::value_of{met.data()}));
+    upper = std::max(upper, steps.largest(n, detail::value_of{closed.data()}));
+    const double enough = std::max(upper, least + std::max(least * tolerance, finest));
+    upper = std::max(upper, steps.largest(n, detail::if_not_above{open.data(), enough}));
+    const std::size_t split = steps.select(n, detail::is_above{open.data(), enough}, some.reserve(n));
+    if (8 * split > Steps::cells) {  // the gap of a ball in a ball, say, is the same all over, which no search can narrow down
+      upper = std::max(upper, steps.largest(n, detail::value_of{open.data()}));
+      break;
+    }
+    steps.each(8 * split, detail::gap_spread{cells.data(), some.data(), next.reserve(8 * split)});
+    std::swap(cells, next);
+    n = 8 * split;
   }
-  report.certified = report.certified * (1 + 1e-12) + 1e-12 * diagonal;
+  report.certified = std::max(least, upper) * (1 + 1e-12) + 1e-12 * diagonal;
   return report;
+}
+
+/// The same on the host, of spheres from anywhere.
+template <solid S>
+gap_report measure_gap(const S& s, std::span<const inner_sphere> spheres, double tolerance = 0.01) {
+  const host on;
+  host_steps steps(on);
+  std::vector<solid_sphere> wide;
+  for (const inner_sphere& each : spheres) wide.push_back({{each.center.x, each.center.y, each.center.z}, each.radius});
+  spheres_there<host> all(on);
+  all.insert(wide);
+  all.plant(0);
+  return measure_gap(on, steps, s, all.room_in(solid_there<host, S>(on, s).view()), tolerance);
 }
 
 }  // namespace clearance

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/solid/mesh_solid_view.hpp>
+#include <clearance/solid/solid_view.hpp>
 
 namespace clearance {
 
@@ -15,11 +15,13 @@ CLEARANCE_HD inline vec3d eighth_middle(const vec3d& middle, double half, std::u
 
 /// The signed distance, positive inside, where it is `known` to differ by at most `step` from that of another place;
 /// `known` is 0 if nothing is. No surface lies within |known| of the other place.
-CLEARANCE_HD inline double signed_depth(const mesh_solid_view& in, const vec3d& p, double known, double step) {
+CLEARANCE_CALLS_ANYTHING
+template <solid_view V>
+CLEARANCE_HD double signed_depth(const V& in, const vec3d& p, double known, double step) {
   const double free = known < 0 ? -known : known;
   const double within = free > 0 ? (free + step) * (1 + 1e-12) : double(infinity);
   const bool inside = free > step * (1 + 1e-9) ? known > 0 : in.inside(p);
-  const double d = in.distance(p, within);
+  const double d = in.distance(p, within, 0);
   return inside ? d : -d;
 }
 

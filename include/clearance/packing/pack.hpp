@@ -14,7 +14,11 @@ namespace clearance {
 template <solid S>
 packing pack(const S& s, const pack_options& options = {}) {
   packing made;
-  for_each_packing(1, options.threads, [&](std::size_t) { made = packer<S>(s, options).run(); });
+  for_each_packing(1, options.threads, [&](std::size_t) {
+    const host on;
+    host_steps steps(on);
+    made = packer<host, host_steps, S>(on, steps, s, options).run();
+  });
   return made;
 }
 
@@ -27,20 +31,27 @@ concept packable_range =
     std::ranges::random_access_range<R> && std::ranges::sized_range<R> &&
     (solid<std::ranges::range_value_t<R>> || std::constructible_from<mesh_solid, std::ranges::range_reference_t<R>>);
 
+/// `make(solid, options)` for each of several, or for the solids that meshes enclose, beside one another.
+template <class R, class Make>
+  requires packable_range<const R>
+std::vector<packing> pack_each(const R& solids, const pack_options& options, const Make& make) {
+  const auto first = std::ranges::begin(solids);
+  return side_by_side(std::size_t(std::ranges::size(solids)), options, [&](std::size_t i, const pack_options& own) {
+    decltype(auto) element = first[std::ranges::range_difference_t<const R>(i)];
+    if constexpr (solid<std::ranges::range_value_t<R>>)
+      return make(element, own);
+    else
+      return make(mesh_solid(element), own);
+  });
+}
+
 /// Packs several, such as the links of a robot, beside one another: the same packings as one by one, sooner. `seconds` is
 /// for each; `progress` counts all spheres. Each element is asked for once, from any thread. Throws solid_error for the
 /// first that is wrong.
 template <class R>
   requires packable_range<const R>
 std::vector<packing> pack(const R& solids, const pack_options& options = {}) {
-  const auto first = std::ranges::begin(solids);
-  return side_by_side(std::size_t(std::ranges::size(solids)), options, [&](std::size_t i, const pack_options& own) {
-    decltype(auto) element = first[std::ranges::range_difference_t<const R>(i)];
-    if constexpr (solid<std::ranges::range_value_t<R>>)
-      return pack(element, own);
-    else
-      return pack(mesh_solid(element), own);
-  });
+  return pack_each(solids, options, [](const auto& s, const pack_options& own) { return pack(s, own); });
 }
 
 }  // namespace clearance

@@ -1,41 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/packing/ascent.hpp>
 #include <clearance/packing/gap.hpp>
 #include <clearance/packing/limits.hpp>
-#include <clearance/packing/rules.hpp>
+#include <clearance/packing/round_bodies.hpp>
 
 #include <chrono>
-#include <numeric>
 #include <random>
 
 namespace clearance {
 
 /// Fills a solid with spheres, the largest first. The room at a point is its distance to the surface and to the spheres so
 /// far; it changes by no more than the way between two points, so a cube's room is at most that of its middle plus half
-/// its diagonal, and the cube with the largest such bound is divided, or, once it is small against its room, climbed from
-/// (branch and bound on ProtoSphere's field, Weller & Zachmann 2010). So a sphere is never smaller than three quarters of
-/// the largest that fits, except where `gap_per_radius` asks for it, and in solids whose largest room is nearly the same
-/// in a great many places, such as thin shells: there bounds are trusted less and less as cubes pile up.
-template <solid S>
+/// its diagonal (branch and bound on ProtoSphere's field, Weller & Zachmann 2010). In rounds, for machines that do much at
+/// once: of all cubes with nearly the largest bound those that are small against their room are climbed from, of the
+/// spheres found those are taken that conflict with none larger, and the other cubes are divided.
+///
+/// `Steps` are what a backend does not offer, and how much it does at once. each(n, f), where one f takes long;
+/// climbers(n, f), which calls f(i, lanes); select(n, f, out), numbers of those for which f holds, in order; largest(n, f),
+/// at least 0; next(keys, n, most, out, least), numbers of at most so many cells whose keys are positive and at least
+/// `least`, nearly the largest, none where there are none; forget(), after a change of keys of other cells than these; and
+/// `cells`, so many before they pile up.
+template <backend B, class Steps, solid_for<B> S>
 class packer {
  public:
-  packer(const S& s, const pack_options& options)
-      : solid_(s), options_(options), limits_(s.bounds(), options),
+  packer(const B& on, Steps& steps, const S& s, const pack_options& options)
+      : on_(on),
+        steps_(steps),
+        solid_(s),
+        options_(options),
+        limits_(s.bounds(), options),
+        there_(on, s),
         rules_(options.gap_per_radius, limits_.smallest) {}
 
   packing run() {
-    const auto start = std::chrono::steady_clock::now();
-    const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
     packing out;
-    out.stopped_by = fill(seconds);
-    for (std::size_t i = 0; i < spheres_.size(); ++i) out.spheres.push_back(rounded(spheres_[i]));
-    out.room = std::max(limits_.smallest, given_up_);
-    for (const turn& t : turns_) out.room = std::max(out.room, cells_[t.at].bound());
-    const gap_report gap = measure_gap(solid_, spheres_, options_.gap_tolerance);
+    out.stopped_by = fill();
+    out.room = std::max(limits_.smallest, steps_.largest(alive_, rounds::bound_of{cells_.data(), keys_.data()}));
+    const gap_report gap = certify();
     out.gap = gap.certified, out.gap_mean = gap.mean, out.gap_p95 = gap.p95;
-    double volume = std::numeric_limits<double>::infinity();
+    for (const solid_sphere& s : spheres_.here())
+      out.spheres.push_back({{real(s.center.x), real(s.center.y), real(s.center.z)}, real(s.radius)});  // floats: see `fit`
+    double volume = double(infinity);
     if constexpr (requires { solid_.volume(); }) volume = solid_.volume();
     arrange(out, volume);
     out.seconds = seconds();
@@ -43,171 +49,113 @@ class packer {
   }
 
  private:
-  struct entry {
-    solid_cell cell;
-    double gap;   ///< From the middle to the first `seen` spheres.
-    double key;
-    std::uint32_t seen;
+  using view_type = decltype(std::declval<const solid_there<B, S>&>().view());
+  static constexpr std::size_t most_climbers = 8192;
+  static constexpr std::size_t most_cells = 8 * Steps::cells;  // alive,
+  static constexpr std::size_t most_divided = Steps::cells;    // and between two spheres
 
-    double room() const { return std::min(cell.depth, gap); }
-    double bound() const { return room() + cell.reach(); }  ///< No room in the cell is larger.
-  };
-  /// What the heap moves about: small, for it is as deep as there are many cells, and each level is a miss of the cache.
-  struct turn {
-    double key;
-    std::uint32_t number;  ///< Of two with one key the one that came first.
-    std::uint32_t at;      ///< In cells_.
-
-    friend bool operator<(const turn& a, const turn& b) { return a.key != b.key ? a.key < b.key : a.number > b.number; }
-  };
-  static constexpr std::size_t batch = 256, most_cells = 1u << 22;  // alive,
-  static constexpr std::size_t most_divided = 1u << 20;              // and between two spheres
-
-  static inner_sphere rounded(const sphere_field::sphere& s) {
-    return {{real(s.center.x()), real(s.center.y()), real(s.center.z())}, real(s.radius)};  // floats already: see `fit`
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  rounds::field<view_type> field() { return {spheres_.room_in(there_.view()), rules_, limits_.scale}; }
+  gap_report certify() {
+    spheres_.plant(0);
+    return measure_gap(on_, steps_, solid_, field().in, options_.gap_tolerance);
   }
 
-  /// The sphere with a float centre and radius that surely fits, or radius 0.
-  sphere_field::sphere fit(const sphere_field::sphere& wanted) const {
-    const auto& [at, expected] = wanted;
-    const Eigen::Vector3d c(to_float(at.x()), to_float(at.y()), to_float(at.z()));
-    if ((c - at).norm() > 0.5 * expected) return {c, 0};
-    double r = distance_within(solid_, c, 2 * expected + (c - at).norm());
-    if (!options_.allow_overlap) r = spheres_.distance(c, r);
-    r = r * (1 - 1e-12) - 1e-13 * limits_.scale;  // what rounding may have added
-    if (!(r > 0)) return {c, 0};
-    const double f = to_float(r);
-    return {c, f > r ? double(std::nextafter(float(f), 0.0f)) : f};
-  }
-
-  double key(const solid_cell& cell, double gap) const { return rules_.key(cell.depth, cell.reach(), gap); }
-  void push(const solid_cell& cell, double gap, std::uint32_t seen) {
-    if (!(std::min(cell.depth, gap) + cell.reach() >= limits_.smallest)) return;
-    const entry e = {cell, gap, key(cell, gap), seen};
-    turns_.push_back({e.key, numbers_++, free_.empty() ? std::uint32_t(cells_.size()) : free_.back()});
-    if (free_.empty())
-      cells_.push_back(e);
-    else
-      cells_[free_.back()] = e, free_.pop_back();
-    std::push_heap(turns_.begin(), turns_.end());
-  }
-  entry pop() {
-    std::pop_heap(turns_.begin(), turns_.end());
-    const std::uint32_t at = turns_.back().at;
-    turns_.pop_back();
-    free_.push_back(at);
-    return cells_[at];
-  }
-  void trust_less() {
-    rules_.trust *= 0.6, pile_ += pile_ / 2;
-    for (turn& t : turns_) {
-      entry& e = cells_[t.at];
-      t.key = e.key = key(e.cell, e.gap);
-    }
-    std::make_heap(turns_.begin(), turns_.end());
-  }
-
-  /// Ends, because each turn of the loop does one of these to the cell whose key is the largest, and none for ever: it is
-  /// divided or given up (a cell becomes half as large, down to `finest`); a sphere is added (there are at most `count`); or the
-  /// cell comes back having met all spheres (once a cell and sphere). It does not take for ever either: of a plate that is
-  /// thinner than any sphere looked for there are 1e12 cells, so the search also ends where so many find no sphere.
-  template <class Clock>
-  pack_stop fill(Clock seconds) {
+  /// Ends, because each round does one of these to every cell whose turn it is, and none for ever: it is brought up to date
+  /// (once a cell and sphere), or divided or given up (half as large, down to `finest`), or offers a sphere; and of those the
+  /// largest is taken (at most `count` times). It does not take for ever either: of a plate that is thinner than any sphere
+  /// looked for there are 1e12 cells, so the search also ends where so many find no sphere.
+  pack_stop fill() {
     std::mt19937_64 random(options_.seed);
     Eigen::Vector3d shift;
     for (int k = 0; k < 3; ++k) shift[k] = options_.seed == 0 ? 0 : double(random() >> 11) * 0x1p-53;
-    for (const solid_cell& c : cover(solid_, 8, shift)) push(c, std::numeric_limits<double>::infinity(), 0);
-
-    std::vector<work> works;
-    std::vector<std::uint32_t> order;
+    const cube_grid grid(solid_.bounds(), 8, shift);
+    alive_ = grid.size();
+    steps_.each(alive_, rounds::cover<view_type>{field(), grid, cells_.reserve(alive_), keys_.reserve(alive_)});
+    std::size_t tidy_at = 1u << 16;
     stop_check check(options_);
-    const auto certified = [this] { return measure_gap(solid_, spheres_, options_.gap_tolerance).certified; };
     for (;;) {
-      if (const auto why = check(spheres_.size(), seconds, certified)) return *why;
-      if (turns_.empty()) return limits_.exhausted();
-      if (turns_.size() > most_cells || divided_ > most_divided) return pack_stop::search_limit;
-      if (turns_.size() > pile_) trust_less();
-
-      works.clear();
-      const double top = turns_.front().key;
-      while (!turns_.empty() && works.size() < batch && turns_.front().key >= 0.98 * top)
-        works.push_back({pop(), work::stale, {}});
-      const std::uint32_t seen = std::uint32_t(spheres_.size());
-      tbb::parallel_for(std::size_t(0), works.size(), [&](std::size_t i) {
-        work& w = works[i];
-        entry& e = w.from;
-        if (e.seen < seen) {
-          e.gap = spheres_.update(e.seen, e.cell.middle, e.gap);
-          e.seen = seen;
-          if (key(e.cell, e.gap) < 0.95 * e.key) return;
-        }
-        if (rules_.small(e.room(), e.cell.reach())) {
-          w.what = work::climbed;
-          // Taken before its turn: stay here, there is more room elsewhere.
-          const double way = e.key > e.bound() ? e.room() / 2 : std::numeric_limits<double>::infinity();
-          w.sphere = ascend(solid_, spheres_, e.cell.middle, e.room(), way);
-          if (options_.allow_overlap) w.grown = grow(solid_, w.sphere);
-        } else {
-          divide(w);
-        }
-      });
-      order.resize(works.size());
-      std::iota(order.begin(), order.end(), 0);
-      std::stable_sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-        const work &a = works[i], &b = works[j];
-        return (a.what == work::climbed ? a.sphere.radius : -1) > (b.what == work::climbed ? b.sphere.radius : -1);
-      });
-      for (const std::uint32_t i : order) {
-        work& w = works[i];
-        if (w.what == work::climbed) {
-          const bool untouched = spheres_.size() == seen;
-          // One of the same batch may be in the way; the cell then comes back with less room.
-          const double least = std::max(limits_.smallest, 0.98 * w.sphere.radius);
-          if (spheres_.size() < options_.count && (untouched || spheres_.distance(w.sphere.center, least) >= least)) {
-            const sphere_field::sphere s = options_.allow_overlap ? fit(w.grown) : fit(w.sphere);
-            if (s.radius >= least) spheres_.insert(s), divided_ = 0;
-          }
-          if (untouched && spheres_.size() == seen) divide(w);  // too small, or lost in rounding
-        }
-        if (w.what == work::given_up) {
-          given_up_ = std::max(given_up_, w.from.bound());
-        } else if (w.what == work::divided) {
-          ++divided_;
-          for (const auto& [cell, gap] : w.eighths) push(cell, gap, seen);
-        } else {
-          push(w.from.cell, w.from.gap, w.from.seen);
-        }
+      if (const auto why = check(spheres_.size(), [this] { return seconds(); }, [this] { return certify().certified; })) return *why;
+      if (alive_ > std::min(tidy_at, pile_)) {
+        tidy(), tidy_at = std::max(tidy_at, alive_ + alive_ / 2);
+        while (alive_ > pile_ - pile_ / 8) trust_less(), pile_ += pile_ / 2;  // less would soon be as many again
       }
+      if (alive_ > most_cells || divided_ > most_divided) return pack_stop::search_limit;
+      // All of a thin plate's cells have nearly one key. Before they pile up bounds shall be trusted less, and then some go deep.
+      const std::size_t room = (pile_ - alive_) / 8 + most_climbers;
+      double least;
+      const std::size_t some = steps_.next(keys_.data(), alive_, room, some_.reserve(alive_), least);
+      if (some == 0) return limits_.exhausted();
+      one_round(some, least);
     }
   }
 
-  struct work {
-    entry from;
-    enum { stale, divided, climbed, given_up } what;
-    std::array<std::pair<solid_cell, double>, 8> eighths;
-    sphere_field::sphere sphere = {Eigen::Vector3d::Zero(), 0}, grown = sphere;
-  };
-  void divide(work& w) const {
-    w.what = rules_.finest(w.from.cell.reach()) ? work::given_up : work::divided;
-    for (int k = 0; k < 8; ++k) {
-      const solid_cell c = eighth(solid_, w.from.cell, k);
-      const double bound = c.depth + c.reach();
-      w.eighths[k] = {c, bound < limits_.smallest ? 0 : spheres_.distance(c.middle, rules_.farthest_gap(bound))};
+  void one_round(std::size_t some, double least) {
+    spheres_.plant(128 + spheres_.size() / 16);
+    const rounds::field<view_type> f = field();
+    const std::size_t before = spheres_.size();
+    steps_.each(some, rounds::refresh<view_type>{f, some_.data(), cells_.data(), keys_.data(), least, deeds_.reserve(some)});
+    const rounds::is_deed climbing{deeds_.data(), rounds::deed::climb}, dividing{deeds_.data(), rounds::deed::divide};
+    const std::size_t climbers = std::min(most_climbers, steps_.select(some, climbing, these_.reserve(some)));
+    if (climbers != 0) {
+      steps_.climbers(climbers, rounds::climb_cells<view_type>{
+                                    f, some_.data(), these_.data(), cells_.data(), keys_.data(), options_.allow_overlap,
+                                    offers_.reserve(climbers), deeds_.data(),
+                                    memory_.reserve(climbers * local_list<view_type, one_lane>::capacity)});
+      take(climbers);
     }
+    const std::size_t divided = steps_.select(some, dividing, these_.data());
+    cells_.reserve(alive_ + 8 * divided, alive_), keys_.reserve(alive_ + 8 * divided, alive_);
+    steps_.each(8 * divided, rounds::divide<view_type>{field(), some_.data(), these_.data(), cells_.data(), keys_.data(), alive_});
+    alive_ += 8 * divided;
+    divided_ = spheres_.size() > before ? 0 : divided_ + divided;
   }
 
+  void take(std::size_t climbers) {
+    steps_.each(climbers, rounds::judge{offers_.data(), climbers, limits_.scale, verdicts_.reserve(climbers)});
+    std::size_t taken = steps_.select(climbers, rounds::is_taken{verdicts_.data()}, taken_.reserve(climbers));
+    if (const std::size_t wanted = options_.count - spheres_.size(); taken > wanted) {  // the last round: whose turn came first
+      const auto offers = on_.copy_out(offers_.data(), climbers);
+      auto which = on_.copy_out(taken_.data(), taken);
+      std::stable_sort(which.begin(), which.end(), [&](auto i, auto j) { return offers[i].key > offers[j].key; });
+      on_.stage(std::span<const std::uint32_t>(which).first(taken = wanted), taken_.data());
+    }
+    solid_sphere* const to = spheres_.reserve(taken);
+    on_.for_each(taken, rounds::append{offers_.data(), taken_.data(), to});
+    spheres_.add(on_.copy_out(to, taken));
+  }
+
+  void tidy() {
+    const std::size_t kept = steps_.select(alive_, rounds::is_kept{keys_.data()}, some_.reserve(alive_));
+    on_.for_each(kept, rounds::keep_cells{some_.data(), cells_.data(), keys_.data(), other_cells_.reserve(kept),
+                                          other_keys_.reserve(kept)});
+    std::swap(cells_, other_cells_), std::swap(keys_, other_keys_);
+    alive_ = kept;
+    steps_.forget();
+  }
+  void trust_less() {
+    rules_.trust *= 0.6;
+    on_.for_each(alive_, rounds::weigh_again<view_type>{field(), cells_.data(), keys_.data()});
+    steps_.forget();
+  }
+
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  B on_;
+  Steps& steps_;
   const S& solid_;
   const pack_options& options_;
   pack_limits limits_;
-  sphere_field spheres_;
-  std::vector<entry> cells_;
-  std::vector<std::uint32_t> free_;  // places in cells_
-  std::vector<turn> turns_;          // a heap
+  solid_there<B, S> there_;
+  spheres_there<B> spheres_{on_};
+  growing<rounds::cell, B> cells_{on_}, other_cells_{on_};  // the others: where to put those that are kept
+  growing<double, B> keys_{on_}, other_keys_{on_};
+  growing<std::uint32_t, B> some_{on_}, these_{on_}, taken_{on_}, memory_{on_};
+  growing<rounds::deed, B> deeds_{on_};
+  growing<rounds::offer, B> offers_{on_};
+  growing<unsigned char, B> verdicts_{on_};
+  std::size_t pile_ = Steps::cells;
+  std::size_t alive_ = 0, divided_ = 0;  // cells, and those divided since the last sphere
   pack_rules rules_;
-  std::size_t pile_ = 1u << 20;
-  std::uint32_t numbers_ = 0;
-  std::size_t divided_ = 0;  // since the last sphere
-  double given_up_ = 0;  // the largest bound of cells that are neither divided nor climbed from any more
 };
 
 }  // namespace clearance

@@ -2,14 +2,16 @@
 #pragma once
 
 #include <clearance/packing/compass.hpp>
-#include <clearance/solid/mesh_solid_view.hpp>
+#include <clearance/solid/box_tree_view.hpp>
+#include <clearance/solid/solid_view.hpp>
 
 namespace clearance {
 
-/// The room in a mesh solid that spheres leave, in double, on host and device: a tree over most spheres, a list of the
+/// The room in a solid that spheres leave, in double, on host and device: a tree over most spheres, a list of the
 /// rest.
+template <solid_view V>
 struct room_view {
-  mesh_solid_view solid;
+  V solid;
   const solid_sphere* spheres;
   std::uint32_t count;
   box_tree_view tree;  ///< Over the first `tree.items` spheres.

@@ -26,10 +26,12 @@ enum class deed : std::uint8_t { none, climb, divide };
 /// A sphere that one climber offers; radius 0 if it has none.
 struct offer {
   solid_sphere found, grown;  ///< Where it climbed to; the same, or what it grew to if spheres may overlap.
+  double key;                 ///< Of the cell that it began in.
 };
 
+template <solid_view V>
 struct field {
-  room_view in;
+  room_view<V> in;
   pack_rules rules;
   double scale;
 
@@ -37,8 +39,9 @@ struct field {
   CLEARANCE_HD double key(const cell& c) const { return c.bound() >= rules.smallest ? rules.key(c.depth, c.reach(), c.gap) : 0; }
 };
 
+template <solid_view V>
 struct cover {
-  field f;
+  field<V> f;
   cube_grid grid;
   cell* cells;
   double* keys;
@@ -50,8 +53,9 @@ struct cover {
 };
 
 /// Brings a cell up to date, and says what is to be done with it if its key is still high.
+template <solid_view V>
 struct refresh {
-  field f;
+  field<V> f;
   const std::uint32_t* some;
   cell* cells;
   double* keys;
@@ -68,8 +72,9 @@ struct refresh {
   }
 };
 
+template <solid_view V>
 struct divide {
-  field f;
+  field<V> f;
   const std::uint32_t *some, *these;
   cell* cells;
   double* keys;
@@ -89,16 +94,18 @@ struct divide {
 };
 
 /// The sphere with a float centre and radius that surely fits, or radius 0.
-CLEARANCE_HD inline solid_sphere fit(const field& f, const solid_sphere& wanted, bool overlap) {
+template <solid_view V>
+CLEARANCE_HD solid_sphere fit(const field<V>& f, const solid_sphere& wanted, bool overlap) {
   const vec3d c(to_float(wanted.center.x), to_float(wanted.center.y), to_float(wanted.center.z));
   if ((c - wanted.center).norm() > 0.5 * wanted.radius) return {c, 0};
-  const double r = overlap ? f.in.solid.distance(c, 2 * wanted.radius) : f.in.room(c, 2 * wanted.radius);
+  const double r = overlap ? f.in.solid.distance(c, 2 * wanted.radius, 0) : f.in.room(c, 2 * wanted.radius);
   const double sure = r * (1 - 1e-12) - 1e-13 * f.scale;  // what rounding may have added
   return {c, sure > 0 ? double(rounded_down(sure)) : 0};
 }
 
+template <solid_view V>
 struct climb_cells {
-  field f;
+  field<V> f;
   const std::uint32_t *some, *these;
   const cell* cells;
   const double* keys;
@@ -110,8 +117,8 @@ struct climb_cells {
   CLEARANCE_HD void operator()(std::size_t i, Lanes lanes) const {
     const cell& c = cells[some[these[i]]];
     // Taken before its turn: stay here, there is more room elsewhere.
-    const double farthest = keys[some[these[i]]] > c.bound() ? c.room() / 2 : double(infinity);
-    solid_sphere found = climb(f.in, memory + i * local_list<Lanes>::capacity, {c.middle, c.room()}, farthest, lanes);
+    const double key = keys[some[these[i]]], farthest = key > c.bound() ? c.room() / 2 : double(infinity);
+    solid_sphere found = climb(f.in, memory + i * local_list<V, Lanes>::capacity, {c.middle, c.room()}, farthest, lanes);
     const solid_sphere grown = fit(f, overlap ? grow(f.in.solid, found, lanes) : found, overlap);
     if (lanes.rank() != 0) return;
     const double least = 0.98 * found.radius;
@@ -120,7 +127,7 @@ struct climb_cells {
       found.radius = 0;
       deeds[these[i]] = deed::divide;
     }
-    offers[i] = {found, grown};
+    offers[i] = {found, grown, key};
   }
 };
 
@@ -164,8 +171,9 @@ struct keep_cells {
   CLEARANCE_HD void operator()(std::size_t i) const { to[i] = cells[some[i]], keys_to[i] = keys[some[i]]; }
 };
 
+template <solid_view V>
 struct weigh_again {
-  field f;
+  field<V> f;
   const cell* cells;
   double* keys;
   CLEARANCE_HD void operator()(std::size_t i) const { keys[i] = keys[i] > 0 ? f.key(cells[i]) : keys[i]; }

@@ -3,29 +3,12 @@
 
 #include <clearance/solid/box_tree.hpp>
 #include <clearance/solid/mesh_solid_view.hpp>
-#include <clearance/solid/solid.hpp>
+#include <clearance/solid/solid_view.hpp>
 #include <clearance/solid/volume.hpp>
 
 #include <numeric>
 
 namespace clearance {
-
-/// A few triangles of a mesh around a place, as `near` gives them.
-class nearby_triangles {
- public:
-  nearby_triangles(const std::vector<exact_triangle>& all, std::vector<std::uint32_t> some, double reach)
-      : all_(&all), some_(std::move(some)), reach_(reach) {}
-  double distance(const Eigen::Vector3d& p) const { return distance(p, reach_); }
-  double distance(const Eigen::Vector3d& p, double within) const {
-    for (const std::uint32_t i : some_) within = (*all_)[i].nearer(p, within);
-    return within;
-  }
-
- private:
-  const std::vector<exact_triangle>* all_;
-  std::vector<std::uint32_t> some_;
-  double reach_;
-};
 
 /// Owns what a mesh solid's view reads, in the memory of backend B.
 template <backend B>
@@ -88,14 +71,6 @@ class mesh_solid {
   /// Do shells overlap, so that some winding numbers are above 1?
   bool overlaps() const { return enclosed_.overlaps; }
 
-  nearby_triangles near(const Eigen::Vector3d& p, double reach) const {
-    std::vector<std::uint32_t> some;
-    tree_.within(p, reach, [&](std::uint32_t i) {
-      if (triangles_[i].nearer(p, reach) < reach) some.push_back(i);
-    });
-    return {triangles_, std::move(some), reach};
-  }
-
   const std::vector<Eigen::Vector3d>& corners() const { return mesh_.surface.vertices; }
 
   /// Evenly spread by area, the same on every call.
@@ -124,6 +99,6 @@ class mesh_solid {
   enclosed enclosed_;
 };
 
-static_assert(solid<mesh_solid>);
+static_assert(solid<mesh_solid> && solid_view<mesh_solid_view>);
 
 }  // namespace clearance

@@ -20,6 +20,17 @@ struct mesh_solid_view {
         p, within, [this, &p](std::uint32_t i, double best) { return triangles[i].nearer(p, best); }, enough);
   }
   CLEARANCE_HD bool inside(const vec3d& p) const { return winding.inside(p.x, p.y, p.z); }
+
+  /// Calls take(i) for each triangle that is closer to p than `reach`.
+  CLEARANCE_CALLS_ANYTHING
+  template <class F>
+  CLEARANCE_HD void near(const vec3d& p, double reach, F take) const {
+    tree.nearest(p, reach, [&](std::uint32_t i, double best) {
+      if (triangles[i].nearer(p, best) < best) take(i);
+      return best;
+    });
+  }
+  CLEARANCE_HD double nearer(std::uint32_t i, const vec3d& p, double best) const { return triangles[i].nearer(p, best); }
 };
 
 }  // namespace clearance

@@ -20,8 +20,8 @@ namespace clearance {
 /// Law: `inside(p)` is the same for all points that no surface separates.
 ///
 /// Optional: `volume()` in cubic metres, for the fill ratio; `surface_points(count)`, evenly spread over the surface, for
-/// mean gaps; `corners()`, where gaps tend to be largest; `near(p, reach)`, the same solid for points within `reach / 2`
-/// of p whose distance is at most `reach / 2`, quicker to ask.
+/// mean gaps; `corners()`, where gaps tend to be largest; `distance(p, within)`, quicker where a larger distance than `within`
+/// need not be known; `view()`, a `solid_view` to ask instead; `on(backend)`, to be packed elsewhere than on a host.
 template <class S>
 concept solid = requires(const S s, Eigen::Vector3d p) {
   { s.bounds() } -> std::convertible_to<Eigen::AlignedBox3d>;
