@@ -52,6 +52,7 @@ io::robot load_robot(const query_options& asked) {
   options.geometry = asked.visual.value_or(false) ? io::robot_geometry::visual : io::robot_geometry::collision;
   for (const auto& [name, folder] : asked.packages) options.packages[name] = folder;
   options.exclude_links = asked.excluded;
+  options.limits = asked.limits;
   return io::within_memory(asked.robot, [&] { return about_file(asked.robot, [&] { return io::load_robot(asked.robot, options); }); });
 }
 

@@ -69,6 +69,50 @@ std::size_t choice(const std::string& option, const std::string& text, const std
   throw usage_error(option, clearance::io::quoted(text) + " is not " + all);
 }
 
+namespace {
+
+struct named_limit {
+  const char* name;
+  std::uint64_t clearance::io::mesh_limits::*value;
+};
+constexpr named_limit mesh_limit_names[] = {{"bytes", &clearance::io::mesh_limits::bytes},
+                                            {"triangles", &clearance::io::mesh_limits::triangles},
+                                            {"values", &clearance::io::mesh_limits::values},
+                                            {"nodes", &clearance::io::mesh_limits::nodes},
+                                            {"depth", &clearance::io::mesh_limits::depth}};
+
+}  // namespace
+
+std::string mesh_limit_says() {
+  const clearance::io::mesh_limits usual;
+  std::string names;
+  for (const auto& [name, value] : mesh_limit_names)
+    names += (names.empty() ? "" : ", ") + std::string(name) + "=" + std::to_string(usual.*value);
+  return "name=number: a limit of one mesh, or of a robot with all its meshes, by the name that a refusal gives it; "
+         "may be repeated (default " +
+         names + ")";
+}
+
+clearance::io::mesh_limits limits_of(const std::vector<std::string>& given) {
+  clearance::io::mesh_limits made;
+  std::vector<std::string> names;
+  for (const auto& each : mesh_limit_names) names.push_back(each.name);
+  std::vector<bool> seen(names.size());
+  for (const std::string& text : given) {
+    const auto [name, word] = assignment("--mesh-limit", text);
+    const std::size_t which = choice("--mesh-limit", name, names);
+    if (seen[which]) throw usage_error("--mesh-limit", name + " is given twice");
+    seen[which] = true;
+    const auto value = clearance::io::number<std::uint64_t>(word);
+    const std::uint64_t most = name == "depth" ? 1000 : std::uint64_t(1) << 40;  // readers call themselves as deep
+    if (!value || *value < 1 || *value > most)
+      throw usage_error("--mesh-limit",
+                        clearance::io::quoted(text) + " needs a whole number from 1 to " + std::to_string(most));
+    made.*mesh_limit_names[which].value = *value;
+  }
+  return made;
+}
+
 std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == text.npos || equals == 0 || equals + 1 == text.size())

@@ -2,6 +2,7 @@
 #pragma once
 // What the subcommands share: how words become numbers and poses, and what is said when they do not.
 
+#include <clearance/io/limits.hpp>
 #include <clearance/io/sentence.hpp>
 
 #include <Eigen/Geometry>
@@ -47,6 +48,10 @@ Eigen::Isometry3d pose(const std::string& option, const Eigen::Vector3d& transla
 
 /// Which of `names` the text is.
 std::size_t choice(const std::string& option, const std::string& text, const std::vector<std::string>& names);
+
+/// The limits of meshes that --mesh-limit sets: name=number each, by the names that a refusal gives them.
+clearance::io::mesh_limits limits_of(const std::vector<std::string>& given);
+std::string mesh_limit_says();
 
 /// name=value, split at the first '='.
 std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text);

@@ -124,7 +124,7 @@ int run(const demo_settings& settings) {
 subcommand add_demo(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("demo", "A made-up arm before a made-up table; needs no file");
   auto settings = std::make_shared<demo_settings>();
-  sub->add_option("--spheres", settings->spheres, "Inner spheres a part (default 2048)");
+  sub->add_option("--spheres", settings->spheres, "Inner spheres per part (default 2048)");
   sub->add_flag("--no-cache", settings->no_cache, "Pack anew, and keep nothing");
   sub->add_option("--cache", settings->cache, "Keep packings in this folder");
   sub->add_option("--scene", settings->scene, "Write arm, points and witness to this .glb file");

@@ -20,7 +20,7 @@ namespace {
 
 struct pack_settings {
   std::string input, spheres, gap, radius, seconds, seed, geometry, cache, joints, backend = "host";
-  std::vector<std::string> out, packages, excluded;
+  std::vector<std::string> out, packages, mesh_limits, excluded;
   bool overlap = false, no_cache = false, json = false;
 };
 
@@ -46,7 +46,8 @@ subject load(const pack_settings& asked) {
     for (const auto& [option, given] : {std::pair{"--geometry", !asked.geometry.empty()}, {"--package", !asked.packages.empty()},
                                         {"--exclude-link", !asked.excluded.empty()}, {"--joints", !asked.joints.empty()}})
       if (given) throw usage_error(option, "is for robots, and " + asked.input + " is none by its name");
-    made.parts.push_back({.name = std::filesystem::path(asked.input).stem().string(), .mesh = io::load_mesh(asked.input)});
+    made.parts.push_back({.name = std::filesystem::path(asked.input).stem().string(),
+                          .mesh = io::load_mesh(asked.input, limits_of(asked.mesh_limits))});
     made.poses.push_back(Eigen::Isometry3d::Identity());
     return made;
   }
@@ -58,6 +59,7 @@ subject load(const pack_settings& asked) {
     options.packages[name] = folder;
   }
   options.exclude_links = asked.excluded;
+  options.limits = limits_of(asked.mesh_limits);
   const io::robot robot = io::load_robot(asked.input, options);
   const auto& tree = robot.kinematics();
   const auto joints = asked.joints.empty() ? tree.configuration({}, {}) : numbers("--joints", asked.joints);
@@ -211,13 +213,13 @@ subcommand add_pack(CLI::App& app) {
   auto asked = std::make_shared<pack_settings>();
   const auto one = [&](const std::string& name, std::string& to, const std::string& says) { return sub->add_option(name, to, says); };
   one("INPUT", asked->input, "A mesh (.stl .obj .ply .off .dae .glb) or a robot (.urdf)")->required();
-  one("--spheres", asked->spheres, "How many a part; fewer if no more fit")->required();
+  one("--spheres", asked->spheres, "How many per part; fewer if no more fit")->required();
   sub->add_option("--out", asked->out,
                   "Write to this file; may be repeated. .ist: spheres with their certificates; .yaml: as for cuRobo; .csv:\n"
                   "x,y,z,r of one part; .glb: a picture with spheres, transparent mesh and a node for each level of the tree");
   one("--gap", asked->gap, "Stop once no point is farther from the spheres than this, m");
   one("--smallest-radius", asked->radius, "Stop where only smaller spheres fit, m");
-  one("--seconds", asked->seconds, "Stop after about so long, a part");
+  one("--seconds", asked->seconds, "Stop after about so many seconds per part");
   one("--seed", asked->seed, "Another of many equally good packings: a whole number");
   sub->add_flag("--allow-overlap", asked->overlap, "Spheres may overlap: fewer do for the same gap");
   sub->add_flag("--no-cache", asked->no_cache, "Pack anew, and keep nothing");
@@ -225,6 +227,7 @@ subcommand add_pack(CLI::App& app) {
   one("--backend", asked->backend, "host (default) or device: sooner, but other spheres than those that query and run make and keep");
   one("--geometry", asked->geometry, "Of a robot: visual or collision (default)");
   sub->add_option("--package", asked->packages, "name=DIR: where package://name/ is");
+  sub->add_option("--mesh-limit", asked->mesh_limits, mesh_limit_says());
   sub->add_option("--exclude-link", asked->excluded, "Leave out this link");
   one("--joints", asked->joints, "a,b,...: how the robot stands in the .glb (default: 0, or the nearest limit)");
   sub->add_flag("--json", asked->json, "Print one JSON object");

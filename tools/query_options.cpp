@@ -21,7 +21,7 @@ using texts = std::vector<std::string>;
 
 struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames, trajectory, unfolded;
-  texts joint, packages, excluded, clouds, poses, links, cameras, scales, ranges;
+  texts joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges;
   bool ignore_limits = false, json = false, no_cache = false, merge = false;
 };
 
@@ -36,7 +36,7 @@ void set(cloud_options& cloud, const std::string& option, const std::string& tex
   }
   if (option == "--depth-scale") {
     cloud.scale = number(option, text);
-    if (!(cloud.scale > 0)) throw usage_error(option, "must be above 0 (metres a unit)");
+    if (!(cloud.scale > 0)) throw usage_error(option, "must be above 0 (metres per unit)");
   }
   if (option == "--range") {
     const auto v = numbers(option, text, 2, "near,far", true);
@@ -84,6 +84,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.ignore_limits = raw.ignore_limits;
   if (!raw.geometry.empty()) o.visual = choice("--geometry", raw.geometry, {"collision", "visual"}) == 1;
   for (const auto& text : raw.packages) o.packages.push_back(assignment("--package", text));
+  o.limits = limits_of(raw.mesh_limits);
   if (!raw.base.empty()) o.base = pose("--base-pose", raw.base);
   if (!raw.unfolded.empty()) o.recording.camera.limits.unfolded = std::uint64_t(whole_number("--unfold-limit", raw.unfolded)) << 20;
   o.clouds = clouds_of(app, o.recording.camera);
@@ -119,10 +120,10 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   one("--robot", raw->robot, "Robot description, URDF")->required();
   if (recorded) {
     one("--frames", raw->frames,
-        "Point clouds (.pcd .ply .xyz .txt) or 16-bit depth images (.png): a folder, in the order of their names, or a text file with one path a "
+        "Point clouds (.pcd .ply .xyz .txt) or 16-bit depth images (.png): a folder, in the order of their names, or a text file with one path per "
         "line, relative to that file")->required();
     one("--trajectory", raw->trajectory,
-        "CSV: a line with the names of the joints, then one row a frame, or one row for all (rad, m); not needed if no joint is free");
+        "CSV: a line with the names of the joints, then one row per frame, or one row for all (rad, m); not needed if no joint is free");
     app.add_flag("--merge", raw->merge,
                  "Ask every frame about the clouds of all frames, merged in the world: each frame's cloud is put there by --camera-pose, with "
                  "--camera-link by that link's pose in the frame's row of the trajectory");
@@ -134,19 +135,20 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   app.add_flag("--ignore-limits", raw->ignore_limits, "Accept joint positions outside their limits");
   one("--geometry", raw->geometry, "visual or collision (default; visual where a link has no collision)");
   app.add_option("--package", raw->packages, "name=DIR: where package://name/ is");
+  app.add_option("--mesh-limit", raw->mesh_limits, mesh_limit_says());
   one("--base-pose", raw->base, "x,y,z,qx,qy,qz,qw: world-from-base (m; default: the base is at the world's origin)");
   if (!recorded) app.add_option("--cloud", raw->clouds, "Point cloud (.pcd .ply .xyz) or 16-bit depth image (.png); may be repeated")->required();
   app.add_option("--camera-pose", raw->poses, "x,y,z,qx,qy,qz,qw: world-from-cloud, or link-from-cloud with --camera-link");
   app.add_option("--camera-link", raw->links, "The link that carries the camera");
   app.add_option("--intrinsics", raw->cameras, "fx,fy,cx,cy of a depth image, pixels");
-  app.add_option("--depth-scale", raw->scales, "Metres a unit of a depth image (default 0.001)");
+  app.add_option("--depth-scale", raw->scales, "Metres per unit of a depth image (default 0.001)");
   app.add_option("--range", raw->ranges, "near,far: other points do not count (m; along z for images, else from the sensor)");
   one("--unfold-limit", raw->unfolded, "MiB of memory that the points or pixels of one compressed cloud or image may take (default 1024)");
   app.add_flag("--use-viewpoint")->description("Apply the VIEWPOINT of a PCD file");
   app.add_flag("--zero-is-missing")->description("(0,0,0) is no point");
   one("--model", raw->model, "spheres (default) or triangles");
   one("--volume", raw->volume, "sphere, aabb or obb (default: sphere for spheres, obb for triangles)");
-  one("--spheres", raw->spheres, "Inner spheres a link (default 2048)");
+  one("--spheres", raw->spheres, "Inner spheres per link (default 2048)");
   one("--packing", raw->packing, "The links' spheres: .ist (from clearance pack), .yaml as for cuRobo, .csv");
   app.add_flag("--no-cache", raw->no_cache, "Pack anew, and keep nothing");
   one("--cache", raw->cache, "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
@@ -154,7 +156,7 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   one("--backend", raw->backend, "host or device (default: device where there is one)");
   one("--check", raw->check, std::string("Margin in m: exit code 2 unless the lower end of the bracket is above it") + (recorded ? " in every frame" : ""));
   if (recorded) {
-    app.footer("Prints one JSON object a line and frame. latency_us is the time of the query alone, on the host's clock; a frame's points\n"
+    app.footer("Prints one line per frame, a JSON object. latency_us is the time of the query alone, on the host's clock; a frame's points\n"
                "are read before. The exit code is 3 if a frame has no valid point, also with --check.");
     return [raw, &app] { return read(app, *raw); };
   }

@@ -4,6 +4,7 @@
 #include "backends.hpp"
 
 #include <clearance/io/error.hpp>
+#include <clearance/io/limits.hpp>
 
 #include <Eigen/Geometry>
 
@@ -48,6 +49,7 @@ struct query_options {
   bool ignore_limits = false;
   std::optional<bool> visual;                          // --geometry
   std::vector<std::pair<std::string, std::string>> packages;
+  clearance::io::mesh_limits limits;
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
   std::vector<cloud_options> clouds;
   model_kind model = model_kind::spheres;

@@ -5,15 +5,16 @@ import struct
 import zlib
 
 import ply
-from strict import Unknown, demand, lines_of, number, numbers, whole, words_of
+from strict import Unknown, demand, lines_of, number, numbers, uncommented, whole, words_of
 
 
 def read_xyz(data):
-    points = []
+    points, usual = [], None
     for line in lines_of(data):
-        words = words_of(line.split("#")[0], " \t\v\f,;")
+        words = words_of(uncommented(line), " \t\v\f,;")
         if words:
-            demand(len(words) >= 3, "a point of fewer than three numbers")
+            demand(len(words) >= 3 and usual in (None, len(words)), "a point of fewer than three numbers, or of more than the others")
+            usual = len(words)
             points.append(tuple(number(word, finite=False) for word in words[:3]))
     return points, None
 

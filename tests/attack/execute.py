@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the command on a case in a scratch folder, with limits of time, memory, output and written bytes."""
+"""Runs the command on a case in a scratch folder, with limits of time, memory, output and written bytes. Time is that of the
+processor: on a machine that does much else a run takes long, and does not hang."""
 
+import math
 import os
 import resource
 import shutil
@@ -11,6 +13,8 @@ from dataclasses import dataclass
 
 MEMORY = 2 << 30
 OUTPUT = 1 << 20
+ASLEEP = 20  # times as long by the clock: a run that waits for nothing hangs too
+_ticks = os.sysconf("SC_CLK_TCK")
 
 
 @dataclass
@@ -28,6 +32,16 @@ def _resident(pid):
     try:
         with open(f"/proc/{pid}/statm", "rb") as file:
             return int(file.read().split()[1]) * resource.getpagesize()
+    except (OSError, IndexError, ValueError):
+        return 0
+
+
+def _processor(pid):
+    """Seconds, of all threads."""
+    try:
+        with open(f"/proc/{pid}/stat", "rb") as file:
+            used = file.read().rsplit(b")", 1)[1].split()
+            return (int(used[11]) + int(used[12])) / _ticks
     except (OSError, IndexError, ValueError):
         return 0
 
@@ -51,6 +65,7 @@ def run(binary, case, folder, seconds):
     def limit():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # a write beyond the limit then fails, as on a full disk
         resource.setrlimit(resource.RLIMIT_FSIZE, (case.file_limit, case.file_limit))
+        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(seconds), math.ceil(seconds) + 5))
 
     streams = [os.path.join(folder, f".{name}") for name in ("out", "err")]
     if case.file_limit:  # the limit would hold for the streams too
@@ -69,12 +84,13 @@ def _run_piped(binary, words, folder, environment, limit, made, case, seconds):
     process = subprocess.Popen([binary, *words], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                env=environment, start_new_session=True, preexec_fn=limit, restore_signals=False)
     try:
-        made.out, made.err = process.communicate(timeout=seconds)
+        made.out, made.err = process.communicate(timeout=ASLEEP * seconds)
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGKILL)
         made.out, made.err = process.communicate()
         made.hung = True
     made.code = process.returncode
+    made.hung = made.hung or made.code == -signal.SIGXCPU
     return _after(case, folder, made)
 
 
@@ -87,7 +103,7 @@ def _wait(process, made, seconds, streams):
         time.sleep(pause)
         pause = min(pause * 1.3, 0.02)
         made.memory = max(made.memory, _resident(process.pid))
-        late = time.monotonic() - began > seconds
+        late = _processor(process.pid) > seconds or time.monotonic() - began > ASLEEP * seconds
         if late or made.memory > MEMORY or any(os.path.getsize(name) > 64 * OUTPUT for name in streams):
             made.hung = late
             os.killpg(process.pid, signal.SIGKILL)

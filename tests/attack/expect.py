@@ -17,15 +17,16 @@ FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache"
 PER_CLOUD = {"--camera-pose", "--camera-link", "--intrinsics", "--depth-scale", "--range", "--use-viewpoint", "--zero-is-missing"}
 SINGLE = {
     "query": {"--robot", "--joints", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend",
-              "--check", "--scene"},
+              "--check", "--scene", "--unfold-limit"},
     "run": {"--robot", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend", "--check",
-            "--frames", "--trajectory"},
+            "--frames", "--trajectory", "--unfold-limit"},
     "pack": {"", "--spheres", "--gap", "--smallest-radius", "--seconds", "--seed", "--cache", "--geometry", "--joints"},
     "demo": {"--spheres", "--cache", "--scene"},
     "info": {""},
 }
-MANY = {"query": {"--joint", "--package", "--cloud", "--exclude-link"}, "run": {"--joint", "--package", "--exclude-link"},
-        "pack": {"--out", "--package", "--exclude-link"}, "demo": set(), "info": set()}
+_of_robots = {"--package", "--exclude-link", "--mesh-limit"}
+MANY = {"query": {"--joint", "--cloud"} | _of_robots, "run": {"--joint"} | _of_robots, "pack": {"--out"} | _of_robots, "demo": set(),
+        "info": set()}
 OWN_FLAGS = {"pack": {"--no-cache", "--json", "--allow-overlap"}, "demo": {"--no-cache"}, "info": {"--json"}}
 FAR = 1e18  # metres; the square of what is beyond it is no float, and it may count as not finite
 
@@ -80,6 +81,16 @@ def _assignment(text):
     return name, value
 
 
+def _check_limits(texts):
+    """Each names a limit once. What a limit refuses is the command's business."""
+    names = []
+    for text in texts:
+        name, value = _assignment(text)
+        demand(name in ("bytes", "triangles", "values", "nodes", "depth") and name not in names, "no limit of meshes, or one twice")
+        names.append(name)
+        whole(value, 1, 1000 if name == "depth" else 2**40)
+
+
 class _Options:
     """The options of `query` and `run`."""
 
@@ -94,8 +105,10 @@ class _Options:
                 demand(value != "", f"{name} is empty")
             if name in PER_CLOUD:
                 (before if current is None else current)[name] = value
+                if current is not None:
+                    current["own"].add(name)
             elif name == "--cloud" and case.command == "query":
-                current = dict(before, file=value)
+                current = dict(before, file=value, own=set())
                 self.sensors.append(current)
             elif name in FLAGS:
                 self.flags.add(name)
@@ -113,6 +126,8 @@ class _Options:
         demand("--packing" not in self.one or self.one.get("--model", "spheres") == "spheres", "--packing with triangles")
         self.base = _pose(self.one["--base-pose"]) if "--base-pose" in self.one else IDENTITY
         whole(self.one.get("--spheres", "1"), 1, 10_000_000)
+        whole(self.one.get("--unfold-limit", "1"), 1, 10_000_000)
+        _check_limits(self.many.get("--mesh-limit", []))
         if "--check" in self.one:
             _real(self.one["--check"])
         for sensor in [before] + self.sensors:
@@ -141,12 +156,12 @@ def _points(sensor, files):
     name = sensor["file"]
     data = files.get(name.removeprefix("./"))
     demand(data, f"there is no {name[:40]!r}, or it is empty")
-    ending = os.path.splitext(name)[1].lower()
+    ending, own = os.path.splitext(name)[1].lower(), sensor.get("own", set())  # what is said of all clouds may fit others alone
     near, far = _reals(sensor["--range"], 2, False) if "--range" in sensor else (0.0, math.inf)
     demand(0 <= near < far, "a range that is none")
     if ending == ".png":
         demand("--intrinsics" in sensor, "an image without intrinsics")
-        demand("--use-viewpoint" not in sensor and "--zero-is-missing" not in sensor, "an option of clouds for an image")
+        demand(not own & {"--use-viewpoint", "--zero-is-missing"}, "an option of clouds for an image")
         fx, fy, cx, cy = _reals(sensor["--intrinsics"], 4)
         scale = _real(sensor.get("--depth-scale", "0.001"))
         demand(fx > 0 and fy > 0 and scale > 0, "a camera that is none")
@@ -157,7 +172,7 @@ def _points(sensor, files):
             if raw not in (0, 65535) and near <= z <= far:
                 made.append(((i % width - cx) / fx * z, (i // width - cy) / fy * z, z))
         return made, len(pixels), IDENTITY
-    demand("--intrinsics" not in sensor and "--depth-scale" not in sensor, "an option of images for a cloud")
+    demand(not own & {"--intrinsics", "--depth-scale"}, "an option of images for a cloud")
     readers = {".pcd": clouds.read_pcd, ".ply": clouds.read_ply, ".xyz": clouds.read_xyz, ".txt": clouds.read_xyz}
     demand(ending in readers, "no cloud by its name")
     points, view = readers[ending](data)

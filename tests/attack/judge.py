@@ -83,6 +83,11 @@ def _bad_text(data, what, sentences=False):
     return None
 
 
+def _shown(name):
+    """As a message may show it: what controls a terminal, and what is no UTF-8, byte by byte."""
+    return re.sub(r"[\x00-\x1f\x7f-\x9f\udc80-\udcff]", lambda m: "".join(f"\\x{b:02x}" for b in m[0].encode("utf-8", "surrogateescape")), name)
+
+
 def _message(case, outcome):
     """What is wrong with how the command speaks, or None."""
     bad = _bad_text(outcome.err, "stderr", sentences=True) or _bad_text(outcome.out, "stdout")
@@ -98,7 +103,7 @@ def _message(case, outcome):
     quoted = first.strip("?") and (" " not in first or case.command == "run") and any(  # a file that a file names
         re.search(re.sub(r"\\\\x[0-9a-f]{2}|\\\?", ".{1,4}", re.escape(first)).encode(), data, re.DOTALL) for data in case.files.values())
     named += ['joint "'] if any(name in ("--joint", "--joints") for name, _ in case.options) else []
-    if first != "the command line" and "--help says more" not in said[0] and not quoted and not any(name[:30] in said[0] for name in named) and " --" not in said[0]:
+    if first != "the command line" and "--help says more" not in said[0] and not quoted and not any(_shown(name)[:30] in said[0] for name in named) and " --" not in said[0]:
         return f"names neither file nor option: {said[0][:120]!r}"
     return None
 

@@ -7,10 +7,16 @@ import struct
 
 import ply
 from geometry import cross, dot, length, sub
-from strict import Unknown, demand, lines_of, number, text_of, whole, words_of
+from strict import Unknown, demand, lines_of, number, text_of, uncommented, whole, words_of
 
 _obj_words = set("""v vw vt vn vp f l p g o s usemtl mtllib usemap maplib mg bevel c_interp d_interp lod shadow_obj trace_obj cstype
 deg bmat step curv curv2 surf parm trim hole scrv sp end con ctech stech call csh bsp bzp cdc cdp res maxsize""".split())
+
+
+def _vertex(words):
+    for word in words[3:]:  # a weight, a colour, a normal
+        number(word, finite=False)
+    return tuple(number(word) for word in words[:3])
 
 
 def read_obj(data):
@@ -18,14 +24,13 @@ def read_obj(data):
     text = re.sub(r"\\(\r\n|\n|\r)", " ", text_of(data))
     vertices, faces = [], []
     for line in lines_of(text.encode("latin-1")):
-        words = words_of(line.split("#")[0])
+        words = words_of(uncommented(line))
         if not words:
             continue
         demand(words[0] in _obj_words or not vertices, f"{words[0][:20]!r} is no statement")  # FCL's files begin with two counts
         if words[0] == "v":
-            values = [number(word) for word in words[1:]]
-            demand(len(values) in (3, 4, 6, 7), "a vertex of other than 3, 4, 6 or 7 numbers")
-            vertices.append(tuple(values[:3]))
+            demand(len(words) in (4, 5, 7, 8), "a vertex of other than 3, 4, 6 or 7 numbers")
+            vertices.append(_vertex(words[1:]))
         elif words[0] == "f":
             face = []
             for word in words[1:]:
@@ -38,32 +43,36 @@ def read_obj(data):
                 demand(index != 0 and face[-1] >= 0, "an index before the first")
             demand(len(face) >= 3, "a face of fewer than three corners")
             faces.append(face)
+        elif words[0] in ("vn", "vt", "vp", "s", "l", "p"):
+            demand(not _obj_words & set(words[1:]), "two statements in one line")
     return vertices, faces
 
 
 def read_off(data):
-    lines = [line.split("#")[0].split() for line in lines_of(data)]
+    lines = [words_of(uncommented(line)) for line in lines_of(data)]
     lines = [line for line in lines if line]
-    demand(lines and lines[0][0] in ("OFF", "COFF", "NOFF", "STOFF"), "no OFF file")
-    plain, head = lines[0][0] == "OFF", lines[0][1:]
+    more = {"OFF": (0,), "COFF": (3, 4), "NOFF": (3,), "STOFF": (2,)}
+    demand(lines and lines[0][0] in more, "no OFF file")
+    more, head = more[lines[0][0]], lines[0][1:]
     at = 1
     if not head:
         demand(len(lines) > 1, "no counts")
         head, at = lines[1], 2
     demand(len(head) in (2, 3), "no counts")
-    count, faces_count = whole(head[0]), whole(head[1])
+    count, faces_count, _ = (*map(whole, head), 0)[:3]
     demand(at + count + faces_count == len(lines), "the counts are not those of the lines")
     vertices, faces = [], []
     for line in lines[at:at + count]:
-        values = [number(word) for word in line]
-        demand(len(values) == 3 if plain else len(values) >= 3, "a vertex of other than three numbers")
-        vertices.append(tuple(values[:3]))
+        demand(len(line) - 3 in more, "a vertex of another count of numbers")
+        more = (len(line) - 3,)
+        vertices.append(_vertex(line))
     for line in lines[at + count:]:
         n = whole(line[0], 3)
         demand(n < len(line), "a face is cut short")
         faces.append([whole(word) for word in line[1:n + 1]])
-        for word in line[n + 1:]:  # a colour
-            number(word)
+        demand(len(line) - n - 1 in (0, 1, 3, 4), "a face with what is no colour")
+        for word in line[n + 1:]:
+            number(word, finite=False)
     return vertices, faces
 
 

@@ -14,7 +14,7 @@ from strict import Invalid, Unknown
 
 NUMBERS = ["", "nan", "NaN", "inf", "-inf", "0,5", "1e300", "-1e308", "1e400", "1e-300", "1e39", "-1", "0", "1", "4294967301", "4294967296",
            "18446744073709551617", "-2147483649", "2147483648", "0.3junk", "0x10", "1.5.2", "1e", "--1", "+0.25", "0.5", "1000000",
-           "0." + 330 * "0" + "1", "1_0", "٣", "1 2", "0.1f", "1d0"]
+           "0." + 330 * "0" + "1", "1_0", "٣", "1 2", "0.1f", "1d0", "1.#QNAN"]
 _real = re.compile(rb"(?<![\w.#])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 _uints = [0, 1, 2, 3, 7, 255, 65535, 2**31 - 1, 2**31, 2**32 - 1, 2**32 - 4]
 
@@ -336,7 +336,7 @@ def options(rng, case):
         given.insert(rng.randrange(len(given) + 1), rng.choice([
             ["--check", ""], ["--base-pose", ""], ["--joints", ""], ["--camera-link", ""], ["--packing", ""], ["--scene", ""], ["--range", ""], ["--model", ""],
             ["--volume", ""], ["--exclude-link", ""], ["--package", ""], ["--joint", ""], ["--cache", ""], ["--geometry", ""], ["--spheres", ""],
-            ["--backend", ""], ["--check", "nan"], ["--range", "1,1"], ["--range", "0,inf"], ["--joint", "turn=0.5"], ["--joint", "slide=0.5"],
+            ["--backend", ""], ["--mesh-limit", ""], ["--mesh-limit", "nodes=5"], ["--unfold-limit", ""], ["--check", "nan"], ["--range", "1,1"], ["--range", "0,inf"], ["--joint", "turn=0.5"], ["--joint", "slide=0.5"],
             ["--package", "x=."], ["--cloud", "d.xyz"], ["--ignore-limits", None], ["--zero-is-missing", None], ["--use-viewpoint", None],
             ["--exclude-link", "b"], ["--check", "-1"], ["--check", "1e300"], ["--spheres", "4294967297"]]))
 

@@ -7,7 +7,7 @@ import re
 import struct
 import zlib
 
-from strict import Unknown, demand, lines_of, number, text_of, words_of
+from strict import Unknown, demand, lines_of, number, text_of, uncommented, words_of
 
 magic = b"\x89IST\r\n\x1a\n"
 
@@ -36,7 +36,7 @@ def _check(spheres):
 
 
 def read_csv(data):
-    lines = [words_of(line.split("#")[0], " \t\v\f,;") for line in lines_of(data)]
+    lines = [words_of(uncommented(line), " \t\v\f,;") for line in lines_of(data)]
     lines = [line for line in lines if line]
     if lines and lines[0] in (["x", "y", "z", "r"], ["x", "y", "z", "radius"]):
         lines = lines[1:]

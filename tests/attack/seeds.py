@@ -80,6 +80,7 @@ def _mesh_cases():
     mesh = w.halved(quads)
     made = [("stl ascii", "m.stl", w.stl_text(mesh)), ("stl binary", "m.stl", w.stl_binary(mesh)), ("obj", "m.obj", w.obj(mesh)),
             ("obj", "m.obj", w.obj(quads)), ("off", "m.off", w.off(mesh)), ("off", "m.off", w.off(quads)),
+            ("off", "m.off", w.off(mesh, "COFF", (255, 0, 7, 255), (0.5, 0, 1))), ("off", "m.off", w.off(quads, "NOFF", (0, 0, 1), (3,))),
             ("ply mesh ascii", "m.ply", w.ply_mesh(quads)), ("ply mesh binary", "m.ply", w.ply_mesh(mesh, "binary_little_endian")),
             ("ply mesh binary", "m.ply", w.ply_mesh(mesh, "binary_big_endian")), ("dae", "m.dae", w.dae(mesh)), ("glb", "m.glb", w.glb(mesh))]
     for form, name, data in made:
@@ -143,7 +144,8 @@ def _option_cases():
     pixels = [1000] * 48
     image = dict(files, **{"c.png": w.png(8, 6, pixels)})
     yield _query("options", image, "options", ["--intrinsics", "10,10,3.5,2.5"], ["--depth-scale", "0.001"], ["--range", "0.1,2"],
-                 ["--camera-pose", "0.3,0.3,-0.5,0,0,0,1"], ["--backend", "host"], cloud="c.png")
+                 ["--camera-pose", "0.3,0.3,-0.5,0,0,0,1"], ["--backend", "host"], ["--mesh-limit", "triangles=1000"], ["--unfold-limit", "5"],
+                 cloud="c.png")
     recorded = dict(files, **{"t.csv": b"turn\n0\n", "frames.txt": b"c.xyz\nd.xyz\n"})
     yield Case("options", "run", [["--robot", "r.urdf"], ["--frames", "frames.txt"], ["--trajectory", "t.csv"], ["--model", "triangles"],
                                   ["--joint", "slide=0.5"], ["--check", "0"], ["--base-pose", "0.05,0,0,0,0,0,1"], ["--camera-link", "b"]], recorded, "options")

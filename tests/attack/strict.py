@@ -56,3 +56,8 @@ def lines_of(data):
 
 def words_of(line, separators=" \t\v\f"):
     return [word for word in re.split(f"[{re.escape(separators)}]+", line) if word]
+
+
+def uncommented(line):
+    """Without the comment, which begins with a # at the start of a word: "1.#QNAN" is a word, and no number."""
+    return re.split(r"(?:^|(?<=[ \t\v\f,;]))#", line, maxsplit=1)[0]

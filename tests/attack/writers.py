@@ -44,9 +44,10 @@ def obj(mesh):
     return "\n".join(lines + [""]).encode()
 
 
-def off(mesh):
-    lines = ["OFF", f"{len(mesh[0])} {len(mesh[1])} 0", *map(_row, mesh[0])]
-    return "\n".join(lines + [_row((len(face), *face)) for face in mesh[1]] + [""]).encode()
+def off(mesh, kind="OFF", more=(), colour=()):
+    """`more` follows each vertex, as its kind has it; `colour` each face."""
+    lines = [kind, f"{len(mesh[0])} {len(mesh[1])} 0", *(_row((*v, *more)) for v in mesh[0])]
+    return "\n".join(lines + [_row((len(face), *face, *colour)) for face in mesh[1]] + [""]).encode()
 
 
 def ply_mesh(mesh, form="ascii"):

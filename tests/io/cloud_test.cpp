@@ -42,7 +42,7 @@ std::string record(float x, float y, float z) {
 }  // namespace
 
 TEST_CASE("an XYZ file may have comments, other separators and further columns") {
-  const io::cloud c = read(".xyz", "\xEF\xBB\xBF# made by hand\n1 2 3\r\n\n  4,5,6, 255\n7;8\t9 # last\nnan nan nan\n+1e1 -.5 inf");
+  const io::cloud c = read(".xyz", "\xEF\xBB\xBF# made by hand\n1 2 3 red\r\n\n  4,5,6, 255\n7;8\t9 0 # last\nnan nan nan -\n+1e1 -.5 inf x");
   REQUIRE(c.points.size() == 5);
   CHECK(c.points[0] == Eigen::Vector3d(1, 2, 3));
   CHECK(c.points[1] == Eigen::Vector3d(4, 5, 6));
@@ -58,6 +58,8 @@ TEST_CASE("an XYZ file is refused with the number of its line") {
   contains(refused(".xyz", "1 2 3\n# fine\n1 2\n"), ":3: a point needs three numbers, here are 2");
   contains(refused(".xyz", "x y z\n1 2 3\n"), ":1: \"x\" is not a number");
   contains(refused(".xyz", "1 2 +-3\n"), ":1: \"+-3\" is not a number");
+  for (const std::string columns : {"", " 4", " 4 5 6", " a b"})  // two lines that became one, whatever their columns
+    contains(refused(".xyz", "1 2 3" + columns + "\n\n4 5 6" + columns + " 7 8 9" + columns + "\n"), ":3: a point of ");
   contains(refused(".xyz", ""), "is empty (0 bytes)");
   CHECK(read(".xyz", "# nothing\n\n").points.empty());
   contains(refused(".las", "1 2 3\n"), "is no point cloud by its name");

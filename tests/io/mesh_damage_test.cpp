@@ -207,6 +207,9 @@ TEST_CASE("a damaged member of a glTF file is refused, or it was of no use") {
   CHECK(says(refused(with("/accessors/0/sparse", {{"count", 1}})), "sparse"));
   CHECK(says(refused(with("/extensionsRequired", {"KHR_draco_mesh_compression"})), "KHR_draco_mesh_compression"));
   CHECK(says(refused(with("/accessors/1/count", 0)), "count 0"));
+  for (const int off : {1, 2, 3, 5, 6, 7}) CHECK(says(refused(with("/accessors/0/byteOffset", off)), "not aligned"));
+  for (const int off : {67, 65}) CHECK(says(refused(with("/bufferViews/1/byteOffset", off)), "not aligned"));
+  for (const int stride : {13, 14, 15, 17}) CHECK(says(refused(with("/bufferViews/0/byteStride", stride)), "not aligned"));
   CHECK(says(refused(with("/nodes/2/scale", {1, 1, 1})), "parts of one"));
   CHECK(says(refused(with("/nodes/1/scale", {0, 1, 1})), "flattens"));
 }
@@ -252,6 +255,71 @@ TEST_CASE("one byte of a mesh file changed does not change how much there is, un
     for (std::size_t cut = 1; cut < whole.size(); cut += 1 + whole.size() / 300)
       if (const outcome made = read(whole.substr(0, whole.size() - cut)); made.refusal.empty())
         CHECK(std::ranges::count(made.answer, ';') == faces);  // only what follows the end is gone
+  }
+}
+
+TEST_CASE("a line of an OFF or OBJ file has as many numbers as its kind says, or is refused by its number") {
+  const auto numbers = [](std::size_t count) {
+    std::string text;
+    for (std::size_t k = 0; k < count; ++k) text += " 0.5";
+    return text;
+  };
+  // What a vertex and a face may have after their coordinates and corners.
+  const std::set<std::size_t> colour = {0, 1, 3, 4};
+  const std::pair<std::string, std::set<std::size_t>> kinds[] = {
+      {"OFF", {0}}, {"COFF", {3, 4}}, {"NOFF", {3}}, {"STOFF", {2}}, {"", colour}};
+  for (const auto& [kind, allowed] : kinds) {
+    const bool off = !kind.empty();
+    const mesh_file read(off ? "m.off" : "m.obj");
+    const auto text = [&](std::size_t usual, std::size_t damaged, std::size_t more, std::size_t face) {
+      std::string made = off ? kind + "\n4 2 0\n" : "# made\n\n";
+      int k = 0;
+      for (const char* v : {"0 0 0", "1 0 0", "0 1 0", "0 0 1"})
+        made += (off ? "" : "v ") + std::string(v) + numbers(k == int(damaged) ? more : usual) + "\n", ++k;
+      return made + (off ? "3 0 1 2" + numbers(face) + "\n3 0 1 3\n" : "f 1 2 3\nf 1 2 4\n");
+    };
+    for (const std::size_t usual : allowed) {
+      const outcome whole = read(text(usual, 0, usual, 0));
+      REQUIRE(whole.refusal.empty());
+      for (std::size_t damaged = 0; damaged < 4; ++damaged)
+        for (std::size_t more = 0; more < 12; ++more) {
+          const outcome made = read(text(usual, damaged, more, 0));
+          INFO(kind << ": vertex " << damaged << " has " << more << " numbers instead of " << usual << ": " << made.refusal);
+          const bool fits = off ? more == usual : colour.contains(more);
+          CHECK(made.refusal.empty() == fits);
+          // Of colours the first vertex says how many there are.
+          const std::size_t line = 3 + (damaged == 0 && allowed.contains(more) ? 1 : damaged);
+          if (fits) CHECK(made.answer == whole.answer);
+          else CHECK(made.refusal.starts_with(read.file + ":" + std::to_string(line) + ": a vertex of "));
+        }
+      for (std::size_t face = 0; off && face < 8; ++face) {
+        const outcome made = read(text(usual, 0, usual, face));
+        CHECK(made.refusal.empty() == colour.contains(face));
+        if (made.refusal.empty()) CHECK(made.answer == whole.answer);
+        else CHECK(made.refusal.starts_with(read.file + ":7: a face of 3 corners has "));
+      }
+    }
+  }
+  const mesh_file off("m.off"), obj("m.obj");
+  // What a corner says besides its vertex is passed over, but it must be what may stand there.
+  const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 ";
+  for (const char* corner : {"2", "2/1", "2//1", "2/1/1", "2/-1/-1", "2/", "2//", "+2"}) CHECK(obj(three + corner + " 3\n").refusal.empty());
+  for (const char* corner : {"2/x", "2/0,5", "2//1d0", "2//0x10", "2/1/0.25", "2/1/1/1", "2///", "/2", "2\\1", "2/1 x", "2/nan"})
+    CHECK(says(obj(three + corner + " 3\n").refusal, ":4: "));
+  const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2";
+  for (const char* counts : {"3 1", "3 1 0", "3 1 0 # edges"}) CHECK(off("OFF\n" + std::string(counts) + "\n" + vertices).refusal.empty());
+  for (const char* counts : {"3", "3 1 0 0", "3 1 0 0 0 0", "3 1 x"}) CHECK_FALSE(off("OFF\n" + std::string(counts) + "\n" + vertices).refusal.empty());
+  CHECK(says(off("OFF\n3 1 0\n" + vertices + " x").refusal, ":6: \"x\" is not a number"));
+  CHECK(off("COFF\n3 1 0\n0 0 0 nan nan nan\n1 0 0 1 1 1\n0 1 0 0 0 0\n3 0 1 2").refusal.empty());  // some tools write that
+  // Two lines of an OBJ file that became one.
+  const std::vector<std::string> lines = {"v 0 0 0", "v 1 0 0", "v 0 1 0", "v 0 0 1", "vn 0 0 1", "vt 0 1", "vp 1", "s off", "l 1 2", "p 1", "f 1 2 3", "f 1 2 4"};
+  for (std::size_t joined = 0; joined < lines.size(); ++joined) {
+    std::string text;
+    for (std::size_t k = 0; k < lines.size(); ++k) text += lines[k] + (k == joined ? " " : "\n");
+    INFO(text);
+    const outcome made = obj(text);
+    CHECK(made.refusal.empty() == (joined + 1 == lines.size()));
+    if (joined + 1 < lines.size()) CHECK(made.refusal.starts_with(obj.file + ":" + std::to_string(joined + 1) + ": "));
   }
 }
 

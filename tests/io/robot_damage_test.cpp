@@ -100,6 +100,49 @@ TEST_CASE("what is left out of a URDF, renamed or there twice does not change th
                 seed, read.file, std::cref(read));
 }
 
+TEST_CASE("a shape that got into another element is refused, whichever that is") {
+  const robot_file read;
+  // Every element by its number, so that it is found again in a fresh tree.
+  const auto tree = [] { return io::read_xml(seed, "seed"); };
+  const auto find = [](io::xml_element& root, std::size_t which) {
+    std::size_t at = 0;
+    io::xml_element* found = nullptr;
+    each_element(root, "", [&](io::xml_element& e, const std::string&) {
+      if (at++ == which) found = &e;
+    });
+    return found;
+  };
+  io::xml_element whole = tree();
+  std::size_t count = 0, tried = 0, shapes = 0;
+  each_element(whole, "", [&](io::xml_element&, const std::string&) { ++count; });
+  for (std::size_t which = 0; which < count; ++which) {
+    const std::string kind = find(whole, which)->name;
+    if (kind != "visual" && kind != "collision") continue;
+    ++shapes;
+    for (std::size_t into = 0; into < count; ++into) {
+      io::xml_element root = tree();
+      const io::xml_element shape = *find(root, which);
+      io::xml_element* target = find(root, into);
+      if (target->name == "robot" || target->name == "link") continue;
+      const std::string name = target->name;
+      target->children.push_back(shape);
+      const outcome made = read(xml_text(root));
+      INFO(kind << " in " << name << ": " << made.refusal);
+      CHECK_FALSE(made.refusal.empty());
+      check_sentence(made.refusal, read.file);
+      ++tried;
+    }
+  }
+  CHECK(shapes == 7);
+  CHECK(tried > 250);
+  for (const char* around : {"sensor", "contact", "self_collision_checking", "inertial"}) {
+    const std::string link = "<robot name=\"r\"><link name=\"a\"><visual><geometry><box size=\"1 1 1\"/></geometry></visual><" + std::string(around) + ">";
+    const std::string end = "</" + std::string(around) + "></link></robot>";
+    CHECK(read(link + end).refusal.empty());
+    CHECK(says(read(link + "<collision><geometry><box size=\"1 1 1\"/></geometry></collision>" + end).refusal, "link \"a\""));
+  }
+}
+
 TEST_CASE("one byte changed, left out or put in does not lose a link's geometry") {
   const robot_file read;
   const outcome whole = read(seed);

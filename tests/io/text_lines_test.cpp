@@ -86,6 +86,24 @@ TEST_CASE("lines that end in any mixture are the lines that were written") {
   }
 }
 
+TEST_CASE("a number with a # in it, as old runtimes spell NaN, is no number that a comment follows") {
+  const std::pair<std::string, std::vector<std::string>> files[] = {
+      {".xyz", {"", "7", " ", "8", " ", "9", " 3\n7 8 9 3\n"}},
+      {".csv", {"x,y,z,r\n", "7", ",", "8", ",", "9", ",", "3", "\n"}},
+      {".obj", {"v ", "7", " ", "8", " ", "9", "\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}},
+      {".off", {"OFF\n3 1 0\n", "7", " ", "8", " ", "9", "\n1 0 0\n0 1 0\n3 0 1 2\n"}},
+      {".pcd", {"FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nDATA ascii\n", "7", " ", "8", " ", "9", "\n"}}};
+  for (const auto& [ending, pieces] : files)
+    for (std::size_t which = 1; which + 1 < pieces.size(); which += 2)
+      for (const char* spelt : {"1.#IND", "-1.#IND", "1.#QNAN", "1.#INF"}) {
+        std::string text;
+        for (std::size_t k = 0; k < pieces.size(); ++k) text += k == which ? spelt : pieces[k];
+        INFO(ending << ' ' << text);
+        CHECK(read_all(ending, text).starts_with(':'));
+      }
+  CHECK(read_all(".xyz", "1 2 3 # 4\n5,6,7,#8\n") == read_all(".xyz", "1 2 3\n5 6 7\n"));
+}
+
 TEST_CASE("binary PCD data may begin with any byte, and POINTS is what the data hold") {
   for (const char* end : ends)
     for (int first = 0; first < 256; ++first) {

@@ -75,6 +75,33 @@ TEST_CASE("an option takes one word each time, and a word in brackets is that wo
   refuses(ask + " --cloud " + cloud.path + " --check 1" + std::string(330, '0'), "--check");
 }
 
+TEST_CASE("every limit of a mesh that a refusal names is set by that name") {
+  const scratch_file dae(".dae", R"(<COLLADA version="1.4.1"><asset/><library_geometries><geometry id="g"><mesh><source id="s">
+    <float_array id="a" count="12">0 0 0 1 0 0 0 1 0 0 0 1</float_array><technique_common><accessor source="#a" count="4" stride="3">
+    <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+    <vertices id="v"><input semantic="POSITION" source="#s"/></vertices><triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>
+    <p>0 2 1 0 1 3 1 2 3 0 3 2</p></triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="w"><node id="n">
+    <node id="m"><instance_geometry url="#g"/></node></node></visual_scene></library_visual_scenes><scene><instance_visual_scene url="#w"/></scene></COLLADA>)");
+  const scratch_file urdf(".urdf", "<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh filename=\"file://" + dae.path +
+                                       "\"/></geometry></collision></link></robot>");
+  const scratch_file cloud(".xyz", "3 0.1 0.1\n"), frames(".txt", cloud.path + '\n');
+  const std::string ask = " --model triangles --backend host --robot " + urdf.path;
+  for (const std::string& line : {"query --cloud " + cloud.path + ask, "run --frames " + frames.path + ask,
+                                  "pack " + urdf.path + " --spheres 5 --no-cache", "pack " + dae.path + " --spheres 5 --no-cache"}) {
+    for (const std::string name : {"bytes", "triangles", "values", "nodes", "depth"}) {
+      refuses(line + " --mesh-limit " + name + "=1", "(mesh_limits::" + name + ")");
+      CHECK(run_command(line + " --mesh-limit " + name + (name == "bytes" ? "=5000" : "=1000 --mesh-limit bytes=5000")).code == 0);
+      CHECK(run_command(line.substr(0, line.find(' ')) + " --help").out.find(name + "=") != std::string::npos);
+      for (const std::string value : {"0", "-1", "1.5", "x", "1 2", "18446744073709551616"})
+        refuses(line + " --mesh-limit '" + name + '=' + value + "'", "--mesh-limit");
+      refuses(line + " --mesh-limit " + name + "=1000 --mesh-limit " + name + "=1000", "twice");
+    }
+    refuses(line + " --mesh-limit depth=1001", "from 1 to 1000");
+    refuses(line + " --mesh-limit vertices=5", "\"vertices\" is not bytes, triangles");
+    refuses(line + " --mesh-limit 5", "name=value");
+  }
+}
+
 TEST_CASE("the attack's empty --check is refused", "[data]") {
   const std::string folder = CLEARANCE_TEST_DATA "/attack/";
   if (!std::filesystem::exists(folder)) {

@@ -49,6 +49,13 @@ inline std::string_view take_word(std::string_view& line, std::string_view separ
   return word;
 }
 
+/// The line without its comment, which begins with a # at the start of a word: "1.#QNAN" has none, and is no number.
+inline std::string_view without_comment(std::string_view line, std::string_view separators = " \t\r\v\f") {
+  for (std::size_t at = line.find('#'); at != line.npos; at = line.find('#', at + 1))
+    if (at == 0 || separators.find(line[at - 1]) != separators.npos) return line.substr(0, at);
+  return line;
+}
+
 inline std::vector<std::string_view> words(std::string_view line) {
   std::vector<std::string_view> all;
   for (auto word = take_word(line); !word.empty(); word = take_word(line)) all.push_back(word);

@@ -89,8 +89,9 @@ class glb_data {
     std::size_t count, stride;
   };
 
-  /// The bytes of an accessor whose elements have this size, inside its buffer.
-  view open(const gltf_value& accessor, std::size_t size) const {
+  /// The bytes of an accessor whose elements have this size, inside its buffer. glTF wants each component aligned to its
+  /// own size; an offset that is not is a damaged one.
+  view open(const gltf_value& accessor, std::size_t size, std::size_t component) const {
     accessor.only({"bufferView", "byteOffset", "componentType", "normalized", "count", "type", "max", "min", "sparse",
                    "name", "extensions", "extras"});
     if (accessor.has("sparse")) accessor.refuse("is sparse, which is not supported");
@@ -111,6 +112,8 @@ class glb_data {
     if (at > whole || length > whole - at) from.refuse("is not inside its buffer");
     if (count == 0) accessor.refuse("has the count 0");
     if (stride < size || stride > 252) from.refuse("has the stride " + std::to_string(stride));
+    if (stride % component) from.refuse("has the stride " + std::to_string(stride) + ", which is not aligned");
+    if ((at + offset) % component) accessor.refuse("is not aligned in its buffer");
     if (offset > length || size > length - offset || (count - 1) > (length - offset - size) / stride)
       accessor.refuse("is not inside its view");
     return {data_.substr(at + offset, (count - 1) * stride + size), std::size_t(count), std::size_t(stride)};
@@ -124,7 +127,7 @@ class glb_data {
     const gltf_value from = accessor(index);
     if (from["type"].value != "VEC3" || from["componentType"].integer() != 5126)
       from.refuse("of positions does not hold three floats each");
-    const view values = open(from, 12);
+    const view values = open(from, 12, 4);
     for (std::size_t i = 0; i < values.count; ++i) {
       byte_reader reader(values.bytes.substr(i * values.stride, 12), root_.file);
       Eigen::Vector3d v;
@@ -139,7 +142,7 @@ class glb_data {
     const std::uint64_t kind = from["componentType"].integer();
     const std::size_t size = kind == 5121 ? 1 : kind == 5123 ? 2 : kind == 5125 ? 4 : 0;
     if (from["type"].value != "SCALAR" || size == 0) from.refuse("of indices does not hold whole numbers");
-    const view values = open(from, size);
+    const view values = open(from, size, size);
     if (values.stride != size) from.refuse("of indices has a stride");
     std::vector<std::uint32_t> made;
     for (std::size_t i = 0; i < values.count; ++i) {

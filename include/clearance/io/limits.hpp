@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 
 namespace clearance::io {
@@ -13,7 +12,7 @@ struct mesh_limits {
   std::uint64_t triangles = 5'000'000;             ///< After every instance of a mesh is in its place.
   std::uint64_t values = 2'000'000;                ///< XML elements and attributes of a file, or values of its JSON.
   std::uint64_t nodes = 100'000;                   ///< Places of a scene graph, instances counted each time.
-  std::size_t depth = 100;                         ///< Elements, JSON values or nodes inside one another.
+  std::uint64_t depth = 100;                       ///< Elements, JSON values or nodes inside one another.
 };
 
 }  // namespace clearance::io

@@ -41,7 +41,8 @@ inline triangle_mesh load_mesh(const std::filesystem::path& path, const mesh_lim
     if (std::filesystem::exists(there) && !std::filesystem::is_directory(there)) {
       if (!std::filesystem::is_regular_file(there)) refuse(file, "is no regular file, and meshes are only read from those");
       if (std::filesystem::file_size(path, failed) > limits.bytes)
-        refuse(file, "is longer than the limit of " + std::to_string(limits.bytes) + " bytes (mesh_limits::bytes)");
+        refuse(file, "is longer than the " + std::to_string(limits.bytes) +
+                         " bytes that the limit leaves (mesh_limits::bytes)");
     }
     const std::string bytes = read_bytes(file), format = mesh_format(path, bytes);
     polygon_mesh mesh = format == "obj"   ? read_obj(bytes, file)
@@ -52,7 +53,8 @@ inline triangle_mesh load_mesh(const std::filesystem::path& path, const mesh_lim
                                           : read_glb(bytes, file, limits);
     if (mesh.ends.empty()) refuse(file, "has no triangles");
     if (mesh.corners.size() - 2 * mesh.ends.size() > limits.triangles)
-      refuse(file, "has more than " + std::to_string(limits.triangles) + " triangles (mesh_limits::triangles)");
+      refuse(file, "has more than the " + std::to_string(limits.triangles) +
+                       " triangles that the limit leaves (mesh_limits::triangles)");
     return triangulate(std::move(mesh));
   });
 }

@@ -7,7 +7,9 @@
 #include <clearance/io/error.hpp>
 #include <clearance/io/mesh_polygons.hpp>
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -27,6 +29,14 @@ inline Eigen::Vector3d take_vertex(std::string_view& line, const std::string& fi
   return v;
 }
 
+/// How many words are left of a line, up to a comment. All must be numbers, "nan" too, or it ends with a sentence.
+inline std::size_t numbers_left(std::string_view line, const std::string& file, std::size_t at) {
+  std::size_t count = 0;
+  for (auto word = take_word(line); !word.empty() && word.front() != '#'; word = take_word(line), ++count)
+    if (!number<double>(word)) refuse(file, quoted(word) + " is not a number", at);
+  return count;
+}
+
 /// Is this the first word of an OBJ statement? Of all that the format has, and skin weights, which some tools add.
 inline bool obj_statement(std::string_view word) {
   for (const std::string_view known :
@@ -37,6 +47,26 @@ inline bool obj_statement(std::string_view word) {
         "ctech",    "stech",    "call",       "csh",       "bsp",    "bzp",    "cdc",    "cdp",   "res"})
     if (word == known) return true;
   return false;
+}
+
+/// The vertex of a face's corner "1", "1/2", "1//3" or "1/2/3"; nothing if that is not what it is.
+inline std::optional<std::int64_t> obj_corner(std::string_view word) {
+  std::optional<std::int64_t> vertex;
+  for (int k = 0; k < 3; ++k) {  // its texture and its normal are passed over
+    const std::size_t end = std::min(word.find('/'), word.size());
+    const std::string_view one = word.substr(0, end);
+    const auto value = number<std::int64_t>(one);
+    if (k == 0) vertex = value;
+    if (!value && (k == 0 || !one.empty())) return std::nullopt;
+    if (end == word.size()) return vertex;
+    word.remove_prefix(end + 1);
+  }
+  return std::nullopt;
+}
+
+/// One that is passed over and holds no name. If another begins in its line, a line end was lost.
+inline bool obj_of_numbers(std::string_view key) {
+  return key == "vn" || key == "vt" || key == "vp" || key == "s" || key == "l" || key == "p";
 }
 
 /// Vertices and faces of a Wavefront OBJ file; normals, materials, groups, lines and points are passed over, and so is
@@ -60,10 +90,13 @@ inline polygon_mesh read_obj(std::string_view rest, const std::string& file) {
     const std::string_view key = take_word(line);
     if (key == "v") {
       mesh.vertices.push_back(take_vertex(line, file, first));
+      const std::size_t more = numbers_left(line, file, first);  // a weight, a colour, or both
+      if (more != 0 && more != 1 && more != 3 && more != 4)
+        refuse(file, "a vertex of " + std::to_string(3 + more) + " numbers", first);
     } else if (key == "f") {
       const std::size_t begin = mesh.corners.size();
       for (auto word = take_word(line); !word.empty() && word.front() != '#'; word = take_word(line)) {
-        const auto given = number<std::int64_t>(word.substr(0, word.find('/')));
+        const auto given = obj_corner(word);
         const std::int64_t count = std::int64_t(mesh.vertices.size());
         const std::int64_t index = !given       ? 0
                                    : *given < 0 ? *given + count + 1
@@ -75,6 +108,9 @@ inline polygon_mesh read_obj(std::string_view rest, const std::string& file) {
       }
       if (mesh.corners.size() < begin + 3) refuse(file, "a face has fewer than three vertices", first);
       mesh.ends.push_back(mesh.corners.size());
+    } else if (obj_of_numbers(key)) {
+      for (auto word = take_word(line); !word.empty() && word.front() != '#'; word = take_word(line))
+        if (obj_statement(word)) refuse(file, quoted(word) + " begins a second statement in the line", first);
     } else if (!mesh.vertices.empty() && !key.empty() && key.front() != '#' && !obj_statement(key)) {
       refuse(file, quoted(key) + " begins no statement of an OBJ file", first);
     }

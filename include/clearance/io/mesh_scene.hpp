@@ -25,8 +25,8 @@ class mesh_scene {
     const std::size_t first = made_.vertices.size();
     if (made_.corners.size() + mesh.corners.size() > 3 * limits_.triangles ||
         first + mesh.vertices.size() > std::min<std::uint64_t>(3 * limits_.triangles, UINT32_MAX))
-      refuse(file_, "with all its instances it has more than " + std::to_string(limits_.triangles) +
-                        " triangles (mesh_limits::triangles)");
+      refuse(file_, "with all its instances it has more than the " + std::to_string(limits_.triangles) +
+                        " triangles that the limit leaves (mesh_limits::triangles)");
     for (const auto& v : mesh.vertices) {
       made_.vertices.push_back(here * v);
       if (!made_.vertices.back().allFinite()) refuse(file_, "its scene puts a vertex beyond what a number can hold");

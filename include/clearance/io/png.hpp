@@ -4,7 +4,7 @@
 // namespace of ours, so that a program may use its own copy, with its own settings, before or after this header.
 
 #include <clearance/io/depth.hpp>
-#include <clearance/io/png_check.hpp>
+#include <clearance/io/png_rows.hpp>
 
 // What stb_image.h includes must have been included before it is put into a namespace.
 #include <assert.h>
@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <memory>
+#include <climits>
 #include <stdexcept>
 
 #pragma push_macro("STBI_INCLUDE_STB_IMAGE_H")
@@ -88,16 +88,21 @@ namespace clearance::io {
 /// Reads a PNG file from memory; `file` is its name in the frame and in errors.
 [[maybe_unused]] static depth_frame read_png(std::string_view bytes, const std::string& file,
                                              const read_limits& limits = {}) {
-  check_depth_png(bytes, file, limits);
-  if (bytes.size() > INT_MAX) refuse(file, "is larger than 2 GiB");
-  int width = 0, height = 0, channels = 0;
-  const std::unique_ptr<stb::stbi_us, decltype(&std::free)> pixels(
-      stb::stbi_load_16_from_memory(reinterpret_cast<const stb::stbi_uc*>(bytes.data()), int(bytes.size()), &width,
-                                    &height, &channels, 1),
-      &std::free);
-  if (!pixels) refuse(file, "the PNG image is damaged (" + std::string(stb::stbi_failure_reason()) + ")");
-  const std::size_t size = std::size_t(width) * std::size_t(height);
-  return {file, {pixels.get(), pixels.get() + size}, std::size_t(width), std::size_t(height)};
+  const png_image image = check_depth_png(bytes, file, limits);
+  const std::size_t size = png_raw_bytes(image);
+  if (size > INT_MAX || image.packed.size() > INT_MAX) refuse(file, "is larger than 2 GiB");
+  std::string raw(size, '\0');  // and no more, whatever the data unfold to
+  int unpacked = -1;
+  try {
+    unpacked = stb::stbi_zlib_decode_buffer(raw.data(), int(size), image.packed.data(), int(image.packed.size()));
+  } catch (const std::logic_error&) {  // STBI_ASSERT
+  }
+  if (unpacked < 0 || std::size_t(unpacked) != size)
+    refuse(file, "the PNG image is damaged (its data are not those of " + std::to_string(image.width) + "x" +
+                     std::to_string(image.height) + " pixels)");
+  if (image.packed.size() < 4 || png_number(std::string_view(image.packed).substr(image.packed.size() - 4)) != adler32(raw))
+    refuse(file, "the PNG image is damaged (the checksum of its data does not match)");
+  return {file, png_pixels(image, raw, file), image.width, image.height};
 }
 
 /// Reads a depth frame from a 16-bit grey PNG; any other PNG, and a damaged or truncated one, is refused with a

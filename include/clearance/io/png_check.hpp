@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What must hold of a PNG file before its pixels are decoded. stb_image checks no checksums, so a damaged file would
-// give wrong depths without a word; and it trusts the size in the header.
+// What must hold of a PNG file before its data are unpacked.
 
 #include <clearance/io/error.hpp>
 
 #include <array>
+#include <cctype>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -35,13 +35,22 @@ constexpr std::uint32_t png_number(std::string_view bytes) {
   return value;
 }
 
+/// An image whose data are still packed.
+struct png_image {
+  std::size_t width = 0, height = 0;
+  bool interlaced = false;
+  std::string packed;  // by zlib
+};
+
 /// Refuses anything but a complete, undamaged PNG of 16-bit grey pixels whose size its data can fill.
-inline void check_depth_png(std::string_view bytes, const std::string& file, const read_limits& limits = {}) {
+inline png_image check_depth_png(std::string_view bytes, const std::string& file, const read_limits& limits = {}) {
   using namespace std::string_view_literals;
   constexpr std::string_view signature = "\x89PNG\r\n\x1a\n"sv;
   if (!bytes.starts_with(signature)) refuse(file, "is not a PNG image");
   bytes.remove_prefix(signature.size());
-  std::uint64_t width = 0, height = 0, packed = 0;
+  std::uint64_t width = 0, height = 0;
+  png_image image;
+  bool data_ended = false;
   for (bool first = true;; first = false) {
     if (bytes.size() < 12) refuse(file, "the PNG image is cut short");
     const std::uint64_t size = png_number(bytes);
@@ -62,18 +71,30 @@ inline void check_depth_png(std::string_view bytes, const std::string& file, con
                          (colour < 7 ? kinds[std::size_t(colour)] : "?"));
       }
       if (width == 0 || height == 0) refuse(file, "the PNG image has no pixels");
+      if (data[10] || data[11] || std::uint8_t(data[12]) > 1)
+        refuse(file, "the PNG image is packed, filtered or interlaced in a way that is not known");
+      image.interlaced = data[12] == 1;
+    } else if (name == "IDAT") {
+      if (data_ended) refuse(file, "the PNG image has data in two places");
+      image.packed += data;
+    } else if (name != "IEND" && !std::islower(std::uint8_t(name[0]))) {
+      refuse(file, "the PNG image has a chunk " + quoted(name) + ", which no grey image has");
     }
-    if (name == "IDAT") packed += size;
+    data_ended |= name != "IDAT" && !image.packed.empty();
     bytes.remove_prefix(12 + size);
     if (name == "IEND") break;
   }
+  const std::uint64_t packed = image.packed.size();
   // Deflate packs at most 1032 bytes into one.
   if (width > (1u << 24) || height > (1u << 24) || (2 * width + 1) * height > 1032 * packed)
     refuse(file, "the PNG image says " + std::to_string(width) + "x" + std::to_string(height) +
                      " pixels, more than its data can hold");
   if (const std::uint64_t memory = 4 * width * height; memory > limits.unfolded)  // of the pixels, and while they are unpacked
     refuse(file, std::to_string(packed) + " bytes unfold to " + std::to_string(width) + "x" + std::to_string(height) +
-                     " pixels of " + mebibytes(memory) + ", more than the limit of " + mebibytes(limits.unfolded));
+                     " pixels of " + mebibytes(memory) + ", more than the limit of " + mebibytes(limits.unfolded) +
+                     " (read_limits::unfolded)");
+  image.width = std::size_t(width), image.height = std::size_t(height);
+  return image;
 }
 
 }  // namespace clearance::io

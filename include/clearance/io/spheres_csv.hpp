@@ -19,7 +19,7 @@ inline packing load_spheres_csv(const std::string& file) {
   bool header_may_come = true;
   for (std::size_t at = 1; !rest.empty(); ++at) {
     std::string_view line = take_line(rest);
-    line = line.substr(0, line.find('#'));
+    line = without_comment(line, separators);
     std::vector<std::string_view> fields;
     for (auto word = take_word(line, separators); !word.empty(); word = take_word(line, separators))
       fields.push_back(word);

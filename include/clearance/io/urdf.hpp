@@ -75,6 +75,21 @@ inline bool holds_urdf(const xml_element& element) {
   return std::ranges::any_of(element.children, holds_urdf);
 }
 
+/// How many elements of a shape are anywhere in an element, other vocabularies apart.
+inline std::size_t shape_elements(const xml_element& element) {
+  if (element.name.find(':') != element.name.npos) return 0;
+  std::size_t count = element.name == "visual" || element.name == "collision" || element.name == "geometry";
+  for (const auto& child : element.children) count += shape_elements(child);
+  return count;
+}
+
+/// What was read is counted against what is there: a shape inside another element would be lost without a word.
+inline void check_shapes(const xml_place& at, std::size_t read) {
+  if (const std::size_t there = shape_elements(at.element); there != 2 * read)  // each has its geometry
+    at.refuse("has " + std::to_string(there) + " elements <visual>, <collision> and <geometry> in it, but " +
+              std::to_string(2 * read) + " where they belong");
+}
+
 inline void refuse_xacro(const xml_element& element, const std::string& file) {
   if (element.name.starts_with("xacro:")) refuse(file, "has xacro in it: expand it with xacro first", element.line);
   for (const auto& child : element.children) refuse_xacro(child, file);
@@ -99,11 +114,15 @@ inline urdf_file read_urdf(const std::string& file, const mesh_limits& limits = 
     const xml_place at = robot.in(child);
     if (child.name == "link") {
       made.links.push_back(read_urdf_link(at));
+      check_shapes({child, file, "link " + io::quoted(made.links.back().name)},
+                   made.links.back().visual.size() + made.links.back().collision.size());
       names.push_back(made.links.back().name);
     } else if (child.name == "joint") {
       joints.push_back(read_urdf_joint(at));
-    } else if (child.name != "gazebo" && child.name != "transmission" && child.name != "sensor" &&
-               child.name != "ros2_control" && child.name.find(':') == child.name.npos && holds_urdf(child)) {
+      check_shapes({child, file, "joint " + io::quoted(joints.back().name)}, 0);
+    } else if (child.name == "transmission" || child.name == "sensor" || child.name == "ros2_control") {
+      check_shapes(at, 0);
+    } else if (child.name != "gazebo" && child.name.find(':') == child.name.npos && holds_urdf(child)) {
       at.refuse("is not known, and has a part of a robot in it");
     }
   }
