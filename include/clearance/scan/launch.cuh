@@ -5,6 +5,7 @@
 #include <clearance/backend/device.cuh>
 #include <clearance/frame/clouds.hpp>
 #include <clearance/model.hpp>
+#include <clearance/result.hpp>
 #include <clearance/scan/kernel.cuh>
 #include <clearance/scan/place_kernel.cuh>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/frame/frame.hpp>
 #include <clearance/indices.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/tile_scan.hpp>
