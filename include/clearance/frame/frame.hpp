@@ -59,6 +59,7 @@ CLEARANCE_HD inline vec3 origin_near(position robot_in_cloud) {
 }
 
 /// The mean of the parts' origins, in the cloud's frame; `world_from_part(k)` is part k's pose.
+CLEARANCE_CALLS_ANYTHING
 template <class Pose>
 CLEARANCE_HD position middle_of(const world_transform& world_from_cloud, const Pose& world_from_part, std::size_t parts) {
   position sum{0, 0, 0};
