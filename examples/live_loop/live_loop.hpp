@@ -58,7 +58,7 @@ int example(const Backend& on) {
   std::vector<clearance::inner_sphere> row;
   for (int k = 0; k < 64; ++k) row.push_back({{0.004f * k, 0, 0}, 0.03f});
   const auto link = clearance::make_part(clearance::build<clearance::sphere>(row));
-  const clearance::model same(std::vector{link, link});
+  const clearance::model same{std::vector{link, link}};
   const auto start = steady_clock::now();
   int taken = 0, stops = 0, wrong = 0, tick = 0;
 

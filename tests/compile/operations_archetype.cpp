@@ -45,7 +45,7 @@ int main() {
   const auto part = clearance::make_part(clearance::build<clearance::sphere>(ball));
   const auto r = clearance::min_distance(clearance::host{}, part, Eigen::Isometry3d::Identity(), least_source{});
   const auto same = clearance::min_distance(in_line{}, part, Eigen::Isometry3d::Identity(), least_source{});
-  const clearance::model robot(std::vector{part});
+  const clearance::model robot{std::vector{part}};
   const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()};
   int pairs = 0, in_line_pairs = 0;
   const auto seen = clearance::collect(clearance::host{1}, robot, poses, least_source{}, least_answer{&pairs});

@@ -76,7 +76,7 @@ void check(const clearance::triangle_mesh& mesh, const std::string& name, census
   }
   ++all.solids;
   const clearance::packing spheres = clearance::pack(*solid, {.count = spheres_a_solid});
-  const clearance::model model(std::vector{clearance::make_part<clearance::sphere>(spheres)});
+  const clearance::model model{std::vector{clearance::make_part<clearance::sphere>(spheres)}};
   clearance::min_distance_query ask(clearance::host{.threads = 1}, model);
   const std::vector<Eigen::Isometry3d> pose = {Eigen::Isometry3d::Identity()};
   const auto law = [&](const Vector3d& at, bool brute) {

@@ -56,7 +56,7 @@ TEST_CASE("Crowds, points inside solids, and more parts than a kernel takes give
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
   m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   const auto box = [&] { return clearance::make_part<clearance::aabb>(clearance::close_mesh(m)); };
-  const clearance::model boxes(std::vector{box(), box()});
+  const clearance::model boxes{std::vector{box(), box()}};
   const auto crowd = d.points(300000, 2);
   same_pairs(boxes, {d.pose(0.5), d.pose(0.5)}, point_span(crowd), 0.5f, v, "boxes");
   scene<inner_sphere> s;
