@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # cpack makes clearance-dev_*.deb: the headers and the CMake files, for every architecture. Nothing is built for it.
 
-# The version stands in include/clearance/config.hpp; package.xml, which other tools read, must say the same.
+# The version stands in include/clearance/ground/config.hpp; package.xml, which other tools read, must say the same.
 file(STRINGS package.xml said REGEX "<version>")
 if(NOT said MATCHES "<version>${PROJECT_VERSION}</version>")
-  message(FATAL_ERROR "package.xml must say version ${PROJECT_VERSION}, as include/clearance/config.hpp does")
+  message(FATAL_ERROR "package.xml must say version ${PROJECT_VERSION}, as include/clearance/ground/config.hpp does")
 endif()
 
 # What it needs is what scripts/lib.sh says: the library's packages it depends on, those of io it suggests.

@@ -5,7 +5,7 @@
 #include "backends.hpp"
 #include "stopwatch.hpp"
 
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance_query.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>

@@ -3,7 +3,7 @@
 #include "command_line.hpp"
 #include "json_text.hpp"
 
-#include <clearance/config.hpp>
+#include <clearance/ground/config.hpp>
 #include <clearance/io/packing_cache.hpp>
 #include <clearance/io/spheres_file.hpp>
 

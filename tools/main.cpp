@@ -4,7 +4,7 @@
 #include "messages.hpp"
 #include "progress.hpp"
 
-#include <clearance/config.hpp>
+#include <clearance/ground/config.hpp>
 
 #include <CLI/CLI.hpp>
 

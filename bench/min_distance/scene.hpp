@@ -7,9 +7,9 @@
 
 #include <clearance/io/cloud_file.hpp>
 #include <clearance/io/robot.hpp>
-#include <clearance/make_part.hpp>
-#include <clearance/model.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/robot/model.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 
 #include <chrono>

@@ -2,11 +2,11 @@
 #pragma once
 // The worst cloud there is, made where its points will be read.
 
-#include <clearance/model.hpp>
-#include <clearance/pose.hpp>
+#include <clearance/ground/pose.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
-#include <clearance/visitor/nearest.hpp>
+#include <clearance/robot/model.hpp>
 #include <clearance/traversal/near_first.hpp>
+#include <clearance/visitor/nearest.hpp>
 
 namespace bench {
 

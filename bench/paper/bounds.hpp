@@ -4,7 +4,7 @@
 // tree that counts who looks at it.
 
 #include <clearance/concepts.hpp>
-#include <clearance/ordered.hpp>
+#include <clearance/ground/ordered.hpp>
 
 namespace bench::paper {
 

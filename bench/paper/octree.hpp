@@ -5,10 +5,10 @@
 
 #if __has_include(<octomap/OccupancyOcTreeBase.h>)
 #define CLEARANCE_BENCH_OCTOMAP
-#include <clearance/model.hpp>
-#include <clearance/visitor/nearest.hpp>
 #include <clearance/frame/frame.hpp>
+#include <clearance/robot/model.hpp>
 #include <clearance/traversal/near_first.hpp>
+#include <clearance/visitor/nearest.hpp>
 
 #include <octomap/OcTreeNode.h>
 #include <octomap/OccupancyOcTreeBase.h>

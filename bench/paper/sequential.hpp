@@ -4,8 +4,8 @@
 
 #include "bounds.hpp"
 
-#include <clearance/model.hpp>
 #include <clearance/frame/frame.hpp>
+#include <clearance/robot/model.hpp>
 
 namespace bench::paper {
 

@@ -2,7 +2,7 @@
 #pragma once
 // Triangles in axis-aligned boxes: how near does a depth image come to a cube? The same source on CPU and GPU.
 
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/solid/close_mesh.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 // From a mesh to a distance with a certificate: inner spheres in bounding spheres.
 
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/volume/sphere.hpp>

@@ -3,8 +3,8 @@
 // An answer of one's own: for each part of a robot, how many points are nearer than 5, 10 and 20 cm.
 
 #include <clearance/collect.hpp>
-#include <clearance/make_part.hpp>
-#include <clearance/ordered.hpp>
+#include <clearance/ground/ordered.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 

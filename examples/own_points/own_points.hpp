@@ -3,9 +3,9 @@
 // Points from memory of one's own layout: three arrays, as many simulations keep them. They are read in place.
 
 #include <clearance/bvh/build.hpp>
+#include <clearance/ground/read_only.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
-#include <clearance/read_only.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A solid of one's own, packed without any mesh: a dome by its formula.
 #include <clearance/backend/host.hpp>
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/volume/sphere.hpp>

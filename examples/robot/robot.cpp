@@ -2,7 +2,7 @@
 // A robot description and depth images in, a distance for every link out.
 #include <clearance/backend/host.hpp>
 #include <clearance/io/robot.hpp>
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/points/depth_image.hpp>

@@ -5,10 +5,11 @@
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/bvh/flat_list.hpp>
-#include <clearance/make_part.hpp>
+#include <clearance/collect.hpp>
+#include <clearance/distances.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/min_distance_query.hpp>
-#include <clearance/model.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
@@ -16,13 +17,14 @@
 #include <clearance/points/strided_points.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/primitive/triangle.hpp>
-#include <clearance/visitor/any_within.hpp>
-#include <clearance/visitor/nearest.hpp>
+#include <clearance/robot/model.hpp>
 #include <clearance/solid/implicit.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/traversal/near_first.hpp>
 #include <clearance/traversal/recursive.hpp>
 #include <clearance/traversal/stack.hpp>
+#include <clearance/visitor/any_within.hpp>
+#include <clearance/visitor/nearest.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>

@@ -2,8 +2,8 @@
 #pragma once
 // The contract of the library, with point_source.hpp. A model of a concept lives in one header and includes this one.
 
-#include <clearance/indices.hpp>
-#include <clearance/math.hpp>
+#include <clearance/ground/indices.hpp>
+#include <clearance/ground/math.hpp>
 #include <clearance/point_source.hpp>
 
 #include <concepts>

@@ -2,7 +2,7 @@
 #pragma once
 // Where points come from, and what makes reading them fast.
 
-#include <clearance/math.hpp>
+#include <clearance/ground/math.hpp>
 
 #include <concepts>
 #include <cstddef>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <clearance/concepts.hpp>
-#include <clearance/pose.hpp>
+#include <clearance/ground/pose.hpp>
 
 namespace clearance {
 

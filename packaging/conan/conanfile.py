@@ -27,7 +27,7 @@ class Clearance(ConanFile):
     no_copy_source = True
 
     def set_version(self):
-        config = (checkout(self) / "include/clearance/config.hpp").read_text()
+        config = (checkout(self) / "include/clearance/ground/config.hpp").read_text()
         self.version = ".".join(re.findall(r"#define CLEARANCE_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", config))
 
     def export(self):

@@ -2,7 +2,7 @@
 #include "support/laws.hpp"
 
 #include <clearance/backend/host.hpp>
-#include <clearance/ordered.hpp>
+#include <clearance/ground/ordered.hpp>
 
 #include <atomic>
 #include <mutex>

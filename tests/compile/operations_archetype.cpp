@@ -2,6 +2,7 @@
 // The least that a point source and an answer must offer to the operations, and the least part; and a backend that is not ours.
 #include <clearance/backend/host.hpp>
 #include <clearance/collect.hpp>
+#include <clearance/distances.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/bvh/build.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
@@ -50,5 +51,7 @@ int main() {
   int pairs = 0, in_line_pairs = 0;
   const auto seen = clearance::collect(clearance::host{1}, robot, poses, least_source{}, least_answer{&pairs});
   clearance::collect(in_line{}, robot, poses, least_source{}, least_answer{&in_line_pairs});
+  const auto each = clearance::distances(in_line{}, robot, poses, least_source{}, {.d_max = 2});
+  if (each.distance != std::vector<float>{1, 2, clearance::infinity} || each.counts.valid != 3) return 2;
   return r.distance == 1 && same.distance == 1 && pairs == 2 && in_line_pairs == 2 && seen.valid == 3 ? 0 : 1;
 }

@@ -5,7 +5,7 @@
 
 #include <clearance/backend/host.hpp>
 #include <clearance/io/ist.hpp>
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/volume/sphere.hpp>

@@ -8,10 +8,10 @@
 
 #include <clearance/io/mesh.hpp>
 #include <clearance/io/robot.hpp>
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance_query.hpp>
-#include <clearance/model.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/robot/model.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/volume/sphere.hpp>
 

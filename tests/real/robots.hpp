@@ -8,9 +8,9 @@
 #include <clearance/io/cloud_file.hpp>
 #include <clearance/io/png.hpp>
 #include <clearance/io/robot.hpp>
-#include <clearance/make_part.hpp>
-#include <clearance/model.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/robot/model.hpp>
 
 namespace testing {
 

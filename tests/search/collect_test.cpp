@@ -4,7 +4,7 @@
 #include "support/tallied.hpp"
 
 #include <clearance/collect.hpp>
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>

@@ -3,7 +3,7 @@
 #include "search/edge_scenes.hpp"
 #include "support/product.hpp"
 
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance_query.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>

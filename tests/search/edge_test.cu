@@ -3,7 +3,7 @@
 #include "search/edge_scenes.hpp"
 #include "support/product_device.cuh"
 
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance_query.cuh>
 #include <clearance/volume/obb.hpp>
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whatever is enqueued returns while its stream is held, and can be captured; several clouds too.
+#include "support/brute_distances.hpp"
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"
 #include "support/tallied.hpp"
 
 #include <clearance/backend/pinned_buffer.cuh>
 #include <clearance/collect.cuh>
+#include <clearance/distances.cuh>
 #include <clearance/min_distance_query.cuh>
 #include <clearance/volume/sphere.hpp>
 
@@ -90,6 +92,24 @@ TEST_CASE("An answer of one's own is enqueued without waiting, too", "[concurren
   CHECK(cudaStreamQuery(g.stream.handle) == cudaErrorNotReady);
   held.release();
   CHECK((g.words.data()[0] == expected.words[0] && g.words.data()[1] == expected.words[1]));
+}
+
+TEST_CASE("Distances are enqueued without waiting, too", "[concurrent]") {
+  given g;
+  const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});
+  const auto expected = clearance::distances(host{}, g.on_host, g.s.poses, both, {.d_max = 1});
+  clearance::pinned_buffer<real> distance(expected.distance.size(), 0);
+  const auto enqueue = [&] { return clearance::distances_async(g.gpu, g.model, g.s.poses, g.clouds, {distance.data()}, g.counts.data(), 1); };
+  enqueue();
+  g.gpu.wait();
+  std::fill_n(distance.data(), distance.size(), real(-1));
+  gate held(g.stream.handle);
+  const auto certain = enqueue();
+  CHECK(cudaStreamQuery(g.stream.handle) == cudaErrorNotReady);
+  held.release();
+  CHECK((certain.error.here == expected.certain.error.here && certain.slop == expected.certain.slop));
+  verdict v;
+  require_same({{distance.data(), distance.data() + distance.size()}, {}, {}, *g.counts.data(), certain}, expected, v, "enqueued");
 }
 
 TEST_CASE("Every frame that is enqueued by a prepared query can be captured and launched again") {

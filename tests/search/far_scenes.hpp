@@ -4,7 +4,7 @@
 
 #include "support/laws.hpp"
 
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/ray_image.hpp>

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Trees that are not ours in the kernel of a scan: linked, flat, deeper and wider than its stacks. They say what brute force and
 // the host say, in every bit, and so do more parts than a kernel takes.
+#include "support/brute_distances.hpp"
 #include "support/linked_tree.hpp"
 #include "support/product_device.cuh"
 #include "support/wide_tree.hpp"
 
 #include <clearance/bvh/any_tree.hpp>
 #include <clearance/bvh/flat_list.hpp>
-#include <clearance/make_part.hpp>
+#include <clearance/distances.cuh>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance_query.cuh>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -30,6 +32,9 @@ void ask(const Here& on_host, const There& model, const std::vector<Eigen::Isome
   v.require(same_result(min_distance(gpu, model, poses, cloud), expected), what, ", one call: differs from the host's result");
   const auto [by_parts, own] = clearance::min_distance_per_part(gpu, model, poses, cloud);
   v.require(same_result(by_parts, robot) && std::ranges::equal(own, each, same_minimum), what, ", one call, per part: differs");
+  for (const real d_max : {real(0.3), clearance::infinity})
+    require_same(clearance::distances(gpu, model, poses, cloud, {d_max, true}), clearance::distances(host{}, on_host, poses, cloud, {d_max, true}), v,
+                 what + ", distances");
   clearance::min_distance_query query(gpu, model);
   std::vector<clearance::part_minimum> minima(poses.size());
   for (const char* when : {", cold", ", warm"}) {

@@ -3,7 +3,7 @@
 #include "support/product.hpp"
 
 #include <clearance/answer/merge.hpp>
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/points/slice.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>

@@ -5,7 +5,7 @@
 #include "support/volumes.hpp"
 
 #include <clearance/bvh/flat_list.hpp>
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 

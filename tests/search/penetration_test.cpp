@@ -5,10 +5,10 @@
 #include "support/laws.hpp"
 #include "support/random.hpp"
 
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
-#include <clearance/model.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/robot/model.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/volume/sphere.hpp>
 

@@ -2,7 +2,7 @@
 // The prepared query says what the plain one says, in every bit: cold, warm, and after anything has moved.
 #include "support/product_device.cuh"
 
-#include <clearance/make_part.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/min_distance_query.cuh>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>

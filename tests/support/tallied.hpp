@@ -4,7 +4,7 @@
 
 #include "support/scenes.hpp"
 
-#include <clearance/ordered.hpp>
+#include <clearance/ground/ordered.hpp>
 
 #include <bit>
 

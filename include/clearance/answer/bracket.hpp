@@ -37,3 +37,20 @@ CLEARANCE_HD inline void bracket(min_distance_result& r, double lower, real tole
 }
 
 }  // namespace clearance::minimum
+
+namespace clearance {
+
+/// What a computed distance leaves certain of that to the solid: arithmetic, poses, the source's own rounding, and by how much a
+/// part may be nearer than its primitives (gap and tolerance).
+struct distance_certainty {
+  frames::float_error error;
+  double slop = 0;
+
+  /// The solid is at least so far away: 0, if that is not certain to be more.
+  CLEARANCE_HD real lower(real distance) const {
+    const double least = minimum::certain_distance(distance, slop, error);
+    return least > 0 ? rounded_down(least) : 0;
+  }
+};
+
+}  // namespace clearance

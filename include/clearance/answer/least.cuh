@@ -6,6 +6,7 @@
 #include <clearance/answer/one_minimum.cuh>
 #include <clearance/answer/part_minima.cuh>
 #include <clearance/answer/seeds.cuh>
+#include <clearance/scan/kernel.cuh>
 
 namespace clearance::minimum {
 
@@ -18,7 +19,8 @@ struct least {
   using record = minimum::record<typename scan::node_of<hierarchy_type>::place>;
   using witness_type = witness<record, primitive_type>;
   using state_type = device_state<record>;
-  using block = scan::block_memory<least>;
+  using scan_type = scan::by_pairs;
+  using block = scan::pair_memory<least>;
   using seeds = last_frame<least>;
   static constexpr bool bound_per_part = PerPart;
   static constexpr std::uint32_t slots = PerPart ? scan::most_parts : 1;

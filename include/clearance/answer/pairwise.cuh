@@ -3,6 +3,7 @@
 // Answers that want every pair, once, as the blocks of a device give them.
 
 #include <clearance/answer/pairwise.hpp>
+#include <clearance/scan/kernel.cuh>
 #include <clearance/scan/launch.cuh>
 #include <clearance/scan/record.hpp>
 #include <clearance/scan/tally.hpp>
@@ -15,7 +16,8 @@ struct pairs_of {
   using hierarchy_type = typename PartView::hierarchy_type;
   using primitive_type = typename hierarchy_type::primitive_type;
   using record = scan::record<typename scan::node_of<hierarchy_type>::place>;
-  using block = scan::block_memory<pairs_of>;
+  using scan_type = scan::by_pairs;
+  using block = scan::pair_memory<pairs_of>;
   static constexpr bool bound_per_part = true;
   static constexpr std::size_t top_bytes = 7000;  ///< Leaves room for two blocks on a processor of an H200.
 

@@ -3,7 +3,7 @@
 
 #include <clearance/answer/resolve.hpp>
 #include <clearance/frame/clouds.hpp>
-#include <clearance/model.hpp>
+#include <clearance/robot/model.hpp>
 #include <clearance/scan/descend.hpp>
 #include <clearance/scan/scan_body.hpp>
 

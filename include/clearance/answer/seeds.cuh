@@ -3,9 +3,8 @@
 // A bound before the first test. Any real pair of a point and a primitive is a valid one, so nothing can be lost.
 
 #include <clearance/answer/record.hpp>
-#include <clearance/scan/descend.hpp>
 #include <clearance/scan/reader.cuh>
-#include <clearance/scan/steps.cuh>
+#include <clearance/scan/team.cuh>
 
 namespace clearance::minimum {
 
@@ -71,42 +70,6 @@ class last_frame {
   sample p_{{}, drop_reason::not_finite};
 };
 
-/// Eight lanes of a warp, which stays together all the way down: groups that part ways wait for one another at every step.
-struct eight_lanes {
-  static constexpr std::uint32_t size = 8;
-  __device__ std::uint32_t rank() const { return threadIdx.x % size; }
-  __device__ bool any(bool mine) const { return __any_sync(all_lanes, mine); }
-  __device__ real least(real mine) const {
-    for (std::uint32_t step = 1; step < size; step *= 2) mine = min(mine, __shfl_xor_sync(all_lanes, mine, step));
-    return mine;
-  }
-  __device__ int first(bool mine) const {
-    const unsigned those = __ballot_sync(all_lanes, mine) >> (threadIdx.x & 24) & 0xff;
-    return those != 0 ? int(threadIdx.x & 24) + __ffs(int(those)) - 1 : -1;
-  }
-  template <class T>
-  __device__ T from(int lane, const T& mine) const {
-    return scan::from_lane(mine, lane < 0 ? int(threadIdx.x & 31) : lane);
-  }
-};
-
-/// A part's tree as `descend` takes it.
-template <class Answer>
-struct steps_of_part {
-  using all = scan::tree_steps<Answer>;
-  using node_type = typename all::node_type;
-  using volume_type = typename Answer::hierarchy_type::volume_type;
-  std::uint32_t part;
-
-  __device__ node_type root() const { return all::root(part); }
-  __device__ bool is_leaf(const node_type& n) const { return all::is_leaf(part, n); }
-  __device__ std::uint32_t size(const node_type& n) const { return all::size(part, n); }
-  __device__ auto child(const node_type& n, std::uint32_t j) const { return all::child(part, n, j); }
-  __device__ real distance(const node_type& n, std::uint32_t j, vec3 q) const {
-    return all::primitive(part, all::place_of(n, j)).distance(q);
-  }
-};
-
 /// No last frame: eight lanes take the most promising of their points down the tree (each eight lanes another part, where
 /// every part needs a bound), and all blocks wait a little for one another. Nothing depends on that wait but speed, so it
 /// gives up rather than hang.
@@ -115,7 +78,7 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
   using parts = scan::frame_parts<Answer>;
   constexpr int quad = scan::quad;
   constexpr bool per_part = Answer::bound_per_part;
-  const eight_lanes team;
+  const scan::eight_lanes team;
 #pragma unroll
   for (int j = 0; j < quad; ++j)
     if ((p.reasons >> 8 * j & 0xff) != 0) p.at[j].x = not_a_number;  // is no nearest point
@@ -143,7 +106,7 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
   const real nearest = team.least(least_power);
   const int winner = team.first(least_power < infinity && least_power == nearest);
   k_least = team.from(winner, k_least), x = team.from(winner, x);
-  const real d = scan::descend(steps_of_part<Answer>{k_least}, parts::place(k_least).part_from_cloud(x), winner >= 0, team);
+  const real d = scan::descend(scan::steps_of_part<Answer>{k_least}, parts::place(k_least).part_from_cloud(x), winner >= 0, team);
   std::uint32_t bound = d < infinity ? ordered(d) : no_bound;
   if constexpr (!per_part) bound = least_of(all_lanes, bound);
   if ((per_part || (threadIdx.x & 31) == 0) && bound != no_bound) atomicMin(&s.bound[Answer::slot(k_least)], bound);

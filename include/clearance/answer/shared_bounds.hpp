@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/ordered.hpp>
+#include <clearance/ground/ordered.hpp>
 #include <clearance/visitor/nearest.hpp>
 
 namespace clearance::minimum {
@@ -34,6 +34,7 @@ struct shared_bounds {
 
   CLEARANCE_HD distance_key* bound_of(std::uint32_t k) const { return part_best != nullptr ? part_best + k : &all->best; }
   CLEARANCE_HD real reach(std::uint32_t k) const { return key_distance(load_relaxed(bound_of(k))); }
+  CLEARANCE_HD real reach_of_pair(std::uint32_t, std::uint32_t k) const { return reach(k); }
   CLEARANCE_HD void lower(std::uint32_t index, std::uint32_t k, real distance) const {
     distance_key* const bound = bound_of(k);
     if (const distance_key key = make_key(distance, index); key < load_relaxed(bound)) lower_to(bound, key);
@@ -50,7 +51,7 @@ struct shared_bounds {
   }
   CLEARANCE_HD void take_certain() const { add_to(&all->certain, 1); }
 
-  CLEARANCE_HD shared_nearest visitor(std::uint32_t k) const { return {bound_of(k)}; }
+  CLEARANCE_HD shared_nearest visitor(std::uint32_t, std::uint32_t k) const { return {bound_of(k)}; }
   CLEARANCE_HD void take(std::uint32_t index, std::uint32_t k, const shared_nearest& found) const {
     if (found.best < infinity) lower(index, k, found.best);
   }

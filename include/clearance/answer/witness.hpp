@@ -2,7 +2,7 @@
 #pragma once
 // The witness of a pair: what of a part is nearest to a point.
 
-#include <clearance/pose.hpp>
+#include <clearance/ground/pose.hpp>
 #include <clearance/result.hpp>
 
 namespace clearance::minimum {

@@ -3,7 +3,7 @@
 
 #include <clearance/backend/device_buffer.cuh>
 #include <clearance/concepts.hpp>
-#include <clearance/indices.hpp>
+#include <clearance/ground/indices.hpp>
 
 #include <algorithm>
 #include <stdexcept>

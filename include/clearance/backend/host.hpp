@@ -2,7 +2,7 @@
 #pragma once
 
 #include <clearance/concepts.hpp>
-#include <clearance/indices.hpp>
+#include <clearance/ground/indices.hpp>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/bvh.hpp>
+#include <clearance/backend/host.hpp>
+#include <clearance/bvh/bvh.hpp>
 #include <clearance/bvh/fit.hpp>
 #include <clearance/bvh/split.hpp>
 

@@ -2,8 +2,8 @@
 #pragma once
 // Clouds with their poses, parts placed in a cloud's frame, and what is certain about rounding.
 
-#include <clearance/part.hpp>
-#include <clearance/pose.hpp>
+#include <clearance/ground/pose.hpp>
+#include <clearance/robot/part.hpp>
 
 namespace clearance::frames {
 

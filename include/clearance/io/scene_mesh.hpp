@@ -2,8 +2,8 @@
 #pragma once
 // Shapes of a scene as glTF has them.
 
+#include <clearance/ground/math.hpp>
 #include <clearance/io/sentence.hpp>
-#include <clearance/math.hpp>
 #include <clearance/solid/triangle_mesh.hpp>
 
 #include <Eigen/Core>

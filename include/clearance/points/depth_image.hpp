@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/point_filter.hpp>
+#include <clearance/ground/read_only.hpp>
+#include <clearance/points/point_filter.hpp>
 #include <clearance/points/survey_depths.hpp>
-#include <clearance/read_only.hpp>
 
 namespace clearance {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/point_filter.hpp>
+#include <clearance/ground/read_only.hpp>
+#include <clearance/points/point_filter.hpp>
 #include <clearance/points/survey_floats.hpp>
-#include <clearance/read_only.hpp>
 
 namespace clearance {
 
@@ -42,7 +42,7 @@ struct point_span {
     dropped[int(drop_reason::not_finite)] += seen.not_finite;
     return true;
   }
-  point_span slice(std::size_t begin, std::size_t end) const {
+  CLEARANCE_HD point_span slice(std::size_t begin, std::size_t end) const {
     point_span some = *this;
     some.points += begin, some.count = end - begin;
     return some;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/point_filter.hpp>
-#include <clearance/read_only.hpp>
+#include <clearance/ground/read_only.hpp>
+#include <clearance/points/point_filter.hpp>
 
 namespace clearance {
 

@@ -75,6 +75,7 @@ struct sliced : detail::fetched_types<S> {
 };
 
 /// Points `begin` to `end - 1`; a source that has a `slice` of its own says how.
+CLEARANCE_CALLS_ANYTHING
 template <point_source S>
 CLEARANCE_HD auto slice(const S& source, std::size_t begin, std::size_t end) {
   if constexpr (requires { { source.slice(begin, end) } -> point_source; })

@@ -16,8 +16,8 @@ struct walk_alone {
     if constexpr (!node_of<H>::any_size) return near_first{}(tree, p, q);
     if (s.head.overflow == nullptr) return near_first{}(tree, p, q);
     using entry = near_first::entry_of<H>;
-    static_assert(sizeof(entry) <= sizeof(typename block_memory<Answer>::pending_type));
-    auto* const own = reinterpret_cast<typename block_memory<Answer>::pending_type*>(s.head.overflow) +
+    static_assert(sizeof(entry) <= sizeof(typename Answer::block::pending_type));
+    auto* const own = reinterpret_cast<typename Answer::block::pending_type*>(s.head.overflow) +
                       std::size_t(gridDim.x * warps + blockIdx.x) * s.head.overflow_room;
     for (bool done = false; !done;) {
       if (atomicCAS(&s.overflow_lock, 0u, 1u) != 0) continue;

@@ -17,7 +17,8 @@ inline constexpr std::uint32_t no_bound = 0xff800000u;  ///< ordered(infinity): 
 
 /// Lives in device memory from scan to scan: the last block of a scan sets it back.
 struct scan_state {
-  std::uint32_t done = 0;  ///< Blocks that have finished.
+  std::uint32_t done = 0;   ///< Blocks that have finished.
+  std::uint32_t taken = 0;  ///< Batches that warps have asked for, beyond their first.
   unsigned long long dropped[drop_reasons] = {};
 };
 

@@ -40,16 +40,13 @@ struct tree_tops<H, Bytes> {
   alignas(16) volume_type volumes[capacity];
 };
 
+/// What every block has, whatever it does with its points.
 template <class Answer>
 struct block_memory {
   using hierarchy_type = typename Answer::part_type::hierarchy_type;
-  using pending_type = pending<typename node_of<hierarchy_type>::type>;
-  static constexpr std::uint32_t given_capacity = 32 * warps;
 
   scan_head<Answer> head;
   typename Answer::memory answer;
-  std::uint32_t pairs, given;
-  unsigned overflow_lock;
   std::uint32_t dropped[drop_reasons];
   std::uint32_t last;        ///< Not 0: this is the last block to finish.
   alignas(16) vec3 origin;   ///< Is subtracted from points, if it is not 0 (`shifted`); read as sixteen bytes, with
@@ -57,10 +54,23 @@ struct block_memory {
   frames::root_test near_cluster[most_clusters], near_part[most_parts];
   frames::root_ball cluster[most_clusters];
   tree_tops<hierarchy_type, Answer::top_bytes> tops;
+};
+
+/// And of one that looks at pairs of a point and a part.
+template <class Answer>
+struct pair_memory : block_memory<Answer> {
+  using pending_type = pending<typename node_of<typename block_memory<Answer>::hierarchy_type>::type>;
+  static constexpr std::uint32_t given_capacity = 32 * warps;
+
+  std::uint32_t pairs, given;
+  unsigned overflow_lock;
   pair pair_table[pair_capacity];
   std::uint16_t part_of_pair[pair_capacity];
   pending_type stack[warps][stack_capacity];
   pending_type given_nodes[given_capacity];
+
+  /// By one thread.
+  __device__ void clear() { pairs = given = overflow_lock = 0; }
 };
 
 /// One part for one frame: behind `block_memory`, as many as there are.
@@ -73,15 +83,15 @@ struct alignas(16) block_part {
 /// Bytes of shared memory of a block.
 template <class Answer>
 constexpr std::size_t memory_bytes(std::uint32_t parts) {
-  static_assert(sizeof(block_memory<Answer>) % 16 == 0);
-  return sizeof(block_memory<Answer>) + parts * sizeof(block_part<typename Answer::part_type>);
+  static_assert(sizeof(typename Answer::block) % 16 == 0);
+  return sizeof(typename Answer::block) + parts * sizeof(block_part<typename Answer::part_type>);
 }
 
 /// A block's shared memory. Functions that are not inlined ask for it themselves, so that they know what kind of memory it is.
 template <class Answer>
-__device__ block_memory<Answer>& memory_of_block() {
+__device__ typename Answer::block& memory_of_block() {
   extern __shared__ __align__(16) std::byte scan_memory[];
-  return *reinterpret_cast<block_memory<Answer>*>(scan_memory);
+  return *reinterpret_cast<typename Answer::block*>(scan_memory);
 }
 
 }  // namespace clearance::scan

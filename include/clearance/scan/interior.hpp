@@ -2,9 +2,9 @@
 #pragma once
 // Points inside a part's solid: they are 0 away.
 
-#include <clearance/part.hpp>
-#include <clearance/visitor/any_within.hpp>
+#include <clearance/robot/part.hpp>
 #include <clearance/traversal/near_first.hpp>
+#include <clearance/visitor/any_within.hpp>
 
 namespace clearance::scan {
 

@@ -5,35 +5,13 @@
 
 #include <clearance/scan/ahead.cuh>
 #include <clearance/scan/filter.cuh>
+#include <clearance/scan/finish.cuh>
 
 namespace clearance::scan {
 
 /// Rounds after which the block comes together, by how far that filled the table of pairs last time.
 CLEARANCE_HD constexpr std::uint32_t rounds_of_batch(std::uint32_t pairs, std::uint32_t capacity) {
   return pairs <= capacity / 8 ? 32 : pairs <= capacity / 4 ? 16 : 8;
-}
-
-/// Counts this block in; by the last one the answer is given, and all is made ready for a next scan.
-template <class Answer, class Source>
-__noinline__ __device__ void finish_block(const scan_arguments<Answer>& a, const Source& source) {
-  auto& s = memory_of_block<Answer>();
-  const std::uint32_t t = threadIdx.x;
-  scan_state& state = *a.state;
-  if (t < drop_reasons && s.dropped[t] != 0) atomicAdd(&state.dropped[t], static_cast<unsigned long long>(s.dropped[t]));
-  Answer::hand_in(a, source);
-  if (t == 0) s.last = count_in(state.done) + 1 == gridDim.x;
-  __syncthreads();
-  if (!s.last) return;
-  Answer::conclude(a, source);
-  __syncthreads();
-  if (t < drop_reasons && a.last) state.dropped[t] = 0;
-  if (t != 0) return;
-  state.done = 0;
-  Answer::reset(a);
-  if (a.last && a.done != nullptr) {
-    __threadfence_system();
-    *static_cast<volatile std::uint32_t*>(a.done) = a.number;
-  }
 }
 
 template <class Answer, class Source>
@@ -90,5 +68,21 @@ __global__ void __launch_bounds__(block_threads, 2) scan_kernel(const __grid_con
   if (rounds == 0) __pipeline_wait_prior(0);
   finish_block<Answer>(a, source);
 }
+
+/// How such a scan is launched.
+struct by_pairs {
+  static constexpr std::uint32_t in_block = in_block_round;  ///< Points that a block takes at once.
+
+  template <class Answer, class Source>
+  static auto kernel() {
+    return scan_kernel<Answer, Source>;
+  }
+
+  template <class Answer, class Source>
+  static void plan(const Source& source, scan_arguments<Answer>& a, unsigned blocks) {
+    a.rounds = (a.points + in_block * blocks - 1) / (in_block * blocks);
+    a.ahead = rounds_ahead(source, a.points, blocks);
+  }
+};
 
 }  // namespace clearance::scan

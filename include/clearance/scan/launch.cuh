@@ -4,9 +4,9 @@
 
 #include <clearance/backend/device.cuh>
 #include <clearance/frame/clouds.hpp>
-#include <clearance/model.hpp>
 #include <clearance/result.hpp>
-#include <clearance/scan/kernel.cuh>
+#include <clearance/robot/model.hpp>
+#include <clearance/scan/block.cuh>
 #include <clearance/scan/place_kernel.cuh>
 
 #include <algorithm>
@@ -105,16 +105,15 @@ class launcher {
     const std::size_t shared = memory_bytes<Answer>(a.parts);
     a.top_stride = a.parts == 0 ? 0 : std::min(decltype(block_memory<Answer>::tops)::capacity / a.parts, 128u);
     // Every translation unit has a kernel of its own, so what is allowed is known by its address, and not by its type.
-    const auto kernel = scan_kernel<Answer, Source>;
+    using how = typename Answer::scan_type;
+    const auto kernel = how::template kernel<Answer, Source>();
     if (const auto address = reinterpret_cast<const void*>(kernel); std::find(allowed_.begin(), allowed_.end(), address) == allowed_.end()) {
       check_cuda(cudaFuncSetAttribute(address, cudaFuncAttributeMaxDynamicSharedMemorySize, int(most_shared_)), "cudaFuncSetAttribute");
       allowed_.push_back(address);
     }
-    constexpr unsigned a_block = in_block_round;
     const unsigned resident = 2 * (shared + 1024) <= shared_of_processor_ && a.overflow == nullptr ? processors_ * 2 : processors_;
-    const unsigned blocks = std::max(1u, std::min(resident, (a.points + a_block - 1) / a_block));
-    a.rounds = (a.points + a_block * blocks - 1) / (a_block * blocks);
-    a.ahead = rounds_ahead(source, a.points, blocks);
+    const unsigned blocks = std::max(1u, std::min(resident, (a.points + how::in_block - 1) / how::in_block));
+    how::plan(source, a, blocks);
     kernel<<<blocks, block_threads, shared, on_.stream>>>(source, a);
     check_cuda(cudaGetLastError(), "kernel launch");
   }

@@ -2,7 +2,7 @@
 #pragma once
 // What a block of threads keeps of a tree's node: eight bytes, whatever the tree.
 
-#include <clearance/bvh_view.hpp>
+#include <clearance/bvh/bvh_view.hpp>
 
 #include <cstring>
 

@@ -3,8 +3,8 @@
 // The few points near a part, against the trees. Every warp walks with some of them: eight nodes at once, four lanes to a node's
 // children, from a stack that is its own, and gives away what is too much for it, to be dealt to all warps when they are done.
 
+#include <clearance/ground/ordered.hpp>
 #include <clearance/scan/alone.cuh>
-#include <clearance/ordered.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/reader.cuh>
 #include <clearance/scan/steps.cuh>
@@ -17,7 +17,7 @@ struct pair_search : tree_steps<Answer> {
   using steps = tree_steps<Answer>;
   using hierarchy = typename Answer::part_type::hierarchy_type;
   using traits = bounding_volume_traits<typename hierarchy::volume_type>;
-  using memory = block_memory<Answer>;
+  using memory = typename Answer::block;
   using pending = typename memory::pending_type;
   using node_type = typename steps::node_type;
   static constexpr bool any_size = node_of<hierarchy>::any_size;

@@ -2,15 +2,15 @@
 #pragma once
 // The parts of a frame in a block's shared memory.
 
+#include <clearance/ground/read_only.hpp>
 #include <clearance/scan/block.cuh>
-#include <clearance/read_only.hpp>
 
 namespace clearance::scan {
 
 /// A part's place and tree.
 template <class Answer>
 struct frame_parts {
-  using memory = block_memory<Answer>;
+  using memory = typename Answer::block;
   using view_type = typename Answer::part_type;
   using part_type = block_part<view_type>;
 
@@ -45,7 +45,7 @@ struct frame_parts {
       s.origin = a.facts().origin;
       s.shifted = s.origin.x != 0 || s.origin.y != 0 || s.origin.z != 0;
       s.rigid = !a.placed || a.rest->rigid;
-      s.pairs = s.given = s.overflow_lock = 0;
+      s.clear();
     }
   }
 

@@ -2,7 +2,7 @@
 #pragma once
 // What a walk on a device finds.
 
-#include <clearance/ordered.hpp>
+#include <clearance/ground/ordered.hpp>
 #include <clearance/result.hpp>
 
 namespace clearance::scan {

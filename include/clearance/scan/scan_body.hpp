@@ -2,7 +2,7 @@
 #pragma once
 
 #include <clearance/frame/frame.hpp>
-#include <clearance/indices.hpp>
+#include <clearance/ground/indices.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/tile_scan.hpp>
 
@@ -48,7 +48,7 @@ struct scan_body {
  private:
   CLEARANCE_HD void visit(vec3 p, std::uint32_t index, std::uint32_t k) const {
     const frames::placement& place = places[k];
-    if (!frames::may_reach(place.around, answer.reach(k), p)) return;
+    if (!frames::may_reach(place.around, answer.reach_of_pair(index, k), p)) return;
     const PartView& part = parts[k];
     const vec3 q = place.part_from_cloud(p);
     if constexpr (has_interior<PartView>) {
@@ -58,7 +58,7 @@ struct scan_body {
         return;
       }
     }
-    auto ask = answer.visitor(k);
+    auto ask = answer.visitor(index, k);
     walk(part.tree, q, ask);
     answer.take(index, k, ask);
   }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <clearance/concepts.hpp>
-#include <clearance/ordered.hpp>
+#include <clearance/ground/ordered.hpp>
 
 namespace clearance::scan {
 

@@ -2,7 +2,7 @@
 #pragma once
 // How the threads of a block are divided, and what a warp agrees on.
 
-#include <clearance/math.hpp>
+#include <clearance/ground/math.hpp>
 
 #include <cuda/atomic>
 
@@ -38,6 +38,9 @@ __device__ inline std::uint32_t least_of(unsigned mask, std::uint32_t value) {
   return least;
 #endif
 }
+
+/// The largest.
+__device__ inline std::uint32_t most_of(unsigned mask, std::uint32_t value) { return ~least_of(mask, ~value); }
 
 /// What one lane of a warp has, to all that call it.
 template <class T>

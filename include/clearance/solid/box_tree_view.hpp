@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/math.hpp>
+#include <clearance/ground/math.hpp>
 #include <clearance/solid/vec3d.hpp>
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/config.hpp>
+#include <clearance/ground/config.hpp>
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/bvh.hpp>
+#include <clearance/bvh/bvh.hpp>
 
 #include <cmath>
 

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/backend/host.hpp>
-#include <clearance/bvh_view.hpp>
+#include <clearance/bvh/bvh_view.hpp>
 
 namespace clearance {
 
+struct host;  // so that who has another backend needs no TBB
+
 /// Owns a tree in the memory of backend B; immutable once built, so any number of threads and streams may share it.
-template <bounding_volume V, primitive P, backend B = host>
+template <bounding_volume V, primitive P, class B = host>
 struct bvh {
+  static_assert(backend<B>);
   template <class T>
   using buffer = typename B::template buffer<T>;
 

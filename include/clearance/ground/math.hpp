@@ -5,7 +5,7 @@
 // Rule of the whole library: where a product feeds a sum, it is written `fma`; a product never meets an operator + or -
 // that a compiler could contract. So host and device, with and without -mfma, agree bit for bit.
 
-#include <clearance/config.hpp>
+#include <clearance/ground/config.hpp>
 
 #include <cmath>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/part.hpp>
+#include <clearance/robot/part.hpp>
 
 #include <algorithm>
 #include <stdexcept>
@@ -34,8 +34,10 @@ auto view_of(const Robot& r) {
 }
 
 /// Owns the parts of a robot in the memory of one backend. Parts are numbered as given.
-template <class Part, backend B = host>
+template <class Part, class B = host>
 class model {
+  static_assert(backend<B>);
+
  public:
   using part_type = Part;
   using view_type = decltype(std::declval<const Part&>().view());

@@ -2,7 +2,7 @@
 #pragma once
 // From double poses on the host to what a kernel needs of them.
 
-#include <clearance/math.hpp>
+#include <clearance/ground/math.hpp>
 
 #include <Eigen/Geometry>
 

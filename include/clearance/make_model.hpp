@@ -2,10 +2,10 @@
 #pragma once
 
 #include <clearance/bvh/build.hpp>
-#include <clearance/model.hpp>
 #include <clearance/packing/packing.hpp>
-#include <clearance/part.hpp>
 #include <clearance/primitive/triangle.hpp>
+#include <clearance/robot/model.hpp>
+#include <clearance/robot/part.hpp>
 #include <clearance/solid/winding.hpp>
 
 #include <ranges>

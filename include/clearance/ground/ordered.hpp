@@ -3,7 +3,7 @@
 // One 64-bit word that is smaller exactly if the distance is smaller, or equal at a lower index. It can be minimised
 // atomically, in any order, by any number of threads, with one result.
 
-#include <clearance/math.hpp>
+#include <clearance/ground/math.hpp>
 
 #include <atomic>
 #include <bit>

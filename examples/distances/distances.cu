@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <clearance/distances.cuh>  // a device's scan
+
+#include "distances.hpp"
+
+int main() { return example(clearance::device{}); }

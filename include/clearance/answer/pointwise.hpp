@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Every point's own distance: nothing is shared, and every point has a bound of its own.
+
+#include <clearance/answer/bracket.hpp>
+#include <clearance/visitor/nearest.hpp>
+
+namespace clearance {
+
+/// Where every point's distance goes, in memory that the backend writes: one of each a point of all clouds, in their order.
+struct distances_out {
+  real* distance;                       ///< Metres; infinite beyond `d_max`, NaN where there is no point.
+  std::uint32_t* part = nullptr;        ///< The nearest part, or ~0u; or null.
+  std::uint32_t* primitive = nullptr;   ///< Its nearest primitive; ~0u if the point is inside the part's solid. Or null.
+};
+
+namespace pointwise {
+
+/// What is nearest to a point: the least distance, of equal ones the lowest part, and of its the lowest primitive.
+struct found {
+  real distance = infinity;
+  std::uint32_t part = none, primitive = none;
+
+  CLEARANCE_HD void offer(const found& other) {
+    if (other.distance < distance || (other.distance == distance && (other.part < part || (other.part == part && other.primitive < primitive))))
+      *this = other;
+  }
+};
+
+CLEARANCE_HD inline void write(const distances_out& out, std::size_t i, const found& f) {
+  out.distance[i] = f.distance;
+  if (out.part != nullptr) out.part[i] = f.part;
+  if (out.primitive != nullptr) out.primitive[i] = f.primitive;
+}
+CLEARANCE_HD inline found read(const distances_out& out, std::size_t i) {
+  return {out.distance[i], out.part != nullptr ? out.part[i] : none, out.primitive != nullptr ? out.primitive[i] : none};
+}
+
+/// As an answer of `scan_body`, after `clear_body`; a point's parts come in order.
+struct each_point {
+  distances_out out;
+  real d_max;
+
+  CLEARANCE_HD real reach(std::uint32_t) const { return d_max; }
+  CLEARANCE_HD real reach_of_pair(std::uint32_t index, std::uint32_t) const { return min(d_max, out.distance[index]); }
+  CLEARANCE_HD bool settled(std::uint32_t index, std::uint32_t) const { return out.distance[index] <= 0; }
+  CLEARANCE_HD bool take_inside(std::uint32_t index, std::uint32_t k) const {
+    if (d_max >= 0) write(out, index, {0, k, none});
+    return false;
+  }
+  CLEARANCE_HD void take_certain() const {}
+  CLEARANCE_HD nearest visitor(std::uint32_t index, std::uint32_t k) const { return {reach_of_pair(index, k)}; }
+  CLEARANCE_HD void take(std::uint32_t index, std::uint32_t k, const nearest& its) const {
+    if (its.best != none && its.within < out.distance[index]) write(out, index, {its.within, k, its.best});
+  }
+};
+
+/// Nothing is near any point yet.
+template <point_source Source>
+struct clear_body {
+  Source source;
+  distances_out out;
+  std::uint32_t first;
+
+  CLEARANCE_HD void operator()(std::size_t i) const { write(out, first + i, {source[i].valid() ? infinity : not_a_number}); }
+};
+
+}  // namespace pointwise
+
+}  // namespace clearance

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How far is every point of the clouds from a robot? On the host; distances.cuh has a device.
+
+#include <clearance/answer/pointwise.hpp>
+#include <clearance/answer/search_on.hpp>
+
+namespace clearance {
+
+struct distances_options {
+  real d_max = infinity;  ///< Metres; farther points are `+inf`, and cost next to nothing.
+  bool which = false;     ///< Also which part and primitive is nearest.
+};
+
+/// Distances of points, in the order of the clouds and their points.
+struct point_distances {
+  std::vector<real> distance;                  ///< Metres: to sphere parts signed, to triangle parts 0 inside; `+inf` beyond d_max, NaN where there is no point.
+  std::vector<std::uint32_t> part, primitive;  ///< Where asked for: of equally near ones the lowest; ~0u: none (or, for a primitive: inside).
+  point_counts counts;
+  distance_certainty certain;
+};
+
+namespace pointwise {
+
+inline void check(const distances_options& options) {
+  if (!(options.d_max == options.d_max)) throw std::invalid_argument("clearance: d_max is not a number");
+}
+
+/// Any backend that has no scan of its own: a loop over points.
+template <class On>
+struct points_on {
+  static_assert(!requires { typename On::own_scan; }, "a device has a scan of its own: include <clearance/distances.cuh>, not the .hpp");
+
+  template <class PartView, class Clouds, class Here>
+  static distance_certainty once(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                 const distances_out& out, real d_max, point_counts* counts, const Here& here) {
+    const auto parts = std::uint32_t(model.size());
+    const any_depth walk{stack_need(model.depth, model.width)};
+    auto dropped = on.template make_scratch<scan::drop_counts>(1);
+    const scan::drop_counts start;
+    on.stage(std::span(&start, 1), dropped.data());
+    frames::cloud_frame frame;
+    const std::uint64_t seen = frames::for_each_turn(frame, model.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
+      const S source = here(anywhere, now.cloud);
+      auto places = on.template make_scratch<frames::placement>(parts);
+      on.stage(std::span<const frames::placement>(frame.places), places.data());
+      on.for_each(source.size(), clear_body<S>{source, out, now.first});
+      on.for_ranges(source.size(), scan::scan_body<PartView, S, any_depth, each_point>{model.parts, places.data(), parts, source, frame.origin, now.first,
+                                                                                       dropped.data(), {out, d_max}, walk});
+    });
+    on.for_each(1, [from = dropped.data(), counts, seen](std::size_t) { scan::count(*counts, from->dropped, seen); });
+    return {frame.error, frame.slop};
+  }
+};
+
+}  // namespace pointwise
+
+/// Every point's distance to the nearest part (peers call d_max also max_dist, or activation distance). `poses` and `clouds` as
+/// for min_distance. Throws std::invalid_argument if the number of poses is wrong, one is not rigid, or d_max is NaN.
+template <class On, robot Robot, clouds_of_any_kind Clouds>
+point_distances distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                          const distances_options& options = {}) {
+  pointwise::check(options);
+  std::size_t points = 0;
+  for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
+  auto distance = on.template make_scratch<real>(points);
+  auto which = on.template make_scratch<std::uint32_t>(options.which ? 2 * points : 0);
+  auto counts = on.template make_scratch<point_counts>(1);
+  std::vector<typename On::template buffer<std::byte>> copies;
+  const distances_out out{distance.data(), options.which ? which.data() : nullptr, options.which ? which.data() + points : nullptr};
+  point_distances all;
+  all.certain = pointwise::points_on<On>::once(on, view_of(robot), poses, clouds, out, options.d_max, counts.data(), minimum::readable_on<On>{on, copies});
+  if (options.which) all.part = on.copy_out(out.part, points), all.primitive = on.copy_out(out.primitive, points);
+  all.distance = on.copy_out(out.distance, points);
+  all.counts = on.copy_out(counts.data(), 1)[0];
+  return all;
+}
+
+/// Enqueues it; clouds, and the memory of `out` and `counts`, must stay until it is done.
+template <class On, robot Robot, clouds_of_any_kind Clouds>
+distance_certainty distances_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
+                                   point_counts* counts, real d_max = infinity) {
+  pointwise::check({d_max});
+  return pointwise::points_on<On>::once(on, view_of(robot), poses, clouds, out, d_max, counts, minimum::as_it_is{});
+}
+
+}  // namespace clearance

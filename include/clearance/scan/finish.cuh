@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/scan/block.cuh>
+
+namespace clearance::scan {
+
+/// Counts this block in; by the last one the answer is given, and all is made ready for a next scan.
+template <class Answer, class Source>
+__noinline__ __device__ void finish_block(const scan_arguments<Answer>& a, const Source& source) {
+  auto& s = memory_of_block<Answer>();
+  const std::uint32_t t = threadIdx.x;
+  scan_state& state = *a.state;
+  if (t < drop_reasons && s.dropped[t] != 0) atomicAdd(&state.dropped[t], static_cast<unsigned long long>(s.dropped[t]));
+  Answer::hand_in(a, source);
+  if (t == 0) s.last = count_in(state.done) + 1 == gridDim.x;
+  __syncthreads();
+  if (!s.last) return;
+  Answer::conclude(a, source);
+  __syncthreads();
+  if (t < drop_reasons && a.last) state.dropped[t] = 0;
+  if (t != 0) return;
+  state.done = state.taken = 0;
+  Answer::reset(a);
+  if (a.last && a.done != nullptr) {
+    __threadfence_system();
+    *static_cast<volatile std::uint32_t*>(a.done) = a.number;
+  }
+}
+
+}  // namespace clearance::scan

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Neighbouring points down the trees as packets: a warp walks once for 32 of them, a lane a point, and all lanes look at the same
+// node. It is taken if any of them wants it, the nearest first. Points that are no neighbours walk alone. (A ball around the packet
+// that first tells which children may be wanted takes longer: at some distance it tells of too many.)
+
+#include <clearance/scan/interior.hpp>
+#include <clearance/scan/steps.cuh>
+#include <clearance/traversal/near_first.hpp>
+
+namespace clearance::scan {
+
+/// A node that is no nearer than `bound` to any point of a packet.
+template <class Node>
+struct packet_node {
+  real bound;
+  Node node;
+};
+
+template <class Answer>
+struct packet_memory : block_memory<Answer> {
+  using node_type = packet_node<typename node_of<typename block_memory<Answer>::hierarchy_type>::type>;
+  alignas(16) node_type stack[warps][deepest_stack];
+
+  __device__ void clear() {}
+};
+
+/// Each lane has a point, and a visitor for it:
+///   reach(k)                                how near part k must be to the point to matter;
+///   offer(k, id, distance), offer_inside(k).
+template <class Answer>
+struct packet_search : tree_steps<Answer> {
+  using frame = frame_parts<Answer>;
+  using steps = tree_steps<Answer>;
+  using hierarchy = typename Answer::part_type::hierarchy_type;
+  using traits = bounding_volume_traits<typename hierarchy::volume_type>;
+  using node_type = typename steps::node_type;
+  using stacked = packet_node<node_type>;
+
+  /// The point of this lane, `x` in the cloud's frame, if it is `live`. The whole warp calls it.
+  template <class Visitor>
+  static __device__ void search(bool live, vec3 x, Visitor& v) {
+    const unsigned those = __ballot_sync(all_lanes, live);
+    if (those == 0) return;
+    const std::uint32_t parts = frame::here().head.parts;
+    const unsigned later = those >> 16 << 16;  // of neighbours in a row the one in the middle, if it is there
+    const vec3 middle = from_lane(x, later != 0 ? __ffs(int(later)) - 1 : 31 - __clz(int(those)));
+    const real spread = from_bits(most_of(all_lanes, live ? to_bits(rough_length(x - middle)) : 0)) * (1 + slack);
+#pragma unroll 1
+    for (std::uint32_t begin = 0; begin < parts; begin += 32) {  // a lane a part, and the nearest first
+      std::uint32_t mine = no_bound;
+      real away = infinity;
+      if (begin + lane() < parts) {
+        const ball around = frame::place(begin + lane()).root.around;
+        away = rough_length(middle - around.center);
+        mine = ordered(lowered(away - around.radius - spread, away + around.radius + spread));
+      }
+      const bool together = too_deep() || 2 * spread <= from_bits(least_of(all_lanes, to_bits(away)));
+#pragma unroll 1
+      for (;;) {
+        const std::uint32_t nearest = least_of(all_lanes, mine);
+        if (nearest == no_bound) break;
+        const std::uint32_t its = std::uint32_t(__ffs(int(__ballot_sync(all_lanes, mine == nearest)))) - 1, k = begin + its;
+        if (lane() == its) mine = no_bound;
+        if (__any_sync(all_lanes, live && from_ordered(nearest) <= v.reach(k))) ask(k, live, together, x, v);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t at_once = most_children;
+  static __device__ std::uint32_t lane() { return threadIdx.x % 32; }
+
+  /// Trees may be too deep or wide for stacks in shared memory.
+  static __device__ bool too_deep() {
+    if constexpr (node_of<hierarchy>::any_size) return frame::here().head.overflow != nullptr;
+    return false;
+  }
+  static __device__ stacked* own_stack() {
+    auto& s = frame::here();
+    if (too_deep()) return reinterpret_cast<stacked*>(s.head.overflow) + std::size_t(blockIdx.x * warps + threadIdx.x / 32) * s.head.overflow_room;
+    return s.stack[threadIdx.x / 32];
+  }
+
+  template <class Visitor>
+  static __device__ void ask(std::uint32_t k, bool live, bool together, vec3 x, Visitor& v) {
+    const frame_part& place = frame::place(k);
+    const vec3 q = place.part_from_cloud(x);
+    live = live && frames::may_reach(place.root.around, v.reach(k), x);
+    if constexpr (has_interior<typename Answer::part_type>)
+      if (live && frames::may_reach(place.root.around, 0, x) && frame::view(k).interior.inside(q)) v.offer_inside(k), live = false;
+    if (together)
+      walk(k, live, q, v);
+    else if (live)
+      v = alone(k, q, v);
+    __syncwarp();
+  }
+
+  /// One lane by itself.
+  template <class Visitor>
+  struct of_part {
+    using result_type = real;
+    Visitor v;
+    std::uint32_t k;
+    CLEARANCE_HD real reach() const { return v.reach(k); }
+    CLEARANCE_HD void offer(std::uint32_t id, real distance) {
+      if (distance <= v.reach(k)) v.offer(k, id, distance);
+    }
+    CLEARANCE_HD real result() const { return v.reach(k); }
+  };
+  template <class Visitor>
+  static __noinline__ __device__ Visitor alone(std::uint32_t k, vec3 q, Visitor v) {
+    of_part<Visitor> ask{v, k};
+    near_first{}(frame::view(k).tree, q, ask);
+    return ask.v;
+  }
+
+  /// Part k's tree, all lanes together.
+  template <class Visitor>
+  static __device__ void walk(std::uint32_t k, bool live, vec3 q, Visitor& v) {
+    real reach = live ? v.reach(k) : -infinity;
+    stacked* const stack = own_stack();
+    std::uint32_t top = 1;
+    __syncwarp();
+    if (lane() == 0) stack[0] = {-infinity, steps::root(k)};
+#pragma unroll 1
+    while (top > 0) {
+      __syncwarp();  // all that has been pushed is there
+      const stacked e = stack[--top];
+      if (!__any_sync(all_lanes, e.bound <= reach)) continue;
+      const std::uint32_t count = steps::size(k, e.node);
+      if (steps::is_leaf(k, e.node)) {
+#pragma unroll 1
+        for (std::uint32_t j = 0; j < count; ++j) {
+          const auto place = steps::place_of(e.node, j);
+          if (const real d = steps::primitive(k, place).distance(q); d <= reach) v.offer(k, steps::id(k, place), d), reach = v.reach(k);
+        }
+      } else {
+#pragma unroll 1
+        for (std::uint32_t begin = 0; begin < count; begin += at_once) top = push(k, e.node, begin, count, q, reach, stack, top);
+      }
+    }
+  }
+
+  /// Of eight children those that some point wants, the nearest on top; the stack's new size.
+  static __device__ std::uint32_t push(std::uint32_t k, const node_type& node, std::uint32_t begin, std::uint32_t count, vec3 q, real reach,
+                                       stacked* stack, std::uint32_t top) {
+    constexpr std::uint32_t unwanted = none;
+    std::uint32_t low[at_once];
+#pragma unroll
+    for (std::uint32_t four = 0; four < at_once; four += 4) {
+      if (begin + four >= count) {
+#pragma unroll
+        for (std::uint32_t h = four; h < four + 4; ++h) low[h] = unwanted;
+        continue;
+      }
+#pragma unroll
+      for (std::uint32_t h = four; h < four + 4; ++h) {
+        const std::uint32_t j = lower_of(begin + h, count - 1);  // no branch, so that all four are read at once
+        const real b = traits::lower_bound(steps::child(k, node, j).volume, q);
+        low[h] = least_of(all_lanes, begin + h < count && b <= reach ? ordered(b) : unwanted);
+      }
+    }
+    std::uint32_t mine = unwanted, farther = 0, all = 0;  // a child a lane
+#pragma unroll
+    for (std::uint32_t h = 0; h < at_once; ++h) mine = lane() == h ? low[h] : mine;
+#pragma unroll
+    for (std::uint32_t h = 0; h < at_once; ++h) {
+      all += low[h] != unwanted;
+      farther += low[h] != unwanted && (low[h] > mine || (low[h] == mine && h > lane()));
+    }
+    __syncwarp();  // all have read the node
+    if (mine != unwanted) stack[top + farther] = {from_ordered(mine), steps::child(k, node, begin + lane()).node};
+    return top + all;
+  }
+};
+
+}  // namespace clearance::scan

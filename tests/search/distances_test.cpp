@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every point's distance is that of all primitives of all parts, in every bit, with its part and primitive.
+#include "support/brute_distances.hpp"
+
+#include <clearance/make_model.hpp>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/obb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+using clearance::distances, clearance::host, clearance::placed, clearance::plain;
+
+namespace {
+
+const auto nothing_inside = [](std::uint32_t, vec3) { return false; };
+
+template <class V, class P>
+void all_scenes() {
+  verdict v;
+  for (const auto& s : scenes<P>()) {
+    const sources<P> all(s);
+    const auto model = make_model<V>(s, {}, clearance::wrapped{});
+    for (const real d_max : {real(-0.05), real(0), real(0.2), real(3), clearance::infinity}) {
+      const std::string what = s.name + ", d_max " + std::to_string(d_max);
+      auto expected = brute_distances(s, all.span, s.cloud_pose, d_max, nothing_inside);
+      const placed cloud{all.span, s.cloud_pose};
+      require_same(distances(host{}, model, s.poses, cloud, {d_max, true}), expected, v, what);
+      require_same(distances(host{1}, model, s.poses, cloud, {d_max}), expected, v, what + ", one thread, distances alone");
+      append(expected, brute_distances(s, all.raw, all.camera_pose, d_max, nothing_inside));
+      require_same(distances(host{}, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), {d_max, true}), expected, v, what + ", two clouds");
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Every point's distance to inner spheres is the least of all") {
+  all_scenes<clearance::sphere, inner_sphere>();
+  all_scenes<clearance::obb, inner_sphere>();
+}
+TEST_CASE("Every point's distance to triangles is the least of all") {
+  all_scenes<clearance::aabb, triangle>();
+  all_scenes<clearance::obb, triangle>();
+}
+
+TEST_CASE("A point inside a solid is 0 away, of the first part that it is in, and of none of its primitives") {
+  clearance::triangle_mesh m;
+  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const auto model = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(m)));
+  scene<triangle> s;
+  dice d(93);
+  for (const auto& part : model.parts()) {
+    s.parts.emplace_back(part.tree.primitives.size());
+    for (std::size_t k = 0; k < part.tree.primitives.size(); ++k) s.parts.back()[part.tree.ids[k]] = part.tree.primitives[k];
+    s.poses.push_back(d.pose(0.5));
+  }
+  const auto points = d.points(3000, 2.5);
+  const auto pose = d.pose(0.1);
+  const clearance::point_span span(points);
+  verdict v;
+  for (const real d_max : {real(-1), real(0), real(0.5), clearance::infinity}) {
+    const auto expected = brute_distances(s, span, pose, d_max, [&](std::uint32_t k, vec3 q) { return model.parts()[k].interior.view().inside(q); });
+    const auto found = distances(host{}, model, s.poses, placed{span, pose}, {d_max, true});
+    require_same(found, expected, v, "d_max " + std::to_string(d_max));
+    CHECK((d_max < 0 || std::ranges::count(found.distance, 0.0f) > 100));
+  }
+}
+
+TEST_CASE("What a distance leaves certain holds: no primitive is nearer than the lower bound, in exact arithmetic") {
+  dice d(94);
+  const auto s = scenes<inner_sphere>()[0];
+  auto packed = clearance::make_part(clearance::build<clearance::sphere>(s.parts[0]), 0.01, 0.002);
+  const clearance::model model{std::vector{packed}};
+  const auto points = d.points(500, 3);
+  const auto found = distances(host{}, model, std::span(s.poses.data(), 1), clearance::point_span(points));
+  std::size_t positive = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d q = s.poses[0].inverse() * Eigen::Vector3d(points[i].x, points[i].y, points[i].z);
+    double least = 1e9;
+    for (const auto& b : s.parts[0]) least = std::min(least, (q - Eigen::Vector3d(b.center.x, b.center.y, b.center.z)).norm() - b.radius);
+    const double lower = found.certain.lower(found.distance[i]);
+    positive += lower > 0;
+    CHECK(lower <= std::max(0.0, least - 0.012));
+    CHECK(lower >= least - 0.012 - 1e-4);
+  }
+  CHECK(positive > 100);
+}
+
+TEST_CASE("What cannot be asked is refused, and nothing is nowhere") {
+  const auto s = scenes<inner_sphere>()[0];
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const clearance::point_span span(s.points);
+  CHECK_THROWS_AS(distances(host{}, model, s.poses, span, {clearance::not_a_number}), std::invalid_argument);
+  CHECK_THROWS_AS(distances(host{}, model, std::span(s.poses.data(), 1), span), std::invalid_argument);
+  const auto none = distances(host{}, model, s.poses, std::vector<clearance::point_span>{});
+  CHECK(none.distance.empty());
+  CHECK(none.counts.seen == 0);
+}

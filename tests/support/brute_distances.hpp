@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Every point's distance by the definition, and what differs from it.
+
+#include "support/product.hpp"
+
+#include <clearance/distances.hpp>
+
+namespace testing {
+
+/// All points of a source against all primitives of all parts. `inside(k, q)`: is q in part k's solid?
+template <class P, class Source, class Inside>
+clearance::point_distances brute_distances(const scene<P>& s, const Source& source, const Eigen::Isometry3d& pose, real d_max, Inside inside) {
+  std::vector<clearance::part_facts> facts;
+  for (const auto& primitives : s.parts) {
+    const ball around = clearance::enclosing_ball(std::span<const P>(primitives));
+    facts.push_back({around.center, around.radius, 0, 0});
+  }
+  const clearance::frames::cloud_frame frame(facts, s.poses, pose);
+  clearance::point_distances all;
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const clearance::sample point = source[i];
+    real least = point.valid() ? clearance::infinity : clearance::not_a_number;
+    std::uint32_t part = ~0u, primitive = ~0u;
+    const auto offer = [&](real d, std::uint32_t k, std::uint32_t n) {
+      if (d <= d_max && d < least) least = d, part = k, primitive = n;
+    };
+    ++all.counts.seen;
+    all.counts.valid += point.valid();
+    if (!point.valid()) ++all.counts.dropped[int(point.dropped)];
+    for (std::uint32_t k = 0; point.valid() && k < s.parts.size(); ++k) {
+      const vec3 q = frame.places[k].part_from_cloud(point.position - frame.origin);
+      if (inside(k, q)) {
+        offer(0, k, ~0u);
+        continue;
+      }
+      for (std::uint32_t n = 0; n < s.parts[k].size(); ++n) offer(s.parts[k][n].distance(q), k, n);
+    }
+    all.distance.push_back(least), all.part.push_back(part), all.primitive.push_back(primitive);
+  }
+  return all;
+}
+
+inline bool same_counts(const clearance::point_counts& a, const clearance::point_counts& b) {
+  return a.seen == b.seen && a.valid == b.valid && std::ranges::equal(a.dropped, b.dropped);
+}
+
+/// Appends to what is expected of one cloud that of the next.
+inline void append(clearance::point_distances& all, const clearance::point_distances& next) {
+  all.distance.insert(all.distance.end(), next.distance.begin(), next.distance.end());
+  all.part.insert(all.part.end(), next.part.begin(), next.part.end());
+  all.primitive.insert(all.primitive.end(), next.primitive.begin(), next.primitive.end());
+  all.counts.seen += next.counts.seen, all.counts.valid += next.counts.valid;
+  for (int k = 0; k < clearance::drop_reasons; ++k) all.counts.dropped[k] += next.counts.dropped[k];
+}
+
+inline void require_same(const clearance::point_distances& found, const clearance::point_distances& expected, verdict& v, const std::string& what) {
+  std::size_t wrong = 0, first = 0;
+  const auto bits = [](real x) { return x == x ? clearance::to_bits(x + 0.0f) : 0x7fc00000u; };
+  const bool whole = found.distance.size() == expected.distance.size() && found.part.size() == found.primitive.size() &&
+                     (found.part.empty() || found.part.size() == found.distance.size());
+  v.require(whole, what, ": ", found.distance.size(), " distances");
+  for (std::size_t i = 0; whole && i < expected.distance.size(); ++i)
+    if (bits(found.distance[i]) != bits(expected.distance[i]) ||
+        (!found.part.empty() && (found.part[i] != expected.part[i] || found.primitive[i] != expected.primitive[i])))
+      if (wrong++ == 0) first = i;
+  if (wrong != 0)
+    v.require(false, what, ": ", wrong, " points differ, first ", first, ": ", found.distance[first], " and not ", expected.distance[first], ", part ",
+              found.part.empty() ? 0 : found.part[first], " and not ", expected.part[first], ", primitive ", found.part.empty() ? 0 : found.primitive[first],
+              " and not ", expected.primitive[first]);
+  v.require(same_counts(found.counts, expected.counts), what, ": other counts");
+}
+
+}  // namespace testing
