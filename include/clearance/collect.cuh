@@ -3,6 +3,7 @@
 // Questions of one's own, on the host or on a device.
 
 #include <clearance/answer/pairwise.cuh>
+#include <clearance/backend/stream_resource.cuh>
 #include <clearance/collect.hpp>
 
 namespace clearance::pairwise {

@@ -38,20 +38,20 @@ struct pairs_on {
 
 /// Gives `answer` every pair of a point and a part that is within its reach. `poses` and `clouds` as for min_distance. Returns
 /// what points there were, once all is done. Throws std::invalid_argument if the number of poses is wrong or one is not rigid.
-template <class On, robot Robot, clouds_of_any_kind Clouds, class Answer>
+template <class On, robot Robot, class Clouds, class Answer>
 point_counts collect(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer) {
-  static_assert(explain_answer<Answer>());
+  static_assert(explain_answer<Answer>() && explain_clouds<Clouds>());
   auto counts = on.template make_scratch<point_counts>(1);
-  std::vector<typename On::template buffer<std::byte>> copies;
+  minimum::cloud_copies<On> copies;
   pairwise::pairs_on<On>::once(on, view_of(robot), poses, clouds, answer, counts.data(), minimum::readable_on<On>{on, copies});
   return on.copy_out(counts.data(), 1)[0];
 }
 
 /// Enqueues it; clouds, and the memory of `answer` and `counts`, must stay until it is done.
-template <class On, robot Robot, clouds_of_any_kind Clouds, class Answer>
+template <class On, robot Robot, class Clouds, class Answer>
 void collect_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
                    point_counts* counts) {
-  static_assert(explain_answer<Answer>());
+  static_assert(explain_answer<Answer>() && explain_clouds<Clouds>());
   pairwise::pairs_on<On>::once(on, view_of(robot), poses, clouds, answer, counts, minimum::as_it_is{});
 }
 

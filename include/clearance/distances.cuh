@@ -3,6 +3,7 @@
 // Every point's distance, on the host or on a device.
 
 #include <clearance/answer/pointwise.cuh>
+#include <clearance/backend/stream_resource.cuh>
 #include <clearance/distances.hpp>
 
 namespace clearance::pointwise {

@@ -57,16 +57,17 @@ struct points_on {
 
 /// Every point's distance to the nearest part (peers call d_max also max_dist, or activation distance). `poses` and `clouds` as
 /// for min_distance. Throws std::invalid_argument if the number of poses is wrong, one is not rigid, or d_max is NaN.
-template <class On, robot Robot, clouds_of_any_kind Clouds>
+template <class On, robot Robot, class Clouds>
 point_distances distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                           const distances_options& options = {}) {
+  static_assert(explain_clouds<Clouds>());
   pointwise::check(options);
   std::size_t points = 0;
   for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
   auto distance = on.template make_scratch<real>(points);
   auto which = on.template make_scratch<std::uint32_t>(options.which ? 2 * points : 0);
   auto counts = on.template make_scratch<point_counts>(1);
-  std::vector<typename On::template buffer<std::byte>> copies;
+  minimum::cloud_copies<On> copies;
   const distances_out out{distance.data(), options.which ? which.data() : nullptr, options.which ? which.data() + points : nullptr};
   point_distances all;
   all.certain = pointwise::points_on<On>::once(on, view_of(robot), poses, clouds, out, options.d_max, counts.data(), minimum::readable_on<On>{on, copies});
@@ -77,9 +78,10 @@ point_distances distances(const On& on, const Robot& robot, std::span<const Eige
 }
 
 /// Enqueues it; clouds, and the memory of `out` and `counts`, must stay until it is done.
-template <class On, robot Robot, clouds_of_any_kind Clouds>
+template <class On, robot Robot, class Clouds>
 distance_certainty distances_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
                                    point_counts* counts, real d_max = infinity) {
+  static_assert(explain_clouds<Clouds>());
   pointwise::check({d_max});
   return pointwise::points_on<On>::once(on, view_of(robot), poses, clouds, out, d_max, counts, minimum::as_it_is{});
 }

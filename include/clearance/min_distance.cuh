@@ -3,6 +3,7 @@
 // How far is a robot from everything that its sensors see? On the host or on a device.
 
 #include <clearance/answer/device_search.cuh>
+#include <clearance/backend/stream_resource.cuh>
 #include <clearance/min_distance.hpp>
 
 namespace clearance::minimum {

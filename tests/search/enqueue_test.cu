@@ -94,6 +94,18 @@ TEST_CASE("An answer of one's own is enqueued without waiting, too", "[concurren
   CHECK((g.words.data()[0] == expected.words[0] && g.words.data()[1] == expected.words[1]));
 }
 
+TEST_CASE("Several robots are asked in one call, each with its own result") {
+  given g;
+  auto shifted = g.s.poses;
+  for (auto& pose : shifted) pose.translation() += Eigen::Vector3d(0.1, 0.2, -0.1);
+  const std::vector poses{g.s.poses, shifted, g.s.poses};
+  const std::vector robots(3, g.model.view());
+  const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});  // to be copied
+  const auto results = clearance::min_distance_per_robot(g.gpu, robots, poses, both);
+  REQUIRE(results.size() == 3);
+  for (std::size_t k = 0; k < 3; ++k) CHECK(same_result(results[k], clearance::min_distance(host{}, g.on_host, poses[k], both)));
+}
+
 TEST_CASE("Distances are enqueued without waiting, too", "[concurrent]") {
   given g;
   const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});

@@ -147,18 +147,13 @@ TEST_CASE("A source with its pose beside it is asked as the placed one is, by ev
   }
 }
 
-TEST_CASE("What walks no tree is not taken for a traversal") {
+TEST_CASE("A robot and its clouds may be given so; what may not is a sentence, in tests/compile") {
   using part = clearance::part<clearance::bvh<clearance::sphere, inner_sphere>>;
   using model = clearance::model<part>;
   using poses = std::vector<Eigen::Isometry3d>;
   STATIC_REQUIRE(asks<model, poses, std::vector<vec3>>);
   STATIC_REQUIRE(asks<part, Eigen::Isometry3d, std::vector<vec3>>);
   STATIC_REQUIRE(asks<model, poses, point_span, Eigen::Isometry3d>);  // the cloud's pose
-  STATIC_REQUIRE_FALSE(asks<model, poses, placed<point_span>, Eigen::Isometry3d>);  // it has one
-  STATIC_REQUIRE_FALSE(asks<part, Eigen::Isometry3d, placed<point_span>, Eigen::Isometry3d>);
-  STATIC_REQUIRE_FALSE(asks<model, poses, point_span, int>);
-  STATIC_REQUIRE_FALSE(asks<part, Eigen::Isometry3d, point_span, int>);
-  STATIC_REQUIRE_FALSE(asks<model, poses, int>);
   STATIC_REQUIRE_FALSE(asks<int, poses, point_span>);
 }
 
@@ -284,4 +279,22 @@ TEST_CASE("A float cloud at 5e6 m is as good as its coordinates, and doubles kee
   CHECK(std::abs(r.distance - truth) < 1e-5);
   CHECK((r.lower <= std::max(truth, wide(0)) && std::max(truth, wide(0)) <= r.upper));
   CHECK(std::abs(r.at.x - records[3 * r.point]) < 1e-6);
+}
+
+TEST_CASE("Several robots are asked in one call, each with its own result") {
+  const auto s = scenes<inner_sphere>()[0];
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  auto moved = s.poses;
+  for (auto& pose : moved) pose.translation() += Eigen::Vector3d(0.1, 0.2, -0.1);
+  const std::vector poses{s.poses, moved};
+  const placed cloud{point_span(s.points), s.cloud_pose};
+  const auto results = clearance::min_distance_per_robot(host{}, std::vector(2, model.view()), poses, cloud);
+  REQUIRE(results.size() == 2);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto alone = min_distance(host{}, model, poses[k], cloud);
+    CHECK((same_bits(results[k].distance, alone.distance) && results[k].point == alone.point && results[k].part == alone.part));
+  }
+  CHECK(results[0].distance != results[1].distance);
+  CHECK(clearance::min_distance_per_robot(host{}, std::vector<decltype(model.view())>{}, std::vector<std::vector<Eigen::Isometry3d>>{}, cloud).empty());
+  CHECK_THROWS_AS(clearance::min_distance_per_robot(host{}, std::vector(1, model.view()), poses, cloud), std::invalid_argument);
 }

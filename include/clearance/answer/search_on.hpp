@@ -26,18 +26,23 @@ struct as_it_is {
   }
 };
 
+/// Copies of clouds that a backend cannot read where they are, by their numbers.
+template <backend B>
+using cloud_copies = std::vector<std::pair<std::uint32_t, typename B::template buffer<std::byte>>>;
+
 /// The source itself if the backend can read its memory, else one over a copy that `copies` keeps.
 template <backend B>
 struct readable_on {
   const B& on;
-  std::vector<typename B::template buffer<std::byte>>& copies;
+  cloud_copies<B>& copies;
 
   template <point_source S>
-  S operator()(const S& source, std::uint32_t) const {
+  S operator()(const S& source, std::uint32_t cloud) const {
     if constexpr (requires { source.at(source.bytes().data()); }) {
       if (source.size() != 0 && !on.reads(source.bytes().data())) {
-        copies.push_back(on.copy_in(source.bytes()));
-        return source.at(copies.back().data());
+        auto copy = std::find_if(copies.begin(), copies.end(), [cloud](const auto& c) { return c.first == cloud; });
+        if (copy == copies.end()) copy = copies.insert(copy, {cloud, on.copy_in(source.bytes())});
+        return source.at(copy->second.data());
       }
     }
     return source;

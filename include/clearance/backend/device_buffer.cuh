@@ -61,27 +61,6 @@ class device_buffer {
   std::pmr::memory_resource* from_ = nullptr;
 };
 
-/// A resource of device memory in the order of a stream: what is given back is taken again by what comes later there.
-class stream_resource : public std::pmr::memory_resource {
- public:
-  stream_resource(int device, cudaStream_t stream) : device_(device), stream_(stream) {}
-
- private:
-  void* do_allocate(std::size_t bytes, std::size_t) override {
-    const device_guard guard(device_);
-    void* p = nullptr;
-    check_cuda(cudaMallocAsync(&p, bytes, stream_), "cudaMallocAsync");
-    return p;
-  }
-  void do_deallocate(void* p, std::size_t, std::size_t) override {
-    on_device(device_, [&] { return cudaFreeAsync(p, stream_); });
-  }
-  bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
-
-  int device_;
-  cudaStream_t stream_;
-};
-
 /// Device memory for one call: taken and given back in the order of the stream, so that the host never waits for it.
 template <class T>
 class stream_buffer {

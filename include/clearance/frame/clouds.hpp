@@ -71,18 +71,41 @@ std::size_t count_clouds(const Clouds& clouds) {
   return n;
 }
 
-/// The clouds of a call, as they were given: a source and its pose are a placed source.
-template <clouds_of_any_kind Clouds>
-const Clouds& as_clouds(const Clouds& clouds) {
-  return clouds;
+/// `clouds_of_any_kind<T>` with reasons.
+template <class T>
+consteval bool explain_clouds() {
+  if constexpr (!clouds_of_any_kind<T>) {
+    if constexpr (requires(const T t) { t.source, t.pose; })
+      explain_point_source<std::remove_cvref_t<decltype(std::declval<const T&>().source)>>();
+    else if constexpr (requires(const T t) { *std::begin(t); })
+      explain_clouds<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>>();
+    else if constexpr (requires(const T t) { t.size(); t[0]; })
+      explain_point_source<T>();
+    else
+      static_assert(clouds_of_any_kind<T>, "clouds are: a point source, a placed one, a vector of vec3; or a range, a tuple or variants of those");
+  }
+  return clouds_of_any_kind<T>;
 }
-template <point_source S>
-placed<S> as_clouds(const S& source, const Eigen::Isometry3d& pose) {
-  return {source, pose};
+/// Of what a call is given for clouds.
+template <class First, class... Rest>
+consteval bool explain_given() {
+  static_assert(sizeof...(Rest) == 0 || (sizeof...(Rest) == 1 && (std::is_convertible_v<const Rest&, const Eigen::Isometry3d&> && ...)),
+                "several clouds are a vector or a tuple of placed ones; one may be followed by its pose, an Eigen::Isometry3d");
+  if constexpr (sizeof...(Rest) == 1) return explain_point_source<First>();
+  return explain_clouds<First>();
 }
 
-template <class... Clouds>
-concept clouds_given = requires(const Clouds&... clouds) { as_clouds(clouds...); };
+/// The clouds of a call, as they were given: a source and its pose are a placed source.
+template <class Clouds>
+const Clouds& as_clouds(const Clouds& clouds) {
+  static_assert(explain_given<Clouds>());
+  return clouds;
+}
+template <class S, class Pose>
+auto as_clouds(const S& source, const Pose& pose) {
+  static_assert(explain_given<S, Pose>());
+  return placed<S>{source, pose};
+}
 
 namespace frames {
 
@@ -100,8 +123,9 @@ struct turn {
 
 /// A frame, cloud by cloud: places the parts in each and calls `f(source, turn)`. Without a cloud there is one of no points. How
 /// many points there were. Throws std::invalid_argument if a pose is not rigid, or numbers run out.
-template <clouds_of_any_kind Clouds, class F>
+template <class Clouds, class F>
 std::uint64_t for_each_turn(cloud_frame& frame, std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, F f) {
+  static_assert(explain_clouds<Clouds>());
   frame.start(facts, poses);
   const std::size_t count = count_clouds(clouds);
   std::uint64_t points = 0;
