@@ -100,9 +100,7 @@ class device_search {
   }
   void conclude(const ending& end) {
     if (launch_.groups() == 1) return;
-    const device_guard guard(on_.id);
-    merge_groups<><<<1, 1, 0, on_.stream>>>(of_group_.data(), launch_.groups(), end.result, end.done, end.number);
-    check_cuda(cudaGetLastError(), "kernel launch");
+    on_.launch(merge_groups<>, 1, 1, 0, of_group_.data(), launch_.groups(), end.result, end.done, end.number);
   }
 
   device on_;

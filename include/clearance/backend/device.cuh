@@ -57,6 +57,14 @@ struct device {
   int id = 0;
   cudaStream_t stream = nullptr;
 
+  /// Enqueues a kernel of one's own; a block has `shared` bytes of dynamic shared memory.
+  template <class... P, class... A>
+  void launch(void (*kernel)(P...), unsigned blocks, unsigned threads, std::size_t shared, const A&... arguments) const {
+    const device_guard guard(id);
+    kernel<<<blocks, threads, shared, stream>>>(arguments...);
+    check_cuda(cudaGetLastError(), "kernel launch");
+  }
+
   /// Enqueues `body(indices)` over a grid stride; returns at once. A body that recurses says its need in device_stack().
   template <class F>
   void for_ranges(std::size_t n, F body) const {
@@ -67,8 +75,7 @@ struct device {
     int processors = 0;
     check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, id), "cudaDeviceGetAttribute");
     const auto blocks = std::min<std::size_t>((n + threads - 1) / threads, std::size_t(processors) * 32);
-    detail::ranges_kernel<<<unsigned(blocks), threads, 0, stream>>>(n, body);
-    check_cuda(cudaGetLastError(), "kernel launch");
+    launch(detail::ranges_kernel<F>, unsigned(blocks), threads, 0, n, body);
   }
 
   template <class F>
@@ -120,8 +127,7 @@ struct device {
       detail::argument_bytes chunk;
       const std::size_t n = std::min(bytes.size() - at, detail::argument_bytes::capacity);
       std::copy_n(bytes.data() + at, n, chunk.bytes);
-      detail::stage_kernel<<<1, 256, 0, stream>>>(reinterpret_cast<std::byte*>(to) + at, unsigned(n), chunk);
-      check_cuda(cudaGetLastError(), "kernel launch");
+      launch(detail::stage_kernel<detail::argument_bytes>, 1, 256, 0, reinterpret_cast<std::byte*>(to) + at, unsigned(n), chunk);
     }
   }
 

@@ -81,9 +81,7 @@ class device_steps {
   }
   template <class F>
   void climbers(std::size_t n, F f) const {
-    const device_guard guard(on_.id);
-    detail::climbers_kernel<<<unsigned((n + 7) / 8), 128, 0, on_.stream>>>(n, f);
-    check_cuda(cudaGetLastError(), "kernel launch");
+    on_.launch(detail::climbers_kernel<F>, unsigned((n + 7) / 8), 128, 0, n, f);
   }
 
  private:

@@ -77,9 +77,7 @@ class launcher {
 
   /// Poses in device or pinned memory, made ready there for all groups; `off` is the `rounding_of` the cloud's source.
   void place(const world_transform* poses, const world_transform* cloud, const position_error& off) {
-    const device_guard guard(on_.id);
-    place_kernel<<<1, most_parts, 0, on_.stream>>>(poses, cloud, views_.data(), parts_, off, placed_.data());
-    check_cuda(cudaGetLastError(), "kernel launch");
+    on_.launch(place_kernel<PartView>, 1, most_parts, 0, poses, cloud, views_.data(), parts_, off, placed_.data());
   }
 
   /// Enqueues what has been begun. A kernel numbers more points than there are: those must not run over.
@@ -114,8 +112,7 @@ class launcher {
     const unsigned resident = 2 * (shared + 1024) <= shared_of_processor_ && a.overflow == nullptr ? processors_ * 2 : processors_;
     const unsigned blocks = std::max(1u, std::min(resident, (a.points + how::in_block - 1) / how::in_block));
     how::plan(source, a, blocks);
-    kernel<<<blocks, block_threads, shared, on_.stream>>>(source, a);
-    check_cuda(cudaGetLastError(), "kernel launch");
+    on_.launch(kernel, blocks, block_threads, shared, source, a);
   }
 
   device on_;

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// After its first calls a prepared question asks nobody for memory: every way to get some is counted, in the process and on the
+// device, and so is every wait of the driver's.
+// wraps: cudaMalloc cudaMallocAsync cudaMallocHost cudaHostAlloc cudaMallocManaged cudaMallocFromPoolAsync cudaFree cudaFreeAsync
+// wraps: cudaDeviceSynchronize cudaStreamSynchronize _Znwm
+#include "support/product_device.cuh"
+
+#include <clearance/distances.cuh>
+#include <clearance/min_distance_query.cuh>
+#include <clearance/volume/sphere.hpp>
+
+namespace {
+
+std::size_t on_device = 0, waits = 0;
+thread_local std::size_t on_host = 0;
+
+}  // namespace
+
+// The linker sends calls of the names above here.
+#define COUNTED(counter, name, parameters, arguments) \
+  cudaError_t __real_##name parameters;               \
+  cudaError_t __wrap_##name parameters {              \
+    ++counter;                                        \
+    return __real_##name arguments;                   \
+  }
+extern "C" {
+COUNTED(on_device, cudaMalloc, (void** p, std::size_t n), (p, n))
+COUNTED(on_device, cudaMallocAsync, (void** p, std::size_t n, cudaStream_t s), (p, n, s))
+COUNTED(on_device, cudaMallocHost, (void** p, std::size_t n), (p, n))
+COUNTED(on_device, cudaHostAlloc, (void** p, std::size_t n, unsigned flags), (p, n, flags))
+COUNTED(on_device, cudaMallocManaged, (void** p, std::size_t n, unsigned flags), (p, n, flags))
+COUNTED(on_device, cudaMallocFromPoolAsync, (void** p, std::size_t n, cudaMemPool_t pool, cudaStream_t s), (p, n, pool, s))
+COUNTED(on_device, cudaFree, (void* p), (p))
+COUNTED(on_device, cudaFreeAsync, (void* p, cudaStream_t s), (p, s))
+COUNTED(waits, cudaDeviceSynchronize, (), ())
+COUNTED(waits, cudaStreamSynchronize, (cudaStream_t s), (s))
+
+void* __real__Znwm(std::size_t n);  // operator new
+void* __wrap__Znwm(std::size_t n) {
+  ++on_host;
+  return __real__Znwm(n);
+}
+}
+
+using namespace testing;
+using clearance::device, clearance::placed;
+
+namespace {
+
+struct counted {
+  std::size_t before_on_device = on_device, before_waits = waits, before_on_host = on_host;
+  bool nothing(bool also_on_host = true) const {
+    return on_device == before_on_device && waits == before_waits && (!also_on_host || on_host == before_on_host);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("What is counted is counted") {
+  const counted before;
+  const device gpu;
+  const auto some = gpu.copy_in(std::span<const int>(std::vector<int>(10)));
+  gpu.wait();
+  CHECK((on_device > before.before_on_device && waits > before.before_waits && on_host > before.before_on_host));
+}
+
+TEST_CASE("Prepared questions allocate nothing, and do not wait, after their first frames") {
+  const device gpu;
+  const auto s = scenes<inner_sphere>()[1];
+  const sources<inner_sphere> all(s);
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{}).on(gpu);
+  const auto points = gpu.copy_in(all.span.bytes()), pixels = gpu.copy_in(all.raw.bytes());
+  const placed here{all.span, s.cloud_pose}, cloud{all.span.at(points.data()), s.cloud_pose};
+  const std::tuple clouds{cloud, placed{all.raw.at(pixels.data()), all.camera_pose}};
+  clearance::min_distance_query query(gpu, model);
+  clearance::pointwise::device_points<typename decltype(model)::view_type> each(gpu, model.view());
+  std::vector<clearance::part_minimum> minima(model.size());
+  const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
+  const clearance::device_buffer<clearance::part_minimum> there(model.size(), gpu.id);
+  const clearance::device_buffer<clearance::world_transform> poses(s.poses.size(), gpu.id);
+  const clearance::device_buffer<real> distance(all.span.size() + all.raw.size(), gpu.id);
+  const clearance::device_buffer<clearance::point_counts> counts(1, gpu.id);
+  const std::vector<clearance::world_transform> world(s.poses.begin(), s.poses.end());
+  gpu.stage(std::span(world), poses.data());
+  const auto frames = [&] {
+    query(s.poses, cloud), query(s.poses, clouds), query(s.poses, here);  // the last from host memory
+    query.per_part(s.poses, clouds, minima);
+    query.enqueue(s.poses, clouds, result.data());
+    query.enqueue_per_part(s.poses, cloud, result.data(), there.data());
+    query.enqueue(poses.data(), cloud.source, nullptr, result.data());
+    each.enqueue(s.poses, clouds, {distance.data()}, 0.5f, counts.data(), clearance::minimum::as_it_is{});
+  };
+  frames(), frames();
+  const counted before;
+  for (int k = 0; k < 5; ++k) frames();
+  CHECK(before.nothing());
+  query.forget();
+  const counted cold;
+  frames();
+  CHECK(cold.nothing());
+  gpu.wait();
+}
+
+TEST_CASE("One call takes one block of memory in the order of its stream, and waits for nothing") {
+  const device gpu;
+  const auto s = scenes<inner_sphere>()[1];
+  const sources<inner_sphere> all(s);
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{}).on(gpu);
+  const auto points = gpu.copy_in(all.span.bytes());
+  const placed cloud{all.span.at(points.data()), s.cloud_pose};
+  const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
+  const auto ask = [&] { clearance::min_distance_async(gpu, model, s.poses, cloud, result.data()); };
+  ask();
+  const counted before;
+  ask();
+  CHECK(on_device == before.before_on_device + 2);  // taken, and given back
+  CHECK(waits == before.before_waits);
+  gpu.wait();
+}
