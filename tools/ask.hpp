@@ -14,11 +14,15 @@
 /// A cloud as the library takes it.
 using placed_points = std::variant<clearance::placed<clearance::point_span>, clearance::placed<clearance::depth_image<std::uint16_t>>>;
 
-/// It where `on` can read it; `copies` keeps what had to be copied.
+/// They where `on` can read them; `copies` keeps what had to be copied.
 template <class Backend>
-placed_points here(const Backend& on, const seen_points& cloud, std::vector<typename Backend::template buffer<std::byte>>& copies) {
+std::vector<placed_points> here(const Backend& on, const std::vector<seen_points>& clouds, clearance::minimum::cloud_copies<Backend>& copies) {
   const clearance::minimum::readable_on<Backend> readable{on, copies};
-  return std::visit([&](const auto& source) { return placed_points(clearance::placed{readable(source, 0), cloud.pose}); }, cloud.points);
+  std::vector<placed_points> there;
+  for (const seen_points& cloud : clouds)
+    there.push_back(std::visit([&](const auto& source) { return placed_points(clearance::placed{readable(source, std::uint32_t(there.size())), cloud.pose}); },
+                               cloud.points));
+  return there;
 }
 
 template <class Backend, class Part>
@@ -26,9 +30,8 @@ reply ask_model(const Backend& on, const question& asked, const clearance::model
   reply out;
   stopwatch clock;
   const auto model = built.on(on);
-  std::vector<typename Backend::template buffer<std::byte>> copies;
-  std::vector<placed_points> clouds;
-  for (const auto& cloud : asked.clouds) clouds.push_back(here(on, cloud, copies));
+  clearance::minimum::cloud_copies<Backend> copies;
+  const std::vector<placed_points> clouds = here(on, asked.clouds, copies);
   clearance::min_distance_query query(on, model);
   on.wait();
   out.upload = clock.lap();
@@ -54,7 +57,7 @@ class prepared final : public prepared_question {
   double see(const seen_points& cloud) override {
     stopwatch clock;
     copies_.clear();
-    cloud_ = here(on_, cloud, copies_);
+    cloud_ = here(on_, std::vector{cloud}, copies_)[0];
     on_.wait();
     return clock.lap();
   }
@@ -72,7 +75,7 @@ class prepared final : public prepared_question {
   Model model_;
   decltype(clearance::min_distance_query(std::declval<const Backend&>(), std::declval<const Model&>())) query_;
   placed_points cloud_;
-  std::vector<typename Backend::template buffer<std::byte>> copies_;
+  clearance::minimum::cloud_copies<Backend> copies_;
 };
 
 /// Calls `use` with the model that is asked for, in host memory.

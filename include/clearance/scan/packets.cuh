@@ -6,7 +6,6 @@
 
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/steps.cuh>
-#include <clearance/traversal/near_first.hpp>
 
 namespace clearance::scan {
 
@@ -91,28 +90,43 @@ struct packet_search : tree_steps<Answer> {
       if (live && frames::may_reach(place.root.around, 0, x) && frame::view(k).interior.inside(q)) v.offer_inside(k), live = false;
     if (together)
       walk(k, live, q, v);
-    else if (live)
-      v = alone(k, q, v);
-    __syncwarp();
+    else
+      v = alone(k, live, q, v);
   }
 
-  /// One lane by itself.
+  /// Every lane by itself, but step by step: lanes that part ways would each have the warp to themselves.
   template <class Visitor>
-  struct of_part {
-    using result_type = real;
-    Visitor v;
-    std::uint32_t k;
-    CLEARANCE_HD real reach() const { return v.reach(k); }
-    CLEARANCE_HD void offer(std::uint32_t id, real distance) {
-      if (distance <= v.reach(k)) v.offer(k, id, distance);
+  static __noinline__ __device__ Visitor alone(std::uint32_t k, bool live, vec3 q, Visitor v) {
+    stacked stack[deepest_stack];
+    stacked next{live ? -infinity : not_a_number, steps::root(k)};
+    std::uint32_t below = 0;
+#pragma unroll 1
+    for (;;) {
+      const bool wanted = next.bound <= v.reach(k);
+      if (!__any_sync(all_lanes, wanted || below > 0)) return v;
+      const bool leaf = wanted && steps::is_leaf(k, next.node);
+      const std::uint32_t count = wanted ? steps::size(k, next.node) : 0;
+      const node_type node = next.node;
+      next.bound = not_a_number;
+#pragma unroll 1
+      for (std::uint32_t j = 0; __any_sync(all_lanes, j < count); ++j) {
+        if (j < count && leaf) {
+          const auto place = steps::place_of(node, j);
+          if (const real d = steps::primitive(k, place).distance(q); d <= v.reach(k)) v.offer(k, steps::id(k, place), d);
+        } else if (j < count) {
+          const auto step = steps::child(k, node, j);
+          if (stacked child{traits::lower_bound(step.volume, q), step.node}; child.bound <= v.reach(k)) {
+            if (!(next.bound <= child.bound)) {  // the nearest is next
+              const stacked farther = next;
+              next = child, child = farther;
+            }
+            if (child.bound == child.bound) stack[below++] = child;
+          }
+        }
+        __syncwarp();
+      }
+      if (!(next.bound == next.bound) && below > 0) next = stack[--below];
     }
-    CLEARANCE_HD real result() const { return v.reach(k); }
-  };
-  template <class Visitor>
-  static __noinline__ __device__ Visitor alone(std::uint32_t k, vec3 q, Visitor v) {
-    of_part<Visitor> ask{v, k};
-    near_first{}(frame::view(k).tree, q, ask);
-    return ask.v;
   }
 
   /// Part k's tree, all lanes together.
