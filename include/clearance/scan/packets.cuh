@@ -45,23 +45,27 @@ struct packet_search : tree_steps<Answer> {
     const unsigned later = those >> 16 << 16;  // of neighbours in a row the one in the middle, if it is there
     const vec3 middle = from_lane(x, later != 0 ? __ffs(int(later)) - 1 : 31 - __clz(int(those)));
     const real spread = from_bits(most_of(all_lanes, live ? to_bits(rough_length(x - middle)) : 0)) * (1 + slack);
+    real gap = infinity;
+    for (std::uint32_t k = lane(); k < parts; k += 32) gap = min(gap, rough_length(middle - frame::place(k).root.around.center));
+    if (!too_deep() && 2 * spread > from_bits(least_of(all_lanes, to_bits(gap)))) {  // no neighbours
+      v = alone(live, x, v);
+      return;
+    }
 #pragma unroll 1
     for (std::uint32_t begin = 0; begin < parts; begin += 32) {  // a lane a part, and the nearest first
       std::uint32_t mine = no_bound;
-      real away = infinity;
       if (begin + lane() < parts) {
         const ball around = frame::place(begin + lane()).root.around;
-        away = rough_length(middle - around.center);
-        mine = ordered(lowered(away - around.radius - spread, away + around.radius + spread));
+        const real d = rough_length(middle - around.center);
+        mine = ordered(lowered(d - around.radius - spread, d + around.radius + spread));
       }
-      const bool together = too_deep() || 2 * spread <= from_bits(least_of(all_lanes, to_bits(away)));
 #pragma unroll 1
       for (;;) {
         const std::uint32_t nearest = least_of(all_lanes, mine);
         if (nearest == no_bound) break;
         const std::uint32_t its = std::uint32_t(__ffs(int(__ballot_sync(all_lanes, mine == nearest)))) - 1, k = begin + its;
         if (lane() == its) mine = no_bound;
-        if (__any_sync(all_lanes, live && from_ordered(nearest) <= v.reach(k))) ask(k, live, together, x, v);
+        if (__any_sync(all_lanes, live && from_ordered(nearest) <= v.reach(k))) ask(k, live, x, v);
       }
     }
   }
@@ -81,52 +85,78 @@ struct packet_search : tree_steps<Answer> {
     return s.stack[threadIdx.x / 32];
   }
 
+  /// Then nothing is to be looked for in part k's tree.
   template <class Visitor>
-  static __device__ void ask(std::uint32_t k, bool live, bool together, vec3 x, Visitor& v) {
+  static __device__ bool inside(std::uint32_t k, vec3 x, Visitor& v) {
+    if constexpr (has_interior<typename Answer::part_type>) {
+      const frame_part& place = frame::place(k);
+      if (frames::may_reach(place.root.around, 0, x) && frame::view(k).interior.inside(place.part_from_cloud(x))) return v.offer_inside(k), true;
+    }
+    return false;
+  }
+
+  template <class Visitor>
+  static __device__ void ask(std::uint32_t k, bool live, vec3 x, Visitor& v) {
     const frame_part& place = frame::place(k);
     const vec3 q = place.part_from_cloud(x);
     live = live && frames::may_reach(place.root.around, v.reach(k), x);
-    if constexpr (has_interior<typename Answer::part_type>)
-      if (live && frames::may_reach(place.root.around, 0, x) && frame::view(k).interior.inside(q)) v.offer_inside(k), live = false;
-    if (together)
-      walk(k, live, q, v);
-    else
-      v = alone(k, live, q, v);
+    if (live && inside(k, x, v)) live = false;
+    walk(k, live, q, v);
   }
 
-  /// Every lane by itself, but step by step: lanes that part ways would each have the warp to themselves.
+  struct part_node {
+    real bound;
+    node_type node;
+    std::uint32_t part;
+  };
+
+  /// Every lane by itself, through eight parts after the others; but step by step, because lanes that part ways would each have the
+  /// warp to themselves.
   template <class Visitor>
-  static __noinline__ __device__ Visitor alone(std::uint32_t k, bool live, vec3 q, Visitor v) {
-    stacked stack[deepest_stack];
-    stacked next{live ? -infinity : not_a_number, steps::root(k)};
-    std::uint32_t below = 0;
+  static __noinline__ __device__ Visitor alone(bool live, vec3 x, Visitor v) {
+    const std::uint32_t parts = frame::here().head.parts;
+    part_node stack[deepest_stack + cluster];
 #pragma unroll 1
-    for (;;) {
-      const bool wanted = next.bound <= v.reach(k);
-      if (!__any_sync(all_lanes, wanted || below > 0)) return v;
-      const bool leaf = wanted && steps::is_leaf(k, next.node);
-      const std::uint32_t count = wanted ? steps::size(k, next.node) : 0;
-      const node_type node = next.node;
-      next.bound = not_a_number;
-#pragma unroll 1
-      for (std::uint32_t j = 0; __any_sync(all_lanes, j < count); ++j) {
-        if (j < count && leaf) {
-          const auto place = steps::place_of(node, j);
-          if (const real d = steps::primitive(k, place).distance(q); d <= v.reach(k)) v.offer(k, steps::id(k, place), d);
-        } else if (j < count) {
-          const auto step = steps::child(k, node, j);
-          if (stacked child{traits::lower_bound(step.volume, q), step.node}; child.bound <= v.reach(k)) {
-            if (!(next.bound <= child.bound)) {  // the nearest is next
-              const stacked farther = next;
-              next = child, child = farther;
-            }
-            if (child.bound == child.bound) stack[below++] = child;
-          }
+    for (std::uint32_t begin = 0; begin < parts; begin += cluster) {
+      part_node next{not_a_number, {}, begin};  // the nearest of all that is known of, or nothing
+      std::uint32_t below = 0;
+      const auto keep = [&](part_node e) {
+        if (!(next.bound <= e.bound)) {
+          const part_node farther = next;
+          next = e, e = farther;
         }
+        if (e.bound == e.bound) stack[below++] = e;
+      };
+#pragma unroll 1
+      for (std::uint32_t k = begin; k < begin + cluster && k < parts; ++k) {
+        const ball around = frame::place(k).root.around;
+        bool near = live && frames::may_reach(around, v.reach(k), x);
+        if (near) near = !inside(k, x, v);
+        if (near) keep({lowered(rough_length(x - around.center) - around.radius, around.radius), steps::root(k), k});
         __syncwarp();
       }
-      if (!(next.bound == next.bound) && below > 0) next = stack[--below];
+#pragma unroll 1
+      while (__any_sync(all_lanes, next.bound == next.bound)) {
+        const part_node here = next;
+        next.bound = not_a_number;
+        const std::uint32_t k = here.part, count = here.bound <= v.reach(k) ? steps::size(k, here.node) : 0;
+        const bool leaf = count > 0 && steps::is_leaf(k, here.node);
+        const vec3 q = frame::place(k).part_from_cloud(x);
+#pragma unroll 1
+        for (std::uint32_t j = 0; __any_sync(all_lanes, j < count); ++j) {
+          if (j < count && leaf) {
+            const auto place = steps::place_of(here.node, j);
+            if (const real d = steps::primitive(k, place).distance(q); d <= v.reach(k)) v.offer(k, steps::id(k, place), d);
+          } else if (j < count) {
+            const auto step = steps::child(k, here.node, j);
+            if (const real b = traits::lower_bound(step.volume, q); b <= v.reach(k)) keep({b, step.node, k});
+          }
+          __syncwarp();
+        }
+        if (!(next.bound == next.bound) && below > 0) next = stack[--below];
+      }
     }
+    return v;
   }
 
   /// Part k's tree, all lanes together.
