@@ -28,3 +28,4 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
+#include <clearance/zones.hpp>

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Stop, slow down, warn: zones around the links of an arm, as safety engineers and Nav2's collision monitor know them.
+
+#include <clearance/make_model.hpp>
+#include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/volume/sphere.hpp>
+#include <clearance/zones.hpp>
+
+#include <cstdio>
+
+/// 0 if the arm stops, slows down and goes on where it should.
+template <clearance::backend Backend>
+int example(const Backend& on) {
+  std::vector<std::vector<clearance::inner_sphere>> links(2);
+  for (int k = 0; k < 2; ++k)
+    for (int i = 0; i < 20; ++i) links[std::size_t(k)].push_back({{0.02f * float(i), 0, 0}, 0.04f});
+  std::vector<clearance::vec3> person;  // a patch of 6 cm, 1.2 m away
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j) person.push_back({1.2f, 0.003f * float(i), 0.003f * float(j)});
+
+  // [zones]
+  const auto arm = clearance::make_model<clearance::sphere>(links).on(on);
+  const clearance::zones_options options{.thresholds = {0.1, 0.3, 0.6}, .min_points = 5};  // stop, slow down, warn
+  std::size_t wrong = 0, expected = 3;
+  for (const double reached : {0.0, 0.3, 0.5, 0.7}) {
+    std::vector<Eigen::Isometry3d> poses(2, Eigen::Isometry3d::Identity());
+    poses[1].translation().x() = reached;
+    const auto seen = clearance::zones(on, arm, poses, person, options);
+    const char* const what[] = {"stop", "slow down", "warn", "go on"};
+    std::printf("%.1f m: %s; %llu points in the warning zone of the last link, the nearest %.2f m away\n", reached, what[seen.innermost()],
+                static_cast<unsigned long long>(seen.of(1, 2).points), double(seen.of(1, 2).nearest));
+    // [zones]
+    wrong += seen.innermost() != expected--;
+  }
+  return int(wrong);
+}

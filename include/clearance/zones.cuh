@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Zones around parts, on the host or on a device.
+
+#include <clearance/collect.cuh>
+#include <clearance/zones.hpp>

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Which parts have points in zones around them: stop, slow down, warn. On the host; zones.cuh has a device.
+
+#include <clearance/answer/bracket.hpp>
+#include <clearance/answer/zones.hpp>
+#include <clearance/collect.hpp>
+
+namespace clearance {
+
+/// One zone of one part. A point counts if it may be nearer than the zone's threshold: what arithmetic, gaps and tolerances leave
+/// open is on the safe side.
+struct zone {
+  std::uint64_t points = 0;
+  real nearest = infinity;                                  ///< The least distance of its points, as computed. Metres.
+  std::uint32_t nearest_cloud = none, nearest_point = none;  ///< The point that has it; of equally near ones the lowest.
+  std::uint32_t first_cloud = none, first_point = none;      ///< The lowest of its points.
+};
+
+struct zones_options {
+  std::vector<double> thresholds;  ///< Metres, in ascending order: those of every part's zones,
+  bool each_part = false;          ///< or, if this is set, of each part in turn, the same number of all.
+  std::size_t min_points = 1;      ///< With fewer a zone counts as empty (`innermost`); they are reported all the same.
+};
+
+struct zones_result {
+  std::size_t per_part = 0, min_points = 1;
+  std::vector<zone> zones;  ///< Those of a part, the innermost first, then those of the next.
+  point_counts counts;
+
+  const zone& of(std::size_t part, std::size_t z) const { return zones[part * per_part + z]; }
+  /// The innermost zone of all parts with enough points: 0 is the nearest threshold, `per_part` says that all are empty. Nothing is
+  /// known of a frame without a valid point: then it is 0.
+  std::size_t innermost() const {
+    if (counts.valid == 0) return 0;
+    std::size_t least = per_part;
+    for (std::size_t i = 0; i < zones.size(); ++i)
+      if (zones[i].points >= min_points) least = std::min(least, i % per_part);
+    return least;
+  }
+};
+
+namespace detail {
+
+/// A part's reaches: its thresholds, and what may be nearer than it is computed to be.
+inline void add_reaches(std::span<const double> thresholds, const part_facts& facts, const frames::float_error& error, std::vector<real>& reaches) {
+  for (std::size_t z = 0; z < thresholds.size(); ++z) {
+    if (!(thresholds[z] >= 0) || (z > 0 && !(thresholds[z] >= thresholds[z - 1])))
+      throw std::invalid_argument("clearance: a zone's threshold is " + std::to_string(thresholds[z]) + " m; they must not be negative, nor fall");
+    const double computed = thresholds[z] + frames::slop(facts);
+    reaches.push_back(rounded_up((computed + error.here) / (1 - error.per_metre)));
+  }
+}
+
+}  // namespace detail
+
+/// The points in zones around every part, in one pass. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that
+/// does, and if thresholds are negative, not in order, or not the same number for each part.
+template <class On, robot Robot, class Clouds>
+zones_result zones(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options) {
+  static_assert(explain_clouds<Clouds>());
+  const auto model = view_of(robot);
+  const std::size_t given = options.thresholds.size(), parts = model.size();
+  zones_result all;
+  all.min_points = options.min_points;
+  frames::cloud_frame frame;
+  std::vector<std::uint32_t> first;
+  frames::for_each_turn(frame, model.facts, poses, clouds, [&](const auto&, const frames::turn& now) { first.push_back(now.first); });
+  if (options.each_part && given % parts != 0)
+    throw std::invalid_argument("clearance: " + std::to_string(given) + " thresholds are not the same number for each of " + std::to_string(parts) + " parts");
+  all.per_part = options.each_part ? given / parts : given;
+  std::vector<real> reaches;
+  for (std::size_t k = 0; k < parts; ++k)
+    detail::add_reaches(std::span(options.thresholds).subspan(options.each_part ? k * all.per_part : 0, all.per_part), model.facts[k], frame.error, reaches);
+
+  auto words = on.copy_in(std::span<const pairwise::zone_words>(std::vector<pairwise::zone_words>(reaches.size())));
+  const auto near = on.copy_in(std::span<const real>(reaches));
+  const auto start = on.copy_in(std::span<const std::uint32_t>(first));
+  all.counts = collect(on, robot, poses, clouds,
+                       pairwise::count_in_zones{words.data(), near.data(), start.data(), std::uint32_t(all.per_part)});
+  const auto place = [&](std::uint64_t number, std::uint32_t& cloud, std::uint32_t& point) {
+    cloud = std::uint32_t(std::upper_bound(first.begin(), first.end(), number) - first.begin()) - 1;
+    point = std::uint32_t(number) - first[cloud];
+  };
+  for (const pairwise::zone_words& w : on.copy_out(words)) {
+    zone z;
+    z.points = w.points;
+    if (w.points != 0) {
+      z.nearest = key_distance(w.nearest);
+      place(key_index(w.nearest), z.nearest_cloud, z.nearest_point);
+      place(w.first, z.first_cloud, z.first_point);
+    }
+    all.zones.push_back(z);
+  }
+  return all;
+}
+
+}  // namespace clearance
