@@ -7,6 +7,7 @@
 #include <clearance/bvh/flat_list.hpp>
 #include <clearance/collect.hpp>
 #include <clearance/distances.hpp>
+#include <clearance/in_collision.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/min_distance_query.hpp>
@@ -28,4 +29,5 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
+#include <clearance/within.hpp>
 #include <clearance/zones.hpp>

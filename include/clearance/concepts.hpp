@@ -210,6 +210,12 @@ concept answer = std::is_trivially_copyable_v<A> && requires(const A a, std::uin
   a.take(pair);
 };
 
+/// An answer that can do without some pairs: those are not looked at any further.
+///
+/// Law: `settled(cloud, point, part)` means that `take` of that pair would change nothing; once true it stays so while a scan runs.
+template <class A>
+concept settling_answer = answer<A> && requires(const A a, std::uint32_t n) { { a.settled(n, n, n) } -> std::same_as<bool>; };
+
 /// `answer<A>` with reasons.
 template <class A>
 consteval bool explain_answer() {

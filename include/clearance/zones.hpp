@@ -2,7 +2,7 @@
 #pragma once
 // Which parts have points in zones around them: stop, slow down, warn. On the host; zones.cuh has a device.
 
-#include <clearance/answer/bracket.hpp>
+#include <clearance/answer/margins.hpp>
 #include <clearance/answer/zones.hpp>
 #include <clearance/collect.hpp>
 
@@ -47,8 +47,7 @@ inline void add_reaches(std::span<const double> thresholds, const part_facts& fa
   for (std::size_t z = 0; z < thresholds.size(); ++z) {
     if (!(thresholds[z] >= 0) || (z > 0 && !(thresholds[z] >= thresholds[z - 1])))
       throw std::invalid_argument("clearance: a zone's threshold is " + std::to_string(thresholds[z]) + " m; they must not be negative, nor fall");
-    const double computed = thresholds[z] + frames::slop(facts);
-    reaches.push_back(rounded_up((computed + error.here) / (1 - error.per_metre)));
+    reaches.push_back(pairwise::may_be_within(thresholds[z], facts, error));
   }
 }
 
@@ -63,32 +62,27 @@ zones_result zones(const On& on, const Robot& robot, std::span<const Eigen::Isom
   const std::size_t given = options.thresholds.size(), parts = model.size();
   zones_result all;
   all.min_points = options.min_points;
-  frames::cloud_frame frame;
   std::vector<std::uint32_t> first;
-  frames::for_each_turn(frame, model.facts, poses, clouds, [&](const auto&, const frames::turn& now) { first.push_back(now.first); });
+  const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
   if (options.each_part && given % parts != 0)
     throw std::invalid_argument("clearance: " + std::to_string(given) + " thresholds are not the same number for each of " + std::to_string(parts) + " parts");
   all.per_part = options.each_part ? given / parts : given;
   std::vector<real> reaches;
   for (std::size_t k = 0; k < parts; ++k)
-    detail::add_reaches(std::span(options.thresholds).subspan(options.each_part ? k * all.per_part : 0, all.per_part), model.facts[k], frame.error, reaches);
+    detail::add_reaches(std::span(options.thresholds).subspan(options.each_part ? k * all.per_part : 0, all.per_part), model.facts[k], error, reaches);
 
   auto words = on.copy_in(std::span<const pairwise::zone_words>(std::vector<pairwise::zone_words>(reaches.size())));
   const auto near = on.copy_in(std::span<const real>(reaches));
   const auto start = on.copy_in(std::span<const std::uint32_t>(first));
   all.counts = collect(on, robot, poses, clouds,
                        pairwise::count_in_zones{words.data(), near.data(), start.data(), std::uint32_t(all.per_part)});
-  const auto place = [&](std::uint64_t number, std::uint32_t& cloud, std::uint32_t& point) {
-    cloud = std::uint32_t(std::upper_bound(first.begin(), first.end(), number) - first.begin()) - 1;
-    point = std::uint32_t(number) - first[cloud];
-  };
   for (const pairwise::zone_words& w : on.copy_out(words)) {
     zone z;
     z.points = w.points;
     if (w.points != 0) {
       z.nearest = key_distance(w.nearest);
-      place(key_index(w.nearest), z.nearest_cloud, z.nearest_point);
-      place(w.first, z.first_cloud, z.first_point);
+      std::tie(z.nearest_cloud, z.nearest_point) = pairwise::place_of(key_index(w.nearest), first);
+      std::tie(z.first_cloud, z.first_point) = pairwise::place_of(std::uint32_t(w.first), first);
     }
     all.zones.push_back(z);
   }

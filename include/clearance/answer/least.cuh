@@ -71,6 +71,7 @@ struct least {
   static __device__ bool settled(const block& s, std::uint32_t part, std::uint32_t point) {
     return scan::fresh(s.answer.least[slot(part)]) < make_key(0, point) && load_relaxed(&s.head.answer.state->certain) != 0;
   }
+  static constexpr __device__ bool skips(const block&, std::uint32_t, std::uint32_t) { return false; }
   static __device__ void take_inside(block& s, std::uint32_t part, std::uint32_t point, std::uint32_t) {
     lower(s, part, 0);
     atomicMin(&s.answer.least[slot(part)], make_key(0, point));

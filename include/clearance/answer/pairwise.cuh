@@ -43,6 +43,10 @@ struct pairs_of {
   static __device__ std::uint32_t common_bound(const block&) { return 0; }
 
   static __device__ bool settled(const block&, std::uint32_t, std::uint32_t) { return false; }
+  static __device__ bool skips(const block& s, std::uint32_t part, std::uint32_t point) {
+    if constexpr (settling_answer<Answer>) return s.head.answer.answer.settled(s.head.cloud, point - s.head.first, s.head.answer.first_part + part);
+    return false;
+  }
   static __device__ void take_inside(block& s, std::uint32_t part, std::uint32_t, std::uint32_t pair) {
     if (reach_of_part(s, part, 0) >= 0) s.answer.best[pair] = make_key(0, none);
   }

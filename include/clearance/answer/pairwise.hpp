@@ -14,7 +14,11 @@ struct each_pair {
   std::uint32_t cloud, first;
 
   CLEARANCE_HD real reach(std::uint32_t k) const { return answer.reach(k); }
-  CLEARANCE_HD real reach_of_pair(std::uint32_t, std::uint32_t k) const { return answer.reach(k); }
+  CLEARANCE_HD real reach_of_pair(std::uint32_t index, std::uint32_t k) const {
+    if constexpr (settling_answer<Answer>)
+      if (answer.settled(cloud, index - first, k)) return -infinity;
+    return answer.reach(k);
+  }
   CLEARANCE_HD bool settled(std::uint32_t, std::uint32_t) const { return false; }
   CLEARANCE_HD bool take_inside(std::uint32_t index, std::uint32_t k) const {
     if (answer.reach(k) >= 0) answer.take({cloud, index - first, k, none, 0});

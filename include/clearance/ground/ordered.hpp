@@ -75,4 +75,13 @@ CLEARANCE_HD inline void add_to(unsigned long long* word, unsigned long long val
 #endif
 }
 
+/// Adds one, and returns what was there.
+CLEARANCE_HD inline unsigned long long take_number(unsigned long long* word) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(word, 1ull);
+#else
+  return std::atomic_ref<unsigned long long>(*word).fetch_add(1, std::memory_order_relaxed);
+#endif
+}
+
 }  // namespace clearance

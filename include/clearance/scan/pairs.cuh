@@ -79,7 +79,7 @@ struct pair_search : tree_steps<Answer> {
     memory& s = frame::here();
     const pair c = live ? s.pair_table[i] : pair{};
     const std::uint32_t part = live ? s.part_of_pair[i] : 0;
-    live = live && s.near_part[part].passes(c.x);
+    live = live && s.near_part[part].passes(c.x) && !Answer::skips(s, part, c.point);
     const vec3 q = frame::place(part).part_from_cloud(c.x);
     if constexpr (has_interior<typename Answer::part_type>) {
       const unsigned gone = __ballot_sync(all_lanes, live && lane() == 0 && inside(q, c.point, part, i)) >> group() * mates;

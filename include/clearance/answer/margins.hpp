@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// From a margin in metres to how near a point must be computed to be.
+
+#include <clearance/frame/clouds.hpp>
+
+namespace clearance::pairwise {
+
+/// A point may be nearer than `margin` if its computed distance is at most this: gap, tolerance and rounding on the safe side.
+inline real may_be_within(double margin, const part_facts& facts, const frames::float_error& error) {
+  return rounded_up((margin + frames::slop(facts) + error.here) / (1 - error.per_metre));
+}
+/// And is certainly, if at most this.
+inline real is_within(double margin, const part_facts& facts, const frames::float_error& error) {
+  const double left = margin - double(facts.tolerance) - error.here;
+  return rounded_down(left / (left < 0 ? 1 - error.per_metre : 1 + error.per_metre));
+}
+
+/// What is certain about a frame, and the number of each cloud's first point, before anything is asked.
+template <class Clouds>
+frames::float_error look_ahead(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                               std::vector<std::uint32_t>& first) {
+  frames::cloud_frame frame;
+  frames::for_each_turn(frame, facts, poses, clouds, [&](const auto&, const frames::turn& now) { first.push_back(now.first); });
+  return frame.error;
+}
+
+/// The cloud and point of a number through all clouds.
+inline std::pair<std::uint32_t, std::uint32_t> place_of(std::uint32_t number, std::span<const std::uint32_t> first) {
+  std::uint32_t cloud = std::uint32_t(first.size()) - 1;
+  while (first[cloud] > number) --cloud;
+  return {cloud, number - first[cloud]};
+}
+
+}  // namespace clearance::pairwise

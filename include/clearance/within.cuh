@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Points within a distance of parts, on the host or on a device.
+
+#include <clearance/collect.cuh>
+#include <clearance/within.hpp>

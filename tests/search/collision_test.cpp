@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether a point is within a margin, and which is the first, as all points and primitives say.
+#include "support/brute_distances.hpp"
+
+#include <clearance/in_collision.hpp>
+#include <clearance/make_model.hpp>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+using clearance::host, clearance::in_collision, clearance::placed, clearance::point_span, clearance::state;
+
+namespace {
+
+/// The first pair (point, part) that is certainly within its margin, and the first that may be.
+template <class P>
+clearance::collision_result brute(const scene<P>& s, const std::vector<placed<point_span>>& clouds, const std::vector<double>& margins) {
+  std::vector<clearance::part_facts> facts;
+  for (const auto& primitives : s.parts) {
+    const ball around = clearance::enclosing_ball(std::span<const P>(primitives));
+    facts.push_back({around.center, around.radius, 0, 0});
+  }
+  clearance::frames::float_error error;
+  for (const auto& cloud : clouds) error.widen(clearance::frames::cloud_frame(facts, s.poses, cloud.pose).error);
+  clearance::collision_result r;
+  for (std::uint32_t c = 0; c < clouds.size(); ++c) {
+    const clearance::frames::cloud_frame frame(facts, s.poses, clouds[c].pose);
+    for (std::uint32_t i = 0; i < clouds[c].source.size(); ++i) {
+      const clearance::sample point = clouds[c].source[i];
+      if (!point.valid()) continue;
+      ++r.counts.valid;
+      if (r.state == state::no_data) r.state = state::free;
+      for (std::uint32_t k = 0; k < s.parts.size(); ++k) {
+        const vec3 q = frame.places[k].part_from_cloud(point.position - frame.origin);
+        long double least = clearance::infinity;
+        for (const P& primitive : s.parts[k]) least = std::min(least, (long double)(primitive.distance(q)));
+        const long double off = error.here + (long double)(error.per_metre) * std::abs(least);
+        const state its = least + off <= margins[k] ? state::collision : least - off <= margins[k] ? state::possible : state::free;
+        if (its == state::free || r.state == state::collision || its == r.state) continue;
+        r.state = its, r.cloud = c, r.point = i, r.part = k;
+      }
+    }
+  }
+  return r;
+}
+
+template <class V, class P>
+void all_scenes() {
+  verdict v;
+  std::size_t states[4] = {};
+  for (const auto& s : scenes<P>()) {
+    const auto model = make_model<V>(s, {}, clearance::wrapped{});
+    const std::vector two{placed{point_span(s.points), s.cloud_pose}, placed{point_span(s.points.data(), s.points.size() / 2), shifted(0.1, 0, 0) * s.cloud_pose}};
+    for (const double margin : {-0.1, 0.0, 1e-7, 0.02, 0.3}) {
+      std::vector<double> margins(s.parts.size(), margin * s.size);
+      for (const bool own : {false, true}) {
+        if (own) margins[0] = 2 * margin * s.size;
+        const auto expected = brute(s, two, margins);
+        for (const unsigned threads : {0u, 1u}) {
+          const auto r = own ? in_collision(host{threads}, model, s.poses, two, margins) : in_collision(host{threads}, model, s.poses, two, margins[0]);
+          v.require(r.state == expected.state && r.cloud == expected.cloud && r.point == expected.point && r.part == expected.part &&
+                        r.counts.valid == expected.counts.valid,
+                    s.name, ", margin ", margin, own ? ", one a part" : "", ": ", to_string(r.state), " and not ", to_string(expected.state), ", point ", r.point,
+                    " and not ", expected.point, ", part ", r.part, " and not ", expected.part);
+        }
+        ++states[int(expected.state)];
+      }
+    }
+  }
+  CHECK((states[int(state::free)] > 5 && states[int(state::collision)] > 5));
+}
+
+}  // namespace
+
+TEST_CASE("A point within a margin of inner spheres is found, the first that is certain") { all_scenes<clearance::sphere, inner_sphere>(); }
+TEST_CASE("A point within a margin of triangles is found, the first that is certain") { all_scenes<clearance::aabb, triangle>(); }
+
+TEST_CASE("What gap and tolerance leave open is possible, and no point says nothing") {
+  const std::vector<inner_sphere> ball{{{0, 0, 0}, 1}};
+  const std::vector poses{Eigen::Isometry3d::Identity()};
+  const std::vector<vec3> far{{3, 0, 0}, {1.5f, 0, 0}}, near{{1.2f, 0, 0}, {1.05f, 0, 0}};
+  const auto ask = [&](double gap, double tolerance, const std::vector<vec3>& points, double margin) {
+    const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball), gap, tolerance)}};
+    return in_collision(host{}, robot, poses, point_span(points), margin);
+  };
+  CHECK(ask(0, 0, far, 0.49).state == state::free);
+  CHECK((ask(0.02, 0, far, 0.49).state == state::possible && ask(0.02, 0, far, 0.49).point == 1));
+  CHECK((ask(0.02, 0, far, 0.51).state == state::collision && ask(0, 0.02, far, 0.51).state == state::possible));
+  CHECK((ask(0.2, 0, near, 0.1).state == state::collision && ask(0.2, 0, near, 0.1).point == 1));  // the first is only possible
+  CHECK(ask(clearance::infinity, 0, far, 0).state == state::possible);
+  CHECK(ask(0, 0, {}, 1).state == state::no_data);
+  CHECK_THROWS_AS(ask(0, 0, far, clearance::not_a_number), std::invalid_argument);
+  const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball))}};
+  CHECK_THROWS_AS(in_collision(host{}, robot, poses, point_span(far), std::vector{0.1, 0.2}), std::invalid_argument);
+}

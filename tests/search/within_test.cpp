@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Points within a distance are those of a plain loop over all points and primitives, in order.
+#include "support/brute_within.hpp"
+
+#include <clearance/make_model.hpp>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+using clearance::host, clearance::placed, clearance::point_span, clearance::within;
+
+namespace {
+
+template <class V, class P>
+void all_scenes() {
+  verdict v;
+  std::size_t found = 0;
+  for (const auto& s : scenes<P>()) {
+    const auto model = make_model<V>(s, {}, clearance::wrapped{});
+    const std::vector two{placed{point_span(s.points), s.cloud_pose}, placed{point_span(s.points.data(), s.points.size() / 2), shifted(0.1, 0, 0) * s.cloud_pose}};
+    for (const real radius : {real(-0.02), real(0), real(0.1), clearance::infinity}) {
+      std::vector<real> own(s.parts.size(), radius * real(s.size));
+      const std::string what = s.name + ", within " + std::to_string(radius);
+      require_same(within(host{}, model, s.poses, two, own[0]), brute_within(s, two, own), v, what);
+      own[0] *= 2;
+      const auto r = within(host{1}, model, s.poses, two, own);
+      require_same(r, brute_within(s, two, own), v, what + ", one a part");
+      found += r.pairs.size();
+    }
+  }
+  CHECK(found > 10000);
+}
+
+}  // namespace
+
+TEST_CASE("Points within a distance of inner spheres are all of them, in order") { all_scenes<clearance::sphere, inner_sphere>(); }
+TEST_CASE("Points within a distance of triangles are all of them, in order") { all_scenes<clearance::aabb, triangle>(); }
+
+TEST_CASE("A list longer than its first room is whole, and one of the caller's says that it was cut") {
+  dice d(99);
+  scene<inner_sphere> s;
+  for (int part = 0; part < 2; ++part) s.parts.push_back({{{0.1f * float(part), 0, 0}, 0.1f}}), s.poses.push_back(Eigen::Isometry3d::Identity());
+  s.points = d.points(50000, 1);
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const std::vector cloud{placed{point_span(s.points)}};
+  const auto all = within(host{}, model, s.poses, cloud, 10);
+  CHECK(all.pairs.size() == 100000);
+  const std::vector<real> reaches(2, 10);
+  std::vector<clearance::pair_distance> pairs(100);
+  unsigned long long count = 0;
+  clearance::point_counts counts;
+  clearance::within_async(host{}, model, s.poses, cloud, reaches.data(), pairs.data(), pairs.size(), &count, &counts);
+  CHECK((count == 100000 && counts.valid == 50000 && pairs[99].distance > 0));
+  CHECK_THROWS_AS(within(host{}, model, s.poses, cloud, clearance::not_a_number), std::invalid_argument);
+  CHECK_THROWS_AS(within(host{}, model, s.poses, cloud, std::vector<real>(3, 1)), std::invalid_argument);
+}
