@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// expected-error: several clouds are a vector or a tuple of placed ones; one may be followed by its pose
+// expected-error: several clouds are a vector or a tuple of placed ones, and one may be followed by its pose
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>

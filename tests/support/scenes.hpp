@@ -165,7 +165,7 @@ class sources {
     fill(doubles, double(), double_records_, 34, 3);
     dice d(unsigned(s.points.size()) + 3);
     const std::uint32_t width = s.points.empty() ? 0 : 24, height = 14;
-    const clearance::intrinsics camera{20, 21, 11.5, 6.5};
+    [[maybe_unused]] const clearance::intrinsics camera{20, 21, 11.5, 6.5};
     for (std::uint32_t k = 0; k < width * height; ++k) {
       raw_.push_back(k % 7 == 3 ? 0 : k % 11 == 5 ? 65535 : std::uint16_t(200 + d.below(3000)));
       metres_.push_back(k % 7 == 3 ? 0 : k % 11 == 5 ? clearance::not_a_number : real(raw_.back() * 0.001 * s.size));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <clearance/backend/cuda_error.cuh>
+#include <clearance/backend/kept_pool.cuh>
 
 #include <cstddef>
 #include <memory_resource>
@@ -69,7 +70,8 @@ class stream_buffer {
 
   stream_buffer(std::size_t n, int device, cudaStream_t stream) : size_(n), device_(device), stream_(stream) {
     const device_guard guard(device);
-    if (n != 0) check_cuda(cudaMallocAsync(reinterpret_cast<void**>(&data_), n * sizeof(T), stream), "cudaMallocAsync");
+    if (n == 0) return;
+    check_cuda(cudaMallocFromPoolAsync(reinterpret_cast<void**>(&data_), n * sizeof(T), kept_pool(device), stream), "cudaMallocFromPoolAsync");
   }
   stream_buffer(stream_buffer&& other) noexcept { *this = std::move(other); }
   stream_buffer& operator=(stream_buffer&& other) noexcept {

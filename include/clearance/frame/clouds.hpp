@@ -90,7 +90,7 @@ consteval bool explain_clouds() {
 template <class First, class... Rest>
 consteval bool explain_given() {
   static_assert(sizeof...(Rest) == 0 || (sizeof...(Rest) == 1 && (std::is_convertible_v<const Rest&, const Eigen::Isometry3d&> && ...)),
-                "several clouds are a vector or a tuple of placed ones; one may be followed by its pose, an Eigen::Isometry3d");
+                "several clouds are a vector or a tuple of placed ones, and one may be followed by its pose, an Eigen::Isometry3d");
   if constexpr (sizeof...(Rest) == 1) return explain_point_source<First>();
   return explain_clouds<First>();
 }
