@@ -53,6 +53,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION
   # A false alarm of newer clang with an older libstdc++, inside its own std::stable_sort.
   target_compile_options(clearance_own INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-deprecated-declarations>)
 endif()
+# Recursion is what the recursive traversal is; its programs say how much stack it needs.
+target_compile_options(clearance_own INTERFACE $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Xptxas=--suppress-stack-size-warning>)
 if(CLEARANCE_WARNINGS_AS_ERRORS)
   target_compile_options(clearance_own INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-Werror> $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Werror=all-warnings -Xcompiler=-Werror>)
