@@ -2,8 +2,9 @@
 #pragma once
 // Questions of one's own: every pair (point, part) that is near enough goes to an answer. On the host; collect.cuh has a device.
 
-#include <clearance/answer/search_on.hpp>
 #include <clearance/answer/pairwise.hpp>
+#include <clearance/answer/search_on.hpp>
+#include <clearance/scan/plain_pass.hpp>
 
 namespace clearance {
 
@@ -17,20 +18,8 @@ struct pairs_on {
   template <class PartView, class Clouds, answer Answer, class Here>
   static void once(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
                    point_counts* counts, const Here& here) {
-    const auto parts = std::uint32_t(model.size());
-    const any_depth walk{stack_need(model.depth, model.width)};
-    auto dropped = on.template make_scratch<scan::drop_counts>(1);
-    const scan::drop_counts start;
-    on.stage(std::span(&start, 1), dropped.data());
-    frames::cloud_frame frame;
-    const std::uint64_t seen = frames::for_each_turn(frame, model.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
-      const S source = here(anywhere, now.cloud);
-      auto places = on.template make_scratch<frames::placement>(parts);
-      on.stage(std::span<const frames::placement>(frame.places), places.data());
-      on.for_ranges(source.size(), scan::scan_body<PartView, S, any_depth, each_pair<Answer>>{model.parts, places.data(), parts, source, frame.origin, now.first,
-                                                                                               dropped.data(), {answer, now.cloud, now.first}, walk});
-    });
-    on.for_each(1, [from = dropped.data(), counts, seen](std::size_t) { scan::count(*counts, from->dropped, seen); });
+    const auto of_cloud = [&](const auto&, const frames::turn& now) { return each_pair<Answer>{answer, now.cloud, now.first}; };
+    scan::plain_pass(on, model, poses, clouds, of_cloud, counts, here);
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <clearance/answer/pointwise.hpp>
 #include <clearance/answer/search_on.hpp>
+#include <clearance/scan/plain_pass.hpp>
 
 namespace clearance {
 
@@ -34,22 +35,11 @@ struct points_on {
   template <class PartView, class Clouds, class Here>
   static distance_certainty once(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                  const distances_out& out, real d_max, point_counts* counts, const Here& here) {
-    const auto parts = std::uint32_t(model.size());
-    const any_depth walk{stack_need(model.depth, model.width)};
-    auto dropped = on.template make_scratch<scan::drop_counts>(1);
-    const scan::drop_counts start;
-    on.stage(std::span(&start, 1), dropped.data());
-    frames::cloud_frame frame;
-    const std::uint64_t seen = frames::for_each_turn(frame, model.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
-      const S source = here(anywhere, now.cloud);
-      auto places = on.template make_scratch<frames::placement>(parts);
-      on.stage(std::span<const frames::placement>(frame.places), places.data());
+    const auto of_cloud = [&]<point_source S>(const S& source, const frames::turn& now) {
       on.for_each(source.size(), clear_body<S>{source, out, now.first});
-      on.for_ranges(source.size(), scan::scan_body<PartView, S, any_depth, each_point>{model.parts, places.data(), parts, source, frame.origin, now.first,
-                                                                                       dropped.data(), {out, d_max}, walk});
-    });
-    on.for_each(1, [from = dropped.data(), counts, seen](std::size_t) { scan::count(*counts, from->dropped, seen); });
-    return {frame.error, frame.slop};
+      return each_point{out, d_max};
+    };
+    return certainty_of(scan::plain_pass(on, model, poses, clouds, of_cloud, counts, here));
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <clearance/answer/first_within.hpp>
 #include <clearance/answer/margins.hpp>
+#include <clearance/backend/staged.hpp>
 #include <clearance/collect.hpp>
 
 namespace clearance {
@@ -35,13 +36,12 @@ collision_result in_collision(const On& on, const Robot& robot, std::span<const 
     reaches[k] = pairwise::may_be_within(margin, model.facts[k], error);
     reaches[model.size() + k] = pairwise::is_within(margin, model.facts[k], error);
   }
-  const unsigned long long nothing = answer::nothing;
-  auto word = on.copy_in(std::span(&nothing, 1));
-  const auto near = on.copy_in(std::span<const real>(reaches));
-  const auto start = on.copy_in(std::span<const std::uint32_t>(first));
+  auto word = staged(on, std::vector{answer::nothing});
+  auto near = staged(on, reaches);
+  auto start = staged(on, first);
   collision_result r;
   r.counts = collect(on, robot, poses, clouds, answer{word.data(), near.data(), near.data() + model.size(), start.data()});
-  if (const unsigned long long found = on.copy_out(word)[0]; found != nothing) {
+  if (const unsigned long long found = on.copy_out(word.data(), 1)[0]; found != answer::nothing) {
     r.state = (found & answer::uncertain) != 0 ? state::possible : state::collision;
     std::tie(r.cloud, r.point) = pairwise::place_of(std::uint32_t(found >> 31), first);
     r.part = std::uint32_t(found) & 0x7fffffff;

@@ -4,6 +4,7 @@
 
 #include <clearance/answer/bracket.hpp>
 #include <clearance/answer/listed.hpp>
+#include <clearance/backend/staged.hpp>
 #include <clearance/collect.hpp>
 
 #include <algorithm>
@@ -32,18 +33,17 @@ within_result within(const On& on, const Robot& robot, std::span<const Eigen::Is
     reaches.push_back(radius[radius.size() == 1 ? 0 : k]);
     if (!(reaches[k] == reaches[k])) throw std::invalid_argument("clearance: the radius of part " + std::to_string(k) + " is not a number");
   }
-  const auto near = on.copy_in(std::span<const real>(reaches));
+  auto near = staged(on, reaches);
   within_result all;
   frames::cloud_frame frame;
   frames::for_each_turn(frame, model.facts, poses, clouds, [](const auto&, const frames::turn&) {});
-  all.certain = {frame.error, frame.slop};
+  all.certain = certainty_of(frame);
   std::vector<pair_distance> pairs;
   for (std::size_t room = 1 << 16;;) {  // once more, if there was not enough
     auto list = on.template make_scratch<pair_distance>(room);
-    const unsigned long long none_yet = 0;
-    auto count = on.copy_in(std::span(&none_yet, 1));
+    auto count = staged(on, std::vector<unsigned long long>(1));
     all.counts = collect(on, robot, poses, clouds, pairwise::listed{list.data(), count.data(), room, near.data()});
-    const std::size_t found = std::size_t(on.copy_out(count)[0]);
+    const std::size_t found = std::size_t(on.copy_out(count.data(), 1)[0]);
     if (found <= room) {
       pairs = on.copy_out(list.data(), found);
       break;

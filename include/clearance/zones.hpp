@@ -4,6 +4,7 @@
 
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/zones.hpp>
+#include <clearance/backend/staged.hpp>
 #include <clearance/collect.hpp>
 
 namespace clearance {
@@ -64,19 +65,19 @@ zones_result zones(const On& on, const Robot& robot, std::span<const Eigen::Isom
   all.min_points = options.min_points;
   std::vector<std::uint32_t> first;
   const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
-  if (options.each_part && given % parts != 0)
+  if (options.each_part && (parts == 0 || given % parts != 0))
     throw std::invalid_argument("clearance: " + std::to_string(given) + " thresholds are not the same number for each of " + std::to_string(parts) + " parts");
   all.per_part = options.each_part ? given / parts : given;
   std::vector<real> reaches;
   for (std::size_t k = 0; k < parts; ++k)
     detail::add_reaches(std::span(options.thresholds).subspan(options.each_part ? k * all.per_part : 0, all.per_part), model.facts[k], error, reaches);
 
-  auto words = on.copy_in(std::span<const pairwise::zone_words>(std::vector<pairwise::zone_words>(reaches.size())));
-  const auto near = on.copy_in(std::span<const real>(reaches));
-  const auto start = on.copy_in(std::span<const std::uint32_t>(first));
+  auto words = staged(on, std::vector<pairwise::zone_words>(reaches.size()));
+  auto near = staged(on, reaches);
+  auto start = staged(on, first);
   all.counts = collect(on, robot, poses, clouds,
                        pairwise::count_in_zones{words.data(), near.data(), start.data(), std::uint32_t(all.per_part)});
-  for (const pairwise::zone_words& w : on.copy_out(words)) {
+  for (const pairwise::zone_words& w : on.copy_out(words.data(), reaches.size())) {
     zone z;
     z.points = w.points;
     if (w.points != 0) {

@@ -14,8 +14,6 @@ using clearance::host, clearance::placed, clearance::point_span;
 
 namespace {
 
-const auto nothing_inside = [](std::uint32_t, vec3) { return false; };
-
 template <class V, class P>
 void collect_all_scenes() {
   verdict v;

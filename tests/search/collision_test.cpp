@@ -14,33 +14,18 @@ namespace {
 
 /// The first pair (point, part) that is certainly within its margin, and the first that may be.
 template <class P>
-clearance::collision_result brute(const scene<P>& s, const std::vector<placed<point_span>>& clouds, const std::vector<double>& margins) {
-  std::vector<clearance::part_facts> facts;
-  for (const auto& primitives : s.parts) {
-    const ball around = clearance::enclosing_ball(std::span<const P>(primitives));
-    facts.push_back({around.center, around.radius, 0, 0});
-  }
-  clearance::frames::float_error error;
-  for (const auto& cloud : clouds) error.widen(clearance::frames::cloud_frame(facts, s.poses, cloud.pose).error);
+clearance::collision_result brute(const scene<P>& s, const clouds& all, const std::vector<double>& margins) {
+  const auto error = error_of(s, all);
   clearance::collision_result r;
-  for (std::uint32_t c = 0; c < clouds.size(); ++c) {
-    const clearance::frames::cloud_frame frame(facts, s.poses, clouds[c].pose);
-    for (std::uint32_t i = 0; i < clouds[c].source.size(); ++i) {
-      const clearance::sample point = clouds[c].source[i];
-      if (!point.valid()) continue;
-      ++r.counts.valid;
-      if (r.state == state::no_data) r.state = state::free;
-      for (std::uint32_t k = 0; k < s.parts.size(); ++k) {
-        const vec3 q = frame.places[k].part_from_cloud(point.position - frame.origin);
-        long double least = clearance::infinity;
-        for (const P& primitive : s.parts[k]) least = std::min(least, (long double)(primitive.distance(q)));
-        const long double off = error.here + (long double)(error.per_metre) * std::abs(least);
-        const state its = least + off <= margins[k] ? state::collision : least - off <= margins[k] ? state::possible : state::free;
-        if (its == state::free || r.state == state::collision || its == r.state) continue;
-        r.state = its, r.cloud = c, r.point = i, r.part = k;
-      }
-    }
-  }
+  for (const auto& cloud : all)
+    for (std::size_t i = 0; i < cloud.source.size(); ++i) r.counts.valid += cloud.source[i].valid();
+  if (r.counts.valid != 0) r.state = state::free;
+  for_each_pair(s, all, [&](const clearance::pair_distance& pair) {
+    const long double d = pair.distance, off = error.here + (long double)(error.per_metre) * std::abs(d);
+    const state its = d + off <= margins[pair.part] ? state::collision : d - off <= margins[pair.part] ? state::possible : state::free;
+    if (its == state::free || r.state == state::collision || its == r.state) return;
+    r.state = its, r.cloud = pair.cloud, r.point = pair.point, r.part = pair.part;
+  });
   return r;
 }
 
@@ -50,7 +35,7 @@ void all_scenes() {
   std::size_t states[4] = {};
   for (const auto& s : scenes<P>()) {
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
-    const std::vector two{placed{point_span(s.points), s.cloud_pose}, placed{point_span(s.points.data(), s.points.size() / 2), shifted(0.1, 0, 0) * s.cloud_pose}};
+    const auto two = two_clouds(s);
     for (const double margin : {-0.1, 0.0, 1e-7, 0.02, 0.3}) {
       std::vector<double> margins(s.parts.size(), margin * s.size);
       for (const bool own : {false, true}) {
@@ -74,6 +59,26 @@ void all_scenes() {
 
 TEST_CASE("A point within a margin of inner spheres is found, the first that is certain") { all_scenes<clearance::sphere, inner_sphere>(); }
 TEST_CASE("A point within a margin of triangles is found, the first that is certain") { all_scenes<clearance::aabb, triangle>(); }
+
+TEST_CASE("What rounding leaves open of a depth is possible, too") {
+  const std::vector<inner_sphere> ball{{{0, 0, 0}, 4}};
+  const std::vector poses{Eigen::Isometry3d::Identity()};
+  const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball))}};
+  verdict v;
+  dice d(96);
+  for (const vec3 p : d.points(200, 2)) {
+    const std::vector<vec3> point{p};
+    const double computed = ball[0].distance(p);
+    const auto error = clearance::distances(host{}, robot, poses, point_span(point)).certain.error;
+    const double off = error.at(real(computed));
+    const auto ask = [&](double margin) { return in_collision(host{}, robot, poses, point_span(point), margin).state; };
+    for (const double part : {0.2, 0.9, 0.999}) {
+      v.require(ask(computed - part * off) == state::possible, computed, " m deep, margin less by ", part, " of its error: ", to_string(ask(computed - part * off)));
+      v.require(ask(computed + part * off) == state::possible, computed, " m deep, margin more by ", part, " of its error");
+    }
+    v.require(ask(computed - 1.1 * off) == state::free && ask(computed + 1.1 * off) == state::collision, computed, " m deep: what is certain");
+  }
+}
 
 TEST_CASE("What gap and tolerance leave open is possible, and no point says nothing") {
   const std::vector<inner_sphere> ball{{{0, 0, 0}, 1}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // On a device the point within a margin is the host's.
+#include "support/brute_pairs.hpp"
 #include "support/product_device.cuh"
 
 #include <clearance/in_collision.cuh>
@@ -23,7 +24,7 @@ TEST_CASE("On a device a point within a margin is the host's, in all scenes") {
   for (const auto& s : scenes<inner_sphere>()) {
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     const auto there = model.on(gpu);
-    const std::vector two{placed{point_span(s.points), s.cloud_pose}, placed{point_span(s.points.data(), s.points.size() / 2), shifted(0.1, 0, 0) * s.cloud_pose}};
+    const auto two = two_clouds(s);
     for (const double margin : {-0.1, 0.0, 1e-7, 0.02, 0.3})
       v.require(same(in_collision(gpu, there, s.poses, two, margin * s.size), in_collision(host{}, model, s.poses, two, margin * s.size)), s.name, ", margin ",
                 margin, ": differs from the host's");
@@ -32,19 +33,12 @@ TEST_CASE("On a device a point within a margin is the host's, in all scenes") {
 
 TEST_CASE("In a crowd the first point is found again and again") {
   const device gpu;
-  dice d(98);
-  scene<inner_sphere> s;
-  for (int part = 0; part < 3; ++part) {
-    s.parts.emplace_back();
-    for (int k = 0; k < 100; ++k) s.parts.back().push_back({d.point(0.2f), d.number(0.005, 0.02)});
-    s.poses.push_back(d.pose(0.3));
-  }
-  const auto points = d.points(300000, 0.6);
+  const auto s = crowd(98);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto there = model.on(gpu);
   for (const double margin : {0.0, 0.001, 0.3}) {
-    const auto expected = in_collision(host{}, model, s.poses, point_span(points), margin);
+    const auto expected = in_collision(host{}, model, s.poses, point_span(s.points), margin);
     CHECK(expected.state == state::collision);
-    for (int k = 0; k < 5; ++k) CHECK(same(in_collision(gpu, there, s.poses, point_span(points), margin), expected));
+    for (int k = 0; k < 5; ++k) CHECK(same(in_collision(gpu, there, s.poses, point_span(s.points), margin), expected));
   }
 }

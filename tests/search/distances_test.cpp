@@ -12,8 +12,6 @@ using clearance::distances, clearance::host, clearance::placed, clearance::plain
 
 namespace {
 
-const auto nothing_inside = [](std::uint32_t, vec3) { return false; };
-
 template <class V, class P>
 void all_scenes() {
   verdict v;

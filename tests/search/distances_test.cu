@@ -14,8 +14,6 @@ using clearance::device, clearance::distances, clearance::host, clearance::place
 
 namespace {
 
-const auto nothing_inside = [](std::uint32_t, vec3) { return false; };
-
 template <class V, class P>
 void all_scenes(std::uint32_t width, bool layered = false) {
   verdict v;

@@ -17,7 +17,7 @@ void all_scenes() {
   std::size_t found = 0;
   for (const auto& s : scenes<P>()) {
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
-    const std::vector two{placed{point_span(s.points), s.cloud_pose}, placed{point_span(s.points.data(), s.points.size() / 2), shifted(0.1, 0, 0) * s.cloud_pose}};
+    const auto two = two_clouds(s);
     for (const real radius : {real(-0.02), real(0), real(0.1), clearance::infinity}) {
       std::vector<real> own(s.parts.size(), radius * real(s.size));
       const std::string what = s.name + ", within " + std::to_string(radius);

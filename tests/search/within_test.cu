@@ -15,7 +15,7 @@ TEST_CASE("On a device points within a distance are the host's, and a long list 
   const device gpu;
   for (const auto& s : scenes<inner_sphere>()) {
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
-    const std::vector two{placed{point_span(s.points), s.cloud_pose}, placed{point_span(s.points.data(), s.points.size() / 2), shifted(0.1, 0, 0) * s.cloud_pose}};
+    const auto two = two_clouds(s);
     for (const real radius : {real(0), real(0.1), clearance::infinity})
       require_same(within(gpu, model.on(gpu), s.poses, two, radius), within(host{}, model, s.poses, two, radius), v, s.name + ", within " + std::to_string(radius));
   }

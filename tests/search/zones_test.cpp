@@ -17,8 +17,8 @@ void all_scenes() {
   std::size_t counted = 0;
   for (const auto& s : scenes<P>()) {
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
-    const std::vector one{placed{point_span(s.points), s.cloud_pose}};
-    const std::vector two{one[0], placed{point_span(s.points.data(), s.points.size() / 2), shifted(0.1, 0, 0) * s.cloud_pose}};
+    const auto two = two_clouds(s);
+    const clouds one{two[0]};
     const std::vector<std::vector<double>> same(s.parts.size(), {0, 0.05 * s.size, 0.5 * s.size});
     std::vector<std::vector<double>> own;
     clearance::zones_options options{same[0]}, of_each{.thresholds = {}, .each_part = true};
@@ -67,6 +67,8 @@ TEST_CASE("The innermost zone, few points, no point, and what cannot be asked") 
   CHECK_THROWS_AS(ask({.thresholds = {0.2, 0.1}}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.thresholds = {-0.1}}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.thresholds = {clearance::not_a_number}}), std::invalid_argument);
+  const clearance::model_view<decltype(robot)::view_type> no_parts{nullptr, {}, 0, 0};
+  CHECK_THROWS_AS(zones(host{}, no_parts, std::span<const Eigen::Isometry3d>(), point_span(points), {.thresholds = {0.1}, .each_part = true}), std::invalid_argument);
   const clearance::model two{std::vector{robot.parts()[0], robot.parts()[0]}};
   CHECK_THROWS_AS(zones(host{}, two, std::vector(2, poses[0]), point_span(points), {.thresholds = {0.1, 0.2, 0.3}, .each_part = true}), std::invalid_argument);
 }

@@ -2,6 +2,7 @@
 #pragma once
 // Every point's distance by the definition, and what differs from it.
 
+#include "support/brute_pairs.hpp"
 #include "support/product.hpp"
 
 #include <clearance/distances.hpp>
@@ -11,33 +12,19 @@ namespace testing {
 /// All points of a source against all primitives of all parts. `inside(k, q)`: is q in part k's solid?
 template <class P, class Source, class Inside>
 clearance::point_distances brute_distances(const scene<P>& s, const Source& source, const Eigen::Isometry3d& pose, real d_max, Inside inside) {
-  std::vector<clearance::part_facts> facts;
-  for (const auto& primitives : s.parts) {
-    const ball around = clearance::enclosing_ball(std::span<const P>(primitives));
-    facts.push_back({around.center, around.radius, 0, 0});
-  }
-  const clearance::frames::cloud_frame frame(facts, s.poses, pose);
   clearance::point_distances all;
   for (std::size_t i = 0; i < source.size(); ++i) {
     const clearance::sample point = source[i];
-    real least = point.valid() ? clearance::infinity : clearance::not_a_number;
-    std::uint32_t part = ~0u, primitive = ~0u;
-    const auto offer = [&](real d, std::uint32_t k, std::uint32_t n) {
-      if (d <= d_max && d < least) least = d, part = k, primitive = n;
-    };
+    all.distance.push_back(point.valid() ? clearance::infinity : clearance::not_a_number);
     ++all.counts.seen;
     all.counts.valid += point.valid();
     if (!point.valid()) ++all.counts.dropped[int(point.dropped)];
-    for (std::uint32_t k = 0; point.valid() && k < s.parts.size(); ++k) {
-      const vec3 q = frame.places[k].part_from_cloud(point.position - frame.origin);
-      if (inside(k, q)) {
-        offer(0, k, ~0u);
-        continue;
-      }
-      for (std::uint32_t n = 0; n < s.parts[k].size(); ++n) offer(s.parts[k][n].distance(q), k, n);
-    }
-    all.distance.push_back(least), all.part.push_back(part), all.primitive.push_back(primitive);
   }
+  all.part = all.primitive = std::vector<std::uint32_t>(source.size(), ~0u);
+  for_each_pair(s, source, pose, 0, inside, [&](const clearance::pair_distance& pair) {
+    if (!(pair.distance <= d_max && pair.distance < all.distance[pair.point])) return;
+    all.distance[pair.point] = pair.distance, all.part[pair.point] = pair.part, all.primitive[pair.point] = pair.primitive;
+  });
   return all;
 }
 

@@ -9,34 +9,16 @@
 namespace testing {
 
 template <class P>
-clearance::within_result brute_within(const scene<P>& s, const std::vector<clearance::placed<clearance::point_span>>& clouds,
-                                      const std::vector<real>& radius) {
-  clearance::within_result all;
-  all.offsets.push_back(0);
-  for (std::uint32_t k = 0; k < s.parts.size(); ++k) {
-    std::vector<clearance::pair_distance> its;
-    for (std::uint32_t c = 0; c < clouds.size(); ++c) {
-      std::vector<clearance::part_facts> facts;
-      for (const auto& primitives : s.parts) {
-        const ball around = clearance::enclosing_ball(std::span<const P>(primitives));
-        facts.push_back({around.center, around.radius, 0, 0});
-      }
-      const clearance::frames::cloud_frame frame(facts, s.poses, clouds[c].pose);
-      for (std::uint32_t i = 0; i < clouds[c].source.size(); ++i) {
-        const clearance::sample point = clouds[c].source[i];
-        if (!point.valid()) continue;
-        const vec3 q = frame.places[k].part_from_cloud(point.position - frame.origin);
-        clearance::pair_distance pair{c, i, k, ~0u, clearance::infinity};
-        for (std::uint32_t n = 0; n < s.parts[k].size(); ++n)
-          if (const real d = s.parts[k][n].distance(q); d < pair.distance) pair.distance = d, pair.primitive = n;
-        if (pair.distance <= radius[k]) its.push_back(pair);
-      }
-    }
-    std::ranges::stable_sort(its, {}, &clearance::pair_distance::distance);
-    all.pairs.insert(all.pairs.end(), its.begin(), its.end());
-    all.offsets.push_back(all.pairs.size());
-  }
-  return all;
+clearance::within_result brute_within(const scene<P>& s, const clouds& all, const std::vector<real>& radius) {
+  clearance::within_result r;
+  r.offsets.assign(s.parts.size() + 1, 0);
+  for_each_pair(s, all, [&](const clearance::pair_distance& pair) {
+    if (!(pair.distance <= radius[pair.part])) return;
+    r.pairs.push_back(pair);
+    for (std::size_t k = pair.part + 1; k < r.offsets.size(); ++k) ++r.offsets[k];
+  });
+  std::ranges::stable_sort(r.pairs, {}, [](const clearance::pair_distance& p) { return std::pair(p.part, p.distance); });
+  return r;
 }
 
 inline void require_same(const clearance::within_result& found, const clearance::within_result& expected, verdict& v, const std::string& what) {

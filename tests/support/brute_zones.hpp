@@ -11,42 +11,23 @@ namespace testing {
 /// All points of clouds against all primitives: those whose computed distance is at most the threshold and what is uncertain of it,
 /// worked out in long double.
 template <class P>
-clearance::zones_result brute_zones(const scene<P>& s, const std::vector<clearance::placed<clearance::point_span>>& clouds,
-                                    const std::vector<std::vector<double>>& thresholds) {
-  clearance::zones_result all;
-  all.per_part = thresholds[0].size();
-  std::vector<clearance::part_facts> facts;
-  for (const auto& primitives : s.parts) {
-    const ball around = clearance::enclosing_ball(std::span<const P>(primitives));
-    facts.push_back({around.center, around.radius, 0, 0});
-  }
-  clearance::frames::float_error error;
-  for (const auto& cloud : clouds) error.widen(clearance::frames::cloud_frame(facts, s.poses, cloud.pose).error);
-  for (std::size_t k = 0; k < s.parts.size(); ++k)
-    for (const double threshold : thresholds[k]) {
-      clearance::zone z;
-      for (std::uint32_t c = 0; c < clouds.size(); ++c) {
-        const clearance::frames::cloud_frame frame(facts, s.poses, clouds[c].pose);
-        for (std::uint32_t i = 0; i < clouds[c].source.size(); ++i) {
-          const clearance::sample point = clouds[c].source[i];
-          if (!point.valid()) continue;
-          const vec3 q = frame.places[k].part_from_cloud(point.position - frame.origin);
-          real least = clearance::infinity;
-          for (const P& primitive : s.parts[k]) least = std::min(least, primitive.distance(q));
-          // It may be nearer by `here`, and by `per_metre` of what it is.
-          const long double may_be = (long double)(least) - error.here - (long double)(error.per_metre) * std::abs(least);
-          if (may_be > threshold) continue;
-          ++z.points;
-          if (z.first_point == ~0u) z.first_cloud = c, z.first_point = i;
-          if (least < z.nearest) z.nearest = least, z.nearest_cloud = c, z.nearest_point = i;
-        }
-      }
-      all.zones.push_back(z);
+clearance::zones_result brute_zones(const scene<P>& s, const clouds& all, const std::vector<std::vector<double>>& thresholds) {
+  clearance::zones_result r;
+  r.per_part = thresholds[0].size();
+  r.zones.resize(s.parts.size() * r.per_part);
+  const auto error = error_of(s, all);
+  for_each_pair(s, all, [&](const clearance::pair_distance& pair) {
+    const long double may_be = (long double)(pair.distance) - error.here - (long double)(error.per_metre) * std::abs(pair.distance);
+    for (std::size_t z = 0; z < r.per_part; ++z) {
+      if (may_be > thresholds[pair.part][z]) continue;
+      clearance::zone& its = r.zones[pair.part * r.per_part + z];
+      if (its.points++ == 0) its.first_cloud = pair.cloud, its.first_point = pair.point;
+      if (pair.distance < its.nearest) its.nearest = pair.distance, its.nearest_cloud = pair.cloud, its.nearest_point = pair.point;
     }
-  return all;
+  });
+  return r;
 }
 
-/// `found` may count what lies on the last digit of a threshold; `slack` says how many such points there were.
 inline void require_same(const clearance::zones_result& found, const clearance::zones_result& expected, verdict& v, const std::string& what) {
   v.require(found.zones.size() == expected.zones.size() && found.per_part == expected.per_part, what, ": ", found.zones.size(), " zones");
   for (std::size_t i = 0; i < std::min(found.zones.size(), expected.zones.size()); ++i) {

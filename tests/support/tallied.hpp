@@ -2,7 +2,7 @@
 #pragma once
 // An answer that tells any two sets of pairs apart, whatever order they come in.
 
-#include "support/scenes.hpp"
+#include "support/brute_pairs.hpp"
 
 #include <clearance/ground/ordered.hpp>
 
@@ -37,27 +37,10 @@ struct tally_of_pairs {
 template <class P, class Inside>
 void brute_tally(const scene<P>& s, const std::vector<vec3>& points, const Eigen::Isometry3d& pose, std::uint32_t cloud, real farthest, Inside inside,
                  tally_of_pairs& all) {
-  std::vector<clearance::part_facts> facts;
-  for (const auto& primitives : s.parts) {
-    const ball around = clearance::enclosing_ball(std::span<const P>(primitives));
-    facts.push_back({around.center, around.radius, 0, 0});
-  }
-  const clearance::frames::cloud_frame frame(facts, s.poses, pose);
   const tallied answer{farthest, all.words};
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    if (!clearance::is_finite(points[i])) continue;
-    for (std::uint32_t k = 0; k < s.parts.size(); ++k) {
-      const vec3 q = frame.places[k].part_from_cloud(points[i] - frame.origin);
-      clearance::pair_distance pair{cloud, i, k, ~0u, clearance::infinity};
-      if (inside(k, q)) {
-        pair.distance = 0;
-      } else {
-        for (std::uint32_t n = 0; n < s.parts[k].size(); ++n)
-          if (const real d = s.parts[k][n].distance(q); d < pair.distance) pair.distance = d, pair.primitive = n;
-      }
-      if (pair.distance <= answer.reach(k)) answer.take(pair);
-    }
-  }
+  for_each_pair(s, clearance::point_span(points), pose, cloud, inside, [&](const clearance::pair_distance& pair) {
+    if (pair.distance <= answer.reach(pair.part)) answer.take(pair);
+  });
 }
 
 }  // namespace testing

@@ -46,11 +46,13 @@ struct distance_certainty {
   frames::float_error error;
   double slop = 0;
 
-  /// The solid is at least so far away: 0, if that is not certain to be more.
+  /// The solid is at least so far away: 0, if that is not certain to be more, and of what is infinite or no number.
   CLEARANCE_HD real lower(real distance) const {
     const double least = minimum::certain_distance(distance, slop, error);
     return least > 0 ? rounded_down(least) : 0;
   }
 };
+
+inline distance_certainty certainty_of(const frames::frame_facts& frame) { return {frame.error, frame.slop}; }
 
 }  // namespace clearance

@@ -8,7 +8,8 @@ namespace clearance::pairwise {
 
 /// A point may be nearer than `margin` if its computed distance is at most this: gap, tolerance and rounding on the safe side.
 inline real may_be_within(double margin, const part_facts& facts, const frames::float_error& error) {
-  return rounded_up((margin + frames::slop(facts) + error.here) / (1 - error.per_metre));
+  const double most = margin + frames::slop(facts) + error.here;
+  return rounded_up(most / (most < 0 ? 1 + error.per_metre : 1 - error.per_metre));
 }
 /// And is certainly, if at most this.
 inline real is_within(double margin, const part_facts& facts, const frames::float_error& error) {

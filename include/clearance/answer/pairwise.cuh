@@ -6,7 +6,6 @@
 #include <clearance/scan/kernel.cuh>
 #include <clearance/scan/launch.cuh>
 #include <clearance/scan/record.hpp>
-#include <clearance/scan/tally.hpp>
 
 namespace clearance::pairwise {
 
@@ -83,10 +82,7 @@ struct pairs_of {
   static __device__ void hand_in(const scan::scan_arguments<pairs_of>&, const Source&) {}
   template <class Source>
   static __device__ void conclude(const scan::scan_arguments<pairs_of>& a, const Source&) {
-    if (threadIdx.x != 0 || !a.last || a.answer.counts == nullptr) return;
-    unsigned long long dropped[drop_reasons];
-    for (int k = 0; k < drop_reasons; ++k) dropped[k] = scan::fresh(a.state->dropped[k]);
-    scan::count(*a.answer.counts, dropped, std::uint64_t(a.first) + a.points);
+    scan::write_counts(a, a.answer.counts);
   }
   static __device__ void reset(const scan::scan_arguments<pairs_of>&) {}
 };
@@ -101,25 +97,17 @@ class device_pairs {
   /// `counts` in memory that the device can write. `here(source, cloud)` is what the device can read of a cloud.
   template <class Clouds, answer Answer, class Here>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer, point_counts* counts, const Here& here) {
-    try {
-      frames::for_each_turn(frame_, facts_, poses, clouds, [&](const auto& anywhere, const frames::turn& now) {
-        const auto source = here(anywhere, now.cloud);
-        for (std::uint32_t group = 0; group < launch_.groups(); ++group) {
-          auto a = launch_.template begin<pairs_of<PartView, Answer>>(group, now, {answer, group * scan::most_parts, group == 0 ? counts : nullptr});
-          launch_.put(frame_, group, a);
-          launch_(source, a);
-        }
-      });
-    } catch (...) {
-      launch_.forget();  // the clouds before this one have left their counts
-      throw;
-    }
+    launch_.template pass<pairs_of<PartView, Answer>>(
+        facts_, poses, clouds,
+        [&](std::uint32_t group) {
+          return typename pairs_of<PartView, Answer>::arguments{answer, group * scan::most_parts, group == 0 ? counts : nullptr};
+        },
+        here);
   }
 
  private:
   std::vector<part_facts> facts_;
   scan::launcher<PartView> launch_;
-  frames::cloud_frame frame_;
 };
 
 }  // namespace clearance::pairwise

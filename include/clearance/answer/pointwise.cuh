@@ -5,7 +5,6 @@
 #include <clearance/answer/pointwise.hpp>
 #include <clearance/scan/launch.cuh>
 #include <clearance/scan/packet_kernel.cuh>
-#include <clearance/scan/tally.hpp>
 
 namespace clearance::pointwise {
 
@@ -56,10 +55,7 @@ struct points_of {
   static __device__ void hand_in(const scan::scan_arguments<points_of>&, const Source&) {}
   template <class Source>
   static __device__ void conclude(const scan::scan_arguments<points_of>& a, const Source&) {
-    if (threadIdx.x != 0 || !a.last || a.answer.counts == nullptr) return;
-    unsigned long long dropped[drop_reasons];
-    for (int k = 0; k < drop_reasons; ++k) dropped[k] = scan::fresh(a.state->dropped[k]);
-    scan::count(*a.answer.counts, dropped, std::uint64_t(a.first) + a.points);
+    scan::write_counts(a, a.answer.counts);
   }
   static __device__ void reset(const scan::scan_arguments<points_of>&) {}
 };
@@ -76,26 +72,17 @@ class device_points {
   template <class Clouds, class Here>
   distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out, real d_max, point_counts* counts,
                              const Here& here) {
-    try {
-      frames::for_each_turn(frame_, facts_, poses, clouds, [&](const auto& anywhere, const frames::turn& now) {
-        const auto source = here(anywhere, now.cloud);
-        for (std::uint32_t group = 0; group < launch_.groups(); ++group) {
-          auto a = launch_.template begin<points_of<PartView>>(group, now, {out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr});
-          launch_.put(frame_, group, a);
-          launch_(source, a);
-        }
-      });
-    } catch (...) {
-      launch_.forget();  // the clouds before this one have left their counts
-      throw;
-    }
-    return {frame_.error, frame_.slop};
+    return certainty_of(launch_.template pass<points_of<PartView>>(
+        facts_, poses, clouds,
+        [&](std::uint32_t group) {
+          return typename points_of<PartView>::arguments{out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr};
+        },
+        here));
   }
 
  private:
   std::vector<part_facts> facts_;
   scan::launcher<PartView> launch_;
-  frames::cloud_frame frame_;
 };
 
 }  // namespace clearance::pointwise

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/result.hpp>
 #include <clearance/scan/block.cuh>
+#include <clearance/scan/tally.hpp>
 
 namespace clearance::scan {
 
@@ -26,6 +28,15 @@ __noinline__ __device__ void finish_block(const scan_arguments<Answer>& a, const
     __threadfence_system();
     *static_cast<volatile std::uint32_t*>(a.done) = a.number;
   }
+}
+
+/// What there was, by one thread of the last block after the last cloud; `counts` may be null.
+template <class Answer>
+__device__ void write_counts(const scan_arguments<Answer>& a, point_counts* counts) {
+  if (threadIdx.x != 0 || !a.last || counts == nullptr) return;
+  unsigned long long dropped[drop_reasons];
+  for (int k = 0; k < drop_reasons; ++k) dropped[k] = fresh(a.state->dropped[k]);
+  count(*counts, dropped, std::uint64_t(a.first) + a.points);
 }
 
 }  // namespace clearance::scan

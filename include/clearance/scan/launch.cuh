@@ -80,6 +80,27 @@ class launcher {
     on_.launch(place_kernel<PartView>, 1, most_parts, 0, poses, cloud, views_.data(), parts_, off, placed_.data());
   }
 
+  /// All clouds of a frame against all groups: `answer(group)` is what the answer is told, `here(source, cloud)` what the device can
+  /// read of a cloud. What all clouds have in common.
+  template <class Answer, class Clouds, class Arguments, class Here>
+  const frames::frame_facts& pass(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                  const Arguments& answer, const Here& here) {
+    try {
+      frames::for_each_turn(frame_, facts, poses, clouds, [&](const auto& anywhere, const frames::turn& now) {
+        const auto source = here(anywhere, now.cloud);
+        for (std::uint32_t group = 0; group < groups(); ++group) {
+          auto a = begin<Answer>(group, now, answer(group));
+          put(frame_, group, a);
+          (*this)(source, a);
+        }
+      });
+    } catch (...) {
+      forget();  // the clouds before this one have left their counts
+      throw;
+    }
+    return frame_;
+  }
+
   /// Enqueues what has been begun. A kernel numbers more points than there are: those must not run over.
   template <class Answer, point_source Source>
   void operator()(const Source& source, scan_arguments<Answer>& a) {
@@ -116,6 +137,7 @@ class launcher {
   }
 
   device on_;
+  frames::cloud_frame frame_;  ///< Of `pass`.
   std::uint32_t parts_;
   unsigned processors_, most_shared_, shared_of_processor_;
   device_buffer<scan_state> state_;
