@@ -43,6 +43,26 @@ struct zones_result {
 
 namespace detail {
 
+/// From what a scan keeps of a zone to what is told of it.
+struct tell_zone {
+  const pairwise::zone_words* words;
+  const std::uint32_t* first;
+  std::uint32_t clouds;
+  zone* zones;
+
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const pairwise::zone_words& w = words[i];
+    zone z;
+    z.points = w.points;
+    if (w.points != 0) {
+      const auto nearest = pairwise::place_of(key_index(w.nearest), first, clouds), lowest = pairwise::place_of(std::uint32_t(w.first), first, clouds);
+      z.nearest = key_distance(w.nearest), z.nearest_cloud = nearest.cloud, z.nearest_point = nearest.point;
+      z.first_cloud = lowest.cloud, z.first_point = lowest.point;
+    }
+    zones[i] = z;
+  }
+};
+
 /// A part's reaches: its thresholds, and what may be nearer than it is computed to be.
 inline void add_reaches(std::span<const double> thresholds, const part_facts& facts, const frames::float_error& error, std::vector<real>& reaches) {
   for (std::size_t z = 0; z < thresholds.size(); ++z) {
@@ -52,41 +72,51 @@ inline void add_reaches(std::span<const double> thresholds, const part_facts& fa
   }
 }
 
+template <class On, robot Robot, class Clouds, class Here>
+std::size_t enqueue_zones(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options,
+                          zone* zones, point_counts* counts, const Here& here) {
+  static_assert(explain_clouds<Clouds>());
+  const auto model = view_of(robot);
+  const std::size_t given = options.thresholds.size(), parts = model.size();
+  std::vector<std::uint32_t> first;
+  const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
+  if (options.each_part && (parts == 0 || given % parts != 0))
+    throw std::invalid_argument("clearance: " + std::to_string(given) + " thresholds are not the same number for each of " + std::to_string(parts) + " parts");
+  const std::size_t per_part = options.each_part ? given / parts : given;
+  std::vector<real> reaches;
+  for (std::size_t k = 0; k < parts; ++k)
+    add_reaches(std::span(options.thresholds).subspan(options.each_part ? k * per_part : 0, per_part), model.facts[k], error, reaches);
+  auto words = staged(on, std::vector<pairwise::zone_words>(reaches.size()));
+  auto near = staged(on, reaches);
+  auto start = staged(on, first);
+  pairwise::pairs_on<On>::once(on, model, poses, clouds, pairwise::count_in_zones{words.data(), near.data(), start.data(), std::uint32_t(per_part)}, counts, here);
+  on.for_each(reaches.size(), tell_zone{words.data(), start.data(), std::uint32_t(first.size()), zones});
+  return per_part;
+}
+
 }  // namespace detail
+
+/// Enqueues it: `zones`, as zones_result has them, and `counts`, in memory that `on` writes; clouds must stay until it is done. How many
+/// zones each part has.
+template <class On, robot Robot, class Clouds>
+std::size_t zones_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options,
+                        zone* zones, point_counts* counts) {
+  return detail::enqueue_zones(on, robot, poses, clouds, options, zones, counts, minimum::as_it_is{});
+}
 
 /// The points in zones around every part, in one pass. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that
 /// does, and if thresholds are negative, not in order, or not the same number for each part.
 template <class On, robot Robot, class Clouds>
 zones_result zones(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options) {
-  static_assert(explain_clouds<Clouds>());
-  const auto model = view_of(robot);
-  const std::size_t given = options.thresholds.size(), parts = model.size();
+  const std::size_t parts = view_of(robot).size();
+  auto told = on.template make_scratch<zone>(parts * options.thresholds.size());
+  auto counts = on.template make_scratch<point_counts>(1);
+  minimum::cloud_copies<On> copies;
   zones_result all;
   all.min_points = options.min_points;
-  std::vector<std::uint32_t> first;
-  const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
-  if (options.each_part && (parts == 0 || given % parts != 0))
-    throw std::invalid_argument("clearance: " + std::to_string(given) + " thresholds are not the same number for each of " + std::to_string(parts) + " parts");
-  all.per_part = options.each_part ? given / parts : given;
-  std::vector<real> reaches;
-  for (std::size_t k = 0; k < parts; ++k)
-    detail::add_reaches(std::span(options.thresholds).subspan(options.each_part ? k * all.per_part : 0, all.per_part), model.facts[k], error, reaches);
-
-  auto words = staged(on, std::vector<pairwise::zone_words>(reaches.size()));
-  auto near = staged(on, reaches);
-  auto start = staged(on, first);
-  all.counts = collect(on, robot, poses, clouds,
-                       pairwise::count_in_zones{words.data(), near.data(), start.data(), std::uint32_t(all.per_part)});
-  for (const pairwise::zone_words& w : on.copy_out(words.data(), reaches.size())) {
-    zone z;
-    z.points = w.points;
-    if (w.points != 0) {
-      z.nearest = key_distance(w.nearest);
-      std::tie(z.nearest_cloud, z.nearest_point) = pairwise::place_of(key_index(w.nearest), first);
-      std::tie(z.first_cloud, z.first_point) = pairwise::place_of(std::uint32_t(w.first), first);
-    }
-    all.zones.push_back(z);
-  }
+  all.per_part = detail::enqueue_zones(on, robot, poses, clouds, options, told.data(), counts.data(), minimum::readable_on<On>{on, copies});
+  all.zones = on.copy_out(told.data(), parts * all.per_part);
+  all.counts = on.copy_out(counts.data(), 1)[0];
   return all;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whatever is enqueued returns while its stream is held, and can be captured; several clouds too.
 #include "support/brute_distances.hpp"
+#include "support/brute_zones.hpp"
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"
 #include "support/tallied.hpp"
@@ -8,8 +9,11 @@
 #include <clearance/backend/pinned_buffer.cuh>
 #include <clearance/collect.cuh>
 #include <clearance/distances.cuh>
+#include <clearance/in_collision.cuh>
 #include <clearance/min_distance_query.cuh>
 #include <clearance/volume/sphere.hpp>
+#include <clearance/within.cuh>
+#include <clearance/zones.cuh>
 
 using namespace testing;
 using clearance::device, clearance::host, clearance::placed, clearance::point_span;
@@ -148,4 +152,63 @@ TEST_CASE("Every frame that is enqueued by a prepared query can be captured and 
     }
     cudaGraphExecDestroy(frame), cudaGraphDestroy(graph);
   });
+}
+
+TEST_CASE("Questions that want memory for a call are enqueued without waiting, and can be captured and launched again", "[concurrent]") {
+  given g;
+  verdict v;
+  const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});
+  const clearance::zones_options thresholds{.thresholds = {0, 0.05 * g.s.size, 0.5 * g.s.size}};
+  const std::vector margin{0.05 * g.s.size};
+  const auto distances = clearance::distances(host{}, g.on_host, g.s.poses, both);
+  const auto zones = clearance::zones(host{}, g.on_host, g.s.poses, both, thresholds);
+  const auto collision = clearance::in_collision(host{}, g.on_host, g.s.poses, both, margin);
+  clearance::pinned_buffer<real> distance(distances.distance.size(), 0);
+  clearance::pinned_buffer<clearance::zone> zone(zones.zones.size(), 0);
+  clearance::pinned_buffer<clearance::collision_result> found(1, 0);
+
+  const auto clear = [&] {
+    std::fill_n(distance.data(), distance.size(), real(-1));
+    std::fill_n(zone.data(), zone.size(), clearance::zone{.points = 77});
+    *found.data() = {}, *g.counts.data() = {};
+  };
+  const auto look = [&](const std::string& what) {
+    require_same({{distance.data(), distance.data() + distance.size()}, {}, {}, *g.counts.data(), distances.certain}, distances, v, what);
+    require_same({zones.per_part, 1, {zone.data(), zone.data() + zone.size()}, *g.counts.data()}, zones, v, what);
+    const auto& c = *found.data();
+    v.require(c.state == collision.state && c.cloud == collision.cloud && c.point == collision.point && c.part == collision.part &&
+                  c.counts.valid == collision.counts.valid && g.counts.data()->valid == zones.counts.valid,
+              what, ": in_collision differs");
+  };
+  const auto enqueue = [&] {
+    clearance::distances_async(g.gpu, g.model, g.s.poses, g.clouds, {distance.data()}, g.counts.data());
+    clearance::zones_async(g.gpu, g.model, g.s.poses, g.clouds, thresholds, zone.data(), g.counts.data());
+    clearance::in_collision_async(g.gpu, g.model, g.s.poses, g.clouds, margin, found.data());
+  };
+  enqueue();
+  g.gpu.wait();
+  look("once");
+  clear();
+  {
+    gate held(g.stream.handle);
+    enqueue();
+    v.require(cudaStreamQuery(g.stream.handle) == cudaErrorNotReady, "it has waited");
+    held.release();
+  }
+  g.gpu.wait();
+  look("on a stream that was held");
+
+  cudaGraph_t graph = nullptr;
+  cudaGraphExec_t frame = nullptr;
+  clearance::check_cuda(cudaStreamBeginCapture(g.stream.handle, cudaStreamCaptureModeThreadLocal), "cudaStreamBeginCapture");
+  enqueue();
+  clearance::check_cuda(cudaStreamEndCapture(g.stream.handle, &graph), "cudaStreamEndCapture");
+  clearance::check_cuda(cudaGraphInstantiate(&frame, graph, 0), "cudaGraphInstantiate");
+  for (int launch = 0; launch < 3; ++launch) {
+    clear();
+    clearance::check_cuda(cudaGraphLaunch(frame, g.stream.handle), "cudaGraphLaunch");
+    g.gpu.wait();
+    look("launch " + std::to_string(launch) + " of a graph");
+  }
+  cudaGraphExecDestroy(frame), cudaGraphDestroy(graph);
 }

@@ -27,8 +27,12 @@ frames::float_error look_ahead(std::span<const part_facts> facts, std::span<cons
 }
 
 /// The cloud and point of a number through all clouds.
-inline std::pair<std::uint32_t, std::uint32_t> place_of(std::uint32_t number, std::span<const std::uint32_t> first) {
-  std::uint32_t cloud = std::uint32_t(first.size()) - 1;
+struct cloud_point {
+  std::uint32_t cloud, point;
+};
+/// `first` has the numbers of the first points of all `clouds`.
+CLEARANCE_HD inline cloud_point place_of(std::uint32_t number, const std::uint32_t* first, std::uint32_t clouds) {
+  std::uint32_t cloud = clouds - 1;
   while (first[cloud] > number) --cloud;
   return {cloud, number - first[cloud]};
 }
