@@ -18,7 +18,7 @@ using real = float;
 /// Constants, because device code may not call the functions.
 inline constexpr real infinity = std::numeric_limits<real>::infinity();
 inline constexpr real not_a_number = std::numeric_limits<real>::quiet_NaN();
-inline constexpr real least_normal = std::numeric_limits<real>::min(), largest = std::numeric_limits<real>::max();
+inline constexpr real least_normal = std::numeric_limits<real>::min(), largest_real = std::numeric_limits<real>::max();
 
 /// Relative slack by which every lower bound is lowered and every fit inflated: 32 units of rounding (2^-24), more than
 /// all errors of a bound and of a leaf formula together.

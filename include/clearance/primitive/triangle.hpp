@@ -40,7 +40,7 @@ struct triangle {
     const real noise = 0x1p-20f * (extent(aq) + extent(ab) + extent(ca));
     const real edges = min(min(rough_square(aq, ab), rough_square(bq, bc)), rough_square(cq, ca)), height = dot(aq, unit_normal);
     const real inward = min(min(dot(cross(unit_normal, ab), aq), dot(cross(unit_normal, bc), bq)), dot(cross(unit_normal, ca), cq));
-    const real beside = positive_part(-inward) * largest;
+    const real beside = positive_part(-inward) * largest_real;
     return min(edges, height * height + beside) <= square_of_reach(reach + noise);
   }
 
