@@ -54,7 +54,7 @@ struct host_points {
 
   struct seed {
     std::uint32_t part = none;
-    scan::primitive_place<hierarchy_type> where;
+    scan::primitive_place<hierarchy_type> where = {};
   };
   struct memory {
     std::vector<near_first::entry_of<hierarchy_type>> pending;

@@ -51,7 +51,7 @@ struct walking_packet : packet<Lanes> {
   using packet<Lanes>::within;
 
   std::uint32_t best[Lanes];
-  primitive_place<H> where[Lanes];  ///< Of that.
+  primitive_place<H> where[Lanes] = {};  ///< Of that.
 
   walking_packet() { std::fill_n(best, Lanes, nearest::none); }
 
