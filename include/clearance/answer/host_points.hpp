@@ -17,7 +17,7 @@
 
 namespace clearance::pointwise {
 
-/// A range of points, by one thread. Neighbours walk together where they are closer to one another than to the robot, and each starts
+/// A range of points, by one thread. Neighbours walk together if they are much closer to one another than to the robot; each starts
 /// with what was nearest to one before as a bound.
 template <class PartView, point_source Source>
 struct host_points {
