@@ -106,6 +106,7 @@ void embree(benchmark::State& state) {
 
 BENCHMARK(peers::ours_cold)->Unit(benchmark::kMillisecond);
 BENCHMARK(peers::ours_warm)->Unit(benchmark::kMillisecond);
+BENCHMARK(peers::ours_every_point)->Unit(benchmark::kMillisecond);
 BENCHMARK(embree<alone>)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(embree<shared>)->Unit(benchmark::kMillisecond);
 BENCHMARK(embree<seeded>)->Unit(benchmark::kMillisecond);

@@ -29,6 +29,13 @@ concept primitive = std::is_trivially_copyable_v<P> && requires(const P p, vec3 
   { std::span<const ball>(p.balls()) };
 };
 
+/// A primitive that also says whether it may be as near as `reach`, more cheaply than by its distance, and without a branch: a host
+/// asks so for many points at once, in vectors.
+///
+/// Law: `p.may_reach(q, reach)` is true if `p.distance(q) <= reach`.
+template <class P>
+concept foreseen_primitive = primitive<P> && requires(const P p, vec3 q, real reach) { { p.may_reach(q, reach) } -> std::same_as<bool>; };
+
 /// `primitive<P>` with reasons: nvcc does not say which requirement of a concept failed.
 template <class P>
 consteval bool explain_primitive() {
@@ -57,6 +64,12 @@ struct bounding_volume_traits {
   {
     return v.lower_bound(q);
   }
+  /// Optional: see rootless_volume.
+  CLEARANCE_HD static bool may_reach(const V& v, vec3 q, real reach)
+    requires requires { { v.may_reach(q, reach) } -> std::same_as<bool>; }
+  {
+    return v.may_reach(q, reach);
+  }
   /// Optional: a few balls whose convex hull contains the volume. Needed by the layered fit alone.
   static auto balls(const V& v)
     requires requires { std::span<const ball>(v.balls()); }
@@ -80,6 +93,14 @@ concept bounding_volume = copied_as_bytes<V> && requires(const V v, vec3 q, std:
   { bounding_volume_traits<V>::fit(balls) } -> std::same_as<V>;
   { bounding_volume_traits<V>::lower_bound(v, q) } -> std::same_as<real>;
 };
+
+/// A volume that also says whether anything in it may be as near as `reach`, without a root or a branch: a host asks so for many
+/// points at once, in vectors.
+///
+/// Law: `may_reach(q, reach)` is true if a primitive in it is computed to be at most `reach` away.
+template <class V>
+concept rootless_volume =
+    bounding_volume<V> && requires(const V v, vec3 q, real reach) { { bounding_volume_traits<V>::may_reach(v, q, reach) } -> std::same_as<bool>; };
 
 /// `bounding_volume<V>` with reasons: nvcc does not say which requirement of a concept failed.
 template <class V>
@@ -215,6 +236,12 @@ concept answer = std::is_trivially_copyable_v<A> && requires(const A a, std::uin
 /// Law: `settled(cloud, point, part)` means that `take` of that pair would change nothing; once true it stays so while a scan runs.
 template <class A>
 concept settling_answer = answer<A> && requires(const A a, std::uint32_t n) { { a.settled(n, n, n) } -> std::same_as<bool>; };
+
+/// A settling answer that tells when all later points are settled, too: a host then only counts them.
+///
+/// Law: `ended(cloud, point)` means that every pair of that point, and of those after it in that cloud, is settled.
+template <class A>
+concept ending_answer = settling_answer<A> && requires(const A a, std::uint32_t n) { { a.ended(n, n) } -> std::same_as<bool>; };
 
 /// `answer<A>` with reasons.
 template <class A>

@@ -2,7 +2,7 @@
 #pragma once
 // How far is every point of the clouds from a robot? On the host; distances.cuh has a device.
 
-#include <clearance/answer/pointwise.hpp>
+#include <clearance/answer/host_points.hpp>
 #include <clearance/answer/search_on.hpp>
 #include <clearance/scan/plain_pass.hpp>
 
@@ -40,6 +40,15 @@ struct points_on {
       return each_point{out, d_max};
     };
     return certainty_of(scan::plain_pass(on, model, poses, clouds, of_cloud, counts, here));
+  }
+};
+
+template <>
+struct points_on<host> {
+  template <class PartView, class Clouds, class Here>
+  static distance_certainty once(const host& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                 const distances_out& out, real d_max, point_counts* counts, const Here&) {
+    return on_host(on, model, poses, clouds, out, d_max, counts);
   }
 };
 

@@ -22,6 +22,8 @@ void check(const P& p, vec3 q, verdict& v) {
   const wide truth = exact(p, q), distance = p.distance(q);
   v.require(std::abs(distance - truth) <= 8 * unit * scale, "distance", distance, " instead of", truth, " at ", q, " of ",
             near.center, " size", size(p));
+  if constexpr (clearance::foreseen_primitive<P>)
+    v.require(p.may_reach(q, p.distance(q)), "ruled out at ", q, ", though", distance, " away");
   const vec3 at = p.nearest(q), n = p.normal(q);
   const wide written = scale + oracle::length(wider(q));  // nearest() is rounded to the grid of its coordinates
   v.require(std::abs(exact(p, at)) <= 16 * unit * written, "nearest is off the primitive by", exact(p, at), " at ", q);
@@ -95,7 +97,11 @@ TEST_CASE("The distance to an ordinary triangle is right") {
     for (const double edge : {1e-3, 0.1, 10.0})
       for (int k = 0; k < 15; ++k) {
         const triangle t = d.face(half, edge);
-        for (const vec3 q : around(d, t)) check(t, q, v);
+        for (const vec3 q : around(d, t)) {
+          check(t, q, v);
+          if (const real away = t.distance(q); half == 1 && away > 0.01 * size(t))
+            v.require(!t.may_reach(q, 0.99f * away), "not ruled out at ", q, ", though", away, " away");
+        }
       }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every point's distance is that of all primitives of all parts, in every bit, with its part and primitive.
 #include "support/brute_distances.hpp"
+#include "support/volumes.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -30,7 +31,59 @@ void all_scenes() {
   }
 }
 
+/// What a camera sees, row by row: slanted walls that end suddenly before others, and holes.
+std::vector<vec3> raster(dice& d, const Eigen::Isometry3d& pose, double size) {
+  std::vector<vec3> points;
+  double depth = 1, slant = 0;
+  for (int k = 0; k < 4000; ++k) {
+    if (d.below(60) == 0) depth = d.number(0.3, 2), slant = d.number(-0.01, 0.01);
+    depth += slant;
+    const Eigen::Vector3d p = pose * (size * depth * Eigen::Vector3d(0.01 * (k % 80 - 40), 0.01 * (k / 80 - 25), 1));
+    const real hole = d.below(12) == 0 ? clearance::not_a_number : 0;
+    points.push_back({real(p.x()) + hole, real(p.y()), real(p.z())});
+  }
+  return points;
+}
+
+/// Parts among them and parts behind them; and robots whose parts lie far from their own origins, so that rounding is coarser than
+/// the way between neighbours.
+template <class V, class P>
+void as_seen(double far) {
+  dice d(97);
+  verdict v;
+  for (int round = 0; round < 4; ++round) {
+    scene<P> s{"", {}, {}, {}, d.pose(0.2)};
+    for (int k = 0; k < 6; ++k) {
+      s.parts.push_back(random_primitives<P>(d, 1 + d.below(120), 0.2, 0.05));
+      const vec3 off{real(far), 0, real(-far)};
+      if constexpr (std::is_same_v<P, inner_sphere>)
+        for (P& p : s.parts.back()) p.center = p.center + off;
+      else
+        for (P& p : s.parts.back()) p = triangle::from(p.a + off, p.b + off, p.c + off);
+      s.poses.push_back(d.pose(round == 0 ? 0.3 : 1.5) * shifted(-off.x, 0, -off.z));
+    }
+    s.points = raster(d, s.cloud_pose.inverse(), round == 3 ? 0.05 : 1);
+    const auto model = make_model<V>(s, {}, clearance::wrapped{});
+    const clearance::point_span span(s.points);
+    for (const real d_max : {real(-0.01), real(0.1), clearance::infinity}) {
+      const auto expected = brute_distances(s, span, s.cloud_pose, d_max, nothing_inside);
+      const std::string what = "round " + std::to_string(round) + ", " + std::to_string(far) + " m off, d_max " + std::to_string(d_max);
+      require_same(distances(host{}, model, s.poses, placed{span, s.cloud_pose}, {d_max, true}), expected, v, what);
+      require_same(distances(host{1}, model, s.poses, placed{span, s.cloud_pose}, {d_max, true}), expected, v, what + ", one thread");
+    }
+  }
+}
+
 }  // namespace
+
+TEST_CASE("Neighbours that walk together find what each finds alone") {
+  for (const double far : {0.0, 3e4, 1e6}) {
+    as_seen<clearance::sphere, inner_sphere>(far);
+    as_seen<clearance::aabb, triangle>(far);
+  }
+  as_seen<clearance::obb, triangle>(0);
+  as_seen<kdop14, inner_sphere>(0);  // says nothing without a root
+}
 
 TEST_CASE("Every point's distance to inner spheres is the least of all") {
   all_scenes<clearance::sphere, inner_sphere>();

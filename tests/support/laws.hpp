@@ -67,6 +67,13 @@ inline std::vector<vec3> probes(dice& d, const std::vector<ball>& balls, double 
   return all;
 }
 
+/// What is computed to be `distance` away is not ruled out.
+template <clearance::bounding_volume V>
+void check_reach(const V& volume, vec3 q, real distance, verdict& v) {
+  if constexpr (clearance::rootless_volume<V>)
+    v.require(clearance::bounding_volume_traits<V>::may_reach(volume, q, distance), "ruled out at ", q, ", though", distance, " away");
+}
+
 /// No lower bound exceeds the signed distance to an enclosed ball, nor to a primitive as computed, and it is negative
 /// at every centre.
 template <clearance::bounding_volume V>
@@ -80,10 +87,12 @@ void check_bounds(dice& d, const std::vector<ball>& balls, double size, verdict&
       v.require(bound <= exact, "bound", bound, " above distance", exact, " at ", q, " of ball ", b.center, b.radius);
       const real computed = inner_sphere{b.center, b.radius}.distance(q);
       v.require(bound <= computed, "bound", bound, " above computed", computed, " at ", q, " of ball ", b.center, b.radius);
+      check_reach(volume, q, computed, v);
     }
     for (std::size_t k = 0; k + 2 < balls.size() && k < 30; ++k) {
       const auto face = triangle::from(balls[k].center, balls[k + 1].center, balls[k + 2].center);
       v.require(bound <= face.distance(q), "bound", bound, " above a triangle's computed", face.distance(q), " at ", q);
+      check_reach(volume, q, face.distance(q), v);
     }
   }
   for (const ball& b : balls)

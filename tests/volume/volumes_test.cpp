@@ -25,7 +25,33 @@ void check_tightness(const std::vector<ball>& balls, vec3 inside, real depth, ve
   CHECK(traits::lower_bound(v, outside) == Approx(distance).epsilon(1e-4));
 }
 
+/// Without a root it says as much as the bound does, but for rounding, and, within a box, for how deep.
+template <class V>
+void check_reach_is_tight() {
+  dice d(17);
+  verdict v;
+  for (int round = 0; round < 20; ++round) {
+    std::vector<ball> balls(8);
+    for (ball& b : balls) b = {d.point(1), d.number(0, 0.3)};
+    const V volume = V::fit(balls);
+    for (const vec3 q : d.points(200, 4)) {
+      const real bound = volume.lower_bound(q);
+      if (bound < 0.02f) continue;
+      v.require(volume.may_reach(q, bound * 1.001f), "ruled out, though not by the bound");
+      v.require(!volume.may_reach(q, bound * 0.999f), "not ruled out, though the bound does");
+    }
+    v.require(!volume.may_reach(balls[0].center, -infinity), "within a reach of minus infinity");
+    v.require(!volume.may_reach({clearance::not_a_number, 0, 0}, infinity), "no point is within reach");
+  }
+}
+
 }  // namespace
+
+TEST_CASE("A volume that tells without a root whether it is within reach tells what its bound does") {
+  check_reach_is_tight<clearance::sphere>();
+  check_reach_is_tight<clearance::aabb>();
+  check_reach_is_tight<clearance::obb>();
+}
 
 TEST_CASE("A volume around one ball is as deep as the ball, and around a box as the box") {
   const std::vector<ball> one = {{{1, 2, 3}, 0.5f}};

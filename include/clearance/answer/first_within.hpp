@@ -21,11 +21,12 @@ struct first_within {
   CLEARANCE_HD bool settled(std::uint32_t cloud, std::uint32_t point, std::uint32_t part) const {
     return load_relaxed(word) < key(cloud, point, part);  // what is not certain is greater than any key
   }
+  CLEARANCE_HD bool ended(std::uint32_t cloud, std::uint32_t point) const { return settled(cloud, point, 0); }
   CLEARANCE_HD void take(const pair_distance& pair) const {
     const unsigned long long mine = key(pair.cloud, pair.point, pair.part) | (pair.distance <= is[pair.part] ? 0 : uncertain);
     if (mine < load_relaxed(word)) lower_to(word, mine);
   }
 };
-static_assert(settling_answer<first_within>);
+static_assert(ending_answer<first_within>);
 
 }  // namespace clearance::pairwise

@@ -3,6 +3,7 @@
 // Clouds with their poses, parts placed in a cloud's frame, and what is certain about rounding.
 
 #include <clearance/ground/pose.hpp>
+#include <clearance/ground/vectors.hpp>
 #include <clearance/robot/part.hpp>
 
 namespace clearance::frames {
@@ -128,7 +129,7 @@ class cloud_frame : public frame_facts {
   void start(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts) {
     if (parts.size() != facts.size())
       throw std::invalid_argument("clearance: there are " + std::to_string(facts.size()) + " parts, but " + std::to_string(parts.size()) + " poses");
-    fast([&] {
+    with_vectors([&] {
       error = {}, slop = 0;
       poses.clear();
       for (std::size_t k = 0; k < parts.size(); ++k) poses.push_back(rigid_transform_of(parts[k], "part", std::int64_t(k)));
@@ -137,7 +138,7 @@ class cloud_frame : public frame_facts {
 
   /// The next cloud, number `cloud`, whose errors widen the frame's; `off` is its source's `rounding_of`. Throws std::invalid_argument if its pose is not rigid.
   void put(std::span<const part_facts> facts, const Eigen::Isometry3d& pose, std::uint32_t cloud, const position_error& off) {
-    fast([&] {
+    with_vectors([&] {
       const world_transform world = rigid_transform_of(pose, "cloud", cloud);
       places.clear();
       const float_error before = error;  // a bracket is over all clouds
@@ -149,24 +150,6 @@ class cloud_frame : public frame_facts {
       error.widen(before);
     });
   }
-
- private:
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__FMA__)
-  // Without -mfma each fma is a call, which makes a frame's poses cost microseconds. Same bits, either way.
-  template <class F>
-  static void fast(const F& f) {
-    __builtin_cpu_supports("fma") ? with_fma(f) : f();
-  }
-  template <class F>
-  __attribute__((target("fma"), flatten)) static void with_fma(const F& f) {
-    f();
-  }
-#else
-  template <class F>
-  static void fast(const F& f) {
-    f();
-  }
-#endif
 };
 
 }  // namespace clearance::frames

@@ -18,6 +18,7 @@ using real = float;
 /// Constants, because device code may not call the functions.
 inline constexpr real infinity = std::numeric_limits<real>::infinity();
 inline constexpr real not_a_number = std::numeric_limits<real>::quiet_NaN();
+inline constexpr real least_normal = std::numeric_limits<real>::min(), largest_real = std::numeric_limits<real>::max();
 
 /// Relative slack by which every lower bound is lowered and every fit inflated: 32 units of rounding (2^-24), more than
 /// all errors of a bound and of a leaf formula together.
@@ -130,6 +131,15 @@ CLEARANCE_HD inline real rounded_up(double x) { return -rounded_down(-x); }
 
 /// A computed `distance` to a volume of extent `size`, lowered so that rounding cannot push it above a true one.
 CLEARANCE_HD constexpr real lowered(real distance, real size) { return distance - slack * (absolute(distance) + size); }
+
+/// max(a, 0), but NaN of minus infinity; where compilers would make branches of that, and no vectors of the loop around them.
+CLEARANCE_HD constexpr real positive_part(real a) { return (a + absolute(a)) * 0.5f; }
+/// What the square of a way outside a volume can be, rounding included, if what is inside may be within `reach`: NaN, which nothing
+/// is below, if that is minus infinity.
+CLEARANCE_HD constexpr real square_of_reach(real reach) {
+  const real most = positive_part(reach);
+  return most * most * (1 + 16 * slack) + least_normal;
+}
 
 /// A solid ball. Everything a volume must enclose is handed to it as balls (a point is a ball of radius 0).
 struct ball {

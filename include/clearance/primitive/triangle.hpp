@@ -33,6 +33,17 @@ struct triangle {
     return m.over_face ? min(m.edge, absolute(m.height) + 0.0f) : m.edge;  // + 0: never -0
   }
 
+  /// As `distance`, but rounded roughly, and short by what that can be: over the face by the signs of its sides alone.
+  CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
+    const vec3 ab = b - a, bc = c - b, ca = a - c;
+    const vec3 aq = q - a, bq = q - b, cq = q - c;
+    const real noise = 0x1p-20f * (extent(aq) + extent(ab) + extent(ca));
+    const real edges = min(min(rough_square(aq, ab), rough_square(bq, bc)), rough_square(cq, ca)), height = dot(aq, unit_normal);
+    const real inward = min(min(dot(cross(unit_normal, ab), aq), dot(cross(unit_normal, bc), bq)), dot(cross(unit_normal, ca), cq));
+    const real beside = positive_part(-inward) * largest_real;
+    return min(edges, height * height + beside) <= square_of_reach(reach + noise);
+  }
+
   CLEARANCE_HD vec3 nearest(vec3 q) const { return q - away(q); }
 
   CLEARANCE_HD vec3 normal(vec3 q) const {
@@ -84,6 +95,12 @@ struct triangle {
     const real t = length2 > 0 ? divide(dot(p, edge), length2) : 0, beyond = max(-t, t - 1);
     const vec3 offset = fma(-clamp01(t), edge, p);
     return {offset, dot(offset, offset), beyond < 0 || beyond * beyond * length2 <= noise * noise};
+  }
+  /// Of the way to a side.
+  CLEARANCE_HD static real rough_square(vec3 p, vec3 edge) {
+    const real t = dot(p, edge) * (1 / (dot(edge, edge) + least_normal));
+    const vec3 offset = fma(positive_part(1 - positive_part(t)) - 1, edge, p);
+    return dot(offset, offset);
   }
   CLEARANCE_HD static real extent(vec3 v) { return absolute(v.x) + absolute(v.y) + absolute(v.z); }
 };

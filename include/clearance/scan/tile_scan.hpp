@@ -4,6 +4,7 @@
 // exact visit for the few points that are left.
 
 #include <clearance/frame/root_test.hpp>
+#include <clearance/ground/vectors.hpp>
 #include <clearance/scan/tile.hpp>
 
 namespace clearance::scan {
@@ -88,6 +89,8 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, tally& min
       box = box_of(t);
       loaded = true;
     }
+    if constexpr (requires { body.answer.ended(body.first); })
+      if (body.answer.ended(body.first + std::uint32_t(i))) continue;
     std::uint32_t k = 0;
     while (k < body.part_count && !may_reach(body.places[k].around, reach(k), box)) ++k;
     if (k == body.part_count) continue;
@@ -99,7 +102,7 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, tally& min
     tile_survivors near;
     for (; k < body.part_count; ++k)
       if (may_reach(body.places[k].around, reach(k), box)) near.add(t, body.places[k].around, reach(k));
-    near.for_each([&](std::size_t j) { body.visit(t[j], i + j); });
+    with_vectors([&] { near.for_each([&](std::size_t j) { body.visit(t[j], i + j); }); });
   }
 }
 

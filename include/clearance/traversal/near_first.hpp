@@ -42,11 +42,17 @@ struct basic_near_first {
         const auto c = tree.child(top.node, k);
         const entry e{traits::lower_bound(tree.volume(c), p), c};
         if (!(e.bound <= reach)) continue;
-        std::uint32_t at = count++;  // insertion keeps the nearest on top
-        for (; at > base && pending[at - 1].bound < e.bound; --at) pending[at] = pending[at - 1];
-        pending[at] = e;
+        push<H>(pending, base, count, e);
       }
     }
+  }
+
+  /// One more of a node's children, the first of which is at `base`: the nearest stays on top.
+  template <hierarchy H>
+  CLEARANCE_HD static void push(entry_of<H>* pending, std::uint32_t base, std::uint32_t& count, const entry_of<H>& e) {
+    std::uint32_t at = count++;
+    for (; at > base && pending[at - 1].bound < e.bound; --at) pending[at] = pending[at - 1];
+    pending[at] = e;
   }
 };
 

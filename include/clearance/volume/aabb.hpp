@@ -37,6 +37,13 @@ struct aabb {
     return rough_length({max(beyond.x, 0), max(beyond.y, 0), max(beyond.z, 0)}) * (1 - slack);
   }
 
+  /// As from the box outside, whatever the reach inside.
+  CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
+    const vec3 beyond{positive_part(max(lower.x - q.x, q.x - upper.x)), positive_part(max(lower.y - q.y, q.y - upper.y)),
+                      positive_part(max(lower.z - q.z, q.z - upper.z))};
+    return beyond.x * beyond.x + beyond.y * beyond.y + beyond.z * beyond.z <= square_of_reach(reach);
+  }
+
   std::array<ball, 8> balls() const {
     std::array<ball, 8> corners;
     for (int k = 0; k < 8; ++k)

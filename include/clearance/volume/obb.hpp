@@ -44,6 +44,14 @@ struct obb {
     return rough_length({max(beyond.x, 0), max(beyond.y, 0), max(beyond.z, 0)}) * (1 - slack) - slack * absolute(deepest);
   }
 
+  /// As from the box outside, whatever the reach inside.
+  CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
+    const vec3 d = q - center;
+    const vec3 beyond{positive_part(absolute(dot(axis[0], d)) - half[0]), positive_part(absolute(dot(axis[1], d)) - half[1]),
+                      positive_part(absolute(dot(axis[2], d)) - half[2])};
+    return beyond.x * beyond.x + beyond.y * beyond.y + beyond.z * beyond.z <= square_of_reach(reach);
+  }
+
   std::array<ball, 8> balls() const {
     std::array<ball, 8> corners;
     for (int k = 0; k < 8; ++k) {

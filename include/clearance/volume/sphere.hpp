@@ -52,6 +52,12 @@ struct sphere {
 
   CLEARANCE_HD real lower_bound(vec3 q) const { return fma(rough_length(q - center), 1 - slack, -radius); }
 
+  CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
+    const vec3 d = q - center;
+    const real most = (reach + radius) * (1 + 4 * slack);
+    return bool(int(most >= 0) & int(d.x * d.x + d.y * d.y + d.z * d.z <= most * most));
+  }
+
   std::array<ball, 1> balls() const { return {{{center, radius}}}; }
 };
 
