@@ -34,41 +34,59 @@ __device__ inline void add_dropped(std::uint32_t& dropped, drop_reason mine) {
   }
 }
 
+inline constexpr std::uint32_t tile_columns = 8, tile_rows = 4;
+
+/// Number of this lane's point in packet b: the packet is a row, or a tile of an image of so many columns.
+__device__ inline std::uint32_t place_in_packet(std::uint32_t b, std::uint32_t columns) {
+  const std::uint32_t lane = threadIdx.x % 32;
+  if (columns == 0) return b * 32 + lane;
+  const std::uint32_t row = b / (columns / tile_columns), column = b - row * (columns / tile_columns);
+  return (row * tile_rows + lane / tile_columns) * columns + column * tile_columns + lane % tile_columns;
+}
+
+inline constexpr std::uint32_t most_rounds = 4;  ///< Packets that a warp takes at once.
+
 template <class Answer, class Source>
 __global__ void __launch_bounds__(block_threads, 2) packet_kernel(const __grid_constant__ Source source,
                                                                   const __grid_constant__ scan_arguments<Answer> a) {
   auto& s = memory_of_block<Answer>();
-  const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds;
-  std::uint32_t batch = (t / 32 * gridDim.x + blockIdx.x) * row, left = row;
-  const auto read = [&](std::uint32_t b) {
-    const std::uint64_t i = std::uint64_t(b) * 32 + lane;
-    return i < a.points ? source[std::size_t(i)] : sample{{not_a_number, 0, 0}};
-  };
-  sample next;
-  frame_parts<Answer>::prepare(a, [&] { next = read(batch); });
+  const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds, packets = (a.points + 31) / 32;
+  frame_parts<Answer>::prepare(a, [] {});
   __syncthreads();
   sharpen<Answer>(t, 0);
-  tree_steps<Answer>::fetch_tops(a.parts);
-  __pipeline_wait_prior(0);
   __syncthreads();
-  std::uint32_t dropped = 0;
-  while (std::uint64_t(batch) * 32 < a.points) {
-    const std::uint32_t first = batch * 32, index = a.first + first + lane;
-    const sample here = next;
-    const bool exists = first + lane < a.points;
-    ++batch;
-    if (--left == 0) {  // rows are dealt as they are asked for: points near the robot take longer
-      if (lane == 0) batch = (all_warps + atomicAdd(&a.state->taken, 1u)) * row;
-      batch = __shfl_sync(all_lanes, batch, 0), left = row;
+  const auto read = [&](std::uint32_t i) { return i < a.points ? source[i] : sample{{not_a_number, 0, 0}}; };
+  std::uint32_t dropped = 0, packet = (t / 32 * gridDim.x + blockIdx.x) * row;
+  while (packet < packets) {
+    sample all[most_rounds];  // all on their way at once
+#pragma unroll
+    for (std::uint32_t j = 0; j < most_rounds; ++j) all[j] = read(j < row ? place_in_packet(packet + j, a.columns) : a.points);
+    unsigned near = 0;  // a bit a packet
+#pragma unroll
+    for (std::uint32_t j = 0; j < most_rounds; ++j) {
+      const std::uint32_t i = place_in_packet(packet + j, a.columns);
+      const bool exists = j < row && i < a.points, counts = exists && all[j].valid();
+      add_dropped(dropped, all[j].dropped);
+      if (__any_sync(all_lanes, near_any<Answer>(all[j].position - s.origin, a.parts) && counts && s.rigid))
+        near |= 1u << j;
+      else if (exists)
+        Answer::take(s, a.first + i, counts, Answer::visitor(s, a.first + i, counts));
     }
-    next = read(batch);
-    add_dropped(dropped, here.dropped);
-    const vec3 x = here.position - s.origin;
-    const bool counts = exists && here.valid();
-    auto v = Answer::visitor(s, index, counts);
-    const bool near = near_any<Answer>(x, a.parts);
-    packet_search<Answer>::search(near && counts && s.rigid, x, v);
-    if (exists) Answer::take(s, index, counts, v);
+#pragma unroll 1
+    for (; near != 0; near &= near - 1) {  // read again, as what lives across the search would be kept in memory
+      const std::uint32_t i = place_in_packet(packet + std::uint32_t(__ffs(int(near))) - 1, a.columns), index = a.first + i;
+      const sample here = read(i);
+      const vec3 x = here.position - s.origin;
+      const bool exists = i < a.points, counts = exists && here.valid();
+      auto v = Answer::visitor(s, index, counts);
+      const bool live = near_any<Answer>(x, a.parts) && counts && s.rigid;
+      if (live) Answer::remind(s, index, x, v);
+      packet_search<Answer>::search(live, x, v);
+      if (exists) Answer::take(s, index, counts, v);
+    }
+    // Packets are dealt to who has none left: some take much longer.
+    if (lane == 0) packet = (all_warps + atomicAdd(&a.state->taken, 1u)) * row;
+    packet = __shfl_sync(all_lanes, packet, 0);
   }
   if (lane < drop_reasons && dropped != 0) atomicAdd(&s.dropped[lane], dropped);
   __syncthreads();
@@ -85,8 +103,14 @@ struct by_packets {
   }
 
   template <class Answer, class Source>
-  static void plan(const Source&, scan_arguments<Answer>& a, unsigned blocks) {
-    a.rounds = std::max(1u, a.points / (32 * 4 * warps * blocks));  // batches in a row: as many as leave each warp four rows
+  static void plan(const Source& source, scan_arguments<Answer>& a, unsigned blocks) {
+    // Several at once, where most are far; else one, so that all warps end at about the same time.
+    a.rounds = Answer::all_near(a.answer) ? 1 : std::clamp(a.points / (32 * 4 * warps * blocks), 1u, most_rounds);
+    a.columns = 0;
+    if constexpr (image_source<Source>) {
+      const std::uint32_t columns = source.columns();
+      if (columns != 0 && columns % tile_columns == 0 && a.points % (tile_rows * columns) == 0) a.columns = columns;
+    }
   }
 };
 
