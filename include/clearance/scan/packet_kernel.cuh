@@ -44,49 +44,39 @@ __device__ inline std::uint32_t place_in_packet(std::uint32_t b, std::uint32_t c
   return (row * tile_rows + lane / tile_columns) * columns + column * tile_columns + lane % tile_columns;
 }
 
-inline constexpr std::uint32_t most_rounds = 4;  ///< Packets that a warp takes at once.
-
 template <class Answer, class Source>
 __global__ void __launch_bounds__(block_threads, 2) packet_kernel(const __grid_constant__ Source source,
                                                                   const __grid_constant__ scan_arguments<Answer> a) {
   auto& s = memory_of_block<Answer>();
   const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds, packets = (a.points + 31) / 32;
-  frame_parts<Answer>::prepare(a, [] {});
+  std::uint32_t packet = (t / 32 * gridDim.x + blockIdx.x) * row, left = row, dropped = 0;
+  const auto read = [&](std::uint32_t p) {
+    const std::uint32_t i = place_in_packet(p, a.columns);
+    return i < a.points ? source[i] : sample{{not_a_number, 0, 0}};
+  };
+  sample next;
+  frame_parts<Answer>::prepare(a, [&] { next = read(packet); });
   __syncthreads();
   sharpen<Answer>(t, 0);
   __syncthreads();
-  const auto read = [&](std::uint32_t i) { return i < a.points ? source[i] : sample{{not_a_number, 0, 0}}; };
-  std::uint32_t dropped = 0, packet = (t / 32 * gridDim.x + blockIdx.x) * row;
   while (packet < packets) {
-    sample all[most_rounds];  // all on their way at once
-#pragma unroll
-    for (std::uint32_t j = 0; j < most_rounds; ++j) all[j] = read(j < row ? place_in_packet(packet + j, a.columns) : a.points);
-    unsigned near = 0;  // a bit a packet
-#pragma unroll
-    for (std::uint32_t j = 0; j < most_rounds; ++j) {
-      const std::uint32_t i = place_in_packet(packet + j, a.columns);
-      const bool exists = j < row && i < a.points, counts = exists && all[j].valid();
-      add_dropped(dropped, all[j].dropped);
-      if (__any_sync(all_lanes, near_any<Answer>(all[j].position - s.origin, a.parts) && counts && s.rigid))
-        near |= 1u << j;
-      else if (exists)
-        Answer::take(s, a.first + i, counts, Answer::visitor(s, a.first + i, counts));
+    const std::uint32_t i = place_in_packet(packet, a.columns), index = a.first + i;
+    const sample here = next;
+    ++packet, --left;
+    if (left != 0) next = read(packet);
+    add_dropped(dropped, here.dropped);
+    const vec3 x = here.position - s.origin;
+    const bool exists = i < a.points, counts = exists && here.valid();
+    auto v = Answer::visitor(s, index, counts);
+    const bool live = near_any<Answer>(x, a.parts) && counts && s.rigid;
+    if (live) Answer::remind(s, index, x, v);
+    packet_search<Answer>::search(live, x, v);
+    if (exists) Answer::take(s, index, counts, v);
+    if (left == 0) {  // rows are dealt, not before the last is done, to who has none left: some take much longer
+      if (lane == 0) packet = (all_warps + atomicAdd(&a.state->taken, 1u)) * row;
+      packet = __shfl_sync(all_lanes, packet, 0), left = row;
+      next = read(packet);
     }
-#pragma unroll 1
-    for (; near != 0; near &= near - 1) {  // read again, as what lives across the search would be kept in memory
-      const std::uint32_t i = place_in_packet(packet + std::uint32_t(__ffs(int(near))) - 1, a.columns), index = a.first + i;
-      const sample here = read(i);
-      const vec3 x = here.position - s.origin;
-      const bool exists = i < a.points, counts = exists && here.valid();
-      auto v = Answer::visitor(s, index, counts);
-      const bool live = near_any<Answer>(x, a.parts) && counts && s.rigid;
-      if (live) Answer::remind(s, index, x, v);
-      packet_search<Answer>::search(live, x, v);
-      if (exists) Answer::take(s, index, counts, v);
-    }
-    // Packets are dealt to who has none left: some take much longer.
-    if (lane == 0) packet = (all_warps + atomicAdd(&a.state->taken, 1u)) * row;
-    packet = __shfl_sync(all_lanes, packet, 0);
   }
   if (lane < drop_reasons && dropped != 0) atomicAdd(&s.dropped[lane], dropped);
   __syncthreads();
@@ -104,8 +94,8 @@ struct by_packets {
 
   template <class Answer, class Source>
   static void plan(const Source& source, scan_arguments<Answer>& a, unsigned blocks) {
-    // Several at once, where most are far; else one, so that all warps end at about the same time.
-    a.rounds = Answer::all_near(a.answer) ? 1 : std::clamp(a.points / (32 * 4 * warps * blocks), 1u, most_rounds);
+    // Packets in a row: one, so that all warps end at about the same time; or some, where most are far and asking would take longer.
+    a.rounds = Answer::all_near(a.answer) ? 1 : std::clamp(a.points / (32 * 4 * warps * blocks), 1u, 4u);
     a.columns = 0;
     if constexpr (image_source<Source>) {
       const std::uint32_t columns = source.columns();
