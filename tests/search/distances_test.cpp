@@ -59,7 +59,9 @@ TEST_CASE("A prepared question of distances on the host says the same") {
       query.forget();
     }
   }
-  CHECK_THROWS_AS((clearance::distances_query(host{}, make_model<clearance::aabb>(scenes<triangle>()[0], {}, clearance::wrapped{}))({}, std::vector<vec3>{}, {clearance::not_a_number})), std::invalid_argument);
+  const auto model = make_model<clearance::aabb>(scenes<triangle>()[0], {}, clearance::wrapped{});
+  clearance::distances_query query(host{}, model);
+  CHECK_THROWS_AS(query(scenes<triangle>()[0].poses, std::vector<vec3>{}, {clearance::not_a_number}), std::invalid_argument);
 }
 
 TEST_CASE("A point inside a solid is 0 away, of the first part that it is in, and of none of its primitives") {
