@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every point's own distance on a GPU, the points resident there; beside it the same cloud's one minimum. CUDA events, behind
-// other work.
+// Every point's own distance on a GPU, the points resident there: cold, and warm with what was nearest in the last frame. CUDA
+// events, behind other work.
 #include "device.cuh"
 #include "shell.hpp"
 
-#include <clearance/distances.cuh>
+#include <clearance/distances_query.cuh>
+#include <clearance/points/depth_image.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -16,19 +17,27 @@ namespace {
 using namespace bench;
 using clearance::device, clearance::vec3;
 
-template <class Model>
-void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::Isometry3d>& poses, const Eigen::Isometry3d& pose, const vec3* points,
-         std::size_t count, float d_max) {
+/// Two clouds in turn, so that a frame remembers another one; cold, each is the first.
+template <class Model, class Source>
+void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::Isometry3d>& poses, const Eigen::Isometry3d& pose, const Source& first,
+         const Source& second, float d_max, bool warm) {
   const device gpu;
   const auto there = model.on(gpu);
-  clearance::pointwise::device_points<typename decltype(there)::view_type> query(gpu, there.view());
-  const clearance::device_buffer<float> out(count, gpu.id);
+  clearance::distances_query query(gpu, there);
+  clearance::pointwise::device_points<typename decltype(there)::view_type> once(gpu, there.view());
+  const clearance::device_buffer<float> out(first.size(), gpu.id);
   const clearance::device_buffer<clearance::point_counts> counts(1, gpu.id);
-  const clearance::placed cloud{clearance::point_span(points, count), pose};
   const device_clock clock(true);
-  const auto frame = [&] { query.enqueue(poses, cloud, {out.data()}, d_max, counts.data(), clearance::minimum::as_it_is{}); };
-  frame();
-  for (auto _ : state) state.SetIterationTime(clock.seconds(frame));
+  const auto frame = [&](const Source& source) {
+    const clearance::placed cloud{source, pose};
+    if (warm)
+      query.enqueue(poses, cloud, {out.data()}, counts.data(), d_max);
+    else
+      once.enqueue(poses, cloud, {out.data()}, d_max, counts.data(), clearance::minimum::as_it_is{});
+  };
+  frame(second);
+  for (bool odd = true; auto _ : state) state.SetIterationTime(clock.seconds([&] { frame((odd = !odd) ? second : first); }));
+  frame(first);
   double sum = 0;
   std::size_t near = 0;
   for (const float d : gpu.copy_out(out))
@@ -37,17 +46,48 @@ void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::I
   state.counters["mean_mm"] = 1e3 * sum / double(near);
 }
 
+struct options {
+  float d_max = clearance::infinity;
+  bool warm = false, close = false;
+  clearance::build_options build = {};
+};
+
+/// The frame, and the frame with 2 mm of noise; `close`: the camera before the robot, so that the table is about it.
 template <class Make>
-void frame(benchmark::State& state, Make make, float d_max) {
+void frame(benchmark::State& state, Make make, const options& how) {
   if (no_device(state)) return;
   const scene& s = the_scene();
-  const auto& points = repeated(s.cloud, std::size_t(state.range(0)));
-  const auto there = device{}.copy_in(std::span<const vec3>(points));
-  ask(state, make(s), s.poses, s.world_from_camera, there.data(), points.size(), d_max);
+  const std::size_t count = std::size_t(state.range(0));
+  const auto points = repeated(s.cloud, count), twice = repeated(s.cloud, count + s.cloud.size());
+  const device gpu;
+  const auto first = gpu.copy_in(std::span<const vec3>(points));
+  const auto second = gpu.copy_in(std::span<const vec3>(twice).subspan(s.cloud.size()));
+  ask(state, make(s, how.build), s.poses, how.close ? close_camera() : s.world_from_camera, clearance::point_span(first.data(), count),
+      clearance::point_span(second.data(), count), how.d_max, how.warm);
 }
 
-void spheres(benchmark::State& state, float d_max) { frame(state, [](const scene& s) { return sphere_model<clearance::sphere>(s); }, d_max); }
-void triangles(benchmark::State& state, float d_max) { frame(state, [](const scene& s) { return triangle_model<clearance::aabb>(s); }, d_max); }
+constexpr auto of_spheres = [](const scene& s, clearance::build_options build) { return sphere_model<clearance::sphere>(s, build); };
+constexpr auto of_triangles = [](const scene& s, clearance::build_options build) { return triangle_model<clearance::aabb>(s, build); };
+void spheres(benchmark::State& state, const options& how) { frame(state, of_spheres, how); }
+void triangles(benchmark::State& state, const options& how) { frame(state, of_triangles, how); }
+
+/// The same frame as the camera's depth image: its neighbours are known in both directions.
+template <class Make>
+void image(benchmark::State& state, Make make, const options& how) {
+  if (no_device(state)) return;
+  const scene& s = the_scene();
+  std::vector<float> depth;
+  for (const vec3 p : s.cloud) depth.push_back(p.z);
+  std::vector<float> noisy;
+  for (const vec3 p : std::span(repeated(s.cloud, 2 * s.cloud.size())).subspan(s.cloud.size())) noisy.push_back(p.z);
+  const device gpu;
+  const auto first = gpu.copy_in(std::span<const float>(depth)), second = gpu.copy_in(std::span<const float>(noisy));
+  const clearance::intrinsics camera{525, 525, 320, 240};
+  ask(state, make(s, how.build), s.poses, how.close ? close_camera() : s.world_from_camera, clearance::depth_image(first.data(), 640, 480, camera),
+      clearance::depth_image(second.data(), 640, 480, camera), how.d_max, how.warm);
+}
+void spheres_image(benchmark::State& state, const options& how) { image(state, of_spheres, how); }
+void triangles_image(benchmark::State& state, const options& how) { image(state, of_triangles, how); }
 
 /// Points of the worst cloud there is, so that only what is nearer than their own distance counts; in random order, or as a sensor
 /// sees them: neighbours beside one another (along a Z-curve of 2 mm).
@@ -72,17 +112,28 @@ void shell(benchmark::State& state, bool ordered) {
     std::ranges::sort(points, {}, place);
     gpu.stage(std::span<const vec3>(points), there.data());
   }
-  ask(state, model, s.poses, Eigen::Isometry3d::Identity(), there.data(), there.size(), 0.3f - 2e-6f);
+  const clearance::point_span points(there.data(), there.size());
+  ask(state, model, s.poses, Eigen::Isometry3d::Identity(), points, points, 0.3f - 2e-6f, false);
 }
 BENCHMARK_CAPTURE(shell, random, false)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
 BENCHMARK_CAPTURE(shell, ordered, true)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
 
-constexpr float all = clearance::infinity;
-#define TIMES ->Arg(307200)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30)
-BENCHMARK_CAPTURE(spheres, untruncated, all) TIMES;
-BENCHMARK_CAPTURE(spheres, within_10cm, 0.1f) TIMES;
-BENCHMARK_CAPTURE(triangles, untruncated, all) TIMES;
-BENCHMARK_CAPTURE(triangles, within_10cm, 0.1f) TIMES;
+constexpr options cold{}, warm{.warm = true}, within_10cm{.d_max = 0.1f}, close_cold{.close = true}, close_warm{.warm = true, .close = true};
+#define TIMES ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30)
+#define FRAMES ->Arg(307200)->Arg(5000000) TIMES
+BENCHMARK_CAPTURE(spheres, untruncated, cold) FRAMES;
+BENCHMARK_CAPTURE(spheres, warm, warm) FRAMES;
+BENCHMARK_CAPTURE(spheres, within_10cm, within_10cm) FRAMES;
+BENCHMARK_CAPTURE(triangles, untruncated, cold) FRAMES;
+BENCHMARK_CAPTURE(triangles, warm, warm) FRAMES;
+BENCHMARK_CAPTURE(triangles, within_10cm, within_10cm) FRAMES;
+BENCHMARK_CAPTURE(triangles, close, close_cold)->Arg(307200)->Arg(16 * 307200) TIMES;
+BENCHMARK_CAPTURE(triangles, close_warm, close_warm)->Arg(307200)->Arg(16 * 307200) TIMES;
+BENCHMARK_CAPTURE(spheres_image, untruncated, cold) TIMES;
+BENCHMARK_CAPTURE(triangles_image, untruncated, cold) TIMES;
+BENCHMARK_CAPTURE(triangles_image, warm, warm) TIMES;
+BENCHMARK_CAPTURE(triangles_image, close, close_cold) TIMES;
+BENCHMARK_CAPTURE(triangles_image, close_warm, close_warm) TIMES;
 
 }  // namespace
 

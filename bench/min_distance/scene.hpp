@@ -39,6 +39,9 @@ inline Eigen::Isometry3d looking(const Eigen::Vector3d& from, Eigen::Vector3d fo
   return pose;
 }
 
+/// Where else the camera may stand: points are a third of a metre from the robot in the median.
+inline Eigen::Isometry3d close_camera() { return looking({1.62, -0.1, 1.05}, {-0.75, 0.1, -0.65}); }
+
 inline void pack_all(scene& s) {
   const auto start = std::chrono::steady_clock::now();
   s.packings = clearance::pack(s.meshes, {.count = 2048});

@@ -7,6 +7,7 @@
 #include <clearance/bvh/flat_list.hpp>
 #include <clearance/collect.hpp>
 #include <clearance/distances.hpp>
+#include <clearance/distances_query.hpp>
 #include <clearance/in_collision.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>

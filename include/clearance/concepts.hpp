@@ -36,6 +36,12 @@ concept primitive = std::is_trivially_copyable_v<P> && requires(const P p, vec3 
 template <class P>
 concept foreseen_primitive = primitive<P> && requires(const P p, vec3 q, real reach) { { p.may_reach(q, reach) } -> std::same_as<bool>; };
 
+/// A primitive that tells quickly how near it can be at most.
+///
+/// Law: `p.lower_bound(q)` is never greater than `p.distance(q)`, rounding included.
+template <class P>
+concept bounded_primitive = primitive<P> && requires(const P p, vec3 q) { { p.lower_bound(q) } -> std::same_as<real>; };
+
 /// `primitive<P>` with reasons: nvcc does not say which requirement of a concept failed.
 template <class P>
 consteval bool explain_primitive() {

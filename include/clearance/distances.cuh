@@ -16,6 +16,12 @@ struct points_on<device> {
     stream_resource memory(on.id, on.stream);
     return device_points<PartView>(on, model, &memory).enqueue(poses, clouds, out, d_max, counts, here);
   }
+
+  template <class PartView>
+  struct kept : device_points<PartView> {
+    kept(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
+        : device_points<PartView>(on, model, memory, true) {}
+  };
 };
 
 }  // namespace clearance::pointwise

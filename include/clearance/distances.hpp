@@ -27,6 +27,23 @@ inline void check(const distances_options& options) {
   if (!(options.d_max == options.d_max)) throw std::invalid_argument("clearance: d_max is not a number");
 }
 
+template <class On>
+struct points_on;
+
+/// A prepared question where there is nothing to prepare.
+template <class On, class PartView>
+struct unprepared {
+  On on;
+  model_view<PartView> model;
+
+  template <class Clouds, class Here>
+  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out, real d_max, point_counts* counts,
+                             const Here& here) const {
+    return points_on<On>::once(on, model, poses, clouds, out, d_max, counts, here);
+  }
+  void forget() const {}
+};
+
 /// Any backend that has no scan of its own: a loop over points.
 template <class On>
 struct points_on {
@@ -41,6 +58,9 @@ struct points_on {
     };
     return certainty_of(scan::plain_pass(on, model, poses, clouds, of_cloud, counts, here));
   }
+
+  template <class PartView>
+  using kept = unprepared<On, PartView>;
 };
 
 template <>
@@ -50,17 +70,16 @@ struct points_on<host> {
                                  const distances_out& out, real d_max, point_counts* counts, const Here&) {
     return on_host(on, model, poses, clouds, out, d_max, counts);
   }
+
+  template <class PartView>
+  using kept = unprepared<host, PartView>;
 };
 
-}  // namespace pointwise
-
-/// Every point's distance to the nearest part (peers call d_max also max_dist, or activation distance). `poses` and `clouds` as
-/// for min_distance. Throws std::invalid_argument if the number of poses is wrong, one is not rigid, or d_max is NaN.
-template <class On, robot Robot, class Clouds>
-point_distances distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                          const distances_options& options = {}) {
+/// Waits for what `enqueue(out, counts, here)` enqueues: `here(source, cloud)` is what the backend can read of a cloud.
+template <class On, class Clouds, class Enqueue>
+point_distances wait_for(const On& on, const Clouds& clouds, const distances_options& options, const Enqueue& enqueue) {
   static_assert(explain_clouds<Clouds>());
-  pointwise::check(options);
+  check(options);
   std::size_t points = 0;
   for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
   auto distance = on.template make_scratch<real>(points);
@@ -69,11 +88,23 @@ point_distances distances(const On& on, const Robot& robot, std::span<const Eige
   minimum::cloud_copies<On> copies;
   const distances_out out{distance.data(), options.which ? which.data() : nullptr, options.which ? which.data() + points : nullptr};
   point_distances all;
-  all.certain = pointwise::points_on<On>::once(on, view_of(robot), poses, clouds, out, options.d_max, counts.data(), minimum::readable_on<On>{on, copies});
+  all.certain = enqueue(out, counts.data(), minimum::readable_on<On>{on, copies});
   if (options.which) all.part = on.copy_out(out.part, points), all.primitive = on.copy_out(out.primitive, points);
   all.distance = on.copy_out(out.distance, points);
   all.counts = on.copy_out(counts.data(), 1)[0];
   return all;
+}
+
+}  // namespace pointwise
+
+/// Every point's distance to the nearest part (peers call d_max also max_dist, or activation distance). `poses` and `clouds` as
+/// for min_distance. Throws std::invalid_argument if the number of poses is wrong, one is not rigid, or d_max is NaN.
+template <class On, robot Robot, class Clouds>
+point_distances distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                          const distances_options& options = {}) {
+  return pointwise::wait_for(on, clouds, options, [&](const distances_out& out, point_counts* counts, const auto& here) {
+    return pointwise::points_on<On>::once(on, view_of(robot), poses, clouds, out, options.d_max, counts, here);
+  });
 }
 
 /// Enqueues it; clouds, and the memory of `out` and `counts`, must stay until it is done.

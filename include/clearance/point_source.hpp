@@ -49,6 +49,12 @@ concept fetched_source =
       { s.look(f, i, at) } -> std::same_as<unsigned>;
     };
 
+/// A source whose points are an image's, row by row: neighbours above one another are neighbours too.
+///
+/// Law: `columns()` is how many are in a row.
+template <class S>
+concept image_source = point_source<S> && requires(const S s) { { s.columns() } -> std::same_as<std::uint32_t>; };
+
 /// A source that tells when it filters nothing: every point whose coordinates are finite counts, and every position can be read.
 template <class S>
 concept unfiltered_source = point_source<S> && requires(const S s) { { s.unfiltered() } -> std::same_as<bool>; };

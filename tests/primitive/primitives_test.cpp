@@ -24,6 +24,9 @@ void check(const P& p, vec3 q, verdict& v) {
             near.center, " size", size(p));
   if constexpr (clearance::foreseen_primitive<P>)
     v.require(p.may_reach(q, p.distance(q)), "ruled out at ", q, ", though", distance, " away");
+  if constexpr (clearance::bounded_primitive<P>)
+    v.require(p.lower_bound(q) <= p.distance(q), "the lower bound is", p.lower_bound(q),
+              " and the distance", distance, " at ", q);
   const vec3 at = p.nearest(q), n = p.normal(q);
   const wide written = scale + oracle::length(wider(q));  // nearest() is rounded to the grid of its coordinates
   v.require(std::abs(exact(p, at)) <= 16 * unit * written, "nearest is off the primitive by", exact(p, at), " at ", q);

@@ -3,6 +3,7 @@
 #include "support/brute_distances.hpp"
 #include "support/volumes.hpp"
 
+#include <clearance/distances_query.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
@@ -92,6 +93,28 @@ TEST_CASE("Every point's distance to inner spheres is the least of all") {
 TEST_CASE("Every point's distance to triangles is the least of all") {
   all_scenes<clearance::aabb, triangle>();
   all_scenes<clearance::obb, triangle>();
+}
+
+TEST_CASE("A prepared question of distances on the host says the same") {
+  verdict v;
+  for (const auto& s : scenes<triangle>()) {
+    const sources<triangle> all(s);
+    const auto model = make_model<clearance::aabb>(s, {}, clearance::wrapped{});
+    clearance::distances_query query(host{}, model);
+    const placed cloud{all.span, s.cloud_pose};
+    for (const real d_max : {real(0.2), clearance::infinity}) {
+      const auto expected = brute_distances(s, all.span, s.cloud_pose, d_max, nothing_inside);
+      require_same(query(s.poses, cloud, {d_max, true}), expected, v, s.name);
+      clearance::point_distances found = expected;
+      std::ranges::fill(found.distance, -1.0f), found.part.clear(), found.primitive.clear(), found.counts = {};
+      query.enqueue(s.poses, cloud, {found.distance.data()}, &found.counts, d_max);
+      require_same(found, expected, v, s.name + ", enqueued");
+      query.forget();
+    }
+  }
+  const auto model = make_model<clearance::aabb>(scenes<triangle>()[0], {}, clearance::wrapped{});
+  clearance::distances_query query(host{}, model);
+  CHECK_THROWS_AS(query(scenes<triangle>()[0].poses, std::vector<vec3>{}, {clearance::not_a_number}), std::invalid_argument);
 }
 
 TEST_CASE("A point inside a solid is 0 away, of the first part that it is in, and of none of its primitives") {

@@ -53,8 +53,8 @@ inline void require_same(const clearance::point_distances& found, const clearanc
       if (wrong++ == 0) first = i;
   if (wrong != 0)
     v.require(false, what, ": ", wrong, " points differ, first ", first, ": ", found.distance[first], " and not ", expected.distance[first], ", part ",
-              found.part.empty() ? 0 : found.part[first], " and not ", expected.part[first], ", primitive ", found.part.empty() ? 0 : found.primitive[first],
-              " and not ", expected.primitive[first]);
+              found.part.empty() ? 0 : found.part[first], " and not ", expected.part.empty() ? 0 : expected.part[first], ", primitive ", found.part.empty() ? 0 : found.primitive[first],
+              " and not ", expected.primitive.empty() ? 0 : expected.primitive[first]);
   v.require(same_counts(found.counts, expected.counts), what, ": other counts");
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Every point's own distance on a device.
+// Every point's own distance on a device; from frame to frame it may remember which primitive was the nearest.
 
 #include <clearance/answer/pointwise.hpp>
 #include <clearance/scan/launch.cuh>
@@ -8,20 +8,29 @@
 
 namespace clearance::pointwise {
 
+/// What was nearest to a point: the number of the part, or ~0u, and where the primitive is in its tree.
+template <class PartView>
+struct remembered {
+  std::uint32_t part;
+  typename scan::node_of<typename PartView::hierarchy_type>::place place;
+};
+
 template <class PartView>
 struct points_of {
   using part_type = PartView;
   using hierarchy_type = typename PartView::hierarchy_type;
+  using place_type = typename scan::node_of<hierarchy_type>::place;
   using scan_type = scan::by_packets;
   using block = scan::packet_memory<points_of>;
   static constexpr bool bound_per_part = true;
-  static constexpr std::size_t top_bytes = 14016;
+  static constexpr std::size_t top_bytes = 0;  ///< Packets read every node for 32 points: it is at hand anyway.
 
   struct arguments {
     distances_out out;
     real d_max;
     std::uint32_t first_part;  ///< Number of the kernel's first part; if it is not 0, other kernels have written before.
     point_counts* counts;      ///< Or null.
+    remembered<PartView>* last;  ///< Of each point the nearest in the last frame, then in this; or null.
   };
   struct memory {
     __device__ void clear(std::uint32_t) {}
@@ -32,9 +41,12 @@ struct points_of {
     real limit;
     std::uint32_t before;
     found best;
+    place_type at;  ///< Of `best`, if its part is one of this kernel's and it is a primitive.
 
     __device__ real reach(std::uint32_t) const { return min(limit, best.distance); }
-    __device__ void offer(std::uint32_t k, std::uint32_t id, real distance) { best.offer({distance, before + k, id}); }
+    __device__ void offer(std::uint32_t k, const place_type& place, std::uint32_t id, real distance) {
+      if (best.offer({distance, before + k, id})) at = place;
+    }
     __device__ void offer_inside(std::uint32_t k) {
       if (reach(k) >= 0) best.offer({0, before + k, none});
     }
@@ -42,13 +54,33 @@ struct points_of {
 
   static __device__ real reach_of_part(const block& s, std::uint32_t, std::uint32_t) { return s.head.answer.d_max; }
 
+  /// Is no point too far from everything?
+  static bool all_near(const arguments& a) { return a.d_max == infinity; }
+
   static __device__ visitor_type visitor(const block& s, std::uint32_t index, bool counts) {
     const arguments& a = s.head.answer;
-    return {a.d_max, a.first_part, a.first_part != 0 && counts ? read(a.out, index) : found{}};
+    return {a.d_max, a.first_part, a.first_part != 0 && counts ? read(a.out, index) : found{}, {}};
+  }
+  /// What was nearest last, evaluated anew; as a bound alone, because the walk finds it again, and what is as near.
+  static __device__ void remind(const block& s, std::uint32_t index, vec3 x, visitor_type& v) {
+    const arguments& a = s.head.answer;
+    if (a.last == nullptr) return;
+    const remembered<PartView> last = a.last[index];
+    const std::uint32_t k = last.part - a.first_part;
+    if (k >= s.head.parts) return;
+    using parts = scan::tree_steps<points_of>;
+    const real d = parts::primitive(k, last.place).distance(parts::place(k).part_from_cloud(x));
+    if (d <= a.d_max) v.best.offer({d, none, none});
   }
   static __device__ void take(const block& s, std::uint32_t index, bool counts, const visitor_type& v) {
-    const real nothing = s.rigid && counts ? v.best.distance : not_a_number;
-    write(s.head.answer.out, index, {nothing, v.best.part, v.best.primitive});
+    const arguments& a = s.head.answer;
+    write(a.out, index, {s.rigid && counts ? v.best.distance : not_a_number, v.best.part, v.best.primitive});
+    if (a.last == nullptr) return;
+    const bool of_these = v.best.part != none && v.best.part >= a.first_part;
+    if (of_these && v.best.primitive != none)
+      a.last[index] = {v.best.part, v.at};
+    else if (of_these || a.first_part == 0)
+      a.last[index].part = none;
   }
 
   template <class Source>
@@ -60,29 +92,51 @@ struct points_of {
   static __device__ void reset(const scan::scan_arguments<points_of>&) {}
 };
 
-/// Every point's distance on a device, frame after frame, one kernel a cloud: nothing is allocated and nothing waited for.
+/// Every point's distance on a device, frame after frame, one kernel a cloud: nothing is allocated and nothing waited for. If it
+/// remembers the last frame, a frame of more points than any before takes memory for that.
 template <class PartView>
 class device_points {
  public:
-  device_points(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
-      : facts_(model.facts.begin(), model.facts.end()), launch_(on, model, memory) {}
+  device_points(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr, bool remembers = false)
+      : on_(on), memory_(memory), remembers_(remembers), facts_(model.facts.begin(), model.facts.end()), launch_(on, model, memory) {}
 
   /// What is certain of the distances, which are there once the stream has come so far. `here(source, cloud)` is what the device can
   /// read of a cloud.
   template <class Clouds, class Here>
   distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out, real d_max, point_counts* counts,
                              const Here& here) {
+    if (remembers_) make_room(clouds);
     return certainty_of(launch_.template pass<points_of<PartView>>(
         facts_, poses, clouds,
         [&](std::uint32_t group) {
-          return typename points_of<PartView>::arguments{out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr};
+          return typename points_of<PartView>::arguments{out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr, last_.data()};
         },
         here));
   }
 
+  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  void forget() {
+    const device_guard guard(on_.id);
+    if (last_.size() != 0) check_cuda(cudaMemsetAsync(last_.data(), 0xff, last_.size() * sizeof(remembered<PartView>), on_.stream), "cudaMemsetAsync");
+  }
+
  private:
+  template <class Clouds>
+  void make_room(const Clouds& clouds) {
+    std::size_t points = 0;
+    for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
+    if (points <= last_.size()) return;
+    last_ = {};
+    last_ = device_buffer<remembered<PartView>>(points, on_.id, memory_);
+    forget();
+  }
+
+  device on_;
+  std::pmr::memory_resource* memory_;
+  bool remembers_;
   std::vector<part_facts> facts_;
   scan::launcher<PartView> launch_;
+  device_buffer<remembered<PartView>> last_;
 };
 
 }  // namespace clearance::pointwise

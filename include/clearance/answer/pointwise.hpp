@@ -21,9 +21,12 @@ struct found {
   real distance = infinity;
   std::uint32_t part = none, primitive = none;
 
-  CLEARANCE_HD void offer(const found& other) {
-    if (other.distance < distance || (other.distance == distance && (other.part < part || (other.part == part && other.primitive < primitive))))
-      *this = other;
+  /// Was that nearer?
+  CLEARANCE_HD bool offer(const found& other) {
+    const bool nearer = other.distance < distance ||
+                        (other.distance == distance && (other.part < part || (other.part == part && other.primitive < primitive)));
+    if (nearer) *this = other;
+    return nearer;
   }
 };
 

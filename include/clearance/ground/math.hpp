@@ -83,13 +83,24 @@ CLEARANCE_HD inline vec3 scaled(real s, vec3 a) { return fma(s, a, vec3{0, 0, 0}
 CLEARANCE_HD inline real dot(vec3 a, vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 CLEARANCE_HD inline real length(vec3 a) { return square_root(dot(a, a)); }
 /// The same, quicker on a device, but up to 2^-23 of it wrong there: for bounds, which `slack` covers, and never for answers.
-CLEARANCE_HD inline real rough_length(vec3 a) {
+CLEARANCE_HD inline real rough_root(real a) {
 #if defined(__CUDA_ARCH__)
   real root;
-  asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(root) : "f"(dot(a, a)));
+  asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(root) : "f"(a));
   return root;
 #else
-  return length(a);
+  return square_root(a);
+#endif
+}
+CLEARANCE_HD inline real rough_length(vec3 a) { return rough_root(dot(a, a)); }
+/// And the inverse of a number likewise; that of a subnormal one may be infinite.
+CLEARANCE_HD inline real rough_inverse(real a) {
+#if defined(__CUDA_ARCH__)
+  real inverse;
+  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(a));
+  return inverse;
+#else
+  return 1 / a;
 #endif
 }
 CLEARANCE_HD inline vec3 cross(vec3 a, vec3 b) {
@@ -98,7 +109,24 @@ CLEARANCE_HD inline vec3 cross(vec3 a, vec3 b) {
 
 CLEARANCE_HD constexpr real min(real a, real b) { return b < a ? b : a; }
 CLEARANCE_HD constexpr real max(real a, real b) { return a < b ? b : a; }
+/// The same for bounds, in one instruction on a device, where a NaN gives way to a number.
+CLEARANCE_HD inline real rough_min(real a, real b) {
+#if defined(__CUDA_ARCH__)
+  return fminf(a, b);
+#else
+  return min(a, b);
+#endif
+}
+CLEARANCE_HD inline real rough_max(real a, real b) { return -rough_min(-a, -b); }
 CLEARANCE_HD constexpr real clamp01(real t) { return t < 0 ? 0 : (t > 1 ? 1 : t); }
+/// The same, and 0 for NaN.
+CLEARANCE_HD inline real saturated(real t) {
+#if defined(__CUDA_ARCH__)
+  return __saturatef(t);
+#else
+  return t > 0 ? min(t, 1) : 0;
+#endif
+}
 CLEARANCE_HD constexpr real absolute(real a) { return a < 0 ? -a : a; }
 
 /// False for NaN, infinities and coordinates whose square would overflow (beyond 1e18 m).

@@ -33,6 +33,7 @@ struct depth_image {
         inverse_fy(real(1 / camera.fy)), cx(real(camera.cx)), cy(real(camera.cy)) {}
 
   CLEARANCE_HD std::size_t size() const { return std::size_t(width) * height; }
+  std::uint32_t columns() const { return width; }
   CLEARANCE_HD sample operator[](std::size_t i) const {
     const std::uint32_t v = std::uint32_t(i) / width, u = std::uint32_t(i) - v * width;
     return deproject(pixels[std::size_t(v) * row + u], u, v);
@@ -107,6 +108,6 @@ struct depth_image {
   }
 };
 
-static_assert(fetched_source<depth_image<std::uint16_t>> && surveyed_source<depth_image<float>>);
+static_assert(fetched_source<depth_image<std::uint16_t>> && image_source<depth_image<float>> && surveyed_source<depth_image<float>>);
 
 }  // namespace clearance

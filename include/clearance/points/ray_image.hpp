@@ -30,6 +30,7 @@ struct ray_image {
       : pixels(pixels), rays(rays), width(width), height(height), row(width), scale(real(scale)) {}
 
   CLEARANCE_HD std::size_t size() const { return std::size_t(width) * height; }
+  std::uint32_t columns() const { return width; }
   CLEARANCE_HD sample operator[](std::size_t i) const {
     return along(rays[i], pixels[row == width ? i : i / width * row + i % width]);
   }
@@ -85,6 +86,6 @@ struct ray_image {
   }
 };
 
-static_assert(fetched_source<ray_image<std::uint16_t>> && fetched_source<ray_image<float>>);
+static_assert(fetched_source<ray_image<std::uint16_t>> && image_source<ray_image<float>> && fetched_source<ray_image<float>>);
 
 }  // namespace clearance

@@ -80,6 +80,7 @@ struct alignas(16) scan_head {
   bool last;                   ///< No cloud follows: conclude.
   bool far;                    ///< All parts are in `rest`,
   bool placed;                 ///< and so is the frame.
+  std::uint32_t columns;        ///< Of an image whose tiles are packets; or 0.
   std::uint32_t overflow_room;  ///< Entries that `overflow` has for each warp, and then for each block,
   std::byte* overflow;          ///< for trees that are too deep or wide for stacks in shared memory; or null.
   scan_state* state;

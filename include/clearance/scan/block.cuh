@@ -33,6 +33,7 @@ struct tree_tops {
   static constexpr std::uint32_t capacity = 0;
 };
 template <array_hierarchy H, std::size_t Bytes>
+  requires(Bytes > 0)
 struct tree_tops<H, Bytes> {
   using volume_type = typename H::volume_type;
   static constexpr std::uint32_t capacity = Bytes / (sizeof(bvh_node) + sizeof(volume_type));

@@ -34,41 +34,49 @@ __device__ inline void add_dropped(std::uint32_t& dropped, drop_reason mine) {
   }
 }
 
+inline constexpr std::uint32_t tile_columns = 8, tile_rows = 4;
+
+/// Number of this lane's point in packet b: the packet is a row, or a tile of an image of so many columns.
+__device__ inline std::uint32_t place_in_packet(std::uint32_t b, std::uint32_t columns) {
+  const std::uint32_t lane = threadIdx.x % 32;
+  if (columns == 0) return b * 32 + lane;
+  const std::uint32_t row = b / (columns / tile_columns), column = b - row * (columns / tile_columns);
+  return (row * tile_rows + lane / tile_columns) * columns + column * tile_columns + lane % tile_columns;
+}
+
 template <class Answer, class Source>
 __global__ void __launch_bounds__(block_threads, 2) packet_kernel(const __grid_constant__ Source source,
                                                                   const __grid_constant__ scan_arguments<Answer> a) {
   auto& s = memory_of_block<Answer>();
-  const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds;
-  std::uint32_t batch = (t / 32 * gridDim.x + blockIdx.x) * row, left = row;
-  const auto read = [&](std::uint32_t b) {
-    const std::uint64_t i = std::uint64_t(b) * 32 + lane;
-    return i < a.points ? source[std::size_t(i)] : sample{{not_a_number, 0, 0}};
+  const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds, packets = (a.points + 31) / 32;
+  std::uint32_t packet = (t / 32 * gridDim.x + blockIdx.x) * row, left = row, dropped = 0;
+  const auto read = [&](std::uint32_t p) {
+    const std::uint32_t i = place_in_packet(p, a.columns);
+    return i < a.points ? source[i] : sample{{not_a_number, 0, 0}};
   };
   sample next;
-  frame_parts<Answer>::prepare(a, [&] { next = read(batch); });
+  frame_parts<Answer>::prepare(a, [&] { next = read(packet); });
   __syncthreads();
   sharpen<Answer>(t, 0);
-  tree_steps<Answer>::fetch_tops(a.parts);
-  __pipeline_wait_prior(0);
   __syncthreads();
-  std::uint32_t dropped = 0;
-  while (std::uint64_t(batch) * 32 < a.points) {
-    const std::uint32_t first = batch * 32, index = a.first + first + lane;
+  while (packet < packets) {
+    const std::uint32_t i = place_in_packet(packet, a.columns), index = a.first + i;
     const sample here = next;
-    const bool exists = first + lane < a.points;
-    ++batch;
-    if (--left == 0) {  // rows are dealt as they are asked for: points near the robot take longer
-      if (lane == 0) batch = (all_warps + atomicAdd(&a.state->taken, 1u)) * row;
-      batch = __shfl_sync(all_lanes, batch, 0), left = row;
-    }
-    next = read(batch);
+    ++packet, --left;
+    if (left != 0) next = read(packet);
     add_dropped(dropped, here.dropped);
     const vec3 x = here.position - s.origin;
-    const bool counts = exists && here.valid();
+    const bool exists = i < a.points, counts = exists && here.valid();
     auto v = Answer::visitor(s, index, counts);
-    const bool near = near_any<Answer>(x, a.parts);
-    packet_search<Answer>::search(near && counts && s.rigid, x, v);
+    const bool live = near_any<Answer>(x, a.parts) && counts && s.rigid;
+    if (live) Answer::remind(s, index, x, v);
+    packet_search<Answer>::search(live, x, v);
     if (exists) Answer::take(s, index, counts, v);
+    if (left == 0) {  // rows are dealt, not before the last is done, to who has none left: some take much longer
+      if (lane == 0) packet = (all_warps + atomicAdd(&a.state->taken, 1u)) * row;
+      packet = __shfl_sync(all_lanes, packet, 0), left = row;
+      next = read(packet);
+    }
   }
   if (lane < drop_reasons && dropped != 0) atomicAdd(&s.dropped[lane], dropped);
   __syncthreads();
@@ -85,8 +93,14 @@ struct by_packets {
   }
 
   template <class Answer, class Source>
-  static void plan(const Source&, scan_arguments<Answer>& a, unsigned blocks) {
-    a.rounds = std::max(1u, a.points / (32 * 4 * warps * blocks));  // batches in a row: as many as leave each warp four rows
+  static void plan(const Source& source, scan_arguments<Answer>& a, unsigned blocks) {
+    // Packets in a row: one, so that all warps end at about the same time; or some, where most are far and asking would take longer.
+    a.rounds = Answer::all_near(a.answer) ? 1 : std::clamp(a.points / (32 * 4 * warps * blocks), 1u, 4u);
+    a.columns = 0;
+    if constexpr (image_source<Source>) {
+      const std::uint32_t columns = source.columns();
+      if (columns != 0 && columns % tile_columns == 0 && a.points % (tile_rows * columns) == 0) a.columns = columns;
+    }
   }
 };
 

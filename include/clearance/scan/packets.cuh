@@ -26,7 +26,7 @@ struct packet_memory : block_memory<Answer> {
 
 /// Each lane has a point, and a visitor for it:
 ///   reach(k)                                how near part k must be to the point to matter;
-///   offer(k, id, distance), offer_inside(k).
+///   offer(k, place, id, distance), where `place` is the primitive's own in the tree; offer_inside(k).
 template <class Answer>
 struct packet_search : tree_steps<Answer> {
   using frame = frame_parts<Answer>;
@@ -146,7 +146,7 @@ struct packet_search : tree_steps<Answer> {
         for (std::uint32_t j = 0; __any_sync(all_lanes, j < count); ++j) {
           if (j < count && leaf) {
             const auto place = steps::place_of(here.node, j);
-            if (const real d = steps::primitive(k, place).distance(q); d <= v.reach(k)) v.offer(k, steps::id(k, place), d);
+            if (const real d = steps::primitive(k, place).distance(q); d <= v.reach(k)) v.offer(k, place, steps::id(k, place), d);
           } else if (j < count) {
             const auto step = steps::child(k, here.node, j);
             if (const real b = traits::lower_bound(step.volume, q); b <= v.reach(k)) keep({b, step.node, k});
@@ -177,7 +177,10 @@ struct packet_search : tree_steps<Answer> {
 #pragma unroll 1
         for (std::uint32_t j = 0; j < count; ++j) {
           const auto place = steps::place_of(e.node, j);
-          if (const real d = steps::primitive(k, place).distance(q); d <= reach) v.offer(k, steps::id(k, place), d), reach = v.reach(k);
+          const auto primitive = steps::primitive(k, place);
+          if constexpr (bounded_primitive<typename hierarchy::primitive_type>)  // most need no more than a rough look
+            if (__all_sync(all_lanes, primitive.lower_bound(q) > reach)) continue;
+          if (const real d = primitive.distance(q); d <= reach) v.offer(k, place, steps::id(k, place), d), reach = v.reach(k);
         }
       } else {
 #pragma unroll 1
@@ -189,7 +192,7 @@ struct packet_search : tree_steps<Answer> {
   /// Of eight children those that some point wants, the nearest on top; the stack's new size.
   static __device__ std::uint32_t push(std::uint32_t k, const node_type& node, std::uint32_t begin, std::uint32_t count, vec3 q, real reach,
                                        stacked* stack, std::uint32_t top) {
-    constexpr std::uint32_t unwanted = none;
+    constexpr std::uint32_t unwanted = none, number = at_once - 1;  // a child's number is in the lowest bits of its bound: no two are equal
     std::uint32_t low[at_once];
 #pragma unroll
     for (std::uint32_t four = 0; four < at_once; four += 4) {
@@ -202,19 +205,16 @@ struct packet_search : tree_steps<Answer> {
       for (std::uint32_t h = four; h < four + 4; ++h) {
         const std::uint32_t j = lower_of(begin + h, count - 1);  // no branch, so that all four are read at once
         const real b = traits::lower_bound(steps::child(k, node, j).volume, q);
-        low[h] = least_of(all_lanes, begin + h < count && b <= reach ? ordered(b) : unwanted);
+        low[h] = least_of(all_lanes, begin + h < count && b <= reach ? (ordered(b) & ~number) | h : unwanted);
       }
     }
-    std::uint32_t mine = unwanted, farther = 0, all = 0;  // a child a lane
+    std::uint32_t mine = unwanted, nearer = 0, all = 0;  // a child a lane
 #pragma unroll
     for (std::uint32_t h = 0; h < at_once; ++h) mine = lane() == h ? low[h] : mine;
 #pragma unroll
-    for (std::uint32_t h = 0; h < at_once; ++h) {
-      all += low[h] != unwanted;
-      farther += low[h] != unwanted && (low[h] > mine || (low[h] == mine && h > lane()));
-    }
+    for (std::uint32_t h = 0; h < at_once; ++h) all += low[h] != unwanted, nearer += low[h] < mine;
     __syncwarp();  // all have read the node
-    if (mine != unwanted) stack[top + farther] = {from_ordered(mine), steps::child(k, node, begin + lane()).node};
+    if (mine != unwanted) stack[top + all - 1 - nearer] = {from_ordered(mine & ~number), steps::child(k, node, begin + lane()).node};
     return top + all;
   }
 };

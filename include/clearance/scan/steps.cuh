@@ -91,13 +91,13 @@ struct steps_down<Answer, H> : frame_parts<Answer> {
  private:
   /// Node n of part k, and its volume: from shared memory, if it is one of the first.
   static __device__ bvh_node node(std::uint32_t k, std::uint32_t n) {
-    const std::uint32_t stride = parts::here().head.top_stride;
-    if (n < stride) return parts::here().tops.nodes[k * stride + n];
+    if constexpr (Answer::top_bytes > 0)
+      if (const std::uint32_t stride = parts::here().head.top_stride; n < stride) return parts::here().tops.nodes[k * stride + n];
     return read_only(tree(k).nodes + n);
   }
   static __device__ volume_type volume(std::uint32_t k, std::uint32_t n) {
-    const std::uint32_t stride = parts::here().head.top_stride;
-    if (n < stride) return parts::here().tops.volumes[k * stride + n];
+    if constexpr (Answer::top_bytes > 0)
+      if (const std::uint32_t stride = parts::here().head.top_stride; n < stride) return parts::here().tops.volumes[k * stride + n];
     return read_only(tree(k).volumes + n);
   }
   template <class T>

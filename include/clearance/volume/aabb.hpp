@@ -31,10 +31,10 @@ struct aabb {
 
   /// Outside: the distance to the box. Inside: minus the distance to the nearest face, or deep points would be lost.
   CLEARANCE_HD real lower_bound(vec3 q) const {
-    const vec3 beyond{max(lower.x - q.x, q.x - upper.x), max(lower.y - q.y, q.y - upper.y), max(lower.z - q.z, q.z - upper.z)};
-    const real deepest = max(max(beyond.x, beyond.y), beyond.z);
-    if (deepest < 0) return deepest * (1 + slack);
-    return rough_length({max(beyond.x, 0), max(beyond.y, 0), max(beyond.z, 0)}) * (1 - slack);
+    const vec3 beyond{rough_max(lower.x - q.x, q.x - upper.x), rough_max(lower.y - q.y, q.y - upper.y), rough_max(lower.z - q.z, q.z - upper.z)};
+    const real deepest = rough_max(rough_max(beyond.x, beyond.y), beyond.z);
+    const real outside = rough_length({rough_max(beyond.x, 0), rough_max(beyond.y, 0), rough_max(beyond.z, 0)});
+    return rough_min(deepest, 0) * (1 + slack) + outside * (1 - slack);  // one of them is 0, and there is no branch
   }
 
   /// As from the box outside, whatever the reach inside.

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Questions about pairs on a GPU, the points resident there: zones, the points within a distance, and whether there is one; beside
+// them every part's minimum. CUDA events, behind other work.
+#include "device.cuh"
+
+#include <clearance/in_collision.cuh>
+#include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/volume/sphere.hpp>
+#include <clearance/within.cuh>
+#include <clearance/zones.cuh>
+
+namespace {
+
+using namespace bench;
+using clearance::device, clearance::vec3, clearance::pair_distance, clearance::point_counts;
+namespace pairwise = clearance::pairwise;
+
+constexpr auto model_of = [](const scene& s) { return sphere_model<clearance::sphere>(s); };
+using model_on_gpu = decltype(model_of(std::declval<const scene&>()).on(device{}));
+
+/// The robot and the frame on the GPU.
+struct question {
+  const scene& s = the_scene();
+  device gpu;
+  model_on_gpu model = model_of(s).on(gpu);
+  clearance::device_buffer<vec3> points;
+  clearance::placed<clearance::point_span> cloud;
+  clearance::device_buffer<point_counts> counts{1, gpu.id};
+  clearance::device_buffer<std::uint32_t> first_point = gpu.copy_in(std::span<const std::uint32_t>(std::vector<std::uint32_t>{0}));
+  device_clock clock{true};
+
+  explicit question(const benchmark::State& state)
+      : points(gpu.copy_in(std::span<const vec3>(repeated(s.cloud, std::size_t(state.range(0)))))),
+        cloud{clearance::point_span(points.data(), points.size()), s.world_from_camera} {}
+
+  template <class T>
+  clearance::device_buffer<T> of_parts(std::size_t each, const std::vector<T>& values) const {
+    std::vector<T> all;
+    for (std::size_t k = 0; k < model.size(); ++k)
+      for (std::size_t z = 0; z < each; ++z) all.push_back(values[z]);
+    return gpu.copy_in(std::span<const T>(all));
+  }
+
+  /// Sets `words` back and asks, again and again.
+  template <class Answer, class T>
+  void ask(benchmark::State& state, const Answer& answer, const clearance::device_buffer<T>& words, const std::vector<T>& fresh) {
+    pairwise::device_pairs<model_on_gpu::view_type> query(gpu, model.view());
+    const auto start = gpu.copy_in(std::span<const T>(fresh));
+    const auto frame = [&] {
+      clearance::check_cuda(cudaMemcpyAsync(words.data(), start.data(), words.size() * sizeof(T), cudaMemcpyDeviceToDevice), "cudaMemcpyAsync");
+      query.enqueue(s.poses, cloud, answer, counts.data(), clearance::minimum::as_it_is{});
+    };
+    frame();
+    for (auto _ : state) state.SetIterationTime(clock.seconds(frame));
+  }
+};
+
+void zones(benchmark::State& state) {
+  if (no_device(state)) return;
+  question q(state);
+  const auto reaches = q.of_parts<float>(3, {0.1f, 0.2f, 0.4f});
+  const std::vector<pairwise::zone_words> fresh(reaches.size());
+  const auto words = q.gpu.copy_in(std::span<const pairwise::zone_words>(fresh));
+  q.ask(state, pairwise::count_in_zones{words.data(), reaches.data(), q.first_point.data(), 3}, words, fresh);
+  double points = 0;
+  for (const auto& w : q.gpu.copy_out(words)) points += double(w.points);
+  state.counters["points"] = points;
+}
+
+void within(benchmark::State& state, float radius) {
+  if (no_device(state)) return;
+  question q(state);
+  const auto reaches = q.of_parts<float>(1, {radius});
+  const std::vector<unsigned long long> fresh(1);
+  const auto count = q.gpu.copy_in(std::span<const unsigned long long>(fresh));
+  const clearance::device_buffer<pair_distance> pairs(q.points.size(), q.gpu.id);
+  q.ask(state, pairwise::listed{pairs.data(), count.data(), pairs.size(), reaches.data()}, count, fresh);
+  state.counters["pairs"] = double(q.gpu.copy_out(count)[0]);
+}
+
+void in_collision(benchmark::State& state, float margin) {
+  if (no_device(state)) return;
+  question q(state);
+  const auto reaches = q.of_parts<float>(1, {margin});
+  const std::vector fresh{pairwise::first_within::nothing};
+  const auto word = q.gpu.copy_in(std::span<const unsigned long long>(fresh));
+  q.ask(state, pairwise::first_within{word.data(), reaches.data(), reaches.data(), q.first_point.data()}, word, fresh);
+  state.counters["found"] = q.gpu.copy_out(word)[0] != pairwise::first_within::nothing;
+}
+
+void every_part(benchmark::State& state) {
+  if (no_device(state)) return;
+  question q(state);
+  clearance::min_distance_query query(q.gpu, q.model);
+  const clearance::device_buffer<clearance::min_distance_result> result(1, q.gpu.id);
+  const clearance::device_buffer<clearance::part_minimum> minima(q.model.size(), q.gpu.id);
+  const auto frame = [&] { query.enqueue_per_part(q.s.poses, q.cloud, result.data(), minima.data()); };
+  frame();
+  for (auto _ : state) state.SetIterationTime(q.clock.seconds(frame));
+}
+
+#define TIMES ->Arg(307200)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(50)
+BENCHMARK(every_part) TIMES;
+BENCHMARK(zones) TIMES;
+BENCHMARK_CAPTURE(within, 10cm, 0.1f) TIMES;
+BENCHMARK_CAPTURE(within, 15cm, 0.15f) TIMES;
+BENCHMARK_CAPTURE(in_collision, within_5cm, 0.05f) TIMES;
+BENCHMARK_CAPTURE(in_collision, within_10cm, 0.1f) TIMES;
+
+}  // namespace
+
+BENCHMARK_MAIN();
