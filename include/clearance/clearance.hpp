@@ -7,11 +7,13 @@
 #include <clearance/bvh/flat_list.hpp>
 #include <clearance/collect.hpp>
 #include <clearance/distances.hpp>
+#include <clearance/gradient.hpp>
 #include <clearance/in_collision.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/min_distance_query.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/part_witnesses.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/points/ray_image.hpp>
