@@ -12,6 +12,7 @@
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/min_distance_query.hpp>
+#include <clearance/motion_clearance.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/part_witnesses.hpp>
 #include <clearance/points/depth_image.hpp>

@@ -28,7 +28,7 @@ struct motion_clearance_result {
   double from = 0, to = 1;                  ///< The piece of the motion that keeps `lower` down,
   std::uint32_t part = none;                ///< and the part that does.
   std::size_t queries = 0;
-  bool settled = false;                     ///< `lower` is as good as `tolerance` asks; if not, the queries were used up.
+  bool settled = false;                     ///< `lower` is as good as `tolerance` asks, or as it can be; if not, the queries were used up.
 };
 
 namespace detail {
@@ -73,7 +73,8 @@ inline void check(const motion_clearance_options& o) {
 
 inline void check(const moment& m, std::size_t parts) {
   if (m.travels.size() != parts)
-    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but a motion says how " + std::to_string(m.travels.size()) + " move");
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but a motion says how " + std::to_string(m.travels.size()) +
+                                " move");
   for (std::size_t k = 0; k < parts; ++k) {
     const part_travel& t = m.travels[k];
     if (!(t.speed >= 0 && t.growth >= 0 && t.most >= 0 && t.rounding >= 0))

@@ -69,9 +69,9 @@ std::vector<part_witness> part_witnesses(const On& on, const Robot& robot, std::
       }
       if (!here) return;
       auto places = staged(on, frame.places);
-      on.for_each(model.size(), minimum::witness_body<part_type, S, std::remove_cvref_t<decltype(walk)>>{
-                                    model.parts, places.data(), readable(anywhere, now.cloud), frame.origin, frame.world_from_cloud, now.cloud, least.data(), walk,
-                                    found.data()});
+      using body = minimum::witness_body<part_type, S, std::remove_cvref_t<decltype(walk)>>;
+      on.for_each(model.size(), body{model.parts, places.data(), readable(anywhere, now.cloud), frame.origin, frame.world_from_cloud, now.cloud,
+                                     least.data(), walk, found.data()});
     });
     std::vector<part_witness> all = on.copy_out(found.data(), minima.size());
     for (std::size_t k = 0; k < all.size(); ++k)

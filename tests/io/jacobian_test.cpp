@@ -53,7 +53,8 @@ void against_differences() {
         v.require(g && std::size_t(g->size()) == q.size(), "a gradient of part", k);
         if (!g) continue;
         // Mimic factors make a small step a larger one.
-        v.require(std::abs((*g)[Eigen::Index(i)] - rate) < 5e-3 * (1 + std::abs(rate)), "part", k, ", value", i, ":", (*g)[Eigen::Index(i)], " instead of", rate);
+        v.require(std::abs((*g)[Eigen::Index(i)] - rate) < 5e-3 * (1 + std::abs(rate)), "part", k, ", value", i, ":", (*g)[Eigen::Index(i)],
+                  " instead of", rate);
         ++compared, moving += std::abs(rate) > 0.05;
         for (std::size_t j = 0; j < tree.joints().size(); ++j) followed += tree.joints()[j].follows && tree.drive(j).value == i && std::abs(rate) > 0.05;
       }

@@ -62,8 +62,8 @@ void against_differences() {
       const double remainder = h * (velocity + turning.cross(arm)).squaredNorm() / std::abs(double(minima[k].distance));
       const auto g = gradient(witnesses[k], about);
       const double rate = (double(after[k].distance) - double(before[k].distance)) / (2 * h);
-      v.require(bool(g) && std::abs(double(g.along(floats(velocity), floats(turning))) - rate) < 2e-3 + remainder, "part", k, " has", g.along(floats(velocity), floats(turning)),
-                " instead of", rate, " at", minima[k].distance);
+      const double said = g.along(floats(velocity), floats(turning));
+      v.require(bool(g) && std::abs(said - rate) < 2e-3 + remainder, "part", k, " has", said, " instead of", rate, " at", minima[k].distance);
       ++compared, negative += minima[k].distance < 0;
       if (least.part == k) {
         const auto robots = gradient(least, about);
@@ -90,14 +90,16 @@ void of_all_scenes() {
                     (w.part == k || (w.part == clearance::none && w.point == clearance::none)),
                 s.name, ": the witness of part", k);
       if (least.part == k)
-        v.require(same_bytes(w.at, least.at) && same_bytes(w.nearest, least.nearest) && same_bytes(w.normal, least.normal), s.name, ": where the robot's minimum is");
+        v.require(same_bytes(w.at, least.at) && same_bytes(w.nearest, least.nearest) && same_bytes(w.normal, least.normal),
+                  s.name, ": where the robot's minimum is");
       if (w.part == clearance::none) continue;
       const double away = (Eigen::Vector3d(w.at.x, w.at.y, w.at.z) - Eigen::Vector3d(w.nearest.x, w.nearest.y, w.nearest.z)).norm();
       const double size = std::abs(double(w.distance)) + Eigen::Vector3d(w.at.x, w.at.y, w.at.z).cwiseAbs().maxCoeff() + 100;
       v.require(std::abs(away - std::abs(double(w.distance))) <= 1e-5 * size, s.name, ": nearest and point are", away, " apart, not", w.distance);
     }
     const auto other = part_witnesses(clearance::host{1}, model, s.poses, std::tuple(two[0], two[1]), minima);
-    v.require(other.size() == all.size() && std::equal(all.begin(), all.end(), other.begin(), [](const auto& a, const auto& b) { return same_bytes(a.normal, b.normal); }),
+    const auto same = [](const part_witness& a, const part_witness& b) { return same_bytes(a.at, b.at) && same_bytes(a.normal, b.normal); };
+    v.require(other.size() == all.size() && std::equal(all.begin(), all.end(), other.begin(), same),
               s.name, ", clouds of several kinds");
   }
 }
@@ -193,7 +195,8 @@ TEST_CASE("The smooth minimum is never above the least, near it, and its weights
     const auto smooth = smooth_minimum_of(minima, temperature);
     double together = 0;
     for (const double w : smooth.weights) together += w;
-    v.require(smooth.value <= double(least) && smooth.value >= double(least) - temperature * std::log(double(minima.size())) - 1e-12, "between", smooth.value, least);
+    const double lowest = double(least) - temperature * std::log(double(minima.size())) - 1e-12;
+    v.require(smooth.value <= double(least) && smooth.value >= lowest, "between", smooth.value, least);
     v.require(std::abs(together - 1) < 1e-12, "the weights add up to", together);
     const std::size_t k = d.below(unsigned(minima.size()));
     const real h = real(1e-3 * temperature), distance = minima[k].distance;
@@ -208,7 +211,8 @@ TEST_CASE("The smooth minimum is never above the least, near it, and its weights
   const auto nothing = smooth_minimum_of(far, 0.1);
   CHECK((nothing.value == double(clearance::infinity) && nothing.weights == std::vector<double>{0, 0, 0}));
   far[0].distance = 1;
-  for (const double temperature : {0.0, -1.0, double(clearance::infinity), double(clearance::not_a_number)}) CHECK_THROWS_AS(smooth_minimum_of(far, temperature), std::invalid_argument);
+  for (const double temperature : {0.0, -1.0, double(clearance::infinity), double(clearance::not_a_number)})
+    CHECK_THROWS_AS(smooth_minimum_of(far, temperature), std::invalid_argument);
   far[1].distance = clearance::not_a_number;
   CHECK_THROWS_AS(smooth_minimum_of(far, 0.1), std::invalid_argument);
   far[1].distance = -clearance::infinity;
