@@ -22,6 +22,7 @@
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/primitive/triangle.hpp>
 #include <clearance/robot/model.hpp>
+#include <clearance/separation.hpp>
 #include <clearance/solid/implicit.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/traversal/near_first.hpp>
