@@ -8,11 +8,14 @@
 #include <clearance/collect.hpp>
 #include <clearance/distances.hpp>
 #include <clearance/distances_query.hpp>
+#include <clearance/gradient.hpp>
 #include <clearance/in_collision.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/min_distance_query.hpp>
+#include <clearance/motion_clearance.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/part_witnesses.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/points/ray_image.hpp>
@@ -20,6 +23,7 @@
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/primitive/triangle.hpp>
 #include <clearance/robot/model.hpp>
+#include <clearance/separation.hpp>
 #include <clearance/solid/implicit.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/traversal/near_first.hpp>

@@ -27,6 +27,15 @@ struct part_minimum {
   std::uint32_t cloud = none, point = none, primitive = none;
 };
 
+/// The pair that attains a part's least distance, in world coordinates, as in a min_distance_result. Without one: numbers `none`,
+/// infinitely far.
+struct part_witness {
+  real distance = infinity;
+  std::uint32_t part = none, cloud = none, point = none, primitive = none;
+  position at = {0, 0, 0}, nearest = {0, 0, 0};
+  vec3 normal = {0, 0, 0};
+};
+
 /// How many points a scan has seen, how many of them count, and why the others do not.
 struct point_counts {
   std::uint64_t seen = 0, valid = 0;

@@ -4,7 +4,6 @@
 #include <clearance/answer/bracket.hpp>
 #include <clearance/answer/shared_bounds.hpp>
 #include <clearance/answer/witness.hpp>
-#include <clearance/scan/interior.hpp>
 #include <clearance/scan/tally.hpp>
 
 namespace clearance::minimum {
@@ -44,29 +43,13 @@ struct resolve_body {
   CLEARANCE_HD bool mine(distance_key key) const {
     return key != no_key && key_index(key) >= first && key_index(key) - first < source.size();
   }
-  struct found {
-    real distance;
-    bool inside;
-    nearest_primitive<typename PartView::hierarchy_type::primitive_type> nearest;
-  };
-  /// By the rule of the scan: 0 inside, else the distance to the closest primitive, if that is not above `within`.
-  CLEARANCE_HD found evaluate(std::uint32_t k, vec3 q, real within) const {
-    found f{infinity, false, {within}};
-    if constexpr (scan::has_interior<PartView>) {
-      f.inside = parts[k].interior.inside(q);
-      if (f.inside) f.nearest.within = infinity;
-    }
-    walk(parts[k].tree, q, f.nearest);
-    if (f.nearest.id != none) f.distance = f.inside ? 0 : f.nearest.within;
-    return f;
-  }
 
   CLEARANCE_HD void own(std::uint32_t k) const {
     const distance_key key = bounds.part_best[k];
     if (!mine(key)) return;
     const std::uint32_t point = key_index(key) - first;
     const vec3 q = places[k].part_from_cloud(source[point].position - origin);
-    minima[k] = {key_distance(key), cloud, point, evaluate(k, q, key_distance(key)).nearest.id};
+    minima[k] = {key_distance(key), cloud, point, evaluate(parts[k], q, key_distance(key), walk).nearest.id};
   }
 
   CLEARANCE_HD void robots() const {
@@ -78,9 +61,9 @@ struct resolve_body {
     const vec3 p = source[point].position;
     for (std::uint32_t k = 0; k < part_count; ++k) {
       const vec3 q = places[k].part_from_cloud(p - origin);
-      const found f = evaluate(k, q, key_distance(key));
+      const auto f = evaluate(parts[k], q, key_distance(key), walk);
       if (f.distance != key_distance(key)) continue;
-      const contact here = contact_of(f.nearest.primitive, q, f.inside && f.nearest.within > 0, places[k].world_from_part);
+      const contact here = f.at(q, places[k].world_from_part);
       result->distance = f.distance;
       result->cloud = cloud, result->point = point, result->part = k, result->primitive = f.nearest.id;
       result->at = world_from_cloud(p), result->nearest = here.nearest, result->normal = here.normal;

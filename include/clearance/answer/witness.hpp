@@ -4,6 +4,7 @@
 
 #include <clearance/ground/pose.hpp>
 #include <clearance/result.hpp>
+#include <clearance/scan/interior.hpp>
 
 namespace clearance::minimum {
 
@@ -35,6 +36,31 @@ template <primitive P>
 CLEARANCE_HD contact contact_of(const P& primitive, vec3 q, bool inside, const world_transform& world_from_part) {
   const vec3 away = primitive.normal(q);
   return {world_from_part(primitive.nearest(q)), world_from_part.turned(inside ? -away : away)};
+}
+
+/// How far a point is from a part, and from which of its primitives.
+template <primitive P>
+struct nearest_of_part {
+  real distance;
+  bool inside;
+  nearest_primitive<P> nearest;
+
+  CLEARANCE_HD contact at(vec3 q, const world_transform& world_from_part) const {
+    return contact_of(nearest.primitive, q, inside && nearest.within > 0, world_from_part);
+  }
+};
+
+/// By the rule of the scan: 0 inside, else the distance to the closest primitive, if that is not above `within`.
+template <class PartView, class Traversal>
+CLEARANCE_HD auto evaluate(const PartView& part, vec3 q, real within, const Traversal& walk) {
+  nearest_of_part<typename PartView::hierarchy_type::primitive_type> f{infinity, false, {within}};
+  if constexpr (scan::has_interior<PartView>) {
+    f.inside = part.interior.inside(q);
+    if (f.inside) f.nearest.within = infinity;
+  }
+  walk(part.tree, q, f.nearest);
+  if (f.nearest.id != none) f.distance = f.inside ? 0 : f.nearest.within;
+  return f;
 }
 
 }  // namespace clearance::minimum

@@ -37,6 +37,13 @@ struct joint {
   bool movable() const { return kind != joint_kind::fixed && !follows; }
 };
 
+/// How a joint follows the configuration: through all that it follows, its value is `factor` times value number `value` plus a constant
+/// of at most `offsets`. A fixed joint follows none.
+struct joint_drive {
+  std::size_t value = std::size_t(-1);
+  double factor = 0, offsets = 0;
+};
+
 struct joint_options {
   bool ignore_limits = false;
 };
@@ -57,18 +64,18 @@ class kinematic_tree {
     for (std::size_t j = 0; j < joints_.size(); ++j)
       if (!joint_at_.emplace(joints_[j].name, j).second)
         throw std::invalid_argument("two joints are named \"" + joints_[j].name + '"');
-    std::vector<std::size_t> parents(links_.size(), none);  // the joint above each link
+    above_.assign(links_.size(), none);
     for (std::size_t j = 0; j < joints_.size(); ++j) {
       check(joints_[j]);
       const std::size_t child = link(joints_[j].child);
       link(joints_[j].parent);
-      if (parents[child] != none)
+      if (above_[child] != none)
         throw std::invalid_argument("link \"" + links_[child] + "\" has two joints above it, \"" +
-                                    joints_[parents[child]].name + "\" and \"" + joints_[j].name + "\"");
-      parents[child] = j;
+                                    joints_[above_[child]].name + "\" and \"" + joints_[j].name + "\"");
+      above_[child] = j;
       if (joints_[j].movable()) movable_.push_back(j);
     }
-    order_links(parents);
+    order_links();
     order_values();
   }
 
@@ -79,6 +86,11 @@ class kinematic_tree {
   /// How many values a configuration has, and whose they are.
   std::size_t size() const { return movable_.size(); }
   const joint& movable(std::size_t i) const { return joints_[movable_[i]]; }
+
+  /// The number of the joint above a link, or `none` above the base; and what moves a joint.
+  static constexpr std::size_t none = std::size_t(-1);
+  std::size_t joint_above(std::size_t link) const { return above_[link]; }
+  const joint_drive& drive(std::size_t joint) const { return drives_[joint]; }
 
   /// The number of a link; std::invalid_argument if there is none of that name.
   std::size_t link(const std::string& name) const {
@@ -136,7 +148,6 @@ class kinematic_tree {
   }
 
  private:
-  static constexpr std::size_t none = std::size_t(-1);
   struct step {
     std::size_t joint, parent, child;
   };
@@ -161,14 +172,14 @@ class kinematic_tree {
       throw std::invalid_argument(who + "follows another by a factor that is not finite");
   }
 
-  void order_links(const std::vector<std::size_t>& parents) {
+  void order_links() {
     std::vector<std::vector<std::size_t>> below(links_.size());
     std::vector<std::size_t> pending;
     for (std::size_t i = 0; i < links_.size(); ++i)
-      if (parents[i] == none)
+      if (above_[i] == none)
         pending.push_back(i);
       else
-        below[link(joints_[parents[i]].parent)].push_back(i);
+        below[link(joints_[above_[i]].parent)].push_back(i);
     if (pending.size() != 1)
       throw std::invalid_argument("the joints make " + std::to_string(pending.size()) + " trees, not one");
     base_ = pending[0];
@@ -176,7 +187,7 @@ class kinematic_tree {
       const std::size_t parent = pending.back();
       pending.pop_back();
       for (const std::size_t child : below[parent]) {
-        steps_.push_back({parents[child], parent, child});
+        steps_.push_back({above_[child], parent, child});
         pending.push_back(child);
       }
     }
@@ -186,6 +197,8 @@ class kinematic_tree {
 
   /// Leaders before those that follow them.
   void order_values() {
+    drives_.resize(joints_.size());
+    for (std::size_t i = 0; i < movable_.size(); ++i) drives_[movable_[i]] = {i, 1, 0};
     std::vector<bool> done(joints_.size()), entered(joints_.size());
     for (std::size_t j = 0; j < joints_.size(); ++j) {
       std::vector<std::size_t> chain;
@@ -201,9 +214,18 @@ class kinematic_tree {
           throw std::invalid_argument("joint \"" + joints_[chain.back()].name + "\" follows the fixed joint \"" +
                                       joints_[leader].name + "\"");
         followers_.push_back({chain.back(), leader});
+        follow(chain.back(), leader);
         done[chain.back()] = true;
       }
     }
+  }
+
+  void follow(std::size_t j, std::size_t leader) {
+    const mimic& by = *joints_[j].follows;
+    const joint_drive& above = drives_[leader];
+    drives_[j] = {above.value, by.multiplier * above.factor, std::abs(by.multiplier) * above.offsets + std::abs(by.offset)};
+    if (!std::isfinite(drives_[j].factor) || !std::isfinite(drives_[j].offsets))
+      throw std::invalid_argument("joint \"" + joints_[j].name + "\" follows \"" + joints_[movable_[above.value]].name + "\" by a factor that is not finite");
   }
 
   std::size_t find(const std::string& name, const std::string& for_whom) const {
@@ -232,7 +254,8 @@ class kinematic_tree {
   std::vector<std::string> links_;
   std::vector<joint> joints_;
   std::map<std::string, std::size_t> link_at_, joint_at_;
-  std::vector<std::size_t> movable_;
+  std::vector<std::size_t> movable_, above_;
+  std::vector<joint_drive> drives_;
   std::vector<follower> followers_;
   std::vector<step> steps_;
   std::size_t base_ = 0;

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How close does a robot come to the points while it moves? On the host; motion_clearance.cuh has a device.
+
+#include <clearance/answer/margins.hpp>
+#include <clearance/min_distance_query.hpp>
+#include <clearance/motion.hpp>
+
+#include <queue>
+
+namespace clearance {
+
+struct motion_clearance_options {
+  double tolerance = 0.01;          ///< Metres: how much `lower` may be below the least that is certain at a time that was asked; infinite: no
+                                    ///< more than the state has to be decided.
+  double margin = 0;                ///< Metres: what the state is about.
+  std::size_t most_queries = 1000;  ///< What has not been decided by then is left open, on the safe side.
+};
+
+/// The clearance over a motion. What lies between the times that were asked is in `lower`; times go from 0 to 1.
+struct motion_clearance_result {
+  /// free: lower > margin; collision: at `time` some point is certainly not farther than margin; possible: neither; no_data: no valid point.
+  clearance::state state = clearance::state::no_data;
+  real lower = 0;                           ///< At no time is a point nearer; 0 if that is not certain. Metres.
+  real upper = infinity;                    ///< At `time` some point is as near as this, certainly.
+  double time = not_a_number;               ///< Of those that were asked that with the least upper,
+  min_distance_result nearest;              ///< and what min_distance_per_part says of it.
+  double from = 0, to = 1;                  ///< The piece of the motion that keeps `lower` down,
+  std::uint32_t part = none;                ///< and the part that does.
+  std::size_t queries = 0;
+  bool settled = false;                     ///< `lower` is as good as `tolerance` asks, or as it can be; if not, the queries were used up.
+};
+
+namespace detail {
+
+/// A time that was asked: what is certain of each part, and how it moves around that time.
+struct asked_time {
+  double time;
+  std::vector<double> lower;
+  std::vector<part_travel> travels;
+};
+
+/// All times within `half` of one that was asked.
+struct motion_piece {
+  double lower;
+  std::uint32_t part;
+  double time, half;
+  std::size_t asked;
+
+  /// Which of two is to be looked at later.
+  friend bool operator<(const motion_piece& a, const motion_piece& b) { return a.lower != b.lower ? a.lower > b.lower : a.time > b.time; }
+};
+
+/// Pieces overlap by more than the rounding of their ends.
+inline constexpr double time_error = 0x1p-46;
+
+inline motion_piece piece_around(const asked_time& a, std::size_t number, double half) {
+  motion_piece piece{infinity, none, a.time, half, number};
+  for (std::uint32_t k = 0; k < a.lower.size(); ++k) {
+    const double its = a.lower[k] * (1 - 0x1p-50) - a.travels[k].within(half + time_error);
+    if (piece.part == none || its < piece.lower) piece.lower = its, piece.part = k;
+  }
+  piece.lower = piece.lower > 0 ? piece.lower : 0;
+  return piece;
+}
+
+inline void check(const motion_clearance_options& o) {
+  if (!(o.tolerance >= 0)) throw std::invalid_argument("clearance: a motion's tolerance is " + std::to_string(o.tolerance) + " m; it must not be negative");
+  if (!(o.margin >= 0 && o.margin < infinity))
+    throw std::invalid_argument("clearance: a motion's margin is " + std::to_string(o.margin) + " m; it must be finite and not negative");
+  if (o.most_queries == 0) throw std::invalid_argument("clearance: a motion cannot be judged by 0 queries");
+}
+
+inline void check(const moment& m, std::size_t parts) {
+  if (m.travels.size() != parts)
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but a motion says how " + std::to_string(m.travels.size()) +
+                                " move");
+  for (std::size_t k = 0; k < parts; ++k) {
+    const part_travel& t = m.travels[k];
+    if (!(t.speed >= 0 && t.growth >= 0 && t.most >= 0 && t.rounding >= 0))
+      throw std::invalid_argument("clearance: a motion's bound for part " + std::to_string(k) + " is negative or not a number");
+  }
+}
+
+/// `ask(poses, minima)` is min_distance_per_part.
+template <class Ask, motion Motion, class Clouds>
+motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> facts, const Motion& motion, const Clouds& clouds,
+                                    const motion_clearance_options& options) {
+  check(options);
+  motion_clearance_result all;
+  std::vector<asked_time> asked;
+  std::vector<part_minimum> minima(facts.size());
+  std::vector<std::uint32_t> first;
+  double certain = infinity;  // at the times that were asked
+  const auto look = [&](double time) {
+    moment now = motion.at(time, facts);
+    check(now, facts.size());
+    const min_distance_result r = ask(std::span<const Eigen::Isometry3d>(now.poses), std::span(minima));
+    if (++all.queries == 1 || r.upper < all.upper || (r.upper == all.upper && time < all.time)) all.upper = r.upper, all.time = time, all.nearest = r;
+    if (r.part == none) return false;
+    first.clear();
+    const frames::float_error error = pairwise::look_ahead(facts, now.poses, clouds, first);
+    asked_time a{time, {}, std::move(now.travels)};
+    for (std::size_t k = 0; k < facts.size(); ++k) {
+      const double its = minimum::certain_distance(minima[k].distance, frames::slop(facts[k]), error);
+      a.lower.push_back(its > 0 ? its : 0);
+    }
+    certain = std::min(certain, piece_around(a, 0, 0).lower);
+    asked.push_back(std::move(a));
+    return true;
+  };
+  std::priority_queue<motion_piece> pieces;
+  if (!look(0.5)) return all;
+  for (motion_piece worst = piece_around(asked[0], 0, 0.5);; worst = pieces.top(), pieces.pop()) {
+    all.lower = rounded_down(worst.lower), all.part = worst.part;
+    all.from = std::max(0.0, worst.time - worst.half), all.to = std::min(1.0, worst.time + worst.half);
+    const bool decided = all.lower > options.margin || !(certain > options.margin);
+    all.settled = certain - worst.lower <= options.tolerance && (options.tolerance < infinity || decided);
+    if (all.settled || all.queries + 2 > options.most_queries) break;
+    const double third = worst.half / 3;
+    const auto put = [&](std::size_t number) {
+      motion_piece piece = piece_around(asked[number], number, third);
+      if (piece.lower < worst.lower) piece.lower = worst.lower, piece.part = worst.part;  // what is known of the whole is so of a piece
+      pieces.push(piece);
+    };
+    put(worst.asked);  // a third of it has the same middle, so that two questions make three pieces
+    for (const double time : {worst.time - 2 * third, worst.time + 2 * third}) {
+      if (!look(time)) return all.lower = 0, all.state = state::no_data, all;
+      put(asked.size() - 1);
+    }
+  }
+  all.state = all.upper <= options.margin ? state::collision : all.lower > options.margin ? state::free : state::possible;
+  return all;
+}
+
+}  // namespace detail
+
+/// By a prepared query of the caller's for the same robot, which keeps its memory.
+template <class On, class PartView, robot Robot, motion Motion, class Clouds>
+motion_clearance_result motion_clearance(min_distance_query<On, PartView>& query, const Robot& robot, const Motion& motion, const Clouds& clouds,
+                                         const motion_clearance_options& options = {}) {
+  static_assert(explain_clouds<Clouds>());
+  const auto ask = [&](std::span<const Eigen::Isometry3d> poses, std::span<part_minimum> minima) { return query.per_part(poses, clouds, minima); };
+  return detail::over_motion(ask, view_of(robot).facts, motion, clouds, options);
+}
+
+/// A lower bound of the clearance over a motion, which is never above it: every part's least distance is asked for at times that are
+/// chosen where the bound is lowest, and between them a part can get nearer only by as much as it moves. `clouds` as for min_distance;
+/// they are asked many times, so those for a device should be there. Throws std::invalid_argument as min_distance and the motion do,
+/// and if a tolerance or a margin is negative or not a number.
+template <class On, robot Robot, motion Motion, class Clouds>
+motion_clearance_result motion_clearance(const On& on, const Robot& robot, const Motion& motion, const Clouds& clouds,
+                                         const motion_clearance_options& options = {}) {
+  static_assert(explain_clouds<Clouds>());
+  using query_type = min_distance_query<On, typename decltype(view_of(robot))::part_type>;
+  if constexpr (std::is_constructible_v<query_type, const On&, const Robot&>) {
+    query_type query(on, robot);
+    return motion_clearance(query, robot, motion, clouds, options);
+  } else {
+    const auto ask = [&](std::span<const Eigen::Isometry3d> poses, std::span<part_minimum> minima) {
+      const auto [r, each] = min_distance_per_part(on, robot, poses, clouds);
+      std::copy(each.begin(), each.end(), minima.begin());
+      return r;
+    };
+    return detail::over_motion(ask, view_of(robot).facts, motion, clouds, options);
+  }
+}
+
+}  // namespace clearance
