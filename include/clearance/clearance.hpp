@@ -18,7 +18,9 @@
 #include <clearance/points/strided_points.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/primitive/triangle.hpp>
+#include <clearance/robot/attached.hpp>
 #include <clearance/robot/model.hpp>
+#include <clearance/self_filter.hpp>
 #include <clearance/solid/implicit.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/traversal/near_first.hpp>

@@ -14,8 +14,8 @@
 namespace clearance {
 
 /// Why a record or pixel gave no point.
-enum class drop_reason : std::uint8_t { none, not_finite, missing, saturated, out_of_range };
-inline constexpr int drop_reasons = 5;
+enum class drop_reason : std::uint8_t { none, not_finite, missing, saturated, out_of_range, masked };
+inline constexpr int drop_reasons = 6;
 
 /// What a point source says about one index: a position in its own frame, or why there is none.
 struct sample {
