@@ -11,7 +11,7 @@ namespace clearance {
 
 /// Whether a point is within a margin (peers: security margin, safety distance), and which: the same one on every run and backend.
 struct collision_result {
-  /// collision: certainly one is; possible: that cannot be excluded; free: certainly none; no_data: there was no valid point.
+  /// collision: certainly one is; possible: that cannot be excluded; free: certainly none, and nothing was too close to be measured; no_data: there was no valid point.
   clearance::state state = clearance::state::no_data;
   std::uint32_t cloud = none, point = none, part = none;  ///< The lowest certain one (by cloud, point, part); else the lowest possible one.
   point_counts counts;
@@ -46,7 +46,7 @@ collision_result in_collision(const On& on, const Robot& robot, std::span<const 
     std::tie(r.cloud, r.point) = pairwise::place_of(std::uint32_t(found >> 31), first);
     r.part = std::uint32_t(found) & 0x7fffffff;
   } else if (r.counts.valid != 0) {
-    r.state = state::free;
+    r.state = r.counts.dropped[int(drop_reason::too_close)] == 0 ? state::free : state::possible;
   }
   return r;
 }

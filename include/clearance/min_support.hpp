@@ -104,6 +104,8 @@ supported_distance min_distance_supported(const On& on, const Robot& robot, std:
       bracketed.distance = found.distance, bracketed.part = found.part;
       minimum::bracket(bracketed, minimum::certain_distance(found.distance, near.certain.slop, near.certain.error), model.facts[found.part].tolerance, false,
                        near.certain.error);
+      bracketed.dropped[int(drop_reason::too_close)] = r.counts.dropped[int(drop_reason::too_close)];
+      minimum::allow_for_too_close(bracketed);
       r.state = bracketed.state, r.lower = bracketed.lower;
       return r;
     }
