@@ -65,8 +65,8 @@ std::vector<std::uint32_t> count_around(const On& on, std::span<const part_facts
     std::vector<ball> balls;
     for (const position& p : at) balls.push_back(pairwise::around(p, options.radius, frame.world_from_cloud));
     auto near = staged(on, balls);
-    on.for_each(anywhere.size(), pairwise::count_support<S>{here(anywhere, now.cloud), frame.world_from_cloud, enclosing_ball(std::span<const ball>(balls)), near.data(),
-                                                            place.data(), support.data(), std::uint32_t(points.size()), options.min_points,
+    on.for_each(anywhere.size(), pairwise::count_support<S>{here(anywhere, now.cloud), frame.world_from_cloud, enclosing_ball(std::span<const ball>(balls)),
+                                                            near.data(), place.data(), support.data(), std::uint32_t(points.size()), options.min_points,
                                                             options.radius * options.radius});
   });
   return on.copy_out(support.data(), points.size());

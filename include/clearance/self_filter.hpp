@@ -58,7 +58,8 @@ void label_own(const On& on, const model_view<PartView>& model, std::span<const 
   for (std::size_t k = 0; k < parts; ++k) {
     const double padding = options.padding[given == 1 ? 0 : k];
     if (!(padding >= 0 && padding < double(infinity)))
-      throw std::invalid_argument("clearance: the padding of part " + std::to_string(k) + " is " + std::to_string(padding) + " m; it must be finite, and not negative");
+      throw std::invalid_argument("clearance: the padding of part " + std::to_string(k) + " is " + std::to_string(padding) +
+                                  " m; it must be finite, and not negative");
     reaches[parts + k] = pairwise::is_within(padding, model.facts[k], error);
     reaches[k] = pairwise::may_be_within(padding, model.facts[k], error);
     if (!(reaches[k] < infinity)) all_uncertain = true, reaches[k] = reaches[parts + k];  // nobody need ask of which point

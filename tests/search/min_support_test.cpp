@@ -26,8 +26,8 @@ void all_scenes() {
         require_same(r, brute_support(s, two, options), v, s.name + ", " + std::to_string(min_points) + " within " + std::to_string(options.radius));
         if (min_points == 1) {
           const auto least = clearance::min_distance(host{}, model, s.poses, two);
-          v.require(same_bits(r.distance, least.distance) && r.cloud == least.cloud && r.point == least.point && r.part == least.part && r.primitive == least.primitive &&
-                        r.counts.valid == least.valid,
+          v.require(same_bits(r.distance, least.distance) && r.cloud == least.cloud && r.point == least.point && r.part == least.part &&
+                        r.primitive == least.primitive && r.counts.valid == least.valid,
                     s.name, ": one point confirms itself");
         }
         isolated += r.isolated, confirmed += r.cloud != clearance::none;

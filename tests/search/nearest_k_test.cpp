@@ -42,7 +42,8 @@ TEST_CASE("The nearest of very many that are about equally near, or exactly") {
   for (int i = 0; i < 100000; ++i) s.points.push_back({i % 2 ? 2.0f : -2.0f, 0, 0});
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const clouds cloud{{point_span(s.points)}};
-  for (const std::size_t k : {1, 10, 3000, 150000}) require_same(nearest_k(host{}, model, s.poses, cloud, k), brute_nearest(s, cloud, k, clearance::infinity), v, std::to_string(k));
+  for (const std::size_t k : {1, 10, 3000, 150000})
+    require_same(nearest_k(host{}, model, s.poses, cloud, k), brute_nearest(s, cloud, k, clearance::infinity), v, std::to_string(k));
 }
 
 TEST_CASE("How many and how far are numbers, and no point is no pair") {

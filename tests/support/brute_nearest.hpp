@@ -24,7 +24,8 @@ inline void require_same(const clearance::nearest_k_result& found, const clearan
   v.require(found.per_part == expected.per_part && found.pairs.size() == expected.pairs.size(), what, ": ", found.pairs.size(), " pairs");
   for (std::size_t i = 0; i < std::min(found.pairs.size(), expected.pairs.size()); ++i) {
     const clearance::pair_distance &a = found.pairs[i], &b = expected.pairs[i];
-    v.require(a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.primitive == b.primitive && same_bits(a.distance, b.distance), what, ", pair ", i, ": point ",
+    v.require(a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.primitive == b.primitive && same_bits(a.distance, b.distance), what,
+              ", pair ", i, ": point ",
               a.point, " at ", a.distance, " and not ", b.point, " at ", b.distance);
   }
 }

@@ -42,7 +42,8 @@ clearance::self_filter_result brute_own(const scene<P>& s, const clouds& all, co
 
 inline void require_same(const clearance::self_filter_result& found, const clearance::self_filter_result& expected, verdict& v, const std::string& what) {
   v.require(found.labels == expected.labels, what, ": some label differs");
-  v.require(found.offsets == expected.offsets && found.rest == expected.rest, what, ": ", found.rest.size(), " points are left, and not ", expected.rest.size());
+  v.require(found.offsets == expected.offsets && found.rest == expected.rest, what, ": ", found.rest.size(), " points are left, and not ",
+            expected.rest.size());
   v.require(found.counts.own == expected.counts.own && found.counts.uncertain == expected.counts.uncertain, what, ": ", found.counts.own, " own, ",
             found.counts.uncertain, " uncertain");
   v.require(found.counts.points.seen == expected.counts.points.seen && found.counts.points.valid == expected.counts.points.valid, what, ": counts of points");

@@ -46,10 +46,12 @@ clearance::supported_distance brute_support(const scene<P>& s, const clouds& all
 
 inline void require_same(const clearance::supported_distance& found, const clearance::supported_distance& expected, verdict& v, const std::string& what) {
   const auto &a = found.nearest_isolated, &b = expected.nearest_isolated;
-  v.require((same_bits(found.distance, expected.distance) || (found.distance != found.distance && expected.distance != expected.distance)) && found.cloud == expected.cloud && found.point == expected.point && found.part == expected.part &&
-                found.primitive == expected.primitive,
+  const bool nowhere = found.distance != found.distance && expected.distance != expected.distance;
+  v.require((same_bits(found.distance, expected.distance) || nowhere) && found.cloud == expected.cloud && found.point == expected.point &&
+                found.part == expected.part && found.primitive == expected.primitive,
             what, ": point ", found.point, " at ", found.distance, " is confirmed, and not ", expected.point, " at ", expected.distance);
-  v.require(found.isolated == expected.isolated && same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.primitive == b.primitive,
+  v.require(found.isolated == expected.isolated && same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.part == b.part &&
+                a.primitive == b.primitive,
             what, ": ", found.isolated, " are alone, and not ", expected.isolated);
 }
 
