@@ -12,7 +12,7 @@ using json = nlohmann::ordered_json;  // keys in the order in which the manual n
 
 namespace {
 
-constexpr const char* reasons[drop_reasons] = {"none", "not_finite", "missing", "saturated", "out_of_range"};
+constexpr const char* reasons[drop_reasons] = {"none", "not_finite", "missing", "saturated", "out_of_range", "masked", "too_close"};
 
 std::string text(const char* format, ...) {
   char line[1024];

@@ -14,6 +14,8 @@
 #include <clearance/min_distance.hpp>
 #include <clearance/min_distance_query.hpp>
 #include <clearance/motion_clearance.hpp>
+#include <clearance/min_support.hpp>
+#include <clearance/nearest_k.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/part_witnesses.hpp>
 #include <clearance/points/depth_image.hpp>
@@ -22,8 +24,10 @@
 #include <clearance/points/strided_points.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/primitive/triangle.hpp>
+#include <clearance/robot/attached.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/separation.hpp>
+#include <clearance/self_filter.hpp>
 #include <clearance/solid/implicit.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/traversal/near_first.hpp>

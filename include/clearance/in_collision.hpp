@@ -11,7 +11,7 @@ namespace clearance {
 
 /// Whether a point is within a margin (peers: security margin, safety distance), and which: the same one on every run and backend.
 struct collision_result {
-  /// collision: certainly one is; possible: that cannot be excluded; free: certainly none; no_data: there was no valid point.
+  /// collision: certainly one is; possible: that cannot be excluded; free: certainly none, and nothing was too close to be measured; no_data: there was no valid point.
   clearance::state state = clearance::state::no_data;
   std::uint32_t cloud = none, point = none, part = none;  ///< The lowest certain one (by cloud, point, part); else the lowest possible one.
   point_counts counts;
@@ -28,7 +28,8 @@ struct tell_collision {
 
   CLEARANCE_HD void operator()(std::size_t) const {
     using answer = pairwise::first_within;
-    result->state = result->counts.valid != 0 ? state::free : state::no_data;
+    const bool too_close = result->counts.dropped[int(drop_reason::too_close)] != 0;
+    result->state = result->counts.valid == 0 ? state::no_data : too_close ? state::possible : state::free;
     result->cloud = result->point = result->part = none;
     if (*word == answer::nothing) return;
     const auto where = pairwise::place_of(std::uint32_t(*word >> 31), first, clouds);

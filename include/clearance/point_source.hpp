@@ -13,9 +13,9 @@
 
 namespace clearance {
 
-/// Why a record or pixel gave no point.
-enum class drop_reason : std::uint8_t { none, not_finite, missing, saturated, out_of_range };
-inline constexpr int drop_reasons = 5;
+/// Why a record or pixel gave no point. `too_close`: something is there, nearer than the sensor can measure (REP 117); nothing is `free` then.
+enum class drop_reason : std::uint8_t { none, not_finite, missing, saturated, out_of_range, masked, too_close };
+inline constexpr int drop_reasons = 7;
 
 /// What a point source says about one index: a position in its own frame, or why there is none.
 struct sample {

@@ -31,9 +31,9 @@ struct zones_result {
 
   const zone& of(std::size_t part, std::size_t z) const { return zones[part * per_part + z]; }
   /// The innermost zone of all parts with enough points: 0 is the nearest threshold, `per_part` says that all are empty. Nothing is
-  /// known of a frame without a valid point: then it is 0.
+  /// known of a frame without a valid point, or with something too close to be measured: then it is 0.
   std::size_t innermost() const {
-    if (counts.valid == 0) return 0;
+    if (counts.valid == 0 || counts.dropped[int(drop_reason::too_close)] != 0) return 0;
     std::size_t least = per_part;
     for (std::size_t i = 0; i < zones.size(); ++i)
       if (zones[i].points >= min_points) least = std::min(least, i % per_part);

@@ -4,6 +4,8 @@
 #include <clearance/collect.hpp>
 #include <clearance/distances.hpp>
 #include <clearance/min_distance.hpp>
+#include <clearance/min_support.hpp>
+#include <clearance/self_filter.hpp>
 #include <clearance/bvh/build.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -53,5 +55,10 @@ int main() {
   clearance::collect(in_line{}, robot, poses, least_source{}, least_answer{&in_line_pairs});
   const auto each = clearance::distances(in_line{}, robot, poses, least_source{}, {.d_max = 2});
   if (each.distance != std::vector<float>{1, 2, clearance::infinity} || each.counts.valid != 3) return 2;
+  const auto rest = clearance::min_distance_filtered(in_line{}, robot, poses, least_source{}, {.padding = {1.5}});
+  if (rest.rest.distance != 2 || rest.filter.counts.own != 1 || rest.filter.rest.size() != 2) return 3;
+  const auto nearest = clearance::nearest_k(in_line{}, robot, poses, least_source{}, 2);
+  if (nearest.of(0)[1].distance != 2) return 4;
+  if (clearance::min_distance_supported(in_line{}, robot, poses, least_source{}, {.min_points = 3, .radius = 1}).distance != 2) return 5;
   return r.distance == 1 && same.distance == 1 && pairs == 2 && in_line_pairs == 2 && seen.valid == 3 ? 0 : 1;
 }

@@ -36,6 +36,11 @@ CLEARANCE_HD inline void bracket(min_distance_result& r, double lower, real tole
   r.state = inside ? clearance::state::collision : (r.lower > 0 ? clearance::state::free : clearance::state::possible);
 }
 
+/// Something nearer than a sensor can measure may be anywhere before it: nothing is free then. After counts and bracket.
+CLEARANCE_HD inline void allow_for_too_close(min_distance_result& r) {
+  if (r.dropped[int(drop_reason::too_close)] != 0 && r.state == clearance::state::free) r.state = clearance::state::possible, r.lower = 0;
+}
+
 }  // namespace clearance::minimum
 
 namespace clearance {

@@ -99,6 +99,7 @@ __device__ void write_bracket(const scan::scan_arguments<Answer>& a, min_distanc
   min_distance_result& out = *a.answer.result;
   if (r.part == none) out = r;
   scan::count(r, all.dropped, std::uint64_t(a.first) + a.points);
+  allow_for_too_close(r);
   // Nothing is known where a pose on the device is none: this stops a robot.
   if (!scan::memory_of_block<Answer>().rigid) r.state = clearance::state::possible;
   out.state = r.state, out.distance = r.distance, out.lower = r.lower, out.upper = r.upper, out.seen = r.seen, out.valid = r.valid;

@@ -2,7 +2,7 @@
 #pragma once
 // Two answers become one.
 
-#include <clearance/result.hpp>
+#include <clearance/answer/bracket.hpp>
 
 #include <algorithm>
 
@@ -45,6 +45,7 @@ CLEARANCE_HD inline min_distance_result merge(const min_distance_result& a, cons
   min_distance_result r = minimum::merged(a, b);
   r.seen += b.seen, r.valid += b.valid;
   for (int k = 0; k < drop_reasons; ++k) r.dropped[k] += b.dropped[k];
+  minimum::allow_for_too_close(r);
   return r;
 }
 CLEARANCE_HD inline part_minimum merge(const part_minimum& a, const part_minimum& b) {

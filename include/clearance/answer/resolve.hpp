@@ -92,6 +92,7 @@ struct conclude_body {
                                                 [this](std::uint32_t k) -> const part_facts& { return parts[k].facts; }, error);
     scan::count(*result, counts->dropped, seen);
     bracket(*result, lower, result->part == none ? 0 : parts[result->part].facts.tolerance, bounds.all->certain != 0, error);
+    allow_for_too_close(*result);
   }
 };
 

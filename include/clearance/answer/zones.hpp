@@ -15,16 +15,6 @@ struct zone_words {
   unsigned long long first = ~0ull;  ///< The lowest point.
 };
 
-/// Adds one; of a warp's threads that come with the same word one adds for all.
-CLEARANCE_HD inline void add_one(unsigned long long* word) {
-#if defined(__CUDA_ARCH__)
-  const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(word));
-  if ((threadIdx.x & 31) == unsigned(__ffs(int(together)) - 1)) add_to(word, static_cast<unsigned long long>(__popc(together)));
-#else
-  add_to(word, 1);
-#endif
-}
-
 /// The answer: zones of each part, the innermost first.
 struct count_in_zones {
   zone_words* words;                 ///< `zones` a part.

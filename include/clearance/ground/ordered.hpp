@@ -75,6 +75,43 @@ CLEARANCE_HD inline void add_to(unsigned long long* word, unsigned long long val
 #endif
 }
 
+/// Adds one; of a warp's threads that come with the same word one adds for all.
+CLEARANCE_HD inline void add_one(unsigned long long* word) {
+#if defined(__CUDA_ARCH__)
+  const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(word));
+  if ((threadIdx.x & 31) == unsigned(__ffs(int(together)) - 1)) add_to(word, static_cast<unsigned long long>(__popc(together)));
+#else
+  add_to(word, 1);
+#endif
+}
+
+/// Sets bits of a word that others set, too.
+CLEARANCE_HD inline void set_bits(std::uint32_t* word, std::uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+  atomicOr(word, bits);
+#else
+  std::atomic_ref<std::uint32_t>(*word).fetch_or(bits, std::memory_order_relaxed);
+#endif
+}
+
+/// As `lower_to` and `take_number`, of words of 32 bits.
+CLEARANCE_HD inline void lower_word(std::uint32_t* word, std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  atomicMin(word, value);
+#else
+  std::atomic_ref<std::uint32_t> shared(*word);
+  for (std::uint32_t seen = shared.load(std::memory_order_relaxed); value < seen;)
+    if (shared.compare_exchange_weak(seen, value, std::memory_order_relaxed)) break;
+#endif
+}
+CLEARANCE_HD inline std::uint32_t count_one(std::uint32_t* word) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(word, 1u);
+#else
+  return std::atomic_ref<std::uint32_t>(*word).fetch_add(1, std::memory_order_relaxed);
+#endif
+}
+
 /// Adds one, and returns what was there.
 CLEARANCE_HD inline unsigned long long take_number(unsigned long long* word) {
 #if defined(__CUDA_ARCH__)

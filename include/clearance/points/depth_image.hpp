@@ -14,7 +14,7 @@ struct intrinsics {
 
 /// A depth image, deprojected while it is read: `std::uint16_t` pixels times `scale`, or `float` metres (REP 118).
 ///
-/// 0 is missing, 65535 in 16 bits saturated, NaN and Inf not finite; `nearest` and `farthest` bound z, in metres.
+/// 0 is missing, 65535 in 16 bits saturated, NaN and Inf not finite, but -Inf too close; `nearest` and `farthest` bound z, in metres.
 template <class Pixel>
 struct depth_image {
   static_assert(std::is_same_v<Pixel, std::uint16_t> || std::is_same_v<Pixel, float>, "depth pixels are 16-bit integers or floats");
@@ -24,6 +24,7 @@ struct depth_image {
   std::uint32_t row = 0;  ///< Pixels from one row to the next.
   real scale = 1;         ///< Metres a unit.
   real nearest = 0, farthest = infinity;
+  bool minus_infinity_is_near = true;  ///< A float pixel of -inf is `too_close` (REP 117); else it is not finite, and no more.
   real inverse_fx = 1, inverse_fy = 1, cx = 0, cy = 0;
 
   depth_image() = default;
@@ -64,7 +65,7 @@ struct depth_image {
   /// The point that pixel (u, v) shows if it holds `d`.
   CLEARANCE_HD sample deproject(Pixel d, std::uint32_t u, std::uint32_t v) const {
     const real z = product(real(d), scale);
-    return depth_sample(d, {product((real(u) - cx) * inverse_fx, z), product((real(v) - cy) * inverse_fy, z), z}, nearest, farthest);
+    return depth_sample(d, {product((real(u) - cx) * inverse_fx, z), product((real(v) - cy) * inverse_fy, z), z}, nearest, farthest, minus_infinity_is_near);
   }
 
   /// See `surveyed_source`. Pixels are compared, and only the corners of what they span are deprojected: rounded arithmetic is
@@ -77,7 +78,7 @@ struct depth_image {
     const detail::depths<Pixel> seen(pixels + std::size_t(v[0]) * row + begin % width);
     if (seen.strange) return false;
     box = {};
-    if (seen.missing + seen.saturated + seen.not_finite < surveyed_points)
+    if (seen.missing + seen.saturated + seen.not_finite + seen.minus_infinity < surveyed_points)
       for (const Pixel d : seen.ends)
         for (const std::uint32_t column : u)
           for (const std::uint32_t line : v) {
@@ -88,6 +89,7 @@ struct depth_image {
     dropped[int(drop_reason::missing)] += seen.missing;
     dropped[int(drop_reason::saturated)] += seen.saturated;
     dropped[int(drop_reason::not_finite)] += seen.not_finite;
+    dropped[int(minus_infinity_is_near ? drop_reason::too_close : drop_reason::not_finite)] += seen.minus_infinity;
     return true;
   }
 

@@ -46,12 +46,16 @@ struct point_filter {
 
 /// What a pixel that holds `d` says, if its point is `p`: 0 is missing, 65535 in 16 bits saturated; z is bounded, in metres.
 template <class Pixel>
-CLEARANCE_HD sample depth_sample(Pixel d, vec3 p, real nearest, real farthest) {
+CLEARANCE_HD sample depth_sample(Pixel d, vec3 p, real nearest, real farthest, bool minus_infinity_is_near) {
   if (d == 0) return {p, drop_reason::missing};
   if constexpr (std::is_same_v<Pixel, std::uint16_t>) {
     if (d == 65535) return {p, drop_reason::saturated};
   }
-  if (!is_finite(p)) return {p, drop_reason::not_finite};
+  if (!is_finite(p)) {
+    if constexpr (std::is_same_v<Pixel, float>)
+      if (minus_infinity_is_near && d == -infinity) return {p, drop_reason::too_close};
+    return {p, drop_reason::not_finite};
+  }
   if (!(p.z >= nearest && p.z <= farthest)) return {p, drop_reason::out_of_range};
   return {p, drop_reason::none};
 }

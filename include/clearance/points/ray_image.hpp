@@ -23,6 +23,7 @@ struct ray_image {
   std::uint32_t row = 0;  ///< Pixels from one row to the next; the table has no padding.
   real scale = 1;         ///< Metres a unit.
   real nearest = 0, farthest = infinity;
+  bool minus_infinity_is_near = true;  ///< A float pixel of -inf is `too_close` (REP 117); else it is not finite, and no more.
 
   ray_image() = default;
   ray_image(const Pixel* pixels, const ray* rays, std::uint32_t width, std::uint32_t height,
@@ -82,7 +83,7 @@ struct ray_image {
  private:
   CLEARANCE_HD sample along(ray r, Pixel d) const {
     const real z = product(real(d), scale);
-    return depth_sample(d, {product(r.x, z), product(r.y, z), z}, nearest, farthest);
+    return depth_sample(d, {product(r.x, z), product(r.y, z), z}, nearest, farthest, minus_infinity_is_near);
   }
 };
 

@@ -9,7 +9,7 @@ namespace clearance::detail {
 template <class Pixel>
 struct depths {
   Pixel ends[2];
-  std::uint32_t missing = 0, saturated = 0, not_finite = 0;
+  std::uint32_t missing = 0, saturated = 0, not_finite = 0, minus_infinity = 0;
   bool strange = false;  ///< Some are too large to say what becomes of them.
 
   explicit depths(const std::uint16_t* pixels) {
@@ -33,6 +33,9 @@ struct depths {
       depth[j] = d == 0 || !(size < infinity) ? not_a_number : d;
     }
     strange = huge != not_finite;
+    if (not_finite != 0)
+      for (std::size_t j = 0; j < surveyed_points; ++j) minus_infinity += pixels[j] == -infinity;
+    not_finite -= minus_infinity;
     ends[0] = infinity, ends[1] = -infinity;
     spread(depth, ends[0], ends[1]);
   }

@@ -52,7 +52,7 @@ __global__ void __launch_bounds__(block_threads, 2) scan_kernel(const __grid_con
     for (; r < end; ++r) {
       const bool again = left.clusters != 0;
       quad_points p = r < ahead && !again ? reader.take(r) : look_closely(source, a.points, all.index(r));
-      if (p.reasons != 0 && !again) dropped.add(p.reasons);
+      if (p.reasons != 0 && !again) dropped.add(p.reasons, s.dropped);
       if (shifted) shift<Answer>(p);
       if (!hand_over<Answer>(p, [&] { return all.index(r); }, clusters, left)) break;
     }

@@ -41,31 +41,35 @@ class cards {
   std::uint32_t card_;
 };
 
-/// Counts of a thread's points that do not count, a byte a reason.
+/// Counts of a thread's points that do not count, a byte for each of the first reasons; the others go to the block's at once, because
+/// another register would be one too many for all that lives across the loop.
 class drop_counter {
  public:
-  __device__ void add(unsigned reasons) {
+  __device__ void add(unsigned reasons, std::uint32_t (&block)[drop_reasons]) {
     static_assert(unsigned(drop_reason::not_finite) == 1);
     if ((reasons & ~0x01010101u) == 0) {
       dropped_ += __popc(reasons);
     } else {
 #pragma unroll
       for (int j = 0; j < quad; ++j)
-        dropped_ += __funnelshift_lc(0u, 1u, 8 * (reasons >> 8 * j & 0xff) - 8);  // 0 and no_point are shifted out
+        dropped_ += __funnelshift_lc(0u, 1u, 8 * (reasons >> 8 * j & 0xff) - 8);  // 0, other reasons and no_point are shifted out
+#pragma unroll
+      for (unsigned reason = in_bytes + 1; reason < drop_reasons; ++reason)
+        if (const unsigned those = __vcmpeq4(reasons, reason * 0x01010101u); those != 0) atomicAdd(&block[reason], unsigned(__popc(those)) / 8);
     }
   }
 
   /// Adds this warp's to the block's; due before 63 rounds are over, or a byte is full.
   __device__ void report(std::uint32_t (&block)[drop_reasons]) {
-    static_assert(drop_reasons <= 5);
     if (!__any_sync(all_lanes, dropped_ != 0)) return;
     const std::uint32_t odd = sum_of(dropped_ & 0xff00ffu), even = sum_of(dropped_ >> 8 & 0xff00ffu), lane = threadIdx.x & 31;
     const std::uint32_t sum = (lane % 2 == 0 ? odd : even) >> (lane & 2) * 8 & 0xffffu;
-    if (lane + 1 < drop_reasons && sum != 0) atomicAdd(&block[lane + 1], sum);
+    if (lane < in_bytes && sum != 0) atomicAdd(&block[lane + 1], sum);
     dropped_ = 0;
   }
 
  private:
+  static constexpr unsigned in_bytes = 4;
   std::uint32_t dropped_ = 0;
 };
 

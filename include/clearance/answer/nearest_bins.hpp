@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How near the k nearest points of each part are, as an answer that gets pairs: counts of distances in bins.
+
+#include <clearance/concepts.hpp>
+#include <clearance/ground/ordered.hpp>
+
+#include <span>
+
+namespace clearance::pairwise {
+
+/// What a pass knows of one part. Distances are their `ordered` words, so that bins are fine where distances are small.
+struct nearest_window {
+  std::uint32_t low = 0;     ///< The first bin begins here; what is less was counted before.
+  std::uint32_t wanted = 0;  ///< So many are still to be found, from there on; 0: nothing is asked of this part.
+  std::uint32_t bound = 0;   ///< No farther one matters: falls while points are counted.
+  std::uint32_t taken = 0;   ///< Points in bins,
+  std::uint32_t lowest = ~0u;  ///< and the first bin that has one.
+};
+
+/// An answer. Enough points at most as far as a bin's end are a bound: what is farther is none of the nearest.
+struct nearest_bins {
+  static constexpr std::uint32_t bins = 2048;
+  static constexpr int passes = 3, first_shift = 22;  ///< Two bins from a length to its double; then 2^11 in each, and one a number.
+  static constexpr int shift_of(int pass) { return first_shift - 11 * pass; }
+
+  std::uint32_t* counts;  ///< `bins` a part.
+  nearest_window* windows;
+  int shift;
+
+  CLEARANCE_HD real reach(std::uint32_t part) const { return from_ordered(load_relaxed(&windows[part].bound)); }
+  CLEARANCE_HD void take(const pair_distance& pair) const {
+    nearest_window& w = windows[pair.part];
+    std::uint32_t* const its = counts + pair.part * std::size_t(bins);
+    const std::uint32_t u = ordered(pair.distance);
+    if (u < w.low || u > load_relaxed(&w.bound)) return;
+    const std::uint32_t bin = (u - w.low) >> shift;
+    if (bin >= bins) return;
+    count_one(its + bin);
+    if (shift != first_shift) return;
+    if (bin < load_relaxed(&w.lowest)) lower_word(&w.lowest, bin);
+    const std::uint32_t taken = count_one(&w.taken) + 1;
+    if (taken == w.wanted || (taken > w.wanted && taken % 64 == 0)) sharpen(w, its);
+  }
+
+  /// The end of a bin, as a bound.
+  CLEARANCE_HD static std::uint32_t end_of(std::uint32_t low, std::uint32_t bin, int shift) { return low + (bin << shift) + ((1u << shift) - 1); }
+
+ private:
+  /// Counts that others are adding to are at most too small, and the bound then too large.
+  CLEARANCE_HD void sharpen(nearest_window& w, const std::uint32_t* its) const {
+    const std::uint32_t last = (load_relaxed(&w.bound) - w.low) >> shift;
+    std::uint32_t sum = 0;
+    for (std::uint32_t bin = load_relaxed(&w.lowest); bin < last; ++bin)
+      if ((sum += load_relaxed(its + bin)) >= w.wanted) return lower_word(&w.bound, end_of(w.low, bin, shift));
+  }
+};
+static_assert(answer<nearest_bins>);
+
+struct zero_words {
+  std::uint32_t* words;
+  CLEARANCE_HD void operator()(std::size_t i) const { words[i] = 0; }
+};
+
+/// The bin in which the wanted one is, and how many are in those before it; `bins` if there are not so many.
+struct wanted_bin {
+  std::uint32_t bin = 0, before = 0, its = 0;
+};
+inline wanted_bin find_wanted(std::span<const std::uint32_t> counts, std::uint32_t wanted) {
+  wanted_bin found;
+  for (; found.bin < counts.size(); ++found.bin) {
+    found.its = counts[found.bin];
+    if (found.before + std::uint64_t(found.its) >= wanted) return found;
+    found.before += found.its;
+  }
+  found.its = 0;
+  return found;
+}
+
+}  // namespace clearance::pairwise

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The least distance that several points confirm: one alone may be dust, rain, or a mixed pixel. On the host; min_support.cuh has a device.
+
+#include <clearance/answer/margins.hpp>
+#include <clearance/answer/support.hpp>
+#include <clearance/nearest_k.hpp>
+
+#include <set>
+
+namespace clearance {
+
+struct support_options {
+  std::uint32_t min_points = 3;  ///< So many points, itself among them, within
+  double radius = 0.02;          ///< metres of a point confirm it.
+  std::size_t most = 4096;       ///< So many of the nearest points are asked, then it is given up.
+};
+
+/// The nearest point that others confirm, and what is nearer, but alone.
+struct supported_distance {
+  /// Of the confirmed point, as in min_distance; possible: none is confirmed; no_data: there is no valid point.
+  clearance::state state = clearance::state::no_data;
+  real distance = not_a_number;  ///< Metres. Infinite: all points were asked; NaN: only the `most` nearest.
+  real lower = 0;                ///< All confirmed points are certainly at least so far away; 0 if none is.
+  std::uint32_t cloud = none, point = none, part = none, primitive = none;
+  std::uint64_t isolated = 0;  ///< Points that come before it and are not confirmed,
+  pair_distance nearest_isolated = {none, none, none, none, infinity};  ///< and the first of them.
+  point_counts counts;
+};
+
+namespace detail {
+
+/// The nearest points of a robot with their parts: by distance, cloud, point, as far as lists of each part's nearest tell; and whether that
+/// is all of them.
+inline std::pair<std::vector<pair_distance>, bool> nearest_points(const nearest_k_result& of_parts) {
+  std::vector<pair_distance> pairs = of_parts.pairs;
+  std::erase_if(pairs, [](const pair_distance& pair) { return pair.cloud == none; });
+  std::sort(pairs.begin(), pairs.end(), [](const pair_distance& a, const pair_distance& b) {
+    return std::tie(a.distance, a.cloud, a.point, a.part) < std::tie(b.distance, b.cloud, b.point, b.part);
+  });
+  bool all = true;
+  for (std::size_t last = of_parts.per_part; last <= of_parts.pairs.size(); last += of_parts.per_part) all &= of_parts.pairs[last - 1].cloud == none;
+  if (!all) pairs.resize(of_parts.per_part);  // of those behind, some may be missing
+  std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
+  std::erase_if(pairs, [&](const pair_distance& pair) { return !seen.emplace(pair.cloud, pair.point).second; });
+  return {std::move(pairs), all};
+}
+
+/// Which of some points have enough others around them.
+template <class On, class Clouds, class Here>
+std::vector<std::uint32_t> count_around(const On& on, std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                        std::span<const pair_distance> points, const support_options& options, const Here& here) {
+  std::vector<std::uint32_t> first, numbers;
+  pairwise::look_ahead(facts, poses, clouds, first);
+  for (const pair_distance& p : points) numbers.push_back(first[p.cloud] + p.point);
+  auto number = staged(on, numbers);
+  auto place = on.template make_scratch<position>(points.size());
+  auto support = staged(on, std::vector<std::uint32_t>(points.size()));
+  frames::cloud_frame frame;
+  frames::for_each_turn(frame, facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
+    on.for_each(points.size(), pairwise::place_candidates<S>{here(anywhere, now.cloud), frame.world_from_cloud, now.first, number.data(), place.data()});
+  });
+  const std::vector<position> at = on.copy_out(place.data(), points.size());
+  frames::for_each_turn(frame, facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
+    std::vector<ball> balls;
+    for (const position& p : at) balls.push_back(pairwise::around(p, options.radius, frame.world_from_cloud));
+    auto near = staged(on, balls);
+    on.for_each(anywhere.size(), pairwise::count_support<S>{here(anywhere, now.cloud), frame.world_from_cloud, enclosing_ball(std::span<const ball>(balls)),
+                                                            near.data(), place.data(), support.data(), std::uint32_t(points.size()), options.min_points,
+                                                            options.radius * options.radius});
+  });
+  return on.copy_out(support.data(), points.size());
+}
+
+}  // namespace detail
+
+/// The least distance over points that have at least `min_points` - 1 other valid points of all clouds within `radius` of them, by world
+/// coordinates in double. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that does, if min_points or most is 0,
+/// most is above 2^20, or the radius is negative or NaN.
+template <class On, robot Robot, class Clouds>
+supported_distance min_distance_supported(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                          const support_options& options = {}) {
+  static_assert(explain_clouds<Clouds>());
+  if (options.min_points == 0 || !(options.radius >= 0))
+    throw std::invalid_argument("clearance: a point cannot be confirmed by " + std::to_string(options.min_points) + " points within " +
+                                std::to_string(options.radius) + " m");
+  const auto model = view_of(robot);
+  minimum::cloud_copies<On> copies;
+  const minimum::readable_on<On> here{on, copies};
+  supported_distance r;
+  for (std::size_t k = std::min<std::size_t>(16, options.most), asked = 0;; k = std::min(4 * k, options.most)) {
+    const nearest_k_result near = nearest_k(on, robot, poses, clouds, k);
+    const auto [points, all] = detail::nearest_points(near);
+    const auto more = std::span(points).subspan(asked);
+    const auto support = detail::count_around(on, model.facts, poses, clouds, more, options, here);
+    const auto its = std::size_t(std::find_if(support.begin(), support.end(), [&](std::uint32_t n) { return n >= options.min_points; }) - support.begin());
+    asked += its;
+    r.counts = near.counts, r.isolated = asked;
+    if (asked > 0) r.nearest_isolated = points[0];
+    if (its < support.size()) {
+      const pair_distance& found = points[asked];
+      r.distance = found.distance, r.cloud = found.cloud, r.point = found.point, r.part = found.part, r.primitive = found.primitive;
+      min_distance_result bracketed;
+      bracketed.distance = found.distance, bracketed.part = found.part;
+      minimum::bracket(bracketed, minimum::certain_distance(found.distance, near.certain.slop, near.certain.error), model.facts[found.part].tolerance, false,
+                       near.certain.error);
+      bracketed.dropped[int(drop_reason::too_close)] = r.counts.dropped[int(drop_reason::too_close)];
+      minimum::allow_for_too_close(bracketed);
+      r.state = bracketed.state, r.lower = bracketed.lower;
+      return r;
+    }
+    if (all || k == options.most) {
+      if (asked > 0) r.state = state::possible, r.distance = all ? infinity : not_a_number;
+      return r;
+    }
+  }
+}
+
+}  // namespace clearance

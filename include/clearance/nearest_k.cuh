@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The k nearest points of each part, on the host or on a device.
+
+#include <clearance/collect.cuh>
+#include <clearance/nearest_k.hpp>

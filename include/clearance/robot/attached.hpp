@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What a robot holds becomes part of it, between two frames.
+
+#include <clearance/robot/model.hpp>
+
+namespace clearance {
+
+/// A robot and an object put on one of its links: both one's parts, the object's behind the robot's, so that poses follow in that order
+/// (an object's is world-from-link * link-from-object). Only views are copied; robot and object must outlive it. It is taken off by
+/// asking the robot itself again.
+template <class PartView, class B = host>
+class attached {
+  static_assert(backend<B>);
+
+ public:
+  attached(const B& on, const model_view<PartView>& robot, const model_view<PartView>& object)
+      : facts_(robot.facts.begin(), robot.facts.end()), depth_(std::max(robot.depth, object.depth)), width_(std::max(robot.width, object.width)) {
+    facts_.insert(facts_.end(), object.facts.begin(), object.facts.end());
+    std::vector<PartView> views = on.copy_out(robot.parts, robot.size());
+    for (const PartView& its : on.copy_out(object.parts, object.size())) views.push_back(its);
+    views_ = on.copy_in(std::span<const PartView>(views));
+  }
+
+  std::size_t size() const { return facts_.size(); }
+  model_view<PartView> view() const { return {views_.data(), facts_, depth_, width_}; }
+
+ private:
+  std::vector<part_facts> facts_;
+  std::uint32_t depth_, width_;
+  typename B::template buffer<PartView> views_;
+};
+
+/// Both have to be where `on` runs, and of the same kind of part: spheres on spheres, meshes on meshes, the same volume in their trees.
+template <backend B, robot Robot, robot Object>
+auto attach(const B& on, const Robot& robot, const Object& object) {
+  using part = typename decltype(view_of(robot))::part_type;
+  static_assert(std::is_same_v<part, typename decltype(view_of(object))::part_type>,
+                "what is attached has to be of the same kind of part as the robot: the same primitives, volumes and interior");
+  return attached<part, B>(on, view_of(robot), view_of(object));
+}
+
+}  // namespace clearance

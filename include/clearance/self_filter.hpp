@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Which points are the robot itself, and how far is the rest? On the host; self_filter.cuh has a device.
+
+#include <clearance/answer/margins.hpp>
+#include <clearance/answer/own_points.hpp>
+#include <clearance/backend/staged.hpp>
+#include <clearance/collect.hpp>
+#include <clearance/frame/masked_clouds.hpp>
+#include <clearance/min_distance.hpp>
+
+#include <cmath>
+
+namespace clearance {
+
+struct self_filter_options {
+  /// Metres around a part that are the robot's: one for all parts, or one a part. It has to cover what a point of the robot's own
+  /// surface can be off: noise, calibration, and the gap of the part's spheres.
+  std::vector<double> padding = {0.01};
+};
+
+/// Whose each point is. A point is the robot's if it certainly is within the padding of a part's solid. If gap, tolerance or rounding
+/// leave that open it is `uncertain`, and not hidden: what is hidden wrongly may be an obstacle, what is kept wrongly stops a robot.
+/// Without a certificate all that is not the robot's is uncertain.
+struct self_filter_result {
+  std::vector<point_label> labels;   ///< One a point of all clouds, in their order.
+  std::vector<std::size_t> offsets;  ///< Those of cloud c are offsets[c] to offsets[c + 1] - 1.
+  std::vector<std::uint32_t> rest;   ///< The numbers of all valid points that are not hidden, ascending.
+  self_filter_counts counts;
+};
+
+/// The same, and the least distance over all points that are not hidden (which is all that its state is about).
+struct filtered_distance {
+  self_filter_result filter;
+  min_distance_result rest;  ///< What is hidden is dropped as `masked`.
+};
+
+namespace detail {
+
+template <class Clouds>
+std::size_t count_points(const Clouds& clouds) {
+  std::size_t points = 0;
+  for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
+  return points;
+}
+
+/// Enqueues it.
+template <class On, class PartView, class Clouds, class Here>
+void label_own(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+               const self_filter_options& options, point_label* labels, self_filter_counts* counts, const Here& here) {
+  const std::size_t given = options.padding.size(), parts = model.size();
+  if (given != 1 && given != parts)
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " + std::to_string(given) + " paddings");
+  std::vector<std::uint32_t> first;
+  const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
+  std::vector<real> reaches(2 * parts);
+  bool all_uncertain = false;
+  for (std::size_t k = 0; k < parts; ++k) {
+    const double padding = options.padding[given == 1 ? 0 : k];
+    if (!(padding >= 0 && padding < double(infinity)))
+      throw std::invalid_argument("clearance: the padding of part " + std::to_string(k) + " is " + std::to_string(padding) +
+                                  " m; it must be finite, and not negative");
+    reaches[parts + k] = pairwise::is_within(padding, model.facts[k], error);
+    reaches[k] = pairwise::may_be_within(padding, model.facts[k], error);
+    if (!(reaches[k] < infinity)) all_uncertain = true, reaches[k] = reaches[parts + k];  // nobody need ask of which point
+  }
+  const std::size_t words = count_points(clouds) / 32 + 1;
+  auto bits = on.template make_scratch<std::uint32_t>(2 * words);
+  auto near = staged(on, reaches);
+  auto start = staged(on, first);
+  std::uint32_t *own = bits.data(), *perhaps = own + words;
+  on.for_each(2 * words, pairwise::clear_own_points{own, counts});
+  pairwise::pairs_on<On>::once(on, model, poses, clouds, pairwise::own_points{own, perhaps, near.data(), near.data() + parts, start.data()},
+                               &counts->points, here);
+  std::uint32_t cloud = 0;
+  for_each_cloud(clouds, [&]<point_source S>(const S& anywhere, const Eigen::Isometry3d&) {
+    on.for_each(anywhere.size(), pairwise::label_points<S>{here(anywhere, cloud), first[cloud], own, perhaps, all_uncertain, labels, counts});
+    ++cloud;
+  });
+}
+
+/// What is there to the host.
+template <class On, class Clouds>
+self_filter_result labelled(const On& on, const Clouds& clouds, const point_label* labels, const self_filter_counts* counts) {
+  self_filter_result all;
+  all.offsets = {0};
+  for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { all.offsets.push_back(all.offsets.back() + source.size()); });
+  all.labels = on.copy_out(labels, all.offsets.back());
+  all.counts = on.copy_out(counts, 1)[0];
+  all.rest.reserve(std::size_t(all.counts.points.valid - all.counts.own));
+  for (std::size_t i = 0; i < all.labels.size(); ++i)
+    if (all.labels[i] == point_label::rest || all.labels[i] == point_label::uncertain) all.rest.push_back(std::uint32_t(i));
+  return all;
+}
+
+}  // namespace detail
+
+/// Which points are the robot itself? `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that does, and if there
+/// are other than one or as many paddings, or one is negative or not finite.
+template <class On, robot Robot, class Clouds>
+self_filter_result self_filter(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                               const self_filter_options& options = {}) {
+  static_assert(explain_clouds<Clouds>());
+  auto labels = on.template make_scratch<point_label>(detail::count_points(clouds));
+  auto counts = on.template make_scratch<self_filter_counts>(1);
+  minimum::cloud_copies<On> copies;
+  detail::label_own(on, view_of(robot), poses, clouds, options, labels.data(), counts.data(), minimum::readable_on<On>{on, copies});
+  return detail::labelled(on, clouds, labels.data(), counts.data());
+}
+
+/// And how far is a robot from the rest? `own` is what is filtered out, such as an arm that a camera sees; `robot` may be another one.
+/// Clouds that `on` cannot read are copied once.
+template <class On, robot Robot, robot Own, class Clouds>
+filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Own& own,
+                                        std::span<const Eigen::Isometry3d> own_poses, const Clouds& clouds, const self_filter_options& options = {}) {
+  static_assert(explain_clouds<Clouds>());
+  const auto& there = minimum::search_on<On>::backend_of(on);
+  using backend = detail::backend_of<On>;
+  auto labels = there.template make_scratch<point_label>(detail::count_points(clouds));
+  auto counts = there.template make_scratch<self_filter_counts>(1);
+  auto result = there.template make_scratch<min_distance_result>(1);
+  minimum::cloud_copies<backend> copies;
+  const minimum::readable_on<backend> here{there, copies};
+  detail::label_own(there, view_of(own), own_poses, clouds, options, labels.data(), counts.data(), here);
+  const auto rest = masked_clouds(clouds, labels.data());
+  minimum::search_on<On>::template once<false>(on, view_of(robot), poses, rest, result.data(), nullptr, here);
+  return {detail::labelled(there, clouds, labels.data(), counts.data()), there.copy_out(result.data(), 1)[0]};
+}
+/// The same robot is filtered out and asked about.
+template <class On, robot Robot, class Clouds>
+filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                        const self_filter_options& options = {}) {
+  return min_distance_filtered(on, robot, poses, robot, poses, clouds, options);
+}
+
+/// Enqueues self_filter, into memory that `on` can write; clouds must be readable where it runs, and stay until it is done. What follows
+/// in the same stream may ask about `masked_clouds(clouds, labels)`.
+template <class On, robot Robot, class Clouds>
+void self_filter_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                       const self_filter_options& options, point_label* labels, self_filter_counts* counts) {
+  static_assert(explain_clouds<Clouds>());
+  detail::label_own(on, view_of(robot), poses, clouds, options, labels, counts, minimum::as_it_is{});
+}
+
+}  // namespace clearance

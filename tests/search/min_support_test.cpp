@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The nearest confirmed point is the first of all, sorted, that has enough others around it.
+#include "support/brute_support.hpp"
+
+#include <clearance/make_model.hpp>
+#include <clearance/min_distance.hpp>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+using clearance::host, clearance::min_distance_supported, clearance::point_span;
+
+namespace {
+
+template <class V, class P>
+void all_scenes() {
+  verdict v;
+  std::size_t isolated = 0, confirmed = 0;
+  for (const auto& s : scenes<P>()) {
+    const auto model = make_model<V>(s, {}, clearance::wrapped{});
+    const auto two = two_clouds(s);
+    for (const std::uint32_t min_points : {1, 2, 4})
+      for (const double radius : {0.0, 0.05, 0.3}) {
+        const clearance::support_options options{.min_points = min_points, .radius = radius * s.size, .most = 1 << 14};
+        const auto r = min_distance_supported(host{}, model, s.poses, two, options);
+        require_same(r, brute_support(s, two, options), v, s.name + ", " + std::to_string(min_points) + " within " + std::to_string(options.radius));
+        if (min_points == 1) {
+          const auto least = clearance::min_distance(host{}, model, s.poses, two);
+          v.require(same_bits(r.distance, least.distance) && r.cloud == least.cloud && r.point == least.point && r.part == least.part &&
+                        r.primitive == least.primitive && r.counts.valid == least.valid,
+                    s.name, ": one point confirms itself");
+        }
+        isolated += r.isolated, confirmed += r.cloud != clearance::none;
+      }
+  }
+  CHECK((isolated > 1000 && confirmed > 20));
+}
+
+const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 1}}), 0.05)}};
+const std::vector poses{Eigen::Isometry3d::Identity()};
+
+}  // namespace
+
+TEST_CASE("The nearest point of spheres that others confirm is the first of all") { all_scenes<clearance::sphere, inner_sphere>(); }
+TEST_CASE("The nearest point of triangles that others confirm is the first of all") { all_scenes<clearance::aabb, triangle>(); }
+
+TEST_CASE("A grain of dust is told apart from a wall, whichever camera sees it") {
+  std::vector<vec3> points{{1.02f, 0, 0}, {0, 1.5f, 0}, {3, 0, 0}, {3, 0.01f, 0}, {clearance::not_a_number, 0, 0}};
+  const std::vector<vec3> other{{3, 0, 0.01f}};
+  const auto ask = [&](std::uint32_t n, std::size_t most = 4096) {
+    return min_distance_supported(host{}, robot, poses, std::tuple(points, other), {.min_points = n, .radius = 0.0141f, .most = most});
+  };
+  const auto wall = ask(3);
+  CHECK((wall.state == clearance::state::free && wall.point == 2 && wall.cloud == 0 && wall.distance == 2 && wall.lower > 1.94f && wall.lower < 1.951f));
+  CHECK((wall.isolated == 2 && wall.nearest_isolated.point == 0 && wall.nearest_isolated.distance < 0.021f && wall.counts.valid == 5));
+  CHECK(ask(1).state == clearance::state::possible);  // the dust may be in the gap
+  const auto nobody = ask(4);
+  CHECK((nobody.state == clearance::state::possible && nobody.distance == clearance::infinity && nobody.lower == 0 && nobody.isolated == 5));
+  const auto few = ask(3, 2);
+  CHECK((few.state == clearance::state::possible && few.distance != few.distance && few.cloud == clearance::none && few.isolated == 2));
+  CHECK(min_distance_supported(host{}, robot, poses, std::vector<vec3>{}).state == clearance::state::no_data);
+  points = {{0.5f, 0, 0}, {0.51f, 0, 0}, {0.5f, 0, 0}};
+  CHECK(ask(3).state == clearance::state::collision);
+}
+
+TEST_CASE("What confirms nothing is refused") {
+  const auto ask = [](clearance::support_options options) { return min_distance_supported(host{}, robot, poses, std::vector<vec3>{{2, 0, 0}}, options); };
+  CHECK_THROWS_AS(ask({.min_points = 0}), std::invalid_argument);
+  CHECK_THROWS_AS(ask({.radius = -1}), std::invalid_argument);
+  CHECK_THROWS_AS(ask({.radius = double(clearance::not_a_number)}), std::invalid_argument);
+  CHECK_THROWS_AS(ask({.most = 0}), std::invalid_argument);
+}

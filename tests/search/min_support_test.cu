@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// On a device the nearest point that others confirm is the host's.
+#include "support/brute_support.hpp"
+#include "support/product_device.cuh"
+
+#include <clearance/make_model.hpp>
+#include <clearance/min_support.cuh>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+using clearance::device, clearance::host, clearance::min_distance_supported, clearance::placed;
+
+TEST_CASE("On a device the nearest point that others confirm is the host's") {
+  verdict v;
+  const device gpu;
+  std::size_t isolated = 0;
+  for (const auto& s : scenes<inner_sphere>()) {
+    const sources<inner_sphere> all(s);
+    const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+    const auto there = model.on(gpu);
+    const std::tuple both(placed{all.span, s.cloud_pose}, placed{all.raw, all.camera_pose});
+    for (const std::uint32_t min_points : {1, 4})
+      for (const double radius : {0.0, 0.1}) {
+        const clearance::support_options options{.min_points = min_points, .radius = radius * s.size};
+        const auto a = min_distance_supported(gpu, there, s.poses, both, options), b = min_distance_supported(host{}, model, s.poses, both, options);
+        require_same(a, b, v, s.name + ", " + std::to_string(min_points) + " within " + std::to_string(options.radius));
+        v.require(a.state == b.state && same_bits(a.lower, b.lower) && a.counts.valid == b.counts.valid, s.name, ": state, bracket or counts");
+        isolated += a.isolated;
+      }
+  }
+  CHECK(isolated > 100);
+}

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The k nearest points of each part are those of a plain loop over all points and primitives, sorted and cut.
+#include "support/brute_nearest.hpp"
+
+#include <clearance/make_model.hpp>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+using clearance::host, clearance::nearest_k, clearance::point_span;
+
+namespace {
+
+template <class V, class P>
+void all_scenes() {
+  verdict v;
+  for (const auto& s : scenes<P>()) {
+    const auto model = make_model<V>(s, {}, clearance::wrapped{});
+    const auto two = two_clouds(s);
+    for (const std::size_t k : {1, 7, 400})
+      for (const real d_max : {real(-0.02), real(0.3), clearance::infinity}) {
+        const real most = d_max * real(s.size);
+        const std::string what = s.name + ", " + std::to_string(k) + " within " + std::to_string(most);
+        const auto expected = brute_nearest(s, two, k, most);
+        require_same(nearest_k(host{}, model, s.poses, two, k, {most}), expected, v, what);
+        require_same(nearest_k(host{1}, model, s.poses, two, k, {most}), expected, v, what + ", one thread");
+      }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("The k nearest points of inner spheres are the first of all, in order") { all_scenes<clearance::sphere, inner_sphere>(); }
+TEST_CASE("The k nearest points of triangles are the first of all, in order") { all_scenes<clearance::aabb, triangle>(); }
+
+TEST_CASE("The nearest of very many that are about equally near, or exactly") {
+  verdict v;
+  dice d(41);
+  scene<inner_sphere> s;
+  s.parts = {{{{0, 0, 0}, 0.5f}}, {{{20, 0, 0}, 0.1f}, {{0, 0, 0}, 0.25f}}}, s.poses = {shifted(0, 0, 0), shifted(0.125, 0, 0)};
+  for (int i = 0; i < 200000; ++i) s.points.push_back(clearance::scaled(2 + 1e-4f * d.number(0, 1), d.direction()));  // a shell: more than one pass
+  for (int i = 0; i < 100000; ++i) s.points.push_back({i % 2 ? 2.0f : -2.0f, 0, 0});
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const clouds cloud{{point_span(s.points)}};
+  for (const std::size_t k : {1, 10, 3000, 150000})
+    require_same(nearest_k(host{}, model, s.poses, cloud, k), brute_nearest(s, cloud, k, clearance::infinity), v, std::to_string(k));
+}
+
+TEST_CASE("How many and how far are numbers, and no point is no pair") {
+  const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 1}}))}};
+  const std::vector poses{Eigen::Isometry3d::Identity()};
+  const std::vector<vec3> points{{3, 0, 0}, {2, 0, 0}, {clearance::not_a_number, 0, 0}};
+  const auto r = nearest_k(host{}, robot, poses, points, 3);
+  CHECK((r.of(0)[0].point == 1 && r.of(0)[1].point == 0 && r.of(0)[2].point == clearance::none && r.of(0)[2].distance == clearance::infinity));
+  CHECK((r.counts.seen == 3 && r.counts.valid == 2 && r.certain.lower(r.of(0)[0].distance) > 0.99f));
+  CHECK(nearest_k(host{}, robot, poses, points, 2, {1.5f}).of(0)[1].point == clearance::none);
+  CHECK(nearest_k(host{}, robot, poses, std::vector<vec3>{}, 1).of(0)[0].cloud == clearance::none);
+  CHECK_THROWS_AS(nearest_k(host{}, robot, poses, points, 0), std::invalid_argument);
+  CHECK_THROWS_AS(nearest_k(host{}, robot, poses, points, std::size_t(1) << 21), std::invalid_argument);
+  CHECK_THROWS_AS(nearest_k(host{}, robot, poses, points, 1, {clearance::not_a_number}), std::invalid_argument);
+}

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// On a device the robot's own points and the minimum of the rest are the host's, and both go into a graph.
+#include "support/brute_own.hpp"
+#include "support/held_stream.cuh"
+#include "support/product_device.cuh"
+
+#include <clearance/make_model.hpp>
+#include <clearance/robot/attached.hpp>
+#include <clearance/self_filter.cuh>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+using clearance::device, clearance::host, clearance::min_distance_filtered, clearance::placed, clearance::point_label, clearance::point_span,
+    clearance::self_filter;
+
+namespace {
+
+template <class V, class P>
+void all_scenes() {
+  verdict v;
+  const device gpu;
+  for (const auto& s : scenes<P>()) {
+    const sources<P> all(s);
+    const auto model = make_model<V>(s, {}, clearance::wrapped{});
+    const auto there = model.on(gpu);
+    const auto each = [&](const auto& clouds, const std::string& what) {
+      for (const double padding : {0.0, 0.02, 0.4}) {
+        const clearance::self_filter_options options{.padding = {padding * s.size}};
+        const auto a = min_distance_filtered(gpu, there, s.poses, clouds, options), b = min_distance_filtered(host{}, model, s.poses, clouds, options);
+        require_same(a.filter, b.filter, v, s.name + what);
+        require_same(self_filter(gpu, there, s.poses, clouds, options), b.filter, v, s.name + what + ", alone");
+        v.require(same_result(a.rest, b.rest), s.name + what, ": the rest differs");
+      }
+    };
+    each(two_clouds(s), "");
+    each(std::tuple(placed{all.raw, all.camera_pose}, placed{all.floats, s.cloud_pose}), ", a depth image and records");
+  }
+}
+
+}  // namespace
+
+TEST_CASE("On a device points of a robot of spheres are hidden as on the host") { all_scenes<clearance::sphere, inner_sphere>(); }
+TEST_CASE("On a device points of a robot of triangles are hidden as on the host") { all_scenes<clearance::aabb, triangle>(); }
+
+TEST_CASE("A crowd around three parts, one of them held by the others: filter and rest in a graph") {
+  verdict v;
+  own_stream stream;
+  const device gpu{.stream = stream.handle};
+  const auto s = crowd(98);
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const auto there = model.on(gpu);
+  const clearance::model arm_here{std::vector{model.parts()[0], model.parts()[1]}}, tool_here{std::vector{model.parts()[2]}};
+  const auto arm = arm_here.on(gpu), tool = tool_here.on(gpu);
+  const auto both = attach(gpu, arm, tool);
+  const clearance::self_filter_options options{.padding = {0.05}};
+  const auto expected = min_distance_filtered(host{}, model, s.poses, point_span(s.points), options);
+  CHECK(expected.filter.counts.own > 10000);
+  const auto found = min_distance_filtered(gpu, both, s.poses, point_span(s.points), options);
+  require_same(found.filter, expected.filter, v, "attached");
+  v.require(same_result(found.rest, expected.rest), "attached: the rest differs");
+
+  const auto points = gpu.copy_in(std::span(s.points));
+  const point_span cloud(points.data(), points.size());
+  const auto labels = gpu.copy_in(std::span<const point_label>(std::vector<point_label>(s.points.size())));
+  const auto counts = gpu.copy_in(std::span<const clearance::self_filter_counts>(std::vector<clearance::self_filter_counts>(1)));
+  const auto result = gpu.copy_in(std::span<const clearance::min_distance_result>(std::vector<clearance::min_distance_result>(1)));
+  const auto enqueue = [&] {
+    clearance::self_filter_async(gpu, there, s.poses, cloud, options, labels.data(), counts.data());
+    clearance::min_distance_async(gpu, there, s.poses, clearance::masked_clouds(cloud, labels.data()), result.data());
+  };
+  enqueue();  // once, as loading a kernel is not for a graph
+  gpu.wait();
+  cudaGraph_t graph = nullptr;
+  cudaGraphExec_t ready = nullptr;
+  check(cudaStreamBeginCapture(stream.handle, cudaStreamCaptureModeThreadLocal));
+  enqueue();
+  check(cudaStreamEndCapture(stream.handle, &graph));
+  check(cudaGraphInstantiate(&ready, graph, 0));
+  for (int frame = 0; frame < 3; ++frame) {
+    check(cudaMemsetAsync(labels.data(), 0x55, labels.size(), stream.handle));
+    check(cudaMemsetAsync(result.data(), 0x55, sizeof(clearance::min_distance_result), stream.handle));
+    check(cudaGraphLaunch(ready, stream.handle));
+    v.require(gpu.copy_out(labels) == expected.filter.labels, "frame ", frame, " of a graph: some label differs");
+    v.require(same_result(gpu.copy_out(result)[0], expected.rest), "frame ", frame, " of a graph: the rest differs");
+    v.require(gpu.copy_out(counts)[0].own == expected.filter.counts.own, "frame ", frame, " of a graph: counts");
+  }
+  check(cudaGraphExecDestroy(ready));
+  check(cudaGraphDestroy(graph));
+}

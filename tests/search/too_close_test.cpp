@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a sensor saw nearer than it can measure is counted, and nothing is free then.
+#include "support/catch.hpp"
+#include "support/laws.hpp"
+#include "support/too_close_frame.hpp"
+
+#include <clearance/answer/merge.hpp>
+#include <clearance/in_collision.hpp>
+#include <clearance/make_model.hpp>
+#include <clearance/min_distance.hpp>
+#include <clearance/min_support.hpp>
+#include <clearance/traversal/near_first.hpp>
+#include <clearance/volume/sphere.hpp>
+#include <clearance/zones.hpp>
+
+using namespace testing;
+using clearance::drop_reason, clearance::host, clearance::min_distance, clearance::state;
+
+namespace {
+
+const std::vector poses{Eigen::Isometry3d::Identity()};
+const auto robot = clearance::make_model<clearance::sphere>(ball_before_it);
+
+}  // namespace
+
+TEST_CASE("A depth of -inf is too close, +inf and NaN are not, and the survey says what each pixel does") {
+  const too_close_frame frame(20, 3, 7);
+  verdict v;
+  for (const bool near : {true, false}) {
+    auto image = frame.image();
+    auto rays = frame.with_rays();
+    image.minus_infinity_is_near = rays.minus_infinity_is_near = near;
+    std::uint32_t all[clearance::drop_reasons] = {};
+    for (std::size_t begin = 0; begin < image.size(); begin += clearance::surveyed_points) {
+      clearance::extent box;
+      std::uint32_t dropped[clearance::drop_reasons] = {}, expected[clearance::drop_reasons] = {};
+      for (std::size_t i = begin; i < begin + clearance::surveyed_points; ++i) {
+        v.require(image[i].dropped == rays[i].dropped, "pixel ", i, " with a ray");
+        if (!image[i].valid()) ++expected[int(image[i].dropped)], ++all[int(image[i].dropped)];
+      }
+      v.require(image.survey(begin, box, dropped) && std::ranges::equal(dropped, expected), "the tile from ", begin, " on");
+    }
+    CHECK((all[int(drop_reason::too_close)] == (near ? 20u : 0u) && all[int(drop_reason::not_finite)] == (near ? 10u : 30u)));
+  }
+}
+
+TEST_CASE("Nothing is free in a frame with something too close") {
+  const too_close_frame clear(0, 9), blocked(1);
+  const auto free = min_distance(host{}, robot, poses, clear.image()), r = min_distance(host{}, robot, poses, blocked.image());
+  CHECK((free.state == state::free && free.lower > 1.7f));
+  CHECK((r.state == state::possible && r.lower == 0 && r.distance == free.distance && r.dropped[int(drop_reason::too_close)] == 1));
+  CHECK(clearance::min_distance_per_part(host{}, robot, poses, blocked.image()).first.state == state::possible);
+  CHECK(min_distance(clearance::plain{host{}, clearance::near_first{}}, robot, poses, blocked.image()).state == state::possible);
+  auto told = blocked.image();
+  told.minus_infinity_is_near = false;
+  CHECK(min_distance(host{}, robot, poses, told).state == state::free);
+  CHECK(clearance::in_collision(host{}, robot, poses, clear.image(), 0.1).state == state::free);
+  CHECK(clearance::in_collision(host{}, robot, poses, blocked.image(), 0.1).state == state::possible);
+  CHECK(clearance::zones(host{}, robot, poses, clear.image(), {.thresholds = {0.1}}).innermost() == 1);
+  CHECK(clearance::zones(host{}, robot, poses, blocked.image(), {.thresholds = {0.1}}).innermost() == 0);
+  const auto supported = clearance::min_distance_supported(host{}, robot, poses, blocked.image(), {.radius = 0.1});
+  CHECK((supported.state == state::possible && supported.lower == 0 && supported.distance == free.distance));
+}
+
+TEST_CASE("One camera that is covered leaves nothing free for all") {
+  const too_close_frame clear(0), blocked(1);
+  const auto both = std::vector{clear.image(), blocked.image()};
+  CHECK(min_distance(host{}, robot, poses, both).state == state::possible);
+  const std::vector<float> covered(64 * 48, -clearance::infinity);
+  const clearance::depth_image<float> nothing(covered.data(), 64, 48, {60, 60, 31.5, 23.5});
+  const auto a = min_distance(host{}, robot, poses, clear.image()), b = min_distance(host{}, robot, poses, nothing);
+  CHECK((a.state == state::free && b.state == state::no_data && b.dropped[int(drop_reason::too_close)] == covered.size()));
+  CHECK((merge(a, b).state == state::possible && merge(b, a).lower == 0));
+}
