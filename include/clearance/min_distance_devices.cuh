@@ -3,6 +3,7 @@
 // How far is a robot from everything that its sensors see? On several devices at once: each is asked about a piece of every cloud.
 
 #include <clearance/backend/devices.cuh>
+#include <clearance/backend/kept_pinned.cuh>
 #include <clearance/backend/shards.cuh>
 #include <clearance/min_distance_query.cuh>
 #include <clearance/robot/replicas.hpp>
@@ -19,14 +20,16 @@ namespace clearance {
 template <class PartView>
 class min_distance_query<devices, PartView> {
  public:
-  /// `memory` for its own use: none, or for each device a resource that hands out memory of it. Throws std::invalid_argument if the
-  /// robot is not on these devices, and as on one device.
+  /// `memory` for its own use: none, or for each device a resource that hands out memory of it; `pinned` one that hands out pinned
+  /// memory. Throws std::invalid_argument if the robot is not on these devices, and as on one device.
   template <robot Robot>
-  min_distance_query(const devices& on, const Robot& robot, std::span<std::pmr::memory_resource* const> memory = {}) : on_(on) {
+  min_distance_query(const devices& on, const Robot& robot, std::span<std::pmr::memory_resource* const> memory = {},
+                     std::pmr::memory_resource* pinned = nullptr)
+      : on_(on) {
     const auto view = view_of(robot);
     static_assert(requires { view.each; }, "several devices take a robot that is on each of them: model.on(devices)");
     check(view.each, memory.size());
-    for (std::size_t k = 0; k < on.size(); ++k) each_.emplace_back(on.each()[k], view.each[k], memory.empty() ? nullptr : memory[k]);
+    for (std::size_t k = 0; k < on.size(); ++k) each_.emplace_back(on.each()[k], view.each[k], memory.empty() ? nullptr : memory[k], pinned);
   }
 
   /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
@@ -123,7 +126,7 @@ struct search_on<devices> {
     std::deque<stream_resource> memory;
     std::vector<std::pmr::memory_resource*> of_each;
     for (const device& its : on.each()) of_each.push_back(&memory.emplace_back(its.id, its.stream));
-    min_distance_query<devices, PartView> query(on, robot, of_each);
+    min_distance_query<devices, PartView> query(on, robot, of_each, kept_pinned());
     if constexpr (PerPart)
       *result = query.per_part(poses, clouds, std::span(minima, robot.size()));
     else

@@ -9,14 +9,14 @@ namespace clearance {
 
 /// The prepared question on a device: one kernel a cloud, no allocation and no synchronisation after the first call. The answer
 /// equals min_distance's to the bit. Memory for its own use comes from `memory`, a resource that hands out device memory, if one
-/// is given.
+/// is given; and from `pinned`, which hands out pinned memory.
 template <class PartView>
 class min_distance_query<device, PartView> {
  public:
   /// Throws std::invalid_argument if there are more parts than a kernel takes, or trees too deep or wide for its stacks.
   template <robot Robot>
-  min_distance_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr)
-      : on_(on), memory_(memory), search_(on, view_of(robot), memory), answer_(1, on.id), minima_(search_.parts(), on.id) {
+  min_distance_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr, std::pmr::memory_resource* pinned = nullptr)
+      : on_(on), memory_(memory), search_(on, view_of(robot), memory), answer_(1, on.id, pinned), minima_(search_.parts(), on.id, pinned) {
     on_.wait();
     answer_.data()->done = 0;
   }

@@ -371,8 +371,9 @@ class counting_resource : public std::pmr::memory_resource {
 TEST_CASE("What cannot be is refused with a sentence, and leaves nothing behind") {
   dice d(8);
   const int there = gpus();
-  CHECK(refused([] { devices{}; }) == "clearance: devices, but not one of them");
-  CHECK(refused([] { devices(std::vector<device>{}); }) == "clearance: devices, but not one of them");
+  static_assert(!std::is_default_constructible_v<devices>);
+  CHECK(refused([] { devices(std::vector<int>()); }) == "clearance: devices, but not one of them");
+  CHECK(refused([] { devices(std::vector<device>()); }) == "clearance: devices, but not one of them");
   const std::string none = "clearance: there is no CUDA device " + std::to_string(there) + "; this process sees " + std::to_string(there);
   CHECK(refused([&] { devices{0, there}; }) == none);
   CHECK(refused([&] { devices(std::vector{device{there}}); }) == none);

@@ -16,6 +16,8 @@ class devices {
  public:
   using own_scan = void;  ///< Operations on devices need their .cuh headers.
 
+  devices() = delete;  // nvcc 13.0 would take devices{} for devices{0}
+
   /// By number. Throws std::invalid_argument if there is none, or one that does not exist.
   devices(std::initializer_list<int> ids) : devices(std::vector<int>(ids)) {}
   explicit devices(const std::vector<int>& ids) {
