@@ -8,6 +8,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <chrono>
 #include <map>
 
 namespace bench {
@@ -26,6 +28,35 @@ inline const std::vector<clearance::vec3>& repeated(const std::vector<clearance:
     points.push_back({p.x + noise(bits), p.y + noise(bits), p.z + noise(bits)});
   }
   return points;
+}
+
+/// Times `calls` calls by the host's clock, after `others` that do not count; `before` comes before each, untimed.
+template <class F, class Before>
+void percentiles(benchmark::State& state, std::size_t calls, std::size_t others, F call, Before before) {
+  std::vector<double> us;
+  for (auto _ : state) {
+    for (std::size_t k = 0; k < calls + others; ++k) {
+      before();
+      const auto start = std::chrono::steady_clock::now();
+      call(k);
+      if (k >= others) us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
+    }
+  }
+  std::sort(us.begin(), us.end());
+  state.SetIterationTime(us[us.size() / 2] * 1e-6);
+  state.counters["p99_9_us"] = us[us.size() * 999 / 1000];
+  state.counters["max_us"] = us.back();
+}
+template <class F>
+void percentiles(benchmark::State& state, std::size_t calls, F call) {
+  percentiles(state, calls, 100, call, [] {});
+}
+
+template <class T>
+clearance::pinned_buffer<T> pinned(const std::vector<T>& data, const clearance::device& gpu) {
+  clearance::pinned_buffer<T> copy(data.size(), gpu.id);
+  std::copy(data.begin(), data.end(), copy.data());
+  return copy;
 }
 
 inline bool no_device(benchmark::State& state) {

@@ -7,8 +7,6 @@
 #include <clearance/points/depth_image.hpp>
 #include <clearance/volume/sphere.hpp>
 
-#include <algorithm>
-
 namespace {
 
 using namespace bench;
@@ -17,30 +15,6 @@ using clearance::device, clearance::vec3;
 const auto& robot() {
   static const auto model = sphere_model<clearance::sphere>(the_scene());
   return model;
-}
-
-/// Times `calls` calls by the host's clock, after a hundred that do not count.
-template <class F>
-void percentiles(benchmark::State& state, std::size_t calls, F call) {
-  std::vector<double> us;
-  for (auto _ : state) {
-    for (std::size_t k = 0; k < calls + 100; ++k) {
-      const auto start = std::chrono::steady_clock::now();
-      call(k);
-      if (k >= 100) us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
-    }
-  }
-  std::sort(us.begin(), us.end());
-  state.SetIterationTime(us[us.size() / 2] * 1e-6);
-  state.counters["p99_9_us"] = us[us.size() * 999 / 1000];
-  state.counters["max_us"] = us.back();
-}
-
-template <class T>
-clearance::pinned_buffer<T> pinned(const std::vector<T>& data, const device& gpu) {
-  clearance::pinned_buffer<T> copy(data.size(), gpu.id);
-  std::copy(data.begin(), data.end(), copy.data());
-  return copy;
 }
 
 enum class way { given, copied, copy_alone };

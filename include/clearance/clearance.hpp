@@ -13,8 +13,8 @@
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/min_distance_query.hpp>
-#include <clearance/motion_clearance.hpp>
 #include <clearance/min_support.hpp>
+#include <clearance/motion_clearance.hpp>
 #include <clearance/nearest_k.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/part_witnesses.hpp>
@@ -26,8 +26,8 @@
 #include <clearance/primitive/triangle.hpp>
 #include <clearance/robot/attached.hpp>
 #include <clearance/robot/model.hpp>
-#include <clearance/separation.hpp>
 #include <clearance/self_filter.hpp>
+#include <clearance/separation.hpp>
 #include <clearance/solid/implicit.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/traversal/near_first.hpp>

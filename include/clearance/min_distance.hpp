@@ -14,8 +14,8 @@ template <class On>
 using backend_of = std::remove_cvref_t<decltype(minimum::search_on<On>::backend_of(std::declval<const On&>()))>;
 
 /// One frame, waited for.
-template <bool PerPart, class On, class PartView, class Clouds>
-min_distance_result least_distance(const On& on, const model_view<PartView>& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+template <bool PerPart, class On, class View, class Clouds>
+min_distance_result least_distance(const On& on, const View& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                    std::vector<part_minimum>* minima = nullptr) {
   const auto& there = minimum::search_on<On>::backend_of(on);
   auto result = there.template make_scratch<min_distance_result>(1);

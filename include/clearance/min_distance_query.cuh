@@ -9,14 +9,14 @@ namespace clearance {
 
 /// The prepared question on a device: one kernel a cloud, no allocation and no synchronisation after the first call. The answer
 /// equals min_distance's to the bit. Memory for its own use comes from `memory`, a resource that hands out device memory, if one
-/// is given.
+/// is given; and from `pinned`, which hands out pinned memory.
 template <class PartView>
 class min_distance_query<device, PartView> {
  public:
   /// Throws std::invalid_argument if there are more parts than a kernel takes, or trees too deep or wide for its stacks.
   template <robot Robot>
-  min_distance_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr)
-      : on_(on), memory_(memory), search_(on, view_of(robot), memory), answer_(1, on.id), minima_(search_.parts(), on.id) {
+  min_distance_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr, std::pmr::memory_resource* pinned = nullptr)
+      : on_(on), memory_(memory), search_(on, view_of(robot), memory), answer_(1, on.id, pinned), minima_(search_.parts(), on.id, pinned) {
     on_.wait();
     answer_.data()->done = 0;
   }
@@ -63,6 +63,9 @@ class min_distance_query<device, PartView> {
   }
 
  private:
+  template <class, class>
+  friend class min_distance_query;  // that of several devices asks one on each
+
   struct answer {
     min_distance_result result;
     std::uint32_t done;
@@ -70,12 +73,22 @@ class min_distance_query<device, PartView> {
 
   template <bool PerPart, class Clouds>
   min_distance_result ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
-    const std::uint32_t number = ++frame_number_;
+    begin<PerPart>(poses, clouds, [](const auto& source) { return source; });
+    return answered();
+  }
+  /// Enqueues a frame of what `piece(source)` takes of each cloud.
+  template <bool PerPart, class Clouds, class Piece>
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Piece& piece) {
+    ++frame_number_;
     search_.template enqueue<PerPart>(poses, clouds, &answer_.data()->result, minima_.data(),
-                                      [this](const auto& source, std::uint32_t cloud) { return readable(source, cloud); }, &answer_.data()->done, number);
+                                      [&](const auto& source, std::uint32_t cloud) { return readable(piece(source), cloud); },
+                                      &answer_.data()->done, frame_number_);
+  }
+  /// Waits for it.
+  const min_distance_result& answered() const {
     const volatile std::uint32_t& done = answer_.data()->done;
-    for (unsigned spins = 1; done != number; ++spins)
-      if (spins % 4096 == 0 && cudaStreamQuery(on_.stream) != cudaErrorNotReady && done != number) on_.wait();
+    for (unsigned spins = 1; done != frame_number_; ++spins)
+      if (spins % 4096 == 0 && cudaStreamQuery(on_.stream) != cudaErrorNotReady && done != frame_number_) on_.wait();
     return answer_.data()->result;
   }
 
@@ -88,7 +101,7 @@ class min_distance_query<device, PartView> {
       auto& copy = copies_[cloud];
       if (copy.size() < bytes.size()) copy = device_buffer<std::byte>(bytes.size(), on_.id, memory_);
       const device_guard guard(on_.id);
-      check_cuda(cudaMemcpyAsync(copy.data(), bytes.data(), bytes.size(), cudaMemcpyHostToDevice, on_.stream), "cudaMemcpyAsync");
+      check_cuda(cudaMemcpyAsync(copy.data(), bytes.data(), bytes.size(), cudaMemcpyDefault, on_.stream), "cudaMemcpyAsync");
       return source.at(copy.data());
     }
     return source;

@@ -6,7 +6,7 @@
 #include "support/product_device.cuh"
 
 #include <clearance/distances.cuh>
-#include <clearance/min_distance_query.cuh>
+#include <clearance/min_distance_devices.cuh>
 #include <clearance/volume/sphere.hpp>
 
 namespace {
@@ -73,6 +73,9 @@ TEST_CASE("Prepared questions allocate nothing, and do not wait, after their fir
   const placed here{all.span, s.cloud_pose}, cloud{all.span.at(points.data()), s.cloud_pose};
   const std::tuple clouds{cloud, placed{all.raw.at(pixels.data()), all.camera_pose}};
   clearance::min_distance_query query(gpu, model);
+  const clearance::devices twice{0, 0};
+  const auto on_both = make_model<clearance::sphere>(s, {}, clearance::wrapped{}).on(twice);
+  clearance::min_distance_query together(twice, on_both);
   clearance::pointwise::device_points<typename decltype(model)::view_type> each(gpu, model.view());
   std::vector<clearance::part_minimum> minima(model.size());
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
@@ -85,6 +88,7 @@ TEST_CASE("Prepared questions allocate nothing, and do not wait, after their fir
   const auto frames = [&] {
     query(s.poses, cloud), query(s.poses, clouds), query(s.poses, here);  // the last from host memory
     query.per_part(s.poses, clouds, minima);
+    together(s.poses, clouds), together(s.poses, here), together.per_part(s.poses, clouds, minima);
     query.enqueue(s.poses, clouds, result.data());
     query.enqueue_per_part(s.poses, cloud, result.data(), there.data());
     query.enqueue(poses.data(), cloud.source, nullptr, result.data());

@@ -145,6 +145,7 @@ struct device {
     const device_guard guard(id);
     cudaPointerAttributes attributes{};
     check_cuda(cudaPointerGetAttributes(&attributes, memory), "cudaPointerGetAttributes");
+    if (attributes.type == cudaMemoryTypeDevice) return attributes.device == id;
     if (attributes.type != cudaMemoryTypeHost) return reads(memory);
     int integrated = 0;
     check_cuda(cudaDeviceGetAttribute(&integrated, cudaDevAttrIntegrated, id), "cudaDeviceGetAttribute");

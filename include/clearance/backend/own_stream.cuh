@@ -8,9 +8,9 @@ namespace clearance {
 /// A stream for work beside other work of the same device. Do not destroy it before all that was given to it is done.
 class own_stream {
  public:
-  explicit own_stream(int id) : id_(id) {
+  explicit own_stream(int id, unsigned flags = cudaStreamNonBlocking) : id_(id) {
     const device_guard guard(id);
-    check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
+    check_cuda(cudaStreamCreateWithFlags(&stream_, flags), "cudaStreamCreateWithFlags");
   }
   own_stream(const own_stream&) = delete;
   own_stream& operator=(const own_stream&) = delete;

@@ -103,6 +103,12 @@ struct depth_image {
   }
 
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(pixels, std::size_t(row) * height)); }
+  /// What points `begin` to `end - 1` need of it: their rows.
+  std::span<const std::byte> bytes(std::size_t begin, std::size_t end) const {
+    if (begin == end) return {};
+    const std::size_t first = begin / width, count = (end - 1) / width + 1 - first;
+    return std::as_bytes(std::span(pixels + first * row, count * row));
+  }
   depth_image at(const std::byte* copy) const {
     depth_image moved = *this;
     moved.pixels = reinterpret_cast<const Pixel*>(copy);

@@ -74,6 +74,12 @@ struct ray_image {
   position_error rounding() const { return {0, 4 * 0x1.001p-24}; }
 
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(pixels, std::size_t(row) * height)); }
+  /// What points `begin` to `end - 1` need of it: their rows.
+  std::span<const std::byte> bytes(std::size_t begin, std::size_t end) const {
+    if (begin == end) return {};
+    const std::size_t first = begin / width, count = (end - 1) / width + 1 - first;
+    return std::as_bytes(std::span(pixels + first * row, count * row));
+  }
   ray_image at(const std::byte* copy) const {
     ray_image moved = *this;
     moved.pixels = reinterpret_cast<const Pixel*>(copy);

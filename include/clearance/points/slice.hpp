@@ -62,15 +62,25 @@ struct sliced : detail::fetched_types<S> {
   }
   position_error rounding() const { return rounding_of(whole); }
 
+  /// All of the source's; or of one that has `bytes(begin, end)` what these points need, from a multiple of 256 on, as copies are aligned.
   std::span<const std::byte> bytes() const
     requires requires(const S s) { s.bytes(); }
   {
-    return whole.bytes();
+    const std::span<const std::byte> all = whole.bytes();
+    if constexpr (requires { whole.bytes(begin, begin); }) {
+      const std::span<const std::byte> some = whole.bytes(begin, begin + count);
+      if (some.empty()) return {};
+      const auto before = std::size_t(some.data() - all.data()) / 256 * 256;
+      return all.subspan(before, std::size_t(some.data() + some.size() - all.data()) - before);
+    }
+    return all;
   }
   sliced at(const std::byte* copy) const
     requires requires(const S s, const std::byte* b) { s.at(b); }
   {
-    return sliced(whole.at(copy), begin, count);
+    if (count == 0) return *this;
+    const auto before = reinterpret_cast<std::uintptr_t>(bytes().data()) - reinterpret_cast<std::uintptr_t>(whole.bytes().data());
+    return sliced(whole.at(reinterpret_cast<const std::byte*>(reinterpret_cast<std::uintptr_t>(copy) - before)), begin, count);
   }
 };
 

@@ -59,6 +59,12 @@ struct strided_points {
   CLEARANCE_HD bool unfiltered() const { return filter.plain(); }
 
   std::span<const std::byte> bytes() const { return {data, width == 0 ? count * step : (count + width - 1) / width * row_step}; }
+  /// What points `begin` to `end - 1` need of it.
+  std::span<const std::byte> bytes(std::size_t begin, std::size_t end) const {
+    if (begin == end) return {};
+    if (width == 0) return {data + begin * step, (end - begin) * step};
+    return {data + begin / width * row_step, ((end - 1) / width + 1 - begin / width) * row_step};
+  }
   strided_points at(const std::byte* copy) const {
     strided_points moved = *this;
     moved.data = copy;

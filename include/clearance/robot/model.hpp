@@ -33,6 +33,9 @@ auto view_of(const Robot& r) {
     return r;
 }
 
+template <class Model>
+class replicas;  // of several backends: robot/replicas.hpp
+
 /// Owns the parts of a robot in the memory of one backend. Parts are numbered as given.
 template <class Part, class B = host>
 class model {
@@ -64,6 +67,14 @@ class model {
     std::vector<decltype(parts_[0].on(other))> copies;
     for (const Part& p : parts_) copies.push_back(p.on(other));
     return model<decltype(parts_[0].on(other)), Other>(std::move(copies), other);
+  }
+  /// A copy on each of several backends.
+  template <class Several>
+    requires requires(const Several several) { several.each(); }
+  auto on(const Several& several) const {
+    std::vector<decltype(on(several.each()[0]))> copies;
+    for (const auto& other : several.each()) copies.push_back(on(other));
+    return replicas<decltype(on(several.each()[0]))>(std::move(copies));
   }
 
  private:

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/backend/own_stream.cuh>
+
+#include <initializer_list>
+#include <memory>
+#include <vector>
+
+namespace clearance {
+
+/// Several CUDA devices at once: the robot is on each, and every cloud is divided among them. Each has a stream of its own, behind what
+/// is in its device's default stream; or one of the caller's. A device may be named twice. Copies of this value share the streams. The
+/// caller's current device is left as it was.
+class devices {
+ public:
+  using own_scan = void;  ///< Operations on devices need their .cuh headers.
+
+  devices() = delete;  // nvcc 13.0 would take devices{} for devices{0}
+
+  /// By number. Throws std::invalid_argument if there is none, or one that does not exist.
+  devices(std::initializer_list<int> ids) : devices(std::vector<int>(ids)) {}
+  explicit devices(const std::vector<int>& ids) {
+    for (const int id : ids) {
+      check_exists(id);
+      streams_.push_back(std::make_shared<own_stream>(id, cudaStreamDefault));
+      each_.push_back(streams_.back()->on());
+    }
+    check_any();
+  }
+  /// With streams of the caller's, which outlive this. Throws std::invalid_argument, too, if a stream belongs to another device.
+  explicit devices(std::vector<device> each) : each_(std::move(each)) {
+    check_any();
+    for (const device& on : each_) check_exists(on.id), check_stream(on);
+  }
+  /// All that this process sees.
+  static devices all() {
+    std::vector<int> ids;
+    for (int id = 0; id < count(); ++id) ids.push_back(id);
+    return devices(ids);
+  }
+
+  const std::vector<device>& each() const { return each_; }
+  std::size_t size() const { return each_.size(); }
+
+  void wait() const {
+    for (const device& on : each_) on.wait();
+  }
+
+ private:
+  static int count() {
+    int there = 0;
+    check_cuda(cudaGetDeviceCount(&there), "cudaGetDeviceCount");
+    return there;
+  }
+  void check_any() const {
+    if (each_.empty()) throw std::invalid_argument("clearance: devices, but not one of them");
+  }
+  static void check_exists(int id) {
+    if (const int there = count(); id < 0 || id >= there)
+      throw std::invalid_argument("clearance: there is no CUDA device " + std::to_string(id) + "; this process sees " + std::to_string(there));
+  }
+  /// An event does not go into a stream of another device. (To ask a stream for its device needs CUDA 12.8.)
+  static void check_stream(const device& on) {
+    const device_guard guard(on.id);
+    cudaEvent_t event = nullptr;
+    check_cuda(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "cudaEventCreateWithFlags");
+    const cudaError_t recorded = cudaEventRecord(event, on.stream);
+    cudaEventDestroy(event);
+    if (recorded == cudaErrorInvalidResourceHandle || recorded == cudaErrorInvalidValue) {
+      static_cast<void>(cudaGetLastError());
+      throw std::invalid_argument("clearance: the stream that was given for device " + std::to_string(on.id) + " is not one of that device");
+    }
+    check_cuda(recorded, "cudaEventRecord");
+  }
+
+  std::vector<std::shared_ptr<const own_stream>> streams_;
+  std::vector<device> each_;
+};
+
+}  // namespace clearance

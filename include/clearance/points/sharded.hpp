@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Pieces of a cloud are a cloud: what a slice takes apart, side by side again.
+
+#include <clearance/points/slice.hpp>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace clearance {
+
+/// Sources of one kind, one behind another: points are numbered through all of them, and each piece may be in the memory of another
+/// device. It may be empty. At most 16.
+template <point_source S>
+class sharded {
+ public:
+  static constexpr std::size_t most = 16;  // as an argument of a kernel it has 4 KiB
+
+  /// Throws std::invalid_argument if there is no piece, or there are too many.
+  explicit sharded(const std::vector<S>& pieces) : sharded(checked(pieces), std::make_index_sequence<most>()) {}
+
+  CLEARANCE_HD std::size_t size() const { return first_[most]; }
+  CLEARANCE_HD sample operator[](std::size_t i) const {
+    std::uint32_t k = 0;
+    while (i >= first_[k + 1]) ++k;
+    return piece_[k][i - first_[k]];
+  }
+  /// The worst of all pieces.
+  position_error rounding() const {
+    position_error worst;
+    for (const S& piece : piece_) {
+      const position_error its = rounding_of(piece);
+      worst = {std::max(worst.absolute, its.absolute), std::max(worst.relative, its.relative)};
+    }
+    return worst;
+  }
+
+  std::size_t pieces() const { return pieces_; }
+  const S& piece(std::size_t k) const { return piece_[k]; }
+  /// The number of a piece's first point; of the piece behind the last: how many points there are.
+  std::size_t first(std::size_t k) const { return first_[k]; }
+
+ private:
+  template <std::size_t... K>
+  sharded(const std::vector<S>& pieces, std::index_sequence<K...>) : piece_{pieces[std::min(K, pieces.size() - 1)]...}, pieces_(pieces.size()) {
+    for (std::size_t k = 0; k < most; ++k) first_[k + 1] = first_[k] + (k < pieces_ ? piece_[k].size() : 0);
+  }
+  static const std::vector<S>& checked(const std::vector<S>& pieces) {
+    if (pieces.empty()) throw std::invalid_argument("clearance: a cloud of no pieces; an empty piece is one");
+    if (pieces.size() > most)
+      throw std::invalid_argument("clearance: a cloud of " + std::to_string(pieces.size()) + " pieces, more than " + std::to_string(most));
+    return pieces;
+  }
+
+  S piece_[most];
+  std::size_t pieces_;
+  std::size_t first_[most + 1] = {};
+};
+
+/// How a cloud is dealt to `n`: sharded ones as they are, all others in about equal slices. The number of the first point of piece
+/// `k`; of the n-th, how many points there are.
+template <point_source S>
+std::size_t first_of_piece(const S& cloud, std::size_t k, std::size_t n) {
+  if constexpr (requires { cloud.piece(k); })
+    return cloud.first(k);
+  else  // a multiple of four, so that points are read by fours; of one that fits, all are
+    return std::min<std::size_t>(cloud.size(), (cloud.size() + 3) / 4 * k / n * 4);
+}
+template <point_source S>
+auto piece_of(const S& cloud, std::size_t k, std::size_t n) {
+  if constexpr (requires { cloud.piece(k); })
+    return cloud.piece(k);
+  else
+    return slice(cloud, first_of_piece(cloud, k, n), first_of_piece(cloud, k + 1, n));
+}
+
+/// Throws std::invalid_argument if a cloud comes in other pieces than `n`.
+template <point_source S>
+void check_pieces(const S& cloud, std::size_t n) {
+  if constexpr (requires { cloud.pieces(); })
+    if (cloud.pieces() != n)
+      throw std::invalid_argument("clearance: a cloud of " + std::to_string(cloud.pieces()) + " pieces for " + std::to_string(n) + " devices");
+}
+
+}  // namespace clearance
