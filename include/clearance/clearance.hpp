@@ -11,6 +11,7 @@
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/min_distance_query.hpp>
+#include <clearance/min_distances.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>

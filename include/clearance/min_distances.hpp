@@ -28,14 +28,22 @@ struct min_distances_result {
 
 namespace detail {
 
-/// How many configurations that are. Throws std::invalid_argument if some are not whole, or one is not rigid.
-inline std::size_t check_configurations(std::size_t parts, std::span<const Eigen::Isometry3d> poses) {
-  if (parts == 0 ? !poses.empty() : poses.size() % parts != 0)
-    throw std::invalid_argument("clearance: " + std::to_string(poses.size()) + " poses are no whole configurations of " + std::to_string(parts) + " parts");
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    if (world_transform t(poses[i]); !make_rigid(t))
+/// How many configurations that are. Throws std::invalid_argument if some are not whole.
+inline std::size_t count_configurations(std::size_t parts, std::size_t poses) {
+  if (parts == 0 ? poses != 0 : poses % parts != 0)
+    throw std::invalid_argument("clearance: " + std::to_string(poses) + " poses are no whole configurations of " + std::to_string(parts) + " parts");
+  return parts == 0 ? 0 : poses / parts;
+}
+/// Calls `f`; of what it throws because a pose is not rigid the sentence says which configuration's.
+template <class F>
+void named(std::size_t parts, std::span<const Eigen::Isometry3d> poses, const F& f) {
+  try {
+    f();
+  } catch (const std::invalid_argument&) {
+    for (std::size_t i = 0; i < poses.size(); ++i)
       rigid_transform_of(poses[i], ("configuration " + std::to_string(i / parts) + "'s part").c_str(), std::int64_t(i % parts));
-  return parts == 0 ? 0 : poses.size() / parts;
+    throw;
+  }
 }
 inline void check(const min_distances_options& options) {
   if (!(options.d_max == options.d_max)) throw std::invalid_argument("clearance: d_max is not a number");
@@ -57,26 +65,31 @@ class min_distances_query {
   template <class Clouds>
   const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const min_distances_options& options = {}) {
     static_assert(explain_clouds<Clouds>());
-    using search = minimum::search_on<On>;
-    using there = std::remove_cvref_t<decltype(search::backend_of(on_))>;
     detail::check(options);
-    result_.of.resize(detail::check_configurations(model_.size(), poses));
-    const there& backend = search::backend_of(on_);
-    minimum::cloud_copies<there> copies;
-    auto each = backend.template make_scratch<min_distance_result>(1);
-    for (std::size_t c = 0; c < result_.of.size(); ++c) {
-      const auto own = poses.subspan(c * model_.size(), model_.size());
-      frames::cloud_frame frame;
-      frames::for_each_turn(frame, model_.facts, own, clouds, [](const auto&, const frames::turn&) {});
-      search::template once<false>(on_, model_, own, clouds, each.data(), nullptr, minimum::readable_on<there>{backend, copies});
-      result_.of[c] = backend.copy_out(each.data(), 1)[0];
-      minimum::cut(result_.of[c], options.d_max, frame.slop, frame.error);
-    }
+    result_.of.resize(detail::count_configurations(model_.size(), poses.size()));
+    detail::named(model_.size(), poses, [&] { each(poses, clouds, options.d_max); });
     return result_;
   }
   void forget() {}
 
  private:
+  template <class Clouds>
+  void each(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real d_max) {
+    using search = minimum::search_on<On>;
+    using there = std::remove_cvref_t<decltype(search::backend_of(on_))>;
+    const there& backend = search::backend_of(on_);
+    minimum::cloud_copies<there> copies;
+    auto one = backend.template make_scratch<min_distance_result>(1);
+    for (std::size_t c = 0; c < result_.of.size(); ++c) {
+      const auto own = poses.subspan(c * model_.size(), model_.size());
+      frames::cloud_frame frame;
+      frames::for_each_turn(frame, model_.facts, own, clouds, [](const auto&, const frames::turn&) {});
+      search::template once<false>(on_, model_, own, clouds, one.data(), nullptr, minimum::readable_on<there>{backend, copies});
+      result_.of[c] = backend.copy_out(one.data(), 1)[0];
+      minimum::cut(result_.of[c], d_max, frame.slop, frame.error);
+    }
+  }
+
   On on_;
   model_view<PartView> model_;
   min_distances_result result_;
@@ -94,8 +107,8 @@ class min_distances_query<host, PartView> {
   const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const min_distances_options& options = {}) {
     static_assert(explain_clouds<Clouds>());
     detail::check(options);
-    result_.of.resize(detail::check_configurations(search_.parts(), poses));
-    search_(poses, clouds, options.d_max, result_.of);
+    result_.of.resize(detail::count_configurations(search_.parts(), poses.size()));
+    detail::named(search_.parts(), poses, [&] { search_(poses, clouds, options.d_max, result_.of); });
     return result_;
   }
 
@@ -110,14 +123,28 @@ class min_distances_query<host, PartView> {
 template <class On, robot Robot>
 min_distances_query(const On&, const Robot&) -> min_distances_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
+namespace detail {
+
+template <class On>
+struct batch_once {
+  template <class Robot, class Clouds>
+  static min_distances_result of(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                 const min_distances_options& options) {
+    min_distances_query query(on, robot);
+    return query(poses, clouds, options);
+  }
+};
+
+}  // namespace detail
+
 /// The least distance of each configuration. `poses` are world-from-part, one a part of the first configuration, then those of the
 /// next; `clouds` as for min_distance. Throws std::invalid_argument as that does, and if poses are no whole configurations, or
 /// d_max is NaN.
 template <class On, robot Robot, class Clouds>
 min_distances_result min_distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                    const min_distances_options& options = {}) {
-  min_distances_query query(on, robot);
-  return query(poses, clouds, options);
+  static_assert(explain_clouds<Clouds>());
+  return detail::batch_once<On>::of(on, robot, poses, clouds, options);
 }
 
 }  // namespace clearance

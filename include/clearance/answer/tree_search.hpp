@@ -64,8 +64,19 @@ struct tree_search {
         least = bounds[k].lower(near.within, b.radius);
       }
     }
-    if constexpr (scan::has_interior<part_view>) least = max(least, 0);  // nothing is nearer: so the lowest numbers go first
     return least <= reach() ? least : infinity;
+  }
+
+  /// Of two nodes that with the nearer points goes first. A part with an interior has nothing nearer than 0: there it is the one with the
+  /// lowest number.
+  CLEARANCE_HD static distance_key order(real bound, std::uint32_t least) {
+    return scan::has_interior<part_view> ? make_key(max(bound, 0), least) : make_key(bound, 0);
+  }
+
+  /// May what is in a ball around `center`, below a node that is not nearer than `bound`, be within reach? The node's middle was that
+  /// far away and its radius more, and every step towards it comes no nearer than its length.
+  CLEARANCE_HD bool may_reach(const ball& node, real bound, vec3 center, real radius) const {
+    return !(bound + node.radius - cloud_tree::rough_length_up(center - node.center) - radius > reach());
   }
 
   /// Is there nothing left to learn from points numbered `first_number` and higher, that are not nearer than `bound`?

@@ -18,18 +18,19 @@ class tree_walk {
   void run() {
     const auto& tree = search_.tree;
     if (tree.levels == 0) return;
-    open(tree.levels - 1, 0, tree.size(tree.levels - 1), ~part_set(0));
+    open(tree.levels - 1, 0, tree.size(tree.levels - 1), {}, -infinity, ~part_set(0));
     while (count_ > 0) {
       const entry e = pending_[--count_];
       if (search_.settled(e.bound, e.least)) continue;
       const std::uint32_t begin = tree.first_below(e.level, e.node), end = tree.end_below(e.level, e.node);
+      const ball& around = tree.balls[tree.begin[e.level] + e.node];
       if (e.level != 0) {
-        open(e.level - 1, begin, end, e.parts);
+        open(e.level - 1, begin, end, around, e.bound, e.parts);
         continue;
       }
       for (std::uint32_t i = begin; i < end; ++i)
         for (std::uint32_t k = 0; k < search_.body.part_count; ++k)
-          if ((e.parts & just(k)) != 0) search_.visit(tree.points[i], k);
+          if ((e.parts & just(k)) != 0 && search_.may_reach(around, e.bound, tree.points[i].at, 0)) search_.visit(tree.points[i], k);
     }
   }
 
@@ -41,13 +42,15 @@ class tree_walk {
     part_set parts;
   };
 
-  static bool before(const entry& a, const entry& b) { return a.bound != b.bound ? a.bound < b.bound : a.least < b.least; }
+  static bool before(const entry& a, const entry& b) { return Search::order(a.bound, a.least) < Search::order(b.bound, b.least); }
 
-  void open(std::uint32_t level, std::uint32_t begin, std::uint32_t end, part_set among) {
+  /// Children of a node that is not nearer than `bound`.
+  void open(std::uint32_t level, std::uint32_t begin, std::uint32_t end, const ball& around, real bound, part_set among) {
     const std::uint32_t base = count_;
     for (std::uint32_t n = begin; n < end; ++n) {
       const std::uint32_t here = search_.tree.begin[level] + n;
       const ball& b = search_.tree.balls[here];
+      if (!search_.may_reach(around, bound, b.center, b.radius)) continue;
       entry e{infinity, search_.tree.least[here], level, n, 0};
       for (std::uint32_t k = 0; k < search_.body.part_count; ++k) {
         if ((among & just(k)) == 0 || !search_.may_reach(b, k)) continue;

@@ -13,7 +13,7 @@ namespace clearance::cloud_tree {
 /// depth image are lines, of which few are near one another, and other clouds have no order at all.
 class host_tree {
  public:
-  using view_type = tree_view<16, 8>;
+  using view_type = tree_view<8, 8>;
 
   /// What does not count is added to `dropped`.
   template <point_source S>

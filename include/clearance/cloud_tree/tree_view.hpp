@@ -17,7 +17,7 @@ struct alignas(16) numbered_point {
 /// children are follows from its number, so nothing is stored of that.
 template <std::uint32_t Tile, std::uint32_t Fan>
 struct tree_view {
-  static constexpr std::uint32_t tile = Tile, fan = Fan, most_levels = 12;
+  static constexpr std::uint32_t tile = Tile, fan = Fan, most_levels = 16;
 
   const numbered_point* points = nullptr;  ///< Neighbours in space are neighbours here.
   const ball* balls = nullptr;             ///< Of all nodes, level by level, tiles first.
