@@ -4,6 +4,7 @@
 
 #include <clearance/answer/shared_bounds.hpp>
 #include <clearance/cloud_tree/tree_view.hpp>
+#include <clearance/result.hpp>
 #include <clearance/scan/scan_body.hpp>
 
 namespace clearance::minimum {
