@@ -169,7 +169,8 @@ TEST_CASE("What is no batch is refused, and an empty one is one") {
   CHECK_THROWS_AS(min_distances(host{}, model, poses, cloud, {clearance::not_a_number}), std::invalid_argument);
   CHECK_THROWS_AS(min_distances(host{}, model, poses, placed{cloud, Eigen::Isometry3d(Eigen::Scaling(2.0))}), std::invalid_argument);
   poses[4].linear() *= 1.5;
-  CHECK_THROWS_WITH(min_distances(host{}, model, poses, cloud), Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
+  CHECK_THROWS_WITH(min_distances(host{}, model, poses, cloud),
+                    Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
 }
 
 TEST_CASE("With a traversal of one's choice each configuration is asked for by itself") {

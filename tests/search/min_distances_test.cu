@@ -63,7 +63,8 @@ TEST_CASE("So they are of robots and clouds of extreme numbers, on a device") {
   dice d(512);
   for (const auto& s : edge_scenes()) {
     if (s.name == deep_scene) continue;
-    check(make_model<clearance::sphere>(s, {}, clearance::wrapped{}), configurations_of(s, d, 4), placed{point_span(s.points), s.cloud_pose}, s.size, v, s.name);
+    const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+    check(model, configurations_of(s, d, 4), placed{point_span(s.points), s.cloud_pose}, s.size, v, s.name);
   }
 }
 
@@ -113,7 +114,8 @@ TEST_CASE("What is no batch is refused on a device, and a pose that is not rigid
   CHECK_THROWS_WITH(min_distances(gpu, model, std::span(poses).first(4), cloud), "clearance: 4 poses are no whole configurations of 3 parts");
   CHECK_THROWS_AS(min_distances(gpu, model, poses, cloud, {clearance::not_a_number}), std::invalid_argument);
   poses[4].linear() *= 1.5;
-  CHECK_THROWS_WITH(min_distances(gpu, model, poses, cloud), Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
+  CHECK_THROWS_WITH(min_distances(gpu, model, poses, cloud),
+                    Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
   const auto points = gpu.copy_in(std::span<const vec3>(s.points));
   clearance::min_distances_query query(gpu, model);
   query.place(poses);

@@ -16,7 +16,8 @@ template <class P>
 configurations configurations_of(const scene<P>& s, dice& d, std::size_t count = 9) {
   configurations all;
   for (std::size_t c = 0; c < count; ++c) {
-    const Eigen::Isometry3d together = c == 0 ? shifted(0, 0, 0) : c < 3 ? shifted(0.25 * s.size * double(c), 0, 0) : c == 8 ? shifted(50 * s.size, 0, 0) : d.pose(0.5 * s.size);
+    const double along = c < 3 ? 0.25 * double(c) : 50;
+    const Eigen::Isometry3d together = c < 3 || c == 8 ? shifted(along * s.size, 0, 0) : d.pose(0.5 * s.size);
     for (const auto& pose : s.poses) all.push_back(c < 3 || c == 8 ? together * pose : pose * together * d.pose(0.1 * s.size));
   }
   return all;
@@ -38,7 +39,8 @@ void require_same(const clearance::min_distances_result& found, const configurat
                   r.part == clearance::none && r.primitive == clearance::none, what, ", configuration", c, ": beyond d_max there is", r.distance);
     v.require(r.lower >= 0 && r.lower <= std::max(d_max, real(0)) && r.lower <= expected.lower, what, ", configuration", c, ": lower is", r.lower);
     // What an end of the bracket costs hardly depends on the distance.
-    v.require(r.lower >= expected.lower - (expected.distance - d_max) * 1.001f - 1e-6f * expected.distance, what, ", configuration", c, ": lower is", r.lower, ", too little");
+    v.require(r.lower >= expected.lower - (expected.distance - d_max) * 1.001f - 1e-6f * expected.distance, what, ", configuration", c, ": lower is", r.lower,
+              ", too little");
     v.require(r.state == (r.lower > 0 ? clearance::state::free : clearance::state::possible), what, ", configuration", c, ": another state");
     v.require(r.seen == expected.seen && r.valid == expected.valid && std::equal(r.dropped, r.dropped + clearance::drop_reasons, expected.dropped), what,
               ", configuration", c, ": other counts");

@@ -52,7 +52,8 @@ class device_batch {
     staged_.clear();
     for (const Eigen::Isometry3d& pose : poses) staged_.emplace_back(pose);
     const std::size_t n = staged_.size();
-    grow(poses_, n), grow(places_, n), grow(bounds_, n), grow(of_all_, count), grow(all_, count), grow(seeds_, count), grow(results_, count), grow(last_, count);
+    grow(poses_, n), grow(places_, n), grow(bounds_, n);
+    grow(of_all_, count), grow(all_, count), grow(seeds_, count), grow(results_, count), grow(last_, count);
     if (count != configurations_) configurations_ = count, forget();
     if (n == 0) return;
     const device_guard guard(on_.id);
