@@ -62,7 +62,6 @@ TEST_CASE("So they are of robots and clouds of extreme numbers, on a device") {
   verdict v;
   dice d(512);
   for (const auto& s : edge_scenes()) {
-    if (s.name == deep_scene) continue;
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     check(model, configurations_of(s, d, 4), placed{point_span(s.points), s.cloud_pose}, s.size, v, s.name);
   }
