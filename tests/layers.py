@@ -21,6 +21,7 @@ LAYERS = [
     ["robot/*"],
     ["frame/*"],
     ["scan/*"],
+    ["cloud_tree/*"],
     ["answer/*"],
     ["*"],  # one operation a file: whatever lies beside this list at the top
     ["io/*"],

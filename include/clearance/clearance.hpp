@@ -13,6 +13,7 @@
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/min_distance_query.hpp>
+#include <clearance/min_distances.hpp>
 #include <clearance/min_support.hpp>
 #include <clearance/motion_clearance.hpp>
 #include <clearance/nearest_k.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/answer/kept_copies.cuh>
 #include <clearance/backend/pinned_buffer.cuh>
 #include <clearance/min_distance.cuh>
 #include <clearance/min_distance_query.hpp>
@@ -16,7 +17,7 @@ class min_distance_query<device, PartView> {
   /// Throws std::invalid_argument if there are more parts than a kernel takes, or trees too deep or wide for its stacks.
   template <robot Robot>
   min_distance_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr, std::pmr::memory_resource* pinned = nullptr)
-      : on_(on), memory_(memory), search_(on, view_of(robot), memory), answer_(1, on.id, pinned), minima_(search_.parts(), on.id, pinned) {
+      : on_(on), search_(on, view_of(robot), memory), copies_(on, memory), answer_(1, on.id, pinned), minima_(search_.parts(), on.id, pinned) {
     on_.wait();
     answer_.data()->done = 0;
   }
@@ -81,7 +82,7 @@ class min_distance_query<device, PartView> {
   void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Piece& piece) {
     ++frame_number_;
     search_.template enqueue<PerPart>(poses, clouds, &answer_.data()->result, minima_.data(),
-                                      [&](const auto& source, std::uint32_t cloud) { return readable(piece(source), cloud); },
+                                      [&](const auto& source, std::uint32_t cloud) { return copies_(piece(source), cloud); },
                                       &answer_.data()->done, frame_number_);
   }
   /// Waits for it.
@@ -92,26 +93,10 @@ class min_distance_query<device, PartView> {
     return answer_.data()->result;
   }
 
-  template <point_source S>
-  S readable(const S& source, std::uint32_t cloud) {
-    if constexpr (requires { source.at(source.bytes().data()); }) {
-      const auto bytes = source.bytes();
-      if (bytes.empty() || on_.holds(bytes.data())) return source;
-      if (copies_.size() <= cloud) copies_.resize(cloud + 1);
-      auto& copy = copies_[cloud];
-      if (copy.size() < bytes.size()) copy = device_buffer<std::byte>(bytes.size(), on_.id, memory_);
-      const device_guard guard(on_.id);
-      check_cuda(cudaMemcpyAsync(copy.data(), bytes.data(), bytes.size(), cudaMemcpyDefault, on_.stream), "cudaMemcpyAsync");
-      return source.at(copy.data());
-    }
-    return source;
-  }
-
   device on_;
-  std::pmr::memory_resource* memory_;
   minimum::device_search<PartView> search_;
   std::uint32_t frame_number_ = 0;
-  std::vector<device_buffer<std::byte>> copies_;
+  minimum::kept_copies copies_;
   pinned_buffer<answer> answer_;
   pinned_buffer<part_minimum> minima_;
 };

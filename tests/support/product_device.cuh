@@ -4,18 +4,11 @@
 // (kernels are slow to compile, and the host has the whole product).
 
 #include "support/product.hpp"
+#include "support/same_result.hpp"
 
 #include <clearance/min_distance.cuh>
 
 namespace testing {
-
-/// Everything that a result says, by its bits where it is a number.
-inline bool same_result(const clearance::min_distance_result& a, const clearance::min_distance_result& b) {
-  return a.state == b.state && same_bits(a.distance, b.distance) && same_bits(a.lower, b.lower) && same_bits(a.upper, b.upper) &&
-         a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.primitive == b.primitive && same_bytes(a.at, b.at) &&
-         same_bytes(a.nearest, b.nearest) && same_bytes(a.normal, b.normal) && a.seen == b.seen && a.valid == b.valid &&
-         std::equal(a.dropped, a.dropped + clearance::drop_reasons, b.dropped);
-}
 
 /// Raises the recursion limit while it lives.
 class deep_stack {

@@ -39,13 +39,7 @@ struct scan_body {
     for (std::uint32_t k = 0; k < part_count; ++k) visit(p, first + std::uint32_t(i), k);
   }
 
-  std::size_t device_stack() const
-    requires recursing_traversal<Traversal>
-  {
-    return stack_bytes;
-  }
-
- private:
+  /// Against one; `index` is its number among all clouds' points.
   CLEARANCE_HD void visit(vec3 p, std::uint32_t index, std::uint32_t k) const {
     const frames::placement& place = places[k];
     if (!frames::may_reach(place.around, answer.reach_of_pair(index, k), p)) return;
@@ -61,6 +55,12 @@ struct scan_body {
     auto ask = answer.visitor(index, k);
     walk(part.tree, q, ask);
     answer.take(index, k, ask);
+  }
+
+  std::size_t device_stack() const
+    requires recursing_traversal<Traversal>
+  {
+    return stack_bytes;
   }
 };
 

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many configurations against one frame of 307,200 points on the CPU, the tree over the points included: at random, whole or as far
+// as 5 cm, and a trajectory that is watched from frame to frame. *each* asks for one after another by a prepared min_distance.
+#include "configurations.hpp"
+
+#include <clearance/min_distance_query.hpp>
+#include <clearance/min_distances.hpp>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+#include <benchmark/benchmark.h>
+
+namespace {
+
+using clearance::placed, clearance::point_span;
+
+const auto& spheres() {
+  static const auto model = bench::sphere_model<clearance::sphere>(bench::the_scene());
+  return model;
+}
+const auto& triangles() {
+  static const auto model = bench::triangle_model<clearance::aabb>(bench::the_scene());
+  return model;
+}
+
+void report(benchmark::State& state, const clearance::min_distances_result& found) {
+  double free = 0, near = 0;
+  for (const auto& r : found.of) free += r.state == clearance::state::free, near += r.part != clearance::none;
+  state.counters["free"] = free, state.counters["minima"] = near;
+}
+
+template <class Model>
+void random(benchmark::State& state, const Model& (*model)(), float d_max) {
+  const bench::scene& s = bench::the_scene();
+  const clearance::host cpu{.threads = unsigned(state.range(0))};
+  const auto poses = bench::random_configurations(std::size_t(state.range(1)));
+  const placed cloud{point_span(s.cloud), s.world_from_camera};
+  clearance::min_distances_result found;
+  for (auto _ : state) found = clearance::min_distances(cpu, model(), poses, cloud, {d_max});
+  report(state, found);
+}
+
+void monitor(benchmark::State& state) {
+  const bench::scene& s = bench::the_scene();
+  const clearance::host cpu{.threads = unsigned(state.range(0))};
+  const auto poses = bench::trajectory(std::size_t(state.range(1)));
+  const std::vector<clearance::vec3> frames[] = {bench::next_frame(s.cloud, 1), bench::next_frame(s.cloud, 2)};
+  clearance::min_distances_query query(cpu, spheres());
+  std::size_t n = 0;
+  const clearance::min_distances_result* found = &query(poses, placed{point_span(frames[1]), s.world_from_camera});
+  for (auto _ : state) found = &query(poses, placed{point_span(frames[n++ % 2]), s.world_from_camera});
+  report(state, *found);
+}
+
+void each(benchmark::State& state) {
+  const bench::scene& s = bench::the_scene();
+  const clearance::host cpu{.threads = unsigned(state.range(0))};
+  const auto poses = bench::random_configurations(std::size_t(state.range(1)));
+  clearance::min_distance_query query(cpu, spheres());
+  clearance::min_distances_result found;
+  const std::size_t parts = s.poses.size();
+  for (auto _ : state) {
+    found.of.clear();
+    for (std::size_t c = 0; c < poses.size(); c += parts)
+      found.of.push_back(query(std::span(poses).subspan(c, parts), point_span(s.cloud), s.world_from_camera));
+  }
+  report(state, found);
+}
+
+constexpr float all = clearance::infinity;
+#define TIMES(n) ->Args({1, n})->Args({2, n})->ArgNames({"threads", "configurations"})->UseRealTime()->Unit(benchmark::kMillisecond)
+BENCHMARK_CAPTURE(random, spheres, spheres, all) TIMES(1000);
+BENCHMARK_CAPTURE(random, spheres_within_5cm, spheres, 0.05f) TIMES(1000);
+BENCHMARK_CAPTURE(random, triangles, triangles, all) TIMES(1000);
+BENCHMARK_CAPTURE(random, triangles_within_5cm, triangles, 0.05f) TIMES(1000);
+BENCHMARK_CAPTURE(random, tree_alone, spheres, 0.0f) TIMES(1);
+BENCHMARK(monitor) TIMES(500);
+BENCHMARK(each) TIMES(100);
+
+}  // namespace
+
+BENCHMARK_MAIN();

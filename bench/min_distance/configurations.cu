@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many configurations against one frame of 307,200 points on a GPU, the points resident there, the tree over them and all witnesses
+// included: at random, whole or as far as 5 cm, and a trajectory of 500 waypoints that is watched from frame to frame. CUDA events,
+// behind other work; *call* is one call as a program makes it, by the host's clock, poses and results copied.
+#include "configurations.hpp"
+#include "device.cuh"
+
+#include <clearance/backend/own_stream.cuh>
+#include <clearance/min_distances.cuh>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+namespace {
+
+using namespace bench;
+using clearance::device, clearance::placed, clearance::point_span, clearance::vec3;
+
+auto spheres(const scene& s) { return sphere_model<clearance::sphere>(s).on(device{}); }
+auto triangles(const scene& s) { return triangle_model<clearance::aabb>(s).on(device{}); }
+
+void report(benchmark::State& state, const std::vector<clearance::min_distance_result>& found) {
+  double free = 0, near = 0, sum = 0;
+  for (const auto& r : found) free += r.state == clearance::state::free, near += r.part != clearance::none, sum += r.part != clearance::none ? r.distance : 0;
+  state.counters["free"] = free, state.counters["minima"] = near, state.counters["mean_mm"] = near > 0 ? 1e3 * sum / near : 0;
+}
+
+/// What a frame enqueues, as a graph: a dozen kernels take the host longer than the device.
+class recorded {
+ public:
+  template <class F>
+  recorded(const device& on, F enqueue) {
+    cudaGraph_t graph = nullptr;
+    check_cuda(cudaStreamBeginCapture(on.stream, cudaStreamCaptureModeThreadLocal), "cudaStreamBeginCapture");
+    enqueue();
+    check_cuda(cudaStreamEndCapture(on.stream, &graph), "cudaStreamEndCapture");
+    check_cuda(cudaGraphInstantiate(&run_, graph, 0), "cudaGraphInstantiate");
+    check_cuda(cudaGraphDestroy(graph), "cudaGraphDestroy");
+    check_cuda(cudaGraphUpload(run_, nullptr), "cudaGraphUpload");
+  }
+  recorded(recorded&& other) noexcept : run_(std::exchange(other.run_, nullptr)) {}
+  ~recorded() {
+    if (run_ != nullptr) cudaGraphExecDestroy(run_);
+  }
+  void operator()() const { check_cuda(cudaGraphLaunch(run_, nullptr), "cudaGraphLaunch"); }
+
+ private:
+  cudaGraphExec_t run_ = nullptr;
+};
+
+/// `frames` are asked about in turn.
+template <class Model>
+void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::Isometry3d>& poses, const std::vector<std::vector<vec3>>& frames, float d_max,
+         bool warm) {
+  const clearance::own_stream stream(0);
+  const device gpu = stream.on();
+  clearance::min_distances_query query(gpu, model);
+  query.place(poses);
+  const clearance::min_distance_result* results = nullptr;
+  std::vector<clearance::device_buffer<vec3>> there;
+  std::vector<recorded> turns;
+  for (const auto& frame : frames) {
+    there.push_back(gpu.copy_in(std::span<const vec3>(frame)));
+    const auto enqueue = [&] {
+      results = query.enqueue(placed{point_span(there.back().data(), there.back().size()), the_scene().world_from_camera}, {d_max});
+    };
+    enqueue();  // once outside of a graph: it asks for memory
+    gpu.wait();
+    turns.emplace_back(gpu, enqueue);
+  }
+  const device_clock clock(true);
+  std::size_t n = 0;
+  for (auto _ : state) {
+    if (!warm) query.forget(), gpu.wait();
+    const recorded& turn = turns[n++ % turns.size()];
+    state.SetIterationTime(clock.seconds([&] { turn(); }));
+  }
+  report(state, gpu.copy_out(results, poses.size() / the_scene().poses.size()));
+}
+
+template <class Make>
+void random(benchmark::State& state, Make make, float d_max) {
+  if (no_device(state)) return;
+  const scene& s = the_scene();
+  ask(state, make(s), random_configurations(std::size_t(state.range(0))), {s.cloud}, d_max, false);
+}
+void monitor(benchmark::State& state, float d_max) {
+  if (no_device(state)) return;
+  const scene& s = the_scene();
+  ask(state, spheres(s), trajectory(std::size_t(state.range(0))), {next_frame(s.cloud, 1), next_frame(s.cloud, 2)}, d_max, true);
+}
+
+void call(benchmark::State& state) {
+  if (no_device(state)) return;
+  const scene& s = the_scene();
+  const device gpu;
+  const auto model = spheres(s);
+  const auto poses = random_configurations(std::size_t(state.range(0)));
+  const auto there = gpu.copy_in(std::span<const vec3>(s.cloud));
+  clearance::min_distances_result found;
+  for (auto _ : state) found = clearance::min_distances(gpu, model, poses, placed{point_span(there.data(), there.size()), s.world_from_camera});
+  report(state, found.of);
+}
+
+constexpr float all = clearance::infinity;
+#define TIMES(n) ->Arg(n)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30)
+BENCHMARK_CAPTURE(random, spheres, spheres, all) TIMES(4096);
+BENCHMARK_CAPTURE(random, spheres_within_5cm, spheres, 0.05f) TIMES(4096);
+BENCHMARK_CAPTURE(random, triangles, triangles, all) TIMES(4096);
+BENCHMARK_CAPTURE(random, triangles_within_5cm, triangles, 0.05f) TIMES(4096);
+BENCHMARK_CAPTURE(random, tree_alone, spheres, -1.0f) TIMES(1);
+BENCHMARK_CAPTURE(monitor, untruncated, all) TIMES(500);
+BENCHMARK_CAPTURE(monitor, within_20cm, 0.2f) TIMES(500);
+BENCHMARK(call)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(10);
+
+}  // namespace
+
+BENCHMARK_MAIN();

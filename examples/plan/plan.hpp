@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Is a planned trajectory still free in the newest frame, and where is it not?
+
+#include <clearance/make_model.hpp>
+#include <clearance/min_distances.hpp>
+#include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/volume/sphere.hpp>
+
+#include <cstdio>
+
+/// 0 if the gripper stops before the wall, and goes on once it is gone.
+template <clearance::backend Backend>
+int example(const Backend& on) {
+  std::vector<std::vector<clearance::inner_sphere>> links(2);
+  for (int k = 0; k < 2; ++k)
+    for (int i = 0; i < 20; ++i) links[std::size_t(k)].push_back({{0.02f * float(i), 0, 0}, 0.04f});
+  std::vector<clearance::vec3> wall;  // about 1.5 m away
+  for (int i = 0; i < 60; ++i)
+    for (int j = 0; j < 60; ++j) wall.push_back({1.495f, 0.02f * float(i - 30), 0.02f * float(j - 30)});
+  const std::vector<clearance::vec3> room(1, {5, 0, 0});
+
+  // [plan]
+  const auto arm = clearance::make_model<clearance::sphere>(links).on(on);
+  std::vector<Eigen::Isometry3d> trajectory;  // 100 waypoints, two parts each
+  for (int waypoint = 0; waypoint < 100; ++waypoint)
+    for (int link = 0; link < 2; ++link) {
+      trajectory.push_back(Eigen::Isometry3d::Identity());
+      trajectory.back().translation().x() = link * (0.3 + 0.01 * waypoint);  // it reaches out
+    }
+  clearance::min_distances_query ask(on, arm);
+  std::size_t stops = 0;
+  for (const auto& frame : {wall, room}) {
+    const auto found = ask(trajectory, frame, {.d_max = 0.2f});  // of what is farther away only that is known
+    stops = found.first_below(0.05);
+    if (stops < found.of.size())
+      std::printf("waypoint %zu comes %.3f m near to point %u, with part %u\n", stops, double(found.of[stops].distance), found.of[stops].point,
+                  found.of[stops].part);
+    else
+      std::printf("all %zu waypoints are free, by %.3f m at least\n", found.of.size(), double(found.of[0].lower));
+    // [plan]
+    if (frame.size() > 1 && stops != 73) return 1;
+  }
+  return stops == 100 ? 0 : 1;
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What the kernels of a batch are told.
+
+#include <clearance/answer/tree_search.hpp>
+#include <clearance/frame/clouds.hpp>
+#include <clearance/points/point_span.hpp>
+#include <clearance/traversal/any_depth.hpp>
+
+namespace clearance::minimum {
+
+/// What all parts of a configuration have in common, in one cloud.
+struct configuration_facts : frames::frame_facts {
+  bool rigid = true;  ///< Are all poses?
+
+  configuration_facts() = default;
+  CLEARANCE_HD configuration_facts(const world_transform& cloud, vec3 origin, const position_error& off) : frames::frame_facts(cloud, origin, off) {}
+};
+
+/// Where a configuration's last minimum was.
+struct last_place {
+  std::uint32_t cloud = none, point = none;
+};
+
+/// Many configurations and one cloud; arrays are one a configuration, or one a part of each.
+template <class PartView>
+struct batch_arguments {
+  using part_type = PartView;
+  using body_type = scan::scan_body<PartView, point_span, any_depth, shared_bounds>;
+
+  const PartView* parts;
+  std::uint32_t part_count, configurations;
+  const world_transform* poses;
+  frames::turn now;
+  world_transform world_from_cloud;
+  position_error off;
+  real d_max;
+  std::uint64_t seen;  ///< Points of all clouds.
+  frames::placement* places;
+  ball_bounds* bounds;
+  configuration_facts* facts;
+  totals* all;
+  last_place* last;
+  cloud_tree::numbered_point* seeds;
+  min_distance_result* results;
+  scan::drop_counts* dropped;
+  std::uint32_t* lost;  ///< Becomes 1 if a pose is not rigid.
+
+  CLEARANCE_HD frames::placement* its_places(std::uint32_t c) const { return places + std::size_t(c) * part_count; }
+  /// A configuration's points against its parts, one at a time, whatever source they are of.
+  CLEARANCE_HD body_type body(std::uint32_t c, totals* best) const {
+    return {parts, its_places(c), part_count, {}, facts[c].origin, now.first, nullptr, {best, nullptr}, {}};
+  }
+};
+
+}  // namespace clearance::minimum

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/answer/beyond.hpp>
+#include <clearance/answer/resolve.hpp>
+#include <clearance/answer/walk_tree.hpp>
+#include <clearance/cloud_tree/host_tree.hpp>
+#include <clearance/frame/clouds.hpp>
+#include <clearance/robot/model.hpp>
+#include <clearance/traversal/any_depth.hpp>
+
+namespace clearance::minimum {
+
+/// The least distances of many configurations on the CPU, frame after frame: a tree over each cloud, and each configuration down
+/// all of them. Memory is kept, and where a configuration's last minimum was: its next search begins there, or where that of the
+/// configuration before it ended, which changes how long it takes, and nothing else.
+template <class PartView>
+class host_batch {
+ public:
+  host_batch(const host& on, const model_view<PartView>& model) : workers_(on), model_(model), walk_{stack_need(model.depth, model.width)} {}
+
+  /// `poses` are rigid, those of a configuration after another; `results` are as many as configurations.
+  template <class Clouds>
+  void operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real d_max, std::span<min_distance_result> results) {
+    if (results.empty()) return;
+    const std::size_t parts = model_.size(), count = results.size();
+    dropped_ = {};
+    frames::cloud_frame first;
+    seen_ = frames::for_each_turn(first, model_.facts, poses.first(parts), clouds, [&](const auto& source, const frames::turn& now) {
+      if (trees_.size() <= now.cloud) trees_.resize(now.cloud + 1);
+      trees_[now.cloud].build(workers_, source, dropped_);
+    });
+    if (last_.size() != count) last_.assign(count, {});
+    rooms_.resize((count + neighbours - 1) / neighbours);
+    workers_.for_pieces(count, neighbours, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c) {
+        const place starts[] = {last_[c], c > begin ? last_[c - 1] : place{}};
+        ask(poses.subspan(c * parts, parts), clouds, d_max, starts, rooms_[begin / neighbours], results[c]);
+        last_[c] = {results[c].cloud, results[c].point};
+      }
+    });
+  }
+
+  void forget() { last_.clear(); }
+  std::size_t parts() const { return model_.size(); }
+
+ private:
+  static constexpr std::size_t neighbours = 8;  ///< Configurations that follow one another on one thread.
+
+  struct place {
+    std::uint32_t cloud = none, point = none;
+  };
+  struct room {
+    frames::cloud_frame frame;
+    std::vector<ball_bounds> bounds;
+    std::vector<pending_node> pending;
+  };
+
+  template <class Clouds>
+  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real d_max, std::span<const place> starts, room& own,
+           min_distance_result& result) const {
+    const auto parts = std::uint32_t(model_.size());
+    result = {};
+    totals all{make_key(d_max, none)};
+    const shared_bounds bounds{&all, nullptr};
+    frames::for_each_turn(own.frame, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+      const auto& places = own.frame.places;
+      const scan::scan_body<PartView, S, any_depth, shared_bounds> body{model_.parts, places.data(), parts,  source, own.frame.origin,
+                                                                        now.first,    nullptr,       bounds, walk_};
+      for (const place& p : starts)
+        if (p.cloud == now.cloud && p.point < source.size())
+          if (const sample s = source[p.point]; s.valid()) body.visit(s.position - own.frame.origin, p.point);
+      own.bounds.clear();
+      for (std::uint32_t k = 0; k < parts; ++k) own.bounds.emplace_back(model_.facts[k], places[k].part_from_cloud);
+      const auto& tree = trees_[now.cloud].view();
+      const tree_search<std::remove_const_t<decltype(body)>, cloud_tree::host_tree::view_type> search{body, tree, own.bounds.data()};
+      tree_walk(search, own.pending).run();
+      resolve_body<PartView, S, any_depth>{model_.parts, places.data(), parts, source, own.frame.origin, own.frame.world_from_cloud, now.first,
+                                           now.cloud,    bounds,        walk_, &result, nullptr}(parts);
+    });
+    conclude_body<PartView>{model_.parts, parts, &dropped_, bounds, own.frame.error, own.frame.slop, seen_, &result}(0);
+    if (parts != 0) beyond(result, d_max, own.frame.slop, own.frame.error);
+  }
+
+  host_workers workers_;
+  model_view<PartView> model_;
+  any_depth walk_;
+  scan::drop_counts dropped_;
+  std::uint64_t seen_ = 0;
+  std::vector<cloud_tree::host_tree> trees_;
+  std::vector<place> last_;
+  std::vector<room> rooms_;
+};
+
+}  // namespace clearance::minimum

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/backend/device.cuh>
+#include <clearance/point_source.hpp>
+
+namespace clearance::minimum {
+
+/// Copies of clouds in host memory, pinned ones too, in buffers that are kept from frame to frame.
+class kept_copies {
+ public:
+  explicit kept_copies(const device& on, std::pmr::memory_resource* memory = nullptr) : on_(on), memory_(memory) {}
+
+  /// The source itself if its memory is the device's, else one over a copy; in the order of the stream.
+  template <point_source S>
+  S operator()(const S& source, std::uint32_t cloud) {
+    if constexpr (requires { source.at(source.bytes().data()); }) {
+      const auto bytes = source.bytes();
+      if (bytes.empty() || on_.holds(bytes.data())) return source;
+      if (copies_.size() <= cloud) copies_.resize(cloud + 1);
+      auto& copy = copies_[cloud];
+      if (copy.size() < bytes.size()) copy = device_buffer<std::byte>(bytes.size(), on_.id, memory_);
+      const device_guard guard(on_.id);
+      check_cuda(cudaMemcpyAsync(copy.data(), bytes.data(), bytes.size(), cudaMemcpyDefault, on_.stream), "cudaMemcpyAsync");
+      return source.at(copy.data());
+    }
+    return source;
+  }
+
+ private:
+  device on_;
+  std::pmr::memory_resource* memory_;
+  std::vector<device_buffer<std::byte>> copies_;
+};
+
+}  // namespace clearance::minimum

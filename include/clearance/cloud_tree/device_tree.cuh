@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// A tree over a cloud on a device.
+
+#include <clearance/backend/device.cuh>
+#include <clearance/cloud_tree/morton.hpp>
+#include <clearance/cloud_tree/tree_view.hpp>
+#include <clearance/scan/tally.hpp>
+#include <clearance/scan/threads.cuh>
+
+#include <cub/device/device_radix_sort.cuh>
+
+namespace clearance::cloud_tree {
+
+namespace detail {
+
+/// The grid from some of the points, by one block: each finds its own rank.
+template <class Source>
+__global__ void __launch_bounds__(morton_grid::samples) grid_kernel(const __grid_constant__ Source source, morton_grid* grid) {
+  __shared__ real along[3][morton_grid::samples];
+  __shared__ vec3 ends[2];
+  const std::uint32_t t = threadIdx.x;
+  const std::size_t size = source.size(), stride = size < morton_grid::samples ? 1 : size / morton_grid::samples;
+  sample s{{not_a_number, not_a_number, not_a_number}, drop_reason::missing};
+  if (t * stride < size) s = source[t * stride];
+  const real mine[3] = {s.position.x, s.position.y, s.position.z};
+  for (int axis = 0; axis < 3; ++axis) along[axis][t] = s.valid() ? mine[axis] : not_a_number;
+  const auto count = std::uint32_t(__syncthreads_count(s.valid()));
+  for (int axis = 0; axis < 3 && s.valid(); ++axis) {
+    std::uint32_t rank = 0;
+    for (std::uint32_t j = 0; j < morton_grid::samples; ++j) rank += along[axis][j] < mine[axis] || (along[axis][j] == mine[axis] && j < t);
+    if (rank == morton_grid::low_rank(count)) (&ends[0].x)[axis] = mine[axis];
+    if (rank == morton_grid::high_rank(count)) (&ends[1].x)[axis] = mine[axis];
+  }
+  __syncthreads();
+  if (t == 0) *grid = count == 0 ? morton_grid() : morton_grid(ends[0], ends[1]);
+}
+
+/// Where points are on the curve; those that do not count are counted, and stay.
+template <point_source Source>
+struct encode_body {
+  Source source;
+  const morton_grid* grid;
+  std::uint32_t *codes, *numbers;
+  scan::drop_counts* dropped;
+
+  CLEARANCE_HD void operator()(indices range) const {
+    scan::tally mine;
+    const morton_grid cells = *grid;
+    for (std::size_t i = range.begin; i < range.end; i += range.step) {
+      const sample s = source[i];
+      codes[i] = mine.counts(s) ? cells(s.position) : ~0u;
+      numbers[i] = std::uint32_t(i);
+    }
+    mine.add_to(*dropped);
+  }
+};
+
+/// What a tree is made of, to be written.
+struct tree_room {
+  numbered_point* points;
+  ball* balls;
+  std::uint32_t* least;
+  extent* boxes;
+};
+
+template <class F>
+__device__ real of_warp(real mine, F f) {
+#pragma unroll
+  for (int step = 16; step > 0; step /= 2) mine = f(mine, __shfl_xor_sync(scan::all_lanes, mine, step));
+  return mine;
+}
+
+/// A node around what the lanes of a warp have: a box each, which may be empty, and how far `reach(center)` that goes. Of nothing it
+/// is a ball that nothing can be near.
+template <class Reach>
+__device__ void put_node(const tree_room& to, std::uint32_t node, const extent& mine, std::uint32_t least, Reach reach) {
+  const auto low = [](real x) { return of_warp(x, [](real a, real b) { return min(a, b); }); };
+  const auto high = [](real x) { return of_warp(x, [](real a, real b) { return max(a, b); }); };
+  const extent box{{low(mine.lower.x), low(mine.lower.y), low(mine.lower.z)}, {high(mine.upper.x), high(mine.upper.y), high(mine.upper.z)}};
+  const bool nothing = !(box.lower.x <= box.upper.x);
+  const vec3 center = nothing ? vec3{0, 0, 0} : middle(box);
+  const real radius = high(mine.lower.x <= mine.upper.x ? reach(center) : -infinity);
+  least = scan::least_of(scan::all_lanes, least);
+  if (threadIdx.x % 32 != 0) return;
+  to.boxes[node] = box, to.balls[node] = {center, nothing ? -infinity : min(radius, farthest(box, center))}, to.least[node] = least;
+}
+
+template <class Source, class Tree>
+__global__ void __launch_bounds__(256) tile_kernel(const __grid_constant__ Source source, const __grid_constant__ Tree tree, const std::uint32_t* numbers,
+                                                   const tree_room to) {
+  static_assert(Tree::tile == 32);
+  const std::uint32_t tile = (blockIdx.x * 256 + threadIdx.x) / 32, i = tile * 32 + threadIdx.x % 32;
+  if (tile >= tree.size(0)) return;
+  numbered_point p{{not_a_number, not_a_number, not_a_number}, ~0u};
+  extent box;
+  if (i < tree.count) {
+    const std::uint32_t number = numbers[i];
+    if (const sample s = source[number]; s.valid()) p = {s.position, number}, box.add(s.position);
+    to.points[i] = p;
+  }
+  put_node(to, tile, box, p.number, [&](vec3 center) { return rough_length_up(p.at - center); });
+}
+
+template <class Tree>
+__global__ void __launch_bounds__(256) node_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
+  static_assert(Tree::fan == 32);
+  const std::uint32_t node = (blockIdx.x * 256 + threadIdx.x) / 32;
+  if (node >= tree.size(level)) return;
+  const std::uint32_t child = tree.first_below(level, node) + threadIdx.x % 32, at = tree.begin[level - 1] + child;
+  extent box;
+  ball b{{0, 0, 0}, -infinity};
+  std::uint32_t least = ~0u;
+  if (child < tree.end_below(level, node)) box = to.boxes[at], b = to.balls[at], least = to.least[at];
+  put_node(to, tree.begin[level] + node, box, least, [&](vec3 center) { return (rough_length_up(b.center - center) + b.radius) * (1 + slack); });
+}
+
+}  // namespace detail
+
+/// Owns a tree; built anew for every frame, in memory that is kept. Points that do not count stay among the others, as NaN: so its
+/// shape is known before they are read, and nobody waits.
+class device_tree {
+ public:
+  using view_type = tree_view<32, 32>;
+
+  explicit device_tree(const device& on, std::pmr::memory_resource* memory = nullptr) : on_(on), memory_(memory), grid_(1, on.id, memory) {}
+
+  /// Enqueues it; what does not count is added to `dropped`. The device reads the source as it is.
+  template <point_source S>
+  void build(const S& source, scan::drop_counts* dropped) {
+    view_ = view_type(std::uint32_t(source.size()));
+    const std::size_t n = view_.count;
+    if (n == 0) return;
+    grow(codes_, n), grow(sorted_codes_, n), grow(numbers_, n), grow(sorted_, n), grow(points_, n);
+    grow(balls_, view_.nodes()), grow(least_, view_.nodes()), grow(boxes_, view_.nodes());
+    view_.points = points_.data(), view_.balls = balls_.data(), view_.least = least_.data();
+    on_.launch(detail::grid_kernel<S>, 1, morton_grid::samples, 0, source, grid_.data());
+    on_.for_ranges(n, detail::encode_body<S>{source, grid_.data(), codes_.data(), numbers_.data(), dropped});
+    sort(n);
+    const detail::tree_room to{points_.data(), balls_.data(), least_.data(), boxes_.data()};
+    const auto blocks = [](std::uint32_t nodes) { return (nodes + 7) / 8; };
+    on_.launch(detail::tile_kernel<S, view_type>, blocks(view_.size(0)), 256, 0, source, view_, sorted_.data(), to);
+    for (std::uint32_t level = 1; level < view_.levels; ++level)
+      on_.launch(detail::node_kernel<view_type>, blocks(view_.size(level)), 256, 0, view_, level, to);
+  }
+  const view_type& view() const { return view_; }
+
+ private:
+  /// A pass of the sort takes eight bits. Three of them make cells as fine as tiles are.
+  static constexpr int first_bit = 3 * morton_grid::bits - 24, last_bit = 3 * morton_grid::bits;
+
+  void sort(std::size_t n) {
+    const device_guard guard(on_.id);
+    const auto call = [&](void* room, std::size_t& bytes) {
+      check_cuda(cub::DeviceRadixSort::SortPairs(room, bytes, codes_.data(), sorted_codes_.data(), numbers_.data(), sorted_.data(), n, first_bit, last_bit,
+                                                 on_.stream),
+                 "cub::DeviceRadixSort::SortPairs");
+    };
+    if (n > sort_size_) {
+      std::size_t bytes = 0;
+      call(nullptr, bytes);
+      grow(sort_room_, bytes), sort_size_ = n;
+    }
+    std::size_t bytes = sort_room_.size();
+    call(sort_room_.data(), bytes);
+  }
+
+  template <class T>
+  void grow(device_buffer<T>& buffer, std::size_t n) const {
+    if (buffer.size() < n) buffer = device_buffer<T>(n, on_.id, memory_);
+  }
+
+  device on_;
+  std::pmr::memory_resource* memory_;
+  view_type view_;
+  device_buffer<morton_grid> grid_;
+  device_buffer<std::uint32_t> codes_, sorted_codes_, numbers_, sorted_, least_;
+  device_buffer<numbered_point> points_;
+  device_buffer<ball> balls_;
+  device_buffer<extent> boxes_;
+  device_buffer<std::byte> sort_room_;
+  std::size_t sort_size_ = 0;
+};
+
+}  // namespace clearance::cloud_tree

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// A tree over a cloud on the host.
+
+#include <clearance/backend/host.hpp>
+#include <clearance/cloud_tree/morton.hpp>
+#include <clearance/cloud_tree/tree_view.hpp>
+#include <clearance/scan/tally.hpp>
+
+namespace clearance::cloud_tree {
+
+/// Owns a tree; built anew for every frame, in memory that is kept. The valid points are sorted along a Z-curve: the rows of a
+/// depth image are lines, of which few are near one another, and other clouds have no order at all.
+class host_tree {
+ public:
+  using view_type = tree_view<8, 8>;
+
+  /// What does not count is added to `dropped`.
+  template <point_source S>
+  void build(host_workers& workers, const S& source, scan::drop_counts& dropped) {
+    read(workers, source, dropped);
+    encode(workers);
+    for (int shift = 0; shift < 3 * morton_grid::bits; shift += morton_grid::bits) sort_by(workers, shift);
+    put_up(workers);
+  }
+  const view_type& view() const { return view_; }
+
+ private:
+  static constexpr std::size_t piece = 16384;
+  static constexpr std::uint32_t digits = 1 << morton_grid::bits;
+  struct coded {
+    std::uint32_t code, at;
+  };
+
+  static std::size_t pieces(std::size_t n) { return (n + piece - 1) / piece; }
+
+  /// Valid points, each piece's at its beginning, and how many those are.
+  template <point_source S>
+  void read(host_workers& workers, const S& source, scan::drop_counts& dropped) {
+    const std::size_t n = source.size();
+    read_.resize(n), kept_.assign(pieces(n) + 1, 0);
+    workers.for_pieces(n, piece, [&](std::size_t begin, std::size_t end) {
+      scan::tally mine;
+      std::size_t to = begin;
+      for (std::size_t i = begin; i < end; ++i)
+        if (const sample s = source[i]; mine.counts(s)) read_[to++] = {s.position, std::uint32_t(i)};
+      kept_[begin / piece + 1] = std::uint32_t(to - begin);
+      mine.add_to(dropped);
+    });
+    for (std::size_t k = 1; k < kept_.size(); ++k) kept_[k] += kept_[k - 1];
+    view_ = view_type(kept_.back());
+  }
+
+  void encode(host_workers& workers) {
+    const morton_grid grid = grid_of_samples();
+    codes_.resize(view_.count), others_.resize(view_.count);
+    workers.for_pieces(read_.size(), piece, [&](std::size_t begin, std::size_t) {
+      const std::uint32_t first = kept_[begin / piece], count = kept_[begin / piece + 1] - first;
+      for (std::uint32_t j = 0; j < count; ++j) codes_[first + j] = {grid(read_[begin + j].at), std::uint32_t(begin) + j};
+    });
+  }
+  morton_grid grid_of_samples() const {
+    std::vector<real> along[3];
+    const std::size_t stride = std::max<std::size_t>(1, read_.size() / morton_grid::samples);
+    for (std::size_t i = 0; i < read_.size(); i += stride)
+      if (i % piece < kept_[i / piece + 1] - kept_[i / piece]) {
+        const vec3 p = read_[i].at;
+        along[0].push_back(p.x), along[1].push_back(p.y), along[2].push_back(p.z);
+      }
+    if (along[0].empty()) return {};
+    const auto count = std::uint32_t(along[0].size());
+    const auto quantile = [&](std::uint32_t rank) {
+      for (auto& a : along) std::nth_element(a.begin(), a.begin() + rank, a.end());
+      return vec3{along[0][rank], along[1][rank], along[2][rank]};
+    };
+    return {quantile(morton_grid::low_rank(count)), quantile(morton_grid::high_rank(count))};
+  }
+
+  /// By one digit, and where that is equal as before.
+  void sort_by(host_workers& workers, int shift) {
+    const std::size_t n = codes_.size(), rows = pieces(n);
+    const auto digit = [shift](const coded& c) { return c.code >> shift & (digits - 1); };
+    starts_.assign(rows * digits, 0);
+    workers.for_pieces(n, piece, [&](std::size_t begin, std::size_t end) {
+      std::uint32_t* const count = starts_.data() + begin / piece * digits;
+      for (std::size_t i = begin; i < end; ++i) ++count[digit(codes_[i])];
+    });
+    std::uint32_t sum = 0;
+    for (std::uint32_t d = 0; d < digits; ++d)
+      for (std::size_t row = 0; row < rows; ++row) {
+        std::uint32_t& start = starts_[row * digits + d];
+        const std::uint32_t count = start;
+        start = sum, sum += count;
+      }
+    workers.for_pieces(n, piece, [&](std::size_t begin, std::size_t end) {
+      std::uint32_t* const start = starts_.data() + begin / piece * digits;
+      for (std::size_t i = begin; i < end; ++i) others_[start[digit(codes_[i])]++] = codes_[i];
+    });
+    codes_.swap(others_);
+  }
+
+  void put_up(host_workers& workers) {
+    points_.resize(view_.count), boxes_.resize(view_.nodes()), balls_.resize(view_.nodes()), least_.resize(view_.nodes());
+    view_.points = points_.data(), view_.balls = balls_.data(), view_.least = least_.data();
+    for (std::uint32_t level = 0; level < view_.levels; ++level)
+      workers.for_pieces(view_.size(level), piece / view_type::tile, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) level == 0 ? put_tile(std::uint32_t(n)) : put_node(level, std::uint32_t(n));
+      });
+  }
+  void put_tile(std::uint32_t n) {
+    const std::uint32_t begin = view_.first_below(0, n), end = view_.end_below(0, n);
+    extent box;
+    std::uint32_t least = ~0u;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      points_[i] = read_[codes_[i].at];
+      box.add(points_[i].at);
+      least = std::min(least, points_[i].number);
+    }
+    const vec3 center = middle(box);
+    real radius = 0;
+    for (std::uint32_t i = begin; i < end; ++i) radius = max(radius, rough_length_up(points_[i].at - center));
+    boxes_[n] = box, balls_[n] = {center, radius}, least_[n] = least;
+  }
+  void put_node(std::uint32_t level, std::uint32_t n) {
+    const std::uint32_t below = view_.begin[level - 1], begin = below + view_.first_below(level, n), end = below + view_.end_below(level, n);
+    extent box;
+    std::uint32_t least = ~0u;
+    for (std::uint32_t i = begin; i < end; ++i) box.add(boxes_[i].lower), box.add(boxes_[i].upper), least = std::min(least, least_[i]);
+    const vec3 center = middle(box);
+    real radius = 0;
+    for (std::uint32_t i = begin; i < end; ++i) radius = max(radius, (rough_length_up(balls_[i].center - center) + balls_[i].radius) * (1 + slack));
+    const std::uint32_t me = view_.begin[level] + n;
+    boxes_[me] = box, balls_[me] = {center, min(radius, farthest(box, center))}, least_[me] = least;
+  }
+
+  view_type view_;
+  std::vector<numbered_point> read_, points_;
+  std::vector<std::uint32_t> kept_, starts_, least_;
+  std::vector<coded> codes_, others_;
+  std::vector<extent> boxes_;
+  std::vector<ball> balls_;
+};
+
+}  // namespace clearance::cloud_tree

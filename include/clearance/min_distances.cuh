@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The least distances of many configurations, on the host or on a device.
+
+#include <clearance/answer/device_batch.cuh>
+#include <clearance/answer/kept_copies.cuh>
+#include <clearance/backend/stream_resource.cuh>
+#include <clearance/min_distance.cuh>
+#include <clearance/min_distances.hpp>
+
+namespace clearance {
+
+/// On a device. Memory for its own use comes from `memory`, a resource that hands out device memory, if one is given.
+template <class PartView>
+class min_distances_query<device, PartView> {
+ public:
+  /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
+  template <robot Robot>
+  min_distances_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr)
+      : search_(on, view_of(robot), memory), copies_(on, memory) {}
+
+  /// As min_distances. What is returned stays until the next call. Points in host memory are copied into buffers that are kept.
+  template <class Clouds>
+  const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const min_distances_options& options = {}) {
+    place(poses);
+    return (*this)(clouds, options);
+  }
+
+  /// Keeps poses, on the device too, for frames to come: a trajectory that is watched is copied once. Enqueued; throws
+  /// std::invalid_argument if they are no whole configurations.
+  void place(std::span<const Eigen::Isometry3d> poses) {
+    detail::count_configurations(search_.parts(), poses.size());
+    poses_.assign(poses.begin(), poses.end());
+    search_.place(poses_);
+  }
+  /// The configurations that were placed, against a new frame.
+  template <class Clouds>
+  const min_distances_result& operator()(const Clouds& clouds, const min_distances_options& options = {}) {
+    detail::named(search_.parts(), poses_, [&] {
+      ask(clouds, options, copies_);
+      result_.of.resize(search_.size());
+      if (!search_.copy_out(result_.of)) throw std::invalid_argument("clearance: a pose is not rigid");
+    });
+    return result_;
+  }
+  /// Enqueues it: what is returned is memory of the device, one result a configuration, for what follows in its stream. Clouds must be
+  /// readable there. If a pose is not rigid, which cannot be thrown there, the state is `possible` and the distance NaN.
+  template <class Clouds>
+  const min_distance_result* enqueue(const Clouds& clouds, const min_distances_options& options = {}) {
+    ask(clouds, options, minimum::as_it_is{});
+    return search_.results();
+  }
+
+  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  void forget() { search_.forget(); }
+
+ private:
+  template <class Clouds, class Here>
+  void ask(const Clouds& clouds, const min_distances_options& options, Here&& here) {
+    static_assert(explain_clouds<Clouds>());
+    detail::check(options);
+    search_.enqueue(clouds, options.d_max, [&](const auto& source, std::uint32_t cloud) { return here(source, cloud); });
+  }
+
+  minimum::device_batch<PartView> search_;
+  minimum::kept_copies copies_;
+  std::vector<Eigen::Isometry3d> poses_;
+  min_distances_result result_;
+};
+
+template <robot Robot>
+min_distances_query(const device&, const Robot&, std::pmr::memory_resource*)
+    -> min_distances_query<device, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+
+namespace detail {
+
+/// Memory for one call comes in the order of its stream.
+template <>
+struct batch_once<device> {
+  template <class Robot, class Clouds>
+  static min_distances_result of(const device& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                 const min_distances_options& options) {
+    stream_resource memory(on.id, on.stream);
+    min_distances_query query(on, robot, &memory);
+    return query(poses, clouds, options);
+  }
+};
+
+}  // namespace detail
+
+}  // namespace clearance

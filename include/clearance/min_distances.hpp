@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How far are many configurations of one robot, such as the waypoints of a trajectory, from everything that its sensors see? On the
+// host; min_distances.cuh has a device, too.
+
+#include <clearance/answer/host_batch.hpp>
+#include <clearance/answer/margins.hpp>
+#include <clearance/answer/search_on.hpp>
+
+namespace clearance {
+
+struct min_distances_options {
+  real d_max = infinity;  ///< Metres. Of a configuration that is farther away only that is known; it costs much less.
+};
+
+/// One result a configuration: min_distance's of its poses, to the bit, if that is at most d_max. Else the distance is infinite, at
+/// no point of no part, and `lower` what is certain: d_max less gap, tolerance and rounding.
+struct min_distances_result {
+  std::vector<min_distance_result> of;
+
+  /// The first configuration that is not certain to be farther away than `margin`, in metres; or of.size(). Without a valid point
+  /// none is certain.
+  std::size_t first_below(double margin) const {
+    const auto near = [margin](const min_distance_result& r) { return r.state == state::no_data || !(double(r.lower) > margin); };
+    return std::size_t(std::find_if(of.begin(), of.end(), near) - of.begin());
+  }
+};
+
+namespace detail {
+
+/// How many configurations that are. Throws std::invalid_argument if some are not whole.
+inline std::size_t count_configurations(std::size_t parts, std::size_t poses) {
+  if (parts == 0 ? poses != 0 : poses % parts != 0)
+    throw std::invalid_argument("clearance: " + std::to_string(poses) + " poses are no whole configurations of " + std::to_string(parts) + " parts");
+  return parts == 0 ? 0 : poses / parts;
+}
+/// Calls `f`; of what it throws because a pose is not rigid the sentence says which configuration's.
+template <class F>
+void named(std::size_t parts, std::span<const Eigen::Isometry3d> poses, const F& f) {
+  try {
+    f();
+  } catch (const std::invalid_argument&) {
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      rigid_transform_of(poses[i], ("configuration " + std::to_string(i / parts) + "'s part").c_str(), std::int64_t(i % parts));
+    throw;
+  }
+}
+inline void check(const min_distances_options& options) {
+  if (!(options.d_max == options.d_max)) throw std::invalid_argument("clearance: d_max is not a number");
+}
+
+}  // namespace detail
+
+/// The prepared question, asked for frame after frame: it keeps its memory, and remembers where each configuration's last minimum was,
+/// which only ever makes it faster. One object is for one thread and one stream. A device's is in min_distances.cuh. A backend of
+/// one's own asks for each configuration by itself.
+template <class On, class PartView>
+class min_distances_query {
+  static_assert(!requires { typename On::own_scan; }, "a device has a search of its own: include <clearance/min_distances.cuh>, not the .hpp");
+
+ public:
+  template <robot Robot>
+  min_distances_query(const On& on, const Robot& robot) : on_(on), model_(view_of(robot)) {}
+
+  template <class Clouds>
+  const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const min_distances_options& options = {}) {
+    static_assert(explain_clouds<Clouds>());
+    detail::check(options);
+    result_.of.resize(detail::count_configurations(model_.size(), poses.size()));
+    detail::named(model_.size(), poses, [&] { each(poses, clouds, options.d_max); });
+    return result_;
+  }
+  void forget() {}
+
+ private:
+  template <class Clouds>
+  void each(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real d_max) {
+    using search = minimum::search_on<On>;
+    using there = std::remove_cvref_t<decltype(search::backend_of(on_))>;
+    const there& backend = search::backend_of(on_);
+    minimum::cloud_copies<there> copies;
+    auto one = backend.template make_scratch<min_distance_result>(1);
+    for (std::size_t c = 0; c < result_.of.size(); ++c) {
+      const auto own = poses.subspan(c * model_.size(), model_.size());
+      frames::cloud_frame frame;
+      frames::for_each_turn(frame, model_.facts, own, clouds, [](const auto&, const frames::turn&) {});
+      search::template once<false>(on_, model_, own, clouds, one.data(), nullptr, minimum::readable_on<there>{backend, copies});
+      result_.of[c] = backend.copy_out(one.data(), 1)[0];
+      minimum::cut(result_.of[c], d_max, frame.slop, frame.error);
+    }
+  }
+
+  On on_;
+  model_view<PartView> model_;
+  min_distances_result result_;
+};
+
+/// On the CPU. The robot's memory must stay.
+template <class PartView>
+class min_distances_query<host, PartView> {
+ public:
+  template <robot Robot>
+  min_distances_query(const host& on, const Robot& robot) : search_(on, view_of(robot)) {}
+
+  /// As min_distances. What is returned stays until the next call.
+  template <class Clouds>
+  const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const min_distances_options& options = {}) {
+    static_assert(explain_clouds<Clouds>());
+    detail::check(options);
+    result_.of.resize(detail::count_configurations(search_.parts(), poses.size()));
+    detail::named(search_.parts(), poses, [&] { search_(poses, clouds, options.d_max, result_.of); });
+    return result_;
+  }
+
+  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  void forget() { search_.forget(); }
+
+ private:
+  minimum::host_batch<PartView> search_;
+  min_distances_result result_;
+};
+
+template <class On, robot Robot>
+min_distances_query(const On&, const Robot&) -> min_distances_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+
+namespace detail {
+
+template <class On>
+struct batch_once {
+  template <class Robot, class Clouds>
+  static min_distances_result of(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                 const min_distances_options& options) {
+    min_distances_query query(on, robot);
+    return query(poses, clouds, options);
+  }
+};
+
+}  // namespace detail
+
+/// The least distance of each configuration. `poses` are world-from-part, one a part of the first configuration, then those of the
+/// next; `clouds` as for min_distance. Throws std::invalid_argument as that does, and if poses are no whole configurations, or
+/// d_max is NaN.
+template <class On, robot Robot, class Clouds>
+min_distances_result min_distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                   const min_distances_options& options = {}) {
+  static_assert(explain_clouds<Clouds>());
+  return detail::batch_once<On>::of(on, robot, poses, clouds, options);
+}
+
+}  // namespace clearance

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The least distances of many configurations are those of one after another, in every bit.
+#include "search/edge_scenes.hpp"
+#include "support/brute_pairs.hpp"
+#include "support/configurations.hpp"
+#include "support/linked_tree.hpp"
+#include "support/volumes.hpp"
+#include "support/wide_tree.hpp"
+
+#include <clearance/make_model.hpp>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/obb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+using clearance::host, clearance::infinity, clearance::min_distance, clearance::min_distances, clearance::placed, clearance::point_span, clearance::state;
+
+namespace {
+
+/// Against one at a time, for a few reaches; one prepared question for all of them, frame after frame.
+template <class Model, class Clouds>
+void check(const Model& model, std::size_t parts, const configurations& poses, const Clouds& clouds, double size, verdict& v, const std::string& what) {
+  clearance::min_distances_query query(host{}, model);
+  const auto one = [&](auto own) { return min_distance(host{1}, model, own, clouds); };
+  for (const double d_max : {-0.05, 0.0, 0.2, 1.0, double(infinity)}) {
+    const clearance::min_distances_options options{real(d_max * size)};
+    const std::string which = what + ", d_max " + std::to_string(options.d_max);
+    require_same(query(poses, clouds, options), poses, parts, options.d_max, one, v, which + ", prepared");
+    require_same(min_distances(host{1}, model, poses, clouds, options), poses, parts, options.d_max, one, v, which);
+  }
+}
+
+template <class V, class P>
+void all_scenes() {
+  verdict v;
+  dice d(411);
+  for (const auto& s : scenes<P>()) {
+    const sources<P> all(s);
+    const auto poses = configurations_of(s, d);
+    for (const std::uint32_t width : {2, 8}) {
+      const auto model = make_model<V>(s, {.width = width}, clearance::wrapped{});
+      check(model, s.parts.size(), poses, placed{all.span, s.cloud_pose}, s.size, v, s.name);
+      const auto several = std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}), placed{all.metres, all.camera_pose});
+      check(model, s.parts.size(), poses, several, s.size, v, s.name + ", several clouds");
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Least distances of many configurations of inner spheres are those of each") {
+  all_scenes<clearance::sphere, inner_sphere>();
+  all_scenes<clearance::obb, inner_sphere>();
+  all_scenes<kdop14, inner_sphere>();
+}
+TEST_CASE("Least distances of many configurations of triangles are those of each") {
+  all_scenes<clearance::sphere, triangle>();
+  all_scenes<clearance::aabb, triangle>();
+}
+
+TEST_CASE("So they are of robots and clouds of extreme numbers") {
+  verdict v;
+  dice d(412);
+  for (const auto& s : edge_scenes()) {
+    const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+    check(model, s.parts.size(), configurations_of(s, d, 4), placed{point_span(s.points), s.cloud_pose}, s.size, v, s.name);
+  }
+}
+
+TEST_CASE("Points inside solids are 0 away of every configuration, certainly or perhaps, and the lowest goes first") {
+  clearance::triangle_mesh m;
+  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  verdict v;
+  dice d(413);
+  std::size_t inside = 0, uncertain = 0;
+  for (const double tolerance : {0.0, 0.3, 2.0}) {
+    const auto model = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(m)), clearance::part_options{.tolerance = tolerance});
+    configurations poses;
+    for (int c = 0; c < 60; ++c)
+      for (int k = 0; k < 2; ++k) poses.push_back(d.pose(0.1 * c));
+    for (const std::size_t points : {3u, 40u, 3000u}) {
+      const auto cloud = d.points(points, 3);
+      check(model, 2, poses, placed{point_span(cloud), d.pose(0.1)}, 1, v, std::to_string(points) + " points");
+      for (const auto& r : min_distances(host{}, model, poses, cloud).of) inside += r.distance == 0, uncertain += r.distance == 0 && r.state == state::possible;
+    }
+  }
+  CHECK(inside > 100);
+  CHECK(uncertain > 50);
+}
+
+TEST_CASE("A tree of somebody else's, however deep or wide, is a robot's") {
+  verdict v;
+  dice d(414);
+  const auto spheres = random_spheres(d, 200, 0.4);
+  const auto points = d.points(3000, 1);
+  configurations poses;
+  for (int c = 0; c < 20; ++c) poses.push_back(d.pose(1.5));
+  const auto around = clearance::enclosing_ball(std::span<const inner_sphere>(spheres));
+  const clearance::part_facts facts{around.center, around.radius, 0.001f, 0};
+  for (const bool lopsided : {false, true}) {
+    const linked_tree<clearance::obb, inner_sphere> tree(spheres, lopsided);
+    const clearance::model model{std::vector{clearance::part{tree.view(), clearance::no_interior{}, facts}}};
+    check(model, 1, poses, point_span(points), 1, v, lopsided ? "a list" : "a linked tree");
+  }
+  const auto volumes = wide_volumes<clearance::sphere>(spheres);
+  const wide_view<clearance::sphere, inner_sphere> wide{volumes.data(), spheres.data(), 200};
+  check(clearance::model{std::vector{clearance::part{wide, clearance::no_interior{}, facts}}}, 1, poses, point_span(points), 1, v, "a wide tree");
+}
+
+TEST_CASE("Clouds in order and in none, large ones, and one point far from all others") {
+  verdict v;
+  dice d(415);
+  auto s = crowd(416);
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const auto poses = configurations_of(s, d, 12);
+  s.points.push_back({1e6f, -1e6f, 1e5f});
+  check(model, 3, poses, point_span(s.points), 1, v, "a crowd");
+  std::vector<std::uint16_t> pixels(320 * 240);
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = i % 13 == 5 ? 0 : std::uint16_t(900 + 300 * std::sin(double(i % 320) / 40) + d.number(0, 3));
+  const clearance::depth_image<std::uint16_t> image(pixels.data(), 320, 240, {260, 260, 159.5, 119.5});
+  check(model, 3, poses, placed{image, shifted(0, 0, -1.5)}, 1, v, "an image");
+}
+
+TEST_CASE("The monitor of a trajectory: every frame is new, and its answer does not know of the last one") {
+  verdict v;
+  dice d(417);
+  const auto s = scenes<inner_sphere>()[0];
+  const auto model = make_model<clearance::aabb>(s, {}, clearance::wrapped{});
+  configurations poses;
+  for (int c = 0; c < 50; ++c)
+    for (const auto& pose : s.poses) poses.push_back(shifted(0.02 * c, 0, 0) * pose);
+  clearance::min_distances_query query(host{}, model);
+  for (const std::size_t points : {300, 10, 2000, 0, 500}) {
+    const auto cloud = d.points(points, 2);
+    const auto one = [&](auto own) { return min_distance(host{}, model, own, cloud); };
+    require_same(query(poses, cloud), poses, s.parts.size(), infinity, one, v, std::to_string(points) + " points");
+    if (points == 10) poses.resize(poses.size() / 2 / s.parts.size() * s.parts.size());
+    if (points == 2000) query.forget();
+  }
+}
+
+TEST_CASE("The first waypoint below a margin, and nothing known is below it") {
+  const auto part = clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 0.5f}}), 0.01, 0);
+  const clearance::model model{std::vector{part}};
+  configurations poses;
+  for (int c = 0; c < 10; ++c) poses.push_back(shifted(0.5 * c, 0, 0));
+  const std::vector<vec3> wall{{4, 0, 0}};
+  const auto found = min_distances(host{}, model, poses, wall);
+  CHECK(found.first_below(0.0) == 7);   // 4 - 3.5 - 0.5, less the gap
+  CHECK(found.first_below(0.48) == 7);
+  CHECK(found.first_below(0.495) == 6);
+  CHECK(found.first_below(-1.0) == 10);
+  const auto nearby = min_distances(host{}, model, poses, wall, {0.6f});
+  CHECK(nearby.first_below(0.495) == 6);
+  CHECK((nearby.of[0].state == state::free && nearby.of[0].distance == infinity && nearby.of[0].lower > 0.589f && nearby.of[0].lower <= 0.59f));
+  CHECK(min_distances(host{}, model, poses, std::vector<vec3>{}).first_below(-1) == 0);
+  CHECK(min_distances(host{}, model, poses, std::vector<vec3>{{clearance::not_a_number, 0, 0}}).of[3].state == state::no_data);
+}
+
+TEST_CASE("What is no batch is refused, and an empty one is one") {
+  const auto s = scenes<inner_sphere>()[0];
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const point_span cloud(s.points);
+  configurations poses = s.poses;
+  poses.insert(poses.end(), s.poses.begin(), s.poses.end());
+  CHECK(min_distances(host{}, model, configurations{}, cloud).of.empty());
+  CHECK_THROWS_WITH(min_distances(host{}, model, std::span(poses).first(4), cloud), "clearance: 4 poses are no whole configurations of 3 parts");
+  CHECK_THROWS_AS(min_distances(host{}, model, poses, cloud, {clearance::not_a_number}), std::invalid_argument);
+  CHECK_THROWS_AS(min_distances(host{}, model, poses, placed{cloud, Eigen::Isometry3d(Eigen::Scaling(2.0))}), std::invalid_argument);
+  poses[4].linear() *= 1.5;
+  CHECK_THROWS_WITH(min_distances(host{}, model, poses, cloud),
+                    Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
+}
+
+TEST_CASE("With a traversal of one's choice each configuration is asked for by itself") {
+  verdict v;
+  dice d(418);
+  const auto s = scenes<triangle>()[0];
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const auto poses = configurations_of(s, d);
+  const placed cloud{point_span(s.points), s.cloud_pose};
+  for (const real d_max : {0.1f, real(infinity)})
+    require_same(min_distances(clearance::plain{host{}, clearance::stack{}}, model, poses, cloud, {d_max}), poses, s.parts.size(), d_max,
+                 [&](auto own) { return min_distance(host{}, model, own, cloud); }, v, "plain");
+}

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// On a device the least distances of many configurations are the host's, in every bit.
+#include "search/edge_scenes.hpp"
+#include "support/brute_pairs.hpp"
+#include "support/configurations.hpp"
+
+#include <clearance/make_model.hpp>
+#include <clearance/min_distances.cuh>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/obb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+using clearance::device, clearance::host, clearance::infinity, clearance::min_distances, clearance::placed, clearance::point_span, clearance::state;
+
+namespace {
+
+void require_results(const std::vector<clearance::min_distance_result>& found, const std::vector<clearance::min_distance_result>& expected, verdict& v,
+                     const std::string& what) {
+  v.require(found.size() == expected.size(), what, ": another number of results");
+  for (std::size_t c = 0; c < found.size() && c < expected.size(); ++c)
+    v.require(same_result(found[c], expected[c]), what, ", configuration", c, ": ", found[c].distance, " at", found[c].point, ",", found[c].part, ",",
+              found[c].primitive, " instead of", expected[c].distance, " at", expected[c].point, ",", expected[c].part, ",", expected[c].primitive);
+}
+
+template <class Model, class Clouds>
+void check(const Model& model, const configurations& poses, const Clouds& clouds, double size, verdict& v, const std::string& what) {
+  const device gpu;
+  const auto there = model.on(gpu);
+  clearance::min_distances_query query(gpu, there);
+  query.place(poses);
+  for (const double d_max : {-0.05, 0.0, 0.2, double(infinity)}) {
+    const clearance::min_distances_options options{real(d_max * size)};
+    const auto expected = min_distances(host{}, model, poses, clouds, options);
+    require_results(query(clouds, options).of, expected.of, v, what + ", prepared, d_max " + std::to_string(options.d_max));
+    if (d_max > 0) require_results(min_distances(gpu, there, poses, clouds, options).of, expected.of, v, what + ", d_max " + std::to_string(options.d_max));
+  }
+}
+
+template <class V, class P>
+void all_scenes(std::uint32_t width) {
+  verdict v;
+  dice d(511);
+  for (const auto& s : scenes<P>()) {
+    const sources<P> all(s);
+    const auto poses = configurations_of(s, d);
+    const auto model = make_model<V>(s, {.width = width}, clearance::wrapped{});
+    check(model, poses, placed{all.span, s.cloud_pose}, s.size, v, s.name);
+    const auto several = std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}));
+    check(model, poses, several, s.size, v, s.name + ", several clouds");
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Least distances of many configurations on a device are the host's") {
+  all_scenes<clearance::sphere, inner_sphere>(8);
+  all_scenes<clearance::aabb, triangle>(2);
+}
+
+TEST_CASE("So they are of robots and clouds of extreme numbers, on a device") {
+  verdict v;
+  dice d(512);
+  for (const auto& s : edge_scenes()) {
+    const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+    check(model, configurations_of(s, d, 4), placed{point_span(s.points), s.cloud_pose}, s.size, v, s.name);
+  }
+}
+
+TEST_CASE("A trajectory among a crowd is watched on a device, from frame to frame") {
+  verdict v;
+  auto s = crowd(513);
+  const device gpu;
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  configurations poses;
+  for (int c = 0; c < 600; ++c)
+    for (const auto& pose : s.poses) poses.push_back(shifted(0.002 * c, 0, 0) * pose);
+  const auto there = model.on(gpu);
+  clearance::min_distances_query query(gpu, there);
+  query.place(poses);
+  clearance::min_distances_query on_host(host{}, model);
+  dice d(514);
+  for (int frame = 0; frame < 3; ++frame) {
+    for (vec3& p : s.points) p.x += d.number(-0.001, 0.001);
+    if (frame == 2) s.points.resize(1000);
+    require_results(query(point_span(s.points)).of, on_host(poses, point_span(s.points)).of, v, "frame " + std::to_string(frame));
+  }
+}
+
+TEST_CASE("Points inside solids are 0 away of every configuration, on a device") {
+  clearance::triangle_mesh m;
+  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  verdict v;
+  dice d(515);
+  for (const double tolerance : {0.0, 0.3, 2.0}) {
+    const auto model = clearance::make_model<clearance::obb>(std::vector(2, clearance::close_mesh(m)), clearance::part_options{.tolerance = tolerance});
+    configurations poses;
+    for (int c = 0; c < 60; ++c)
+      for (int k = 0; k < 2; ++k) poses.push_back(d.pose(0.1 * c));
+    for (const std::size_t points : {3u, 40u, 3000u}) check(model, poses, d.points(points, 3), 1, v, std::to_string(points) + " points");
+  }
+}
+
+TEST_CASE("What is no batch is refused on a device, and a pose that is not rigid stops a robot") {
+  const auto s = scenes<inner_sphere>()[0];
+  const device gpu;
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{}).on(gpu);
+  const point_span cloud(s.points);
+  configurations poses = s.poses;
+  poses.insert(poses.end(), s.poses.begin(), s.poses.end());
+  CHECK(min_distances(gpu, model, configurations{}, cloud).of.empty());
+  CHECK_THROWS_WITH(min_distances(gpu, model, std::span(poses).first(4), cloud), "clearance: 4 poses are no whole configurations of 3 parts");
+  CHECK_THROWS_AS(min_distances(gpu, model, poses, cloud, {clearance::not_a_number}), std::invalid_argument);
+  poses[4].linear() *= 1.5;
+  CHECK_THROWS_WITH(min_distances(gpu, model, poses, cloud),
+                    Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
+  const auto points = gpu.copy_in(std::span<const vec3>(s.points));
+  clearance::min_distances_query query(gpu, model);
+  query.place(poses);
+  const auto r = gpu.copy_out(query.enqueue(point_span(points.data(), points.size()), {0.1f}), 2);
+  CHECK((r[1].state == state::possible && r[1].distance != r[1].distance && r[1].lower == 0));
+  CHECK((r[0].state != state::no_data && (r[0].distance == infinity || r[0].part != clearance::none)));
+}

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "support/laws.hpp"
+
+#include <clearance/result.hpp>
+
+#include <algorithm>
+
+namespace testing {
+
+/// Everything that a result says, by its bits where it is a number.
+inline bool same_result(const clearance::min_distance_result& a, const clearance::min_distance_result& b) {
+  return a.state == b.state && same_bits(a.distance, b.distance) && same_bits(a.lower, b.lower) && same_bits(a.upper, b.upper) &&
+         a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.primitive == b.primitive && same_bytes(a.at, b.at) &&
+         same_bytes(a.nearest, b.nearest) && same_bytes(a.normal, b.normal) && a.seen == b.seen && a.valid == b.valid &&
+         std::equal(a.dropped, a.dropped + clearance::drop_reasons, b.dropped);
+}
+
+}  // namespace testing
