@@ -185,7 +185,7 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   app.add_flag("--use-viewpoint")->description("Apply the VIEWPOINT of a PCD file");
   app.add_flag("--zero-is-missing")->description("(0,0,0) is no point");
   one("--model", raw->model, "spheres (default) or triangles");
-  one("--volume", raw->volume, "sphere, aabb or obb (default: sphere for spheres, obb for triangles)");
+  if (!planned) one("--volume", raw->volume, "sphere, aabb or obb (default: sphere for spheres, obb for triangles)");
   one("--spheres", raw->spheres, "Inner spheres per link (default 2048)");
   one("--packing", raw->packing, "The links' spheres: .ist (from clearance pack), .yaml as for cuRobo, .csv");
   app.add_flag("--no-cache", raw->no_cache, "Pack anew, and keep nothing");

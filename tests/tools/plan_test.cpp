@@ -191,6 +191,7 @@ TEST_CASE("a joint without a column is fixed by --joint, and what is wrong with 
   refuses("plan" + p.robot + " --cloud " + p.cloud.path, "--configurations is required");
   refuses("plan" + p.robot + " --configurations " + p.rows.path, "--cloud is required");
   refuses(p.ask + " --json", "--json");
+  refuses(p.ask + " --volume obb", "--volume");
   refuses(p.ask + " --joints 0,0", "--joints");
   refuses(p.ask + " --camera-link elbow", "elbow");
   refuses(p.ask + " --check nan", "--check: \"nan\" is not a finite number");

@@ -255,5 +255,7 @@ TEST_CASE("what is wrong with zones and distances is one sentence that names the
   refuses(q.ask + " --distances " + ply.path + " --scene " + ply.path, "--distances: is the same file as --scene");
   refuses(q.ask + " --distances " + ply.path + " --scene " + std::filesystem::path(ply.path).parent_path().string() + "/./" +
               std::filesystem::path(ply.path).filename().string(), "--distances: is the same file as --scene");
+  const scratch_file input(".ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n3 0 0\n");
+  refuses(q.robot + " --cloud " + input.path + " --distances " + input.path, input.path + ": is a file that this reads");
   refuses("run --robot x --frames y --zones 0.1", "--zones");
 }

@@ -119,7 +119,7 @@ TEST_CASE("nothing is written onto an input, whatever name it goes by, nor throu
       const std::string before = w.read(input), hard = w.at("hard" + ending);
       fs::create_hard_link(w.folder / input, hard);
       refuses(write + hard, "hard" + ending + ": is a file that this reads");
-      if (query) refuses(write + w.at("../" + w.folder.filename().string() + "/./" + input), "is a file that this reads");
+      if (ending == ".glb") refuses(write + w.at("../" + w.folder.filename().string() + "/./" + input), "is a file that this reads");
       fs::remove(hard);
       const std::string soft = w.at("soft" + ending);
       fs::create_symlink(w.folder / input, soft);
