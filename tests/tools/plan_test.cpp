@@ -218,7 +218,8 @@ TEST_CASE("clearance run --plan says in every frame what clearance plan says of 
       for (const char* key : {"rows", "at", "first_below"}) CHECK(plan.at(key) == alone.back().at("plan").at(key));
       CHECK(plan.at("least").get<double>() == Approx(alone.back().at("plan").at("least").get<double>()).margin(1e-6));
       REQUIRE(plan.at("lower").size() == 4);
-      for (int row = 0; row < 4; ++row) CHECK(plan.at("lower").at(row).get<double>() == Approx(alone[row].at("lower").get<double>()).margin(1e-5));
+      for (int row = 0; row < 4; ++row)
+        CHECK(plan.at("lower").at(row).get<double>() == Approx(alone[row].at("lower").get<double>()).margin(1e-5));
     }
   }
   // The frame itself is far enough.

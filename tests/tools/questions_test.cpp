@@ -130,7 +130,8 @@ TEST_CASE("--distances writes every valid point where it is in the world, with i
   const question q;
   const scratch_file ply(".ply");
   const auto j = parsed(run_command(q.ask + " --distances " + ply.path));
-  CHECK(j.at("distances") == nlohmann::json::parse(R"({"points": 3, "left_out": 1, "beyond": 0, "d_max": null, "blue_at": 1.0, "file": ")" + ply.path + "\"}"));
+  CHECK(j.at("distances") ==
+        nlohmann::json({{"file", ply.path}, {"points", 3}, {"left_out", 1}, {"beyond", 0}, {"d_max", nullptr}, {"blue_at", 1.0}}));
   auto all = records(ply.path);
   REQUIRE(all.size() == 3);
   CHECK(all[0].x == 5);
@@ -200,11 +201,12 @@ TEST_CASE("without a valid point the file of distances has none, and the exit co
 TEST_CASE("zones count what distances say, for a cloud of many points and both models") {
   scratch_file urdf{".urdf", R"(<robot name="r"><link name="a"><collision><geometry><box size="0.2 0.3 0.4"/></geometry></collision></link></robot>)"};
   std::string points;
-  for (int i = 0; i < 500; ++i) points += std::to_string(0.01 * (i % 83)) + ' ' + std::to_string(-0.02 * (i % 29)) + ' ' + std::to_string(0.003 * (i % 101)) + '\n';
+  for (int i = 0; i < 500; ++i)
+    points += std::to_string(0.01 * (i % 83)) + ' ' + std::to_string(-0.02 * (i % 29)) + ' ' + std::to_string(0.003 * (i % 101)) + '\n';
   const scratch_file cloud(".xyz", points), ply(".ply");
   for (const std::string model : {"triangles", "spheres --spheres 200 --no-cache"}) {
-    const auto j = parsed(run_command("query --json --backend host --robot " + urdf.path + " --cloud " + cloud.path + " --zones 0.0512345,0.212345,0.512345 --distances " +
-                                      ply.path + " --model " + model));
+    const auto j = parsed(run_command("query --json --backend host --robot " + urdf.path + " --cloud " + cloud.path +
+                                      " --zones 0.0512345,0.212345,0.512345 --distances " + ply.path + " --model " + model));
     const auto all = records(ply.path);
     CHECK(all.size() == 500);
     const double gap = j.at("parts").at(0).value("gap", 0.0);
