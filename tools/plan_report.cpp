@@ -11,7 +11,7 @@ using namespace clearance;
 namespace {
 
 const observation* cloud_of(const plan_report& report, const min_distance_result& r) {
-  return r.cloud == none ? nullptr : &(*report.clouds)[r.cloud];
+  return r.point == none ? nullptr : &(*report.clouds)[r.cloud];
 }
 
 /// A word of CSV (RFC 4180); nothing for null. What JSON cannot say of numbers, CSV can.
