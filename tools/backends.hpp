@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The only way from the command to what the library does on a backend: plain data in, plain data out, so that each backend
-// is one translation unit and only device.cu needs nvcc.
+// The only way from the command to what the library does on a backend: plain data in, plain data out, so that only the device's
+// translation units need nvcc.
 
 #include <clearance/packing/packing.hpp>
 #include <clearance/points/depth_image.hpp>
@@ -13,9 +13,17 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
+
+namespace clearance {
+struct zones_options;
+struct zones_result;
+struct point_distances;
+struct min_distances_result;
+}  // namespace clearance
 
 enum class model_kind { spheres, triangles };
 enum class volume_kind { sphere, aabb, obb };
@@ -38,41 +46,48 @@ struct seen_points {
   Eigen::Isometry3d pose;  // world-from-points
 };
 
-struct question {
-  model_kind model = model_kind::spheres;
-  volume_kind volume = volume_kind::sphere;
-  const std::vector<body>* bodies = nullptr;
-  std::vector<Eigen::Isometry3d> poses;  // world-from-body
-  std::vector<seen_points> clouds;
-  int repeat = 1;  // ask up to so often, while that takes little, and report the shortest time
-};
-
 struct reply {
   clearance::min_distance_result result;
-  std::vector<clearance::part_minimum> parts;
-  double build = 0, upload = 0, query = 0;  // seconds
+  std::vector<clearance::part_minimum> parts;  // of least_per_part
 };
 
-reply ask_host(const question& asked);
+using poses_of = std::span<const Eigen::Isometry3d>;
 
-/// Throws std::runtime_error if no device is compiled in.
-reply ask_device(const question& asked);
-
-/// A question that is asked again and again, of the same bodies: the library's prepared query.
-class prepared_question {
+/// A robot whose trees a backend holds, and the points that it was shown last. Each question is a translation unit of its own in
+/// questions/, so that they compile beside one another; a tree is built when it is first needed.
+class backend_robot {
  public:
-  virtual ~prepared_question() = default;
+  virtual ~backend_robot() = default;
 
-  /// Takes the points to where the backend reads them; they and what they view stay until the next ones. Seconds spent.
-  virtual double see(const seen_points& cloud) = 0;
+  /// Takes points to where the backend reads them; what they view stays until the next ones. Seconds spent.
+  virtual double see(const std::vector<seen_points>& clouds) = 0;
 
-  /// The minimum over what was seen last; .query is the time of that alone, and no .parts are told.
-  virtual reply ask(const std::vector<Eigen::Isometry3d>& poses) = 0;
+  /// The least distance, by the library's prepared query. `poses` of all questions: world-from-body.
+  virtual reply least(poses_of poses) = 0;
+  /// With every part's. Asked up to so often, while that takes little, from cold; the time is the shortest.
+  virtual reply least_per_part(poses_of poses, int repeat) = 0;
+
+  // These have trees of one volume for each model: their answers do not depend on it.
+  virtual clearance::zones_result zones(poses_of poses, const clearance::zones_options& options) = 0;
+  virtual clearance::point_distances distances(poses_of poses, double d_max) = 0;
+  /// `poses`: those of one configuration after another.
+  virtual clearance::min_distances_result plan(poses_of poses, double d_max) = 0;
+
+  // Seconds: what the last question took, and what trees have taken until now, to be made and to be where the backend reads them.
+  double query = 0, build = 0, upload = 0;
 };
 
-/// Builds the models that are asked for; poses and clouds come later.
-std::unique_ptr<prepared_question> prepare_host(const question& asked);
-std::unique_ptr<prepared_question> prepare_device(const question& asked);
+/// What trees are built from.
+struct asked_model {
+  model_kind model = model_kind::spheres;
+  volume_kind volume = volume_kind::sphere;  // of the trees of `least`
+  const std::vector<body>* bodies = nullptr;
+};
+
+std::unique_ptr<backend_robot> robot_on_host(const asked_model& asked);
+/// Throws std::runtime_error if no device is compiled in.
+std::unique_ptr<backend_robot> robot_on_device(const asked_model& asked);
+inline std::unique_ptr<backend_robot> robot_on(bool device, const asked_model& asked) { return device ? robot_on_device(asked) : robot_on_host(asked); }
 
 /// As clearance::pack, on the device; from any thread. Throws std::runtime_error if no device is compiled in.
 clearance::packing pack_on_device(const clearance::mesh_solid& solid, const clearance::pack_options& options);

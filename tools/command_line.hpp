@@ -29,6 +29,7 @@ using subcommand = std::function<int()>;
 
 subcommand add_query(CLI::App& app);
 subcommand add_run(CLI::App& app);
+subcommand add_plan(CLI::App& app);
 subcommand add_pack(CLI::App& app);
 subcommand add_demo(CLI::App& app);
 subcommand add_info(CLI::App& app);

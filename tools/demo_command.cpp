@@ -24,9 +24,12 @@ struct demo_settings {
 
 struct demo_row {
   bool on_device;
-  question asked;
+  asked_model asked;
   reply found;
+  double query;  // seconds
 };
+
+depth_image<std::uint16_t> image_of(const demo_scene& world) { return {world.depth.data(), world.width, world.height, world.camera}; }
 
 void draw(const demo_scene& world, const demo_row& row, const std::string& file) {
   io::scene scene;
@@ -36,7 +39,7 @@ void draw(const demo_scene& world, const demo_row& row, const std::string& file)
     if (r.part == k) scene.bodies.back().paint = {0.95f, 0.6f, 0.2f, 1};
   }
   std::vector<vec3> points;
-  const auto& image = std::get<depth_image<std::uint16_t>>(row.asked.clouds[0].points);
+  const auto image = image_of(world);
   for (std::size_t i = 0; i < image.size(); ++i)
     if (const sample s = image[i]; s.valid()) points.push_back(s.position);
   scene.clouds.push_back({.name = "depth", .points = std::move(points), .pose = world.world_from_camera});
@@ -50,7 +53,7 @@ void print(const demo_row& row, const std::vector<body>& bodies) {
   const std::string pixel = std::to_string(r.point % 640) + ',' + std::to_string(r.point / 640);
   std::printf("%-8s %-10s %-7s %10.6f  %.6f to %.6f  %-8s %-12s %9u  %10.3f\n", row.on_device ? "device" : "host",
               to_string(row.asked.model), to_string(row.asked.volume), double(r.distance), double(r.lower), double(r.upper),
-              pixel.c_str(), part.c_str(), r.primitive, 1e3 * row.found.query);
+              pixel.c_str(), part.c_str(), r.primitive, 1e3 * row.query);
 }
 
 bool same_witness(const min_distance_result& a, const min_distance_result& b) {
@@ -66,20 +69,17 @@ int run(const demo_settings& settings) {
   const demo_scene world = make_demo_scene();
   std::vector<body_source> sources;
   std::size_t triangles = 0;
-  question asked;
+  std::vector<Eigen::Isometry3d> poses;
   for (const auto& part : world.parts) {
     sources.push_back({part.name, &part.mesh});
     triangles += part.mesh.triangles.size();
-    asked.poses.push_back(part.pose);
+    poses.push_back(part.pose);
   }
   body_account account;
   const body_options how{.pack = {.count = count}, .both = true, .cache = chosen_cache(settings.no_cache, settings.cache)};
   const std::vector<body> bodies = make_bodies(sources, how, shown, account);
   shown.clear();
   const double seconds = clock.lap();
-  asked.bodies = &bodies;
-  asked.clouds.push_back({depth_image<std::uint16_t>(world.depth.data(), world.width, world.height, world.camera), world.world_from_camera});
-  asked.repeat = 5;
 
   std::size_t spheres = 0;
   double gap = 0;
@@ -95,9 +95,11 @@ int run(const demo_settings& settings) {
     if (on_device && !gpu.present) continue;
     for (const auto model : {model_kind::spheres, model_kind::triangles})
       for (const auto volume : {volume_kind::sphere, volume_kind::aabb, volume_kind::obb}) {
-        asked.model = model;
-        asked.volume = volume;
-        rows.push_back({on_device, asked, on_device ? ask_device(asked) : ask_host(asked)});
+        const asked_model asked{model, volume, &bodies};
+        const auto arm = robot_on(on_device, asked);
+        arm->see({seen_points{image_of(world), world.world_from_camera}});
+        const reply found = arm->least_per_part(poses, 5);
+        rows.push_back({on_device, asked, found, arm->query});
         print(rows.back(), bodies);
       }
   }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/min_distance_query.cuh>  // the device's own prepared query
 #include <clearance/packing/pack.cuh>
 
-#include "ask.hpp"
+#include "backends.hpp"
 
 namespace {
 
@@ -11,10 +10,6 @@ template <int>
 __global__ void probe() {}
 
 }  // namespace
-
-reply ask_device(const question& asked) { return ask(clearance::device{}, asked); }
-
-std::unique_ptr<prepared_question> prepare_device(const question& asked) { return prepare(clearance::device{}, asked); }
 
 clearance::packing pack_on_device(const clearance::mesh_solid& solid, const clearance::pack_options& options) {
   const clearance::own_stream stream(0);  // so that links are packed beside one another

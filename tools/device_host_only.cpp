@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands for device.cu where there is no CUDA compiler.
+// Stands for all that nvcc compiles, where there is no CUDA compiler.
 #include "backends.hpp"
 
 #include <stdexcept>
@@ -10,9 +10,7 @@ constexpr const char* without = "this clearance was built without CUDA";
 
 }  // namespace
 
-reply ask_device(const question&) { throw std::runtime_error(without); }
-
-std::unique_ptr<prepared_question> prepare_device(const question&) { throw std::runtime_error(without); }
+std::unique_ptr<backend_robot> robot_on_device(const asked_model&) { throw std::runtime_error(without); }
 
 clearance::packing pack_on_device(const clearance::mesh_solid&, const clearance::pack_options&) { throw std::runtime_error(without); }
 

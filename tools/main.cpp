@@ -96,9 +96,9 @@ int main(int argc, char** argv) {
                               '.' + std::to_string(CLEARANCE_VERSION_PATCH);
   app.set_version_flag("--version", "clearance " + version);
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 done; 1 an error, wrong usage included; 2 --check fails; 3 no valid point.");
+  app.footer("Exit codes: 0 done; 1 an error, wrong usage included; 2 --check fails, or points are in the first of --zones; 3 no valid point.");
   std::vector<subcommand> run;
-  for (const auto add : {add_query, add_run, add_pack, add_demo, add_info}) run.push_back(add(app));
+  for (const auto add : {add_query, add_run, add_plan, add_pack, add_demo, add_info}) run.push_back(add(app));
   take_one_value_each(app);
   try {
     auto words = checked_words(argc, argv, app);

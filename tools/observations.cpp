@@ -50,7 +50,7 @@ Eigen::Isometry3d observation::world(const Eigen::Isometry3d& carrier) const {
   return placed * pose("--use-viewpoint: " + from.file, points()->viewpoint->translation, points()->viewpoint->rotation);
 }
 
-seen_points observation::seen(const Eigen::Isometry3d& carrier, const std::vector<Eigen::Isometry3d>& robot) {
+seen_points observation::seen(const Eigen::Isometry3d& carrier, poses_of robot) {
   const Eigen::Isometry3d placed = world(carrier);
   if (const auto* frame = image()) {
     depth_image<std::uint16_t> source(frame->pixels.data(), std::uint32_t(frame->width), std::uint32_t(frame->height),
@@ -66,6 +66,21 @@ seen_points observation::seen(const Eigen::Isometry3d& carrier, const std::vecto
   return {source, pose};
 }
 
+std::vector<Eigen::Vector3d> observation::in_world(const Eigen::Isometry3d& carrier, const seen_points& seen) const {
+  std::vector<Eigen::Vector3d> at;
+  if (points()) {  // in the file's doubles
+    const Eigen::Isometry3d placed = world(carrier);
+    for (const Eigen::Vector3d& p : points()->points) at.push_back(placed * p);
+    return at;
+  }
+  const auto& source = std::get<depth_image<std::uint16_t>>(seen.points);
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const vec3 p = source[i].position;
+    at.push_back(seen.pose * Eigen::Vector3d(p.x, p.y, p.z));
+  }
+  return at;
+}
+
 void observation::recount(min_distance_result& r) const {
   r.dropped[int(drop_reason::not_finite)] -= zeros;
   r.dropped[int(drop_reason::missing)] += zeros;
@@ -75,15 +90,4 @@ void observation::forget_points() {
   floats_.points = {};
   if (auto* cloud = std::get_if<io::cloud>(&data)) cloud->points = {};
   if (auto* frame = std::get_if<io::depth_frame>(&data)) frame->pixels = {};
-}
-
-std::vector<vec3> valid_points(const seen_points& seen) {
-  std::vector<vec3> valid;
-  std::visit(
-      [&](const auto& source) {
-        for (std::size_t i = 0; i < source.size(); ++i)
-          if (const sample s = source[i]; s.valid()) valid.push_back(s.position);
-      },
-      seen.points);
-  return valid;
 }

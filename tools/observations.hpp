@@ -25,7 +25,10 @@ struct observation {
   Eigen::Isometry3d world(const Eigen::Isometry3d& carrier) const;
 
   /// What the query reads, in memory of this object; `robot`: where the parts will be, roughly, so that floats are fine there.
-  seen_points seen(const Eigen::Isometry3d& carrier, const std::vector<Eigen::Isometry3d>& robot);
+  seen_points seen(const Eigen::Isometry3d& carrier, poses_of robot);
+
+  /// Where its points are in the world, by their numbers; of those that do not count, anywhere. `seen`: what seen(carrier, ...) gave.
+  std::vector<Eigen::Vector3d> in_world(const Eigen::Isometry3d& carrier, const seen_points& seen) const;
 
   /// Counts what was turned into NaN as missing.
   void recount(clearance::min_distance_result& r) const;
@@ -39,6 +42,3 @@ struct observation {
 
 /// Reads the file. Throws if it is damaged.
 observation observe(const cloud_options& from);
-
-/// Its valid points in the frame of observation::seen, for a picture.
-std::vector<clearance::vec3> valid_points(const seen_points& seen);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "asked_robot.hpp"
+#include "asked_clouds.hpp"
 #include "command_line.hpp"
+#include "distances_file.hpp"
 #include "messages.hpp"
-#include "observations.hpp"
 #include "report.hpp"
 #include "stopwatch.hpp"
 
-#include <clearance/io/scene.hpp>
-
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
 #include <iostream>
 
 using namespace clearance;
@@ -27,21 +26,33 @@ std::vector<double> configuration(const query_options& asked, const io::kinemati
   return tree.configuration({asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits});
 }
 
-void draw(const query_report& report, const io::robot& robot, const question& asked) {
+void draw(const query_report& report, const io::robot& robot, poses_of poses, const asked_clouds& clouds, const point_distances* distances) {
   io::scene scene;
   const min_distance_result& r = report.found.result;
   // A glTF file holds floats: a scene far away is drawn around its robot.
   const Eigen::Vector3d base = report.asked->base.translation();
   if (base.norm() > 1000) scene.origin = base;
   for (std::size_t k = 0; k < robot.parts().size(); ++k) {
-    scene.bodies.push_back({.name = robot.parts()[k].name, .mesh = robot.parts()[k].mesh, .pose = asked.poses[k]});
+    scene.bodies.push_back({.name = robot.parts()[k].name, .mesh = robot.parts()[k].mesh, .pose = poses[k]});
     if (r.part == k) scene.bodies.back().paint = {0.95f, 0.6f, 0.2f, 1};
   }
-  for (std::size_t i = 0; i < asked.clouds.size(); ++i)
-    scene.clouds.push_back({.name = (*report.clouds)[i].from.file, .points = valid_points(asked.clouds[i]), .pose = asked.clouds[i].pose});
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < clouds.files.size(); ++i) {
+    scene.clouds.push_back(drawn(*report.asked, clouds.files[i], clouds.seen[i], distances, first));
+    first += clouds.files[i].size();
+  }
   if (r.state != state::no_data)
     scene.segments.push_back({.name = "witness", .from = {r.nearest.x, r.nearest.y, r.nearest.z}, .to = {r.at.x, r.at.y, r.at.z}});
   io::save_scene(scene, report.asked->scene);
+}
+
+/// What is written is no input, and not two things.
+void check_outputs(const query_options& asked, const io::files_read& inputs) {
+  if (!asked.scene.empty()) io::check_output(asked.scene, inputs);
+  if (!asked.distances.empty()) io::check_output(asked.distances, inputs);
+  const auto where = [](const std::string& file) { return std::filesystem::weakly_canonical(file); };
+  if (!asked.scene.empty() && !asked.distances.empty() && where(asked.scene) == where(asked.distances))
+    throw usage_error("--distances", "is the same file as --scene: " + asked.distances);
 }
 
 int run(const query_options& asked) {
@@ -51,48 +62,40 @@ int run(const query_options& asked) {
   io::files_read inputs;
   const io::robot robot = load_robot(asked);
   const auto joints = about_file(asked.robot, [&] { return configuration(asked, robot.kinematics()); });
-  const io::joint_options limits{asked.ignore_limits};
   query_report report;
+  report.asked = &asked;
   report.notes = robot.notes();
-  question q{asked.model, asked.volume, nullptr, placed_links(asked, robot, joints), {}};
-  std::vector<observation> clouds;
-  for (const cloud_options& from : asked.clouds) {
-    shown.show("reading " + from.file);
-    clouds.push_back(observe(from));
-    for (const auto& note : clouds.back().notes) report.notes.push_back(note);
-  }
-  for (observation& cloud : clouds) {  // they stay where they are from here on
-    Eigen::Isometry3d carrier = Eigen::Isometry3d::Identity();
-    if (const auto& link = cloud.from.link; !link.empty())
-      carrier = asked.base * about_file(asked.robot, [&] { return robot.link_pose(link, joints, limits); });
-    q.clouds.push_back(about_file(cloud.from.file, [&] {
-      const seen_points seen = cloud.seen(carrier, q.poses);
-      rigid(seen.pose, "cloud");
-      return seen;
-    }));
-  }
-  if (!asked.scene.empty()) io::check_output(asked.scene, inputs);  // known before the robot is packed
+  const std::vector<Eigen::Isometry3d> poses = placed_links(asked, robot, joints);
+  asked_clouds clouds;
+  clouds.load(asked, shown, report.notes);
+  clouds.place(asked, robot, joints, poses);
+  check_outputs(asked, inputs);  // known before the robot is packed
   report.load = clock.lap();
 
   const std::vector<body> bodies = make_bodies(asked, robot, shown, report.notes);
   report.pack = clock.lap();
-  q.bodies = &bodies;
-  shown.show("asking");
-  report.found = asked.on_device ? ask_device(q) : ask_host(q);
-  for (const observation& cloud : clouds) cloud.recount(report.found.result);
-  report.asked = &asked;
-  report.clouds = &clouds;
+  report.clouds = &clouds.files;
   report.bodies = &bodies;
-  if (!asked.scene.empty()) {
-    io::check_output(asked.scene, inputs);
-    draw(report, robot, q);
-  }
+  shown.show("asking");
+  const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies});
+  report.upload = there->see(clouds.seen);
+  report.found = there->least_per_part(poses, 1);
+  report.query = there->query;
+  if (!asked.zones.empty()) report.zones = there->zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
+  std::optional<point_distances> distances;
+  if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max);
+  report.build = there->build;
+  report.upload += there->upload;
+  for (const observation& cloud : clouds.files) cloud.recount(report.found.result);
+  check_outputs(asked, inputs);
+  if (distances) report.distances = write_distances(asked, clouds, *distances);
+  if (!asked.scene.empty()) draw(report, robot, poses, clouds, distances ? &*distances : nullptr);
   shown.clear();
   say_notes(report.notes);
   std::cout << (asked.json ? to_json(report) : to_text(report));
-  const min_distance_result& r = report.found.result;
-  if (r.state == state::no_data) return 3;
-  return asked.margin && !(r.lower > *asked.margin) ? 2 : 0;
+  if (report.found.result.state == state::no_data) return 3;
+  const bool stopped = report.zones && report.zones->innermost() == 0;
+  return stopped || (asked.margin && !report.passes()) ? 2 : 0;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <map>
 
 bool cloud_options::is_image() const { return clearance::io::extension(file) == ".png"; }
@@ -21,8 +22,9 @@ using texts = std::vector<std::string>;
 
 struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames, trajectory, unfolded;
+  std::string zones, min_points, distances, d_max, configurations, plan;
   texts joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges;
-  bool ignore_limits = false, json = false, no_cache = false, merge = false;
+  bool ignore_limits = false, json = false, no_cache = false, merge = false, csv = false;
 };
 
 /// Sets one per-cloud option, as it was given on the command line.
@@ -70,6 +72,36 @@ std::vector<cloud_options> clouds_of(const CLI::App& app, cloud_options& all) {
   return clouds;
 }
 
+std::vector<double> thresholds(const std::string& option, const std::string& text) {
+  const auto values = numbers(option, text);
+  if (values[0] < 0 || !std::is_sorted(values.begin(), values.end()))
+    throw usage_error(option, "needs thresholds in ascending order, none below 0 (metres)");
+  return values;
+}
+
+/// What is asked beside the least distance.
+void read_questions(const raw_options& raw, query_options& o) {
+  if (!raw.check.empty()) o.margin = number("--check", raw.check);
+  if (!raw.zones.empty()) o.zones = thresholds("--zones", raw.zones);
+  if (!raw.min_points.empty()) {
+    o.min_points = whole_number("--min-points", raw.min_points);
+    if (o.zones.empty()) throw usage_error("--min-points", "is for --zones");
+  }
+  o.distances = raw.distances;
+  if (!o.distances.empty() && clearance::io::extension(o.distances) != ".ply")
+    throw usage_error("--distances", o.distances + ": its name must end in .ply, which is what is written");
+  o.configurations = raw.configurations;
+  o.csv = raw.csv;
+  o.recording.plan = raw.plan;
+  if (!raw.d_max.empty()) {
+    o.d_max = number("--d-max", raw.d_max);
+    if (!(o.d_max > 0)) throw usage_error("--d-max", "must be above 0 (metres)");
+    if (o.distances.empty() && o.configurations.empty()) throw usage_error("--d-max", "is for --distances");
+    if (!o.configurations.empty() && o.margin && !(o.d_max > *o.margin))
+      throw usage_error("--d-max", "must be above the margin of --check, or nothing could pass");
+  }
+}
+
 query_options read(const CLI::App& app, const raw_options& raw) {
   query_options o;
   o.robot = raw.robot;
@@ -101,16 +133,16 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.cache = raw.cache;
   o.excluded = raw.excluded;
   o.on_device = raw.backend.empty() ? find_device().present : is_device(raw.backend);
-  if (!raw.check.empty()) o.margin = number("--check", raw.check);
   o.json = raw.json;
   o.scene = raw.scene;
+  read_questions(raw, o);
   return o;
 }
 
 }  // namespace
 
 std::function<query_options()> add_query_options(CLI::App& app, asking how) {
-  const bool recorded = how == asking::run;
+  const bool recorded = how == asking::run, planned = how == asking::plan;
   auto raw = std::make_shared<raw_options>();
   raw->model = "spheres";
   raw->spheres = "2048";
@@ -127,7 +159,13 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
     app.add_flag("--merge", raw->merge,
                  "Ask every frame about the clouds of all frames, merged in the world: each frame's cloud is put there by --camera-pose, with "
                  "--camera-link by that link's pose in the frame's row of the trajectory");
-    app.add_option("--joint", raw->joint, "name=value: a joint that has no column in the trajectory");
+    one("--plan", raw->plan,
+        "CSV as --trajectory: configurations to come, one a row; every frame says how near they are to its points, and with --check which is the "
+        "first that is too near");
+    app.add_option("--joint", raw->joint, "name=value: a joint that has no column in the trajectory (and in the plan)");
+  } else if (planned) {
+    one("--configurations", raw->configurations, "CSV: a line with the names of the joints, then one configuration a row (rad, m)")->required();
+    app.add_option("--joint", raw->joint, "name=value: a joint that has no column");
   } else {
     one("--joints", raw->joints, "a,b,...: joint positions (rad, m) in the file's order of movable, non-mimic joints");
     app.add_option("--joint", raw->joint, "name=value: the position of one joint; others are 0 or their nearest limit");
@@ -139,7 +177,7 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   one("--base-pose", raw->base, "x,y,z,qx,qy,qz,qw: world-from-base (m; default: the base is at the world's origin)");
   if (!recorded) app.add_option("--cloud", raw->clouds, "Point cloud (.pcd .ply .xyz) or 16-bit depth image (.png); may be repeated")->required();
   app.add_option("--camera-pose", raw->poses, "x,y,z,qx,qy,qz,qw: world-from-cloud, or link-from-cloud with --camera-link");
-  app.add_option("--camera-link", raw->links, "The link that carries the camera");
+  app.add_option("--camera-link", raw->links, std::string("The link that carries the camera") + (planned ? ", where it is in the first configuration" : ""));
   app.add_option("--intrinsics", raw->cameras, "fx,fy,cx,cy of a depth image, pixels");
   app.add_option("--depth-scale", raw->scales, "Metres per unit of a depth image (default 0.001)");
   app.add_option("--range", raw->ranges, "near,far: other points do not count (m; along z for images, else from the sensor)");
@@ -147,23 +185,38 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   app.add_flag("--use-viewpoint")->description("Apply the VIEWPOINT of a PCD file");
   app.add_flag("--zero-is-missing")->description("(0,0,0) is no point");
   one("--model", raw->model, "spheres (default) or triangles");
-  one("--volume", raw->volume, "sphere, aabb or obb (default: sphere for spheres, obb for triangles)");
+  if (!planned) one("--volume", raw->volume, "sphere, aabb or obb (default: sphere for spheres, obb for triangles)");
   one("--spheres", raw->spheres, "Inner spheres per link (default 2048)");
   one("--packing", raw->packing, "The links' spheres: .ist (from clearance pack), .yaml as for cuRobo, .csv");
   app.add_flag("--no-cache", raw->no_cache, "Pack anew, and keep nothing");
   one("--cache", raw->cache, "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
   app.add_option("--exclude-link", raw->excluded, "Leave out this link's geometry");
   one("--backend", raw->backend, "host or device (default: device where there is one)");
-  one("--check", raw->check, std::string("Margin in m: exit code 2 unless the lower end of the bracket is above it") + (recorded ? " in every frame" : ""));
+  one("--check", raw->check,
+      std::string("Margin in m: exit code 2 unless the lower end of the bracket is above it") +
+          (recorded ? " in every frame, and for every row of --plan" : planned ? " in every configuration" : ""));
+  const char* const of_clouds =
+      "--camera-pose, --camera-link, --intrinsics, --depth-scale, --range, --use-viewpoint and --zero-is-missing hold\n"
+      "for all clouds if given before the first --cloud, else for the --cloud before them.";
+  if (planned) {
+    one("--d-max", raw->d_max, "Metres: configurations that are farther from every point are only said to be so, which is quicker");
+    app.add_flag("--csv", raw->csv, "Print CSV; without it, one JSON object per configuration and a last one about all");
+    app.footer(std::string(of_clouds) + "\nThe exit code is 3 without a valid point, also with --check.");
+    return [raw, &app] { return read(app, *raw); };
+  }
   if (recorded) {
     app.footer("Prints one line per frame, a JSON object. latency_us is the time of the query alone, on the host's clock; a frame's points\n"
                "are read before. The exit code is 3 if a frame has no valid point, also with --check.");
     return [raw, &app] { return read(app, *raw); };
   }
   app.add_flag("--json", raw->json, "Print one JSON object");
-  one("--scene", raw->scene, "Write robot, clouds and witness to this .glb file");
-  app.footer(
-      "--camera-pose, --camera-link, --intrinsics, --depth-scale, --range, --use-viewpoint and --zero-is-missing hold\n"
-      "for all clouds if given before the first --cloud, else for the --cloud before them.");
+  one("--scene", raw->scene, "Write robot, clouds and witness to this .glb file; with --distances in their colours");
+  one("--zones", raw->zones,
+      "a,b,... (m, ascending): how many points may be within these distances of each link, and which; exit code 2 if there are any in the first");
+  one("--min-points", raw->min_points, "A zone with fewer points counts as empty (default 1)");
+  one("--distances", raw->distances,
+      "Write every valid point with its distance to this .ply file, in world coordinates; red at 0 m, blue at --d-max (or 1 m) and beyond");
+  one("--d-max", raw->d_max, "Metres: points farther than that are written as inf (default: none are)");
+  app.footer(of_clouds);
   return [raw, &app] { return read(app, *raw); };
 }

@@ -40,6 +40,7 @@ struct recording_options {
   std::string frames, trajectory;
   cloud_options camera;  // holds for every frame; .file is empty
   bool merge = false;
+  std::string plan;  // configurations to come, asked about in every frame; empty: none
 };
 
 struct query_options {
@@ -63,10 +64,16 @@ struct query_options {
   std::optional<double> margin;
   bool json = false;
   std::string scene;
-  recording_options recording;  // of `clearance run`, which has no .joints, .clouds, .json and .scene
+  std::vector<double> zones;    // --zones: thresholds in metres, ascending; empty: nobody asks
+  std::size_t min_points = 1;   // of a zone that counts
+  std::string distances;        // --distances: a file; empty: nobody asks
+  double d_max = clearance::infinity;
+  std::string configurations;   // of `clearance plan`
+  bool csv = false;             // of `clearance plan`
+  recording_options recording;  // of `clearance run`
 };
 
-enum class asking { query, run };
+enum class asking { query, run, plan };
 
 /// Declares the options of a subcommand; what it returns reads them once they are parsed. Throws usage_error.
 std::function<query_options()> add_query_options(CLI::App& app, asking how);

@@ -103,9 +103,23 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
   return rows;
 }
 
+std::vector<std::vector<double>> read_rows(const query_options& asked, const io::robot& robot, const std::string& file) {
+  return read_trajectory(file, robot.kinematics(), {asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits});
+}
+
+std::vector<Eigen::Isometry3d> placed_rows(const query_options& asked, const io::robot& robot, const std::vector<std::vector<double>>& rows,
+                                           const std::string& file) {
+  std::vector<Eigen::Isometry3d> all;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto poses = placed_links(asked, robot, rows[k], " in row " + std::to_string(k) + " of " + file);
+    all.insert(all.end(), poses.begin(), poses.end());
+  }
+  return all;
+}
+
 void merged_cloud::add(observation frame, const Eigen::Isometry3d& carrier) {
   const Eigen::Isometry3d world = rigid(frame.world(carrier), "cloud", std::int64_t(frames_.size()));
-  const seen_points seen = frame.seen(carrier, {world});  // relative to the sensor, as its range is
+  const seen_points seen = frame.seen(carrier, std::span(&world, 1));  // relative to the sensor, as its range is
   const io::cloud* const exact = frame.points();
   first_.push_back(points_.size());
   std::visit(

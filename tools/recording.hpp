@@ -2,9 +2,8 @@
 #pragma once
 // What `clearance run` plays: the files of its frames and the robot's configuration in each.
 
+#include "asked_robot.hpp"
 #include "observations.hpp"
-
-#include <clearance/io/kinematics.hpp>
 
 #include <map>
 #include <string>
@@ -18,6 +17,13 @@ std::vector<std::string> list_frames(const std::string& where);
 std::vector<std::vector<double>> read_trajectory(const std::string& file, const clearance::io::kinematic_tree& tree,
                                                  const std::map<std::string, double>& fixed,
                                                  clearance::io::joint_options limits);
+
+/// The same of what is asked, --joint among it.
+std::vector<std::vector<double>> read_rows(const query_options& asked, const clearance::io::robot& robot, const std::string& file);
+
+/// The links' poses in one row of `file` after another.
+std::vector<Eigen::Isometry3d> placed_rows(const query_options& asked, const clearance::io::robot& robot, const std::vector<std::vector<double>>& rows,
+                                           const std::string& file);
 
 /// The clouds of many frames as one, in the world. Points that do not count keep their places, as NaN.
 class merged_cloud {

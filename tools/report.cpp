@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.hpp"
 
-#include "json_text.hpp"
+#include "report_json.hpp"
 
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
 
 using namespace clearance;
-using json = nlohmann::ordered_json;  // keys in the order in which the manual names them
 
 namespace {
-
-constexpr const char* reasons[drop_reasons] = {"none", "not_finite", "missing", "saturated", "out_of_range", "masked", "too_close"};
 
 std::string text(const char* format, ...) {
   char line[1024];
@@ -23,44 +20,53 @@ std::string text(const char* format, ...) {
   return line;
 }
 
-/// The pixel of a point of an image.
-std::optional<std::pair<std::uint64_t, std::uint64_t>> pixel(const observation& cloud, std::uint32_t point) {
-  if (!cloud.image()) return std::nullopt;
-  return std::pair{point % cloud.image()->width, point / cloud.image()->width};
+/// Who and where a point of a zone is.
+json place(const query_report& report, std::uint32_t cloud, std::uint32_t point) {
+  return {{"cloud", (*report.clouds)[cloud].from.file}, {"point", point}};
 }
 
-json xyz(const position& p) { return {p.x, p.y, p.z}; }
+/// The zones of a part, the innermost first.
+json zones_of(const query_report& report, std::size_t part) {
+  json all = json::array();
+  for (std::size_t z = 0; z < report.zones->per_part; ++z) {
+    const zone& found = report.zones->of(part, z);
+    json one = {{"within", report.asked->zones[z]}, {"points", found.points}, {"nearest", nullptr}, {"first", nullptr}};
+    if (found.points != 0) {
+      one["nearest"] = {{"distance", or_null(found.nearest)}};
+      one["nearest"].update(place(report, found.nearest_cloud, found.nearest_point));
+      one["first"] = place(report, found.first_cloud, found.first_point);
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
 
-/// What a number is when there is none: infinity and NaN have no place in JSON.
-json or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-/// State, distance, bracket and witness, which is `point` of `cloud`.
-json witness(const min_distance_result& r, const observation* cloud, std::uint32_t point, const std::vector<body>& bodies) {
-  const bool any = r.state != state::no_data;
-  const auto given = [&](json value) { return any ? value : json(nullptr); };
-  json out;
-  out["state"] = to_string(r.state);
-  out["distance"] = given(any ? or_null(r.distance) : nullptr);
-  out["lower"] = given(or_null(r.lower));
-  out["upper"] = given(or_null(r.upper));
-  out["cloud"] = any ? json(cloud->from.file) : json(nullptr);
-  out["point"] = given(point);
-  out["pixel"] = nullptr;
-  if (any)
-    if (const auto at = pixel(*cloud, point)) out["pixel"] = {at->first, at->second};
-  out["point_xyz"] = given(xyz(r.at));
-  out["part"] = any ? json(bodies[r.part].name) : json(nullptr);
-  out["primitive"] = any && r.primitive != none ? json(r.primitive) : json(nullptr);
-  out["nearest_xyz"] = given(xyz(r.nearest));
-  const bool direction = any && !(r.normal == vec3{0, 0, 0});
-  out["normal"] = direction ? json({r.normal.x, r.normal.y, r.normal.z}) : json(nullptr);
+std::string zones_text(const query_report& report) {
+  const auto named = [&](std::uint32_t cloud, std::uint32_t point) {
+    const std::string of = report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[cloud].from.file) : "";
+    return text("point %u", point) + of;
+  };
+  std::string out = "\nzones" + (report.asked->min_points > 1 ? text(" (fewer than %zu points do not count)", report.asked->min_points) : "") + '\n';
+  for (std::size_t k = 0; k < report.bodies->size(); ++k) {
+    const std::string name = io::printable((*report.bodies)[k].name);
+    for (std::size_t z = 0; z < report.zones->per_part; ++z) {
+      const zone& found = report.zones->of(k, z);
+      out += "  " + (z == 0 ? name : "") + std::string(z > 0 ? 28 : name.size() < 28 ? 28 - name.size() : 1, ' ');
+      out += text("%10g m, %8llu points", report.asked->zones[z], (unsigned long long)found.points);
+      if (found.points != 0)
+        out += text(", nearest %.6f m, ", double(found.nearest)) + named(found.nearest_cloud, found.nearest_point) + "; first " +
+               named(found.first_cloud, found.first_point);
+      out += '\n';
+    }
+  }
   return out;
 }
 
-json counts(const min_distance_result& r) {
-  json dropped = json::object();
-  for (int k = 1; k < drop_reasons; ++k) dropped[reasons[k]] = r.dropped[k];
-  return {{"seen", r.seen}, {"valid", r.valid}, {"dropped", dropped}};
+/// What the zones say of the robot.
+std::string innermost_text(const query_report& report) {
+  if (report.zones->counts.valid == 0) return "nothing is known, which counts as the first";
+  const std::size_t z = report.zones->innermost();
+  return z < report.zones->per_part ? text("the innermost is within %g m", report.asked->zones[z]) : "all are empty";
 }
 
 }  // namespace
@@ -69,8 +75,15 @@ std::string to_json(const frame_report& report) {
   json out = {{"frame", report.frame}, {"file", report.file}};
   out.update(witness(report.found.result, report.cloud, report.point, *report.bodies));
   out["points"] = counts(report.found.result);
-  out["upload_us"] = std::round(1e9 * report.found.upload) / 1e3;  // the clock's nanoseconds
-  out["latency_us"] = std::round(1e9 * report.found.query) / 1e3;
+  const auto microseconds = [](double seconds) { return std::round(1e9 * seconds) / 1e3; };  // the clock's nanoseconds
+  out["upload_us"] = microseconds(report.upload);
+  out["latency_us"] = microseconds(report.query);
+  if (report.plan) {
+    json& plan = out["plan"] = outcome_of(*report.plan);
+    plan["lower"] = json::array();
+    for (const min_distance_result& r : report.plan->found.of) plan["lower"].push_back(r.state == state::no_data ? json(nullptr) : or_null(r.lower));
+    plan["latency_us"] = microseconds(report.plan->query);
+  }
   return json_text(out, -1);
 }
 
@@ -91,15 +104,28 @@ std::string to_json(const query_report& report) {
                  {"primitive", found && m.primitive != none ? json(m.primitive) : json(nullptr)},
                  {"caps", {{"loops", made.closed.caps.loops}, {"area", made.closed.caps.area}}}};
     if (report.asked->model == model_kind::spheres) part["gap"] = or_null(made.packed.gap);
+    if (report.zones) part["zones"] = zones_of(report, k);
     out["parts"].push_back(std::move(part));
   }
   out["points"] = counts(r);
   out["model"] = to_string(report.asked->model);
   out["volume"] = to_string(report.asked->volume);
   out["backend"] = report.asked->on_device ? "device" : "host";
-  out["seconds"] = {{"load", report.load}, {"pack", report.pack}, {"build", report.found.build},
-                    {"upload", report.found.upload}, {"query", report.found.query}};
-  if (report.asked->margin) out["check"] = {{"margin", *report.asked->margin}, {"passes", any && r.lower > *report.asked->margin}};
+  out["seconds"] = {{"load", report.load}, {"pack", report.pack}, {"build", report.build}, {"upload", report.upload}, {"query", report.query}};
+  if (report.asked->margin) out["check"] = {{"margin", *report.asked->margin}, {"passes", report.passes()}};
+  if (report.zones) {
+    const std::size_t z = report.zones->innermost();
+    out["zones"] = {{"thresholds", report.asked->zones},
+                    {"min_points", report.zones->min_points},
+                    {"innermost", z < report.zones->per_part ? json(z) : json(nullptr)}};
+  }
+  if (report.distances)
+    out["distances"] = {{"file", report.asked->distances},
+                        {"points", report.distances->points},
+                        {"left_out", report.distances->left_out},
+                        {"beyond", report.distances->beyond},
+                        {"d_max", or_null(report.asked->d_max)},
+                        {"blue_at", report.distances->blue_at}};
   out["clouds"] = json::array();
   for (const observation& cloud : *report.clouds) {
     json one = {{"file", cloud.from.file}, {"points", cloud.size()}, {"viewpoint", nullptr}};
@@ -141,10 +167,15 @@ std::string to_text(const query_report& report) {
     if (r.dropped[k] != 0) out += text(", %llu %s", (unsigned long long)r.dropped[k], reasons[k]);
   out += text("\nmodel     %s in %s, on the %s\n", to_string(asked.model), to_string(asked.volume), asked.on_device ? "device" : "host");
   out += text("seconds   load %.3f, pack %.3f, build %.3f, upload %.3f, query %.6f\n", report.load, report.pack,
-              report.found.build, report.found.upload, report.found.query);
+              report.build, report.upload, report.query);
   if (asked.margin)
-    out += text("check     lower end %s %g m: %s\n", r.state != state::no_data && r.lower > *asked.margin ? "above" : "not above",
-                *asked.margin, r.state != state::no_data && r.lower > *asked.margin ? "passes" : "fails");
+    out += text("check     lower end %s %g m: %s\n", report.passes() ? "above" : "not above", *asked.margin, report.passes() ? "passes" : "fails");
+  if (report.zones) out += "zones     " + innermost_text(report) + '\n';
+  if (report.distances) {
+    const distances_written& d = *report.distances;
+    out += "distances " + io::printable(asked.distances) + text(": %zu points, %zu left out, %zu beyond %g m; red at 0 m, blue at %g m\n", d.points,
+                                                               d.left_out, d.beyond, asked.d_max, d.blue_at);
+  }
   out += "\nparts\n";
   for (std::size_t k = 0; k < report.bodies->size(); ++k) {
     const body& made = (*report.bodies)[k];
@@ -157,5 +188,6 @@ std::string to_text(const query_report& report) {
     if (made.closed.caps.loops != 0) out += text(", %u holes closed (%.2g m2)", made.closed.caps.loops, made.closed.caps.area);
     out += '\n';
   }
+  if (report.zones) out += zones_text(report);
   return out;
 }

@@ -2,8 +2,12 @@
 #pragma once
 
 #include "backends.hpp"
+#include "distances_file.hpp"
 #include "observations.hpp"
 #include "robot_bodies.hpp"
+
+#include <clearance/min_distances.hpp>
+#include <clearance/zones.hpp>
 
 /// All that `clearance query` has to say.
 struct query_report {
@@ -11,8 +15,28 @@ struct query_report {
   const std::vector<observation>* clouds = nullptr;
   const std::vector<body>* bodies = nullptr;
   reply found;
-  double load = 0, pack = 0;  // seconds
+  std::optional<clearance::zones_result> zones;
+  std::optional<distances_written> distances;
+  double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds; query: of the least distance
   std::vector<std::string> notes;
+
+  /// Is the lower end of the bracket above the margin of --check?
+  bool passes() const { return found.result.state != clearance::state::no_data && found.result.lower > *asked->margin; }
+};
+
+/// What `clearance plan` has to say, and `clearance run` of its plan: one result a configuration.
+struct plan_report {
+  const query_options* asked = nullptr;
+  const std::vector<observation>* clouds = nullptr;
+  const std::vector<body>* bodies = nullptr;
+  clearance::min_distances_result found = {};
+  double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds
+
+  /// Of the first configuration whose lower end is not above the margin of --check; without a valid point that is the first of all.
+  std::optional<std::size_t> first_below() const;
+  bool blind() const { return found.of[0].state == clearance::state::no_data; }
+  /// 3 without a valid point, 2 if --check fails.
+  int code() const { return blind() ? 3 : asked->margin && first_below() ? 2 : 0; }
 };
 
 /// What `clearance run` has to say of a frame.
@@ -23,6 +47,8 @@ struct frame_report {
   const observation* cloud = nullptr;  // the witness's, and its number there; null if there is no valid point
   std::uint32_t point = 0;
   const std::vector<body>* bodies = nullptr;
+  double upload = 0, query = 0;       // seconds
+  const plan_report* plan = nullptr;  // of --plan
 };
 
 /// One JSON object in one line.
@@ -33,3 +59,9 @@ std::string to_json(const query_report& report);
 
 /// For people.
 std::string to_text(const query_report& report);
+
+/// One JSON object a configuration, each in a line, and a last one about all.
+std::string to_json(const plan_report& report);
+
+/// A line with the names of the columns, and one a configuration.
+std::string to_csv(const plan_report& report);

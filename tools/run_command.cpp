@@ -22,10 +22,7 @@ void print(const std::vector<std::string>& notes, progress& shown) {
 class motion {
  public:
   motion(const query_options& asked, const io::robot& robot)
-      : asked_(asked),
-        robot_(robot),
-        rows_(read_trajectory(asked.recording.trajectory, robot.kinematics(), {asked.joint.begin(), asked.joint.end()},
-                              limits())) {}
+      : asked_(asked), robot_(robot), rows_(read_rows(asked, robot, asked.recording.trajectory)) {}
 
   std::size_t size() const { return rows_.size(); }
 
@@ -35,12 +32,11 @@ class motion {
   Eigen::Isometry3d carrier(std::size_t frame) const {
     const std::string& link = asked_.recording.camera.link;
     if (link.empty()) return Eigen::Isometry3d::Identity();
-    return asked_.base * about_file(asked_.robot, [&] { return robot_.link_pose(link, row(frame), limits()); });
+    return asked_.base * about_file(asked_.robot, [&] { return robot_.link_pose(link, row(frame), {asked_.ignore_limits}); });
   }
 
  private:
   const std::vector<double>& row(std::size_t frame) const { return rows_.size() == 1 ? rows_[0] : rows_[frame]; }
-  io::joint_options limits() const { return {asked_.ignore_limits}; }
 
   const query_options& asked_;
   const io::robot& robot_;
@@ -62,6 +58,8 @@ int run(const query_options& asked) {
     throw usage_error("--trajectory", asked.recording.trajectory + " has " + std::to_string(moves.size()) +
                                           " rows, but there are " + std::to_string(frames.size()) +
                                           " frames (one row would hold for all)");
+  std::vector<Eigen::Isometry3d> waypoints;
+  if (!asked.recording.plan.empty()) waypoints = placed_rows(asked, robot, read_rows(asked, robot, asked.recording.plan), asked.recording.plan);
   const auto load = [&](std::size_t k) {
     shown.show("frame " + std::to_string(k + 1) + '/' + std::to_string(frames.size()));
     observation frame = observe(frames[k]);
@@ -77,23 +75,29 @@ int run(const query_options& asked) {
   std::vector<std::string> notes = robot.notes();
   const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
   print(notes, shown);
-  const question q{asked.model, asked.volume, &bodies, {}, {}};
-  const auto prepared = asked.on_device ? prepare_device(q) : prepare_host(q);
+  const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies});
   int code = 0;
-  double upload = asked.recording.merge ? prepared->see(merged.finish(moves.poses(0))) : 0;
+  double upload = asked.recording.merge ? there->see({merged.finish(moves.poses(0))}) : 0;
   std::optional<observation> frame;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     if (!asked.recording.merge) {
       observation next = load(k);
       frame.emplace(std::move(next));  // it stays while it is asked about
-      upload = prepared->see(about_file(frames[k].file, [&] {
+      upload = there->see({about_file(frames[k].file, [&] {
         const seen_points seen = frame->seen(moves.carrier(k), moves.poses(k));
         rigid(seen.pose, "cloud");
         return seen;
-      }));
+      })});
     }
-    frame_report report{.frame = k, .file = frames[k].file, .found = prepared->ask(moves.poses(k)), .bodies = &bodies};
-    report.found.upload = std::exchange(upload, 0);
+    frame_report report{.frame = k, .file = frames[k].file, .found = there->least(moves.poses(k)), .bodies = &bodies};
+    report.upload = std::exchange(upload, 0);
+    report.query = there->query;
+    plan_report plan{.asked = &asked};
+    if (!waypoints.empty()) {
+      plan.found = there->plan(waypoints, infinity);
+      plan.query = there->query;
+      report.plan = &plan;
+    }
     min_distance_result& r = report.found.result;
     if (r.state != state::no_data)
       std::tie(report.cloud, report.point) =
@@ -102,7 +106,7 @@ int run(const query_options& asked) {
     std::cout << to_json(report);
     if (!std::cout) break;  // main says so
     const int each = r.state == state::no_data ? 3 : asked.margin && !(r.lower > *asked.margin) ? 2 : 0;
-    code = std::max(code, each);
+    code = std::max({code, each, report.plan ? plan.code() : 0});
   }
   return code;
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the command must answer to a case, worked out from its files and options alone. `expected(case)` gives a list of Frame
-(one for `query`, one a frame for `run`), a dict of parts for `info`, None where only manners count; or raises Invalid or
+(one for `query`, one a frame for `run`, one a configuration for `plan`), a dict of parts for `info`, None where only manners count; or raises Invalid or
 Unknown."""
 
 import math
@@ -13,19 +13,21 @@ import robots
 from geometry import IDENTITY, apply, compose, distance_range, inverse, quaternion
 from strict import Unknown, demand, lines_of, number, text_of, whole
 
-FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache", "--json", "--merge", "--allow-overlap"}
+FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache", "--json", "--merge", "--allow-overlap", "--csv"}
 PER_CLOUD = {"--camera-pose", "--camera-link", "--intrinsics", "--depth-scale", "--range", "--use-viewpoint", "--zero-is-missing"}
 SINGLE = {
     "query": {"--robot", "--joints", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend",
-              "--check", "--scene", "--unfold-limit"},
+              "--check", "--scene", "--unfold-limit", "--zones", "--min-points", "--distances", "--d-max"},
+    "plan": {"--robot", "--geometry", "--base-pose", "--model", "--spheres", "--packing", "--cache", "--backend", "--check", "--unfold-limit",
+             "--configurations", "--d-max"},
     "run": {"--robot", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend", "--check",
-            "--frames", "--trajectory", "--unfold-limit"},
+            "--frames", "--trajectory", "--unfold-limit", "--plan"},
     "pack": {"", "--spheres", "--gap", "--smallest-radius", "--seconds", "--seed", "--cache", "--geometry", "--joints"},
     "demo": {"--spheres", "--cache", "--scene"},
     "info": {""},
 }
 _of_robots = {"--package", "--exclude-link", "--mesh-limit"}
-MANY = {"query": {"--joint", "--cloud"} | _of_robots, "run": {"--joint"} | _of_robots, "pack": {"--out"} | _of_robots, "demo": set(),
+MANY = {"query": {"--joint", "--cloud"} | _of_robots, "plan": {"--joint", "--cloud"} | _of_robots, "run": {"--joint"} | _of_robots, "pack": {"--out"} | _of_robots, "demo": set(),
         "info": set()}
 OWN_FLAGS = {"pack": {"--no-cache", "--json", "--allow-overlap"}, "demo": {"--no-cache"}, "info": {"--json"}}
 FAR = 1e18  # metres; the square of what is beyond it is no float, and it may count as not finite
@@ -34,7 +36,7 @@ FAR = 1e18  # metres; the square of what is beyond it is no float, and it may co
 @dataclass
 class Case:
     format: str
-    command: str  # query, run, pack, info, demo
+    command: str  # query, run, plan, pack, info, demo
     options: list  # [name, value] in their order; value None for a flag; name "" for a word by itself
     files: dict  # name in the scratch folder: bytes
     target: str  # which file is damaged, or "options"
@@ -55,6 +57,8 @@ class Frame:
     seen: int
     valid: range  # how many points may count
     parts: list
+    near: list = field(default_factory=list)  # of each part: (low, high) of each point
+    plan: list = field(default_factory=list)  # of `run --plan`: a Frame for each configuration to come
 
 
 def _real(text, finite=True):
@@ -92,7 +96,7 @@ def _check_limits(texts):
 
 
 class _Options:
-    """The options of `query` and `run`."""
+    """The options of `query`, `run` and `plan`."""
 
     def __init__(self, case):
         self.command, self.one, self.many, self.flags, self.sensors = case.command, {}, {}, set(), []
@@ -107,7 +111,7 @@ class _Options:
                 (before if current is None else current)[name] = value
                 if current is not None:
                     current["own"].add(name)
-            elif name == "--cloud" and case.command == "query":
+            elif name == "--cloud" and case.command in ("query", "plan"):
                 current = dict(before, file=value, own=set())
                 self.sensors.append(current)
             elif name in FLAGS:
@@ -130,11 +134,27 @@ class _Options:
         _check_limits(self.many.get("--mesh-limit", []))
         if "--check" in self.one:
             _real(self.one["--check"])
+        self._questions()
         for sensor in [before] + self.sensors:
             for name, reader in (("--camera-pose", _pose), ("--intrinsics", lambda t: _reals(t, 4)), ("--depth-scale", _real),
                                  ("--range", lambda t: _reals(t, 2, False))):
                 if name in sensor:
                     reader(sensor[name])
+
+    def _questions(self):
+        if "--zones" in self.one:
+            values = [_real(word) for word in self.one["--zones"].split(",")]
+            demand(values == sorted(values) and values[0] >= 0, "thresholds that fall, or are below 0")
+        if "--min-points" in self.one:
+            whole(self.one["--min-points"], 1, 10_000_000)
+            demand("--zones" in self.one, "--min-points without --zones")
+        if "--distances" in self.one:
+            demand(os.path.splitext(self.one["--distances"])[1].lower() == ".ply", "distances that are no PLY")
+            demand(os.path.normpath(self.one["--distances"]) != os.path.normpath(self.one.get("--scene", "")), "one file for two")
+        if "--d-max" in self.one:
+            demand(_real(self.one["--d-max"]) > 0, "--d-max is not above 0")
+            demand("--distances" in self.one or self.command == "plan", "--d-max without --distances")
+            demand(self.command != "plan" or "--check" not in self.one or _real(self.one["--d-max"]) > _real(self.one["--check"]), "--d-max within --check")
 
     def joints(self, robot):
         ignore = "--ignore-limits" in self.flags
@@ -189,6 +209,7 @@ def _frame(robot, given, base, sensors, carriers, files):
     low = high = math.inf
     seen = least = most = 0
     poses = {name: compose(base, robot.link_pose(name, given)) for name in robot.bodies}
+    near = {name: [] for name in robot.bodies}
     for sensor, carrier in zip(sensors, carriers):
         points, count, placed = _points(sensor, files)
         seen, most = seen + count, most + len(points)
@@ -200,8 +221,9 @@ def _frame(robot, given, base, sensors, carriers, files):
             least += 1
             for name, bodies in robot.bodies.items():
                 a, b = distance_range(bodies, apply(inverse(poses[name]), at))
+                near[name].append((a, b))
                 low, high = min(low, a), min(high, b)
-    return Frame(low, high, seen, range(least, most + 1), list(robot.bodies))
+    return Frame(low, high, seen, range(least, most + 1), list(robot.bodies), list(near.values()))
 
 
 def _robot(options, files):
@@ -237,6 +259,8 @@ def _query(case):
     robot = _robot(options, case.files)
     given = options.joints(robot)
     _check_packing(options, robot, case.files)
+    if "--distances" in options.one:
+        demand(options.one["--distances"] in case.outputs or options.one["--distances"] not in case.files, "the distances would replace an input")
     if "--scene" in options.one:
         demand(options.one["--scene"] in case.outputs or options.one["--scene"] not in case.files, "the scene would replace an input")
         if not options.one["--scene"].endswith(".glb"):
@@ -263,14 +287,30 @@ def _trajectory(data, robot, fixed, ignore):
     return rows
 
 
+def _rows(options, robot, name, files):
+    demand(name in files, f"no {name[:40]!r}")
+    fixed = dict(_assignment(text) for text in options.many.get("--joint", []))
+    fixed = {joint: _real(value) for joint, value in fixed.items()}
+    return _trajectory(files[name], robot, fixed, "--ignore-limits" in options.flags)
+
+
+def _plan(case):
+    options = _Options(case)
+    demand(options.sensors and "--configurations" in options.one, "no cloud or no configurations")
+    robot = _robot(options, case.files)
+    rows = _rows(options, robot, options.one["--configurations"], case.files)
+    _check_packing(options, robot, case.files)
+    carriers = [_carrier(robot, rows[0], options.base, sensor) for sensor in options.sensors]
+    return [_frame(robot, row, options.base, options.sensors, carriers, case.files) for row in rows]
+
+
 def _run(case):
     options = _Options(case)
     robot = _robot(options, case.files)
     for needed in ("--frames", "--trajectory"):
         demand(needed in options.one and options.one[needed] in case.files, f"no {needed}")
-    fixed = dict(_assignment(text) for text in options.many.get("--joint", []))
-    fixed = {name: _real(value) for name, value in fixed.items()}
-    rows = _trajectory(case.files[options.one["--trajectory"]], robot, fixed, "--ignore-limits" in options.flags)
+    rows = _rows(options, robot, options.one["--trajectory"], case.files)
+    ahead = _rows(options, robot, options.one["--plan"], case.files) if "--plan" in options.one else []
     listed = [line.strip(" \t") for line in lines_of(case.files[options.one["--frames"]])]
     listed = [line for line in listed if line]
     demand(listed and all(os.path.normpath(name) in case.files for name in listed), "a frame that does not exist")
@@ -280,8 +320,9 @@ def _run(case):
     frames, carriers = [], [_carrier(robot, row, options.base, sensor) for row, sensor in zip(rows, sensors)]
     for k, row in enumerate(rows):
         merged = "--merge" in options.flags
-        frames.append(_frame(robot, row, options.base, sensors if merged else sensors[k:k + 1], carriers if merged else carriers[k:k + 1],
-                             case.files))
+        seen = (options.base, sensors if merged else sensors[k:k + 1], carriers if merged else carriers[k:k + 1], case.files)
+        frames.append(_frame(robot, row, *seen))
+        frames[-1].plan = [_frame(robot, to_come, *seen) for to_come in ahead]
     return frames
 
 
@@ -322,4 +363,4 @@ def _demo(case):
 
 
 def expected(case):
-    return {"query": _query, "run": _run, "info": _info, "pack": _pack, "demo": _demo}[case.command](case)
+    return {"query": _query, "run": _run, "plan": _plan, "info": _info, "pack": _pack, "demo": _demo}[case.command](case)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import expect
 import execute
 import packings
+import ply
 import scenes
 from strict import Invalid, Unknown
 
@@ -28,6 +29,9 @@ class Answer:
     seen: int
     valid: int
     parts: list  # None where the answer does not name all
+    zones: list = None  # of each part: how many points are in each of its zones
+    innermost: int = None
+    plan: list = None  # of `run --plan`: the lower end of each configuration to come
 
     def like(self, other):
         return (self.state, self.low, self.high) == (other.state, other.low, other.high)
@@ -44,7 +48,19 @@ def _json_answer(text):
     high = math.inf if top["upper"] is None else top["upper"]
     low = math.inf if top["state"] == "no_data" else -math.inf if top["lower"] is None else top["lower"]
     parts = [part["name"] for part in top["parts"]] if "parts" in top else None
-    return Answer(top["state"], low, high, top["points"]["seen"], top["points"]["valid"], parts)
+    made = Answer(top["state"], low, high, top["points"]["seen"], top["points"]["valid"], parts)
+    if "zones" in top:
+        made.zones, made.innermost = [[zone["points"] for zone in part["zones"]] for part in top["parts"]], top["zones"]["innermost"]
+    if "plan" in top:
+        made.plan = [-math.inf if low is None else low for low in top["plan"]["lower"]]
+    return made
+
+
+def _plan_answers(text):
+    """Of each configuration; the last line has the points."""
+    *rows, last = text.splitlines()
+    points = json.loads(last, object_pairs_hook=_once)["points"]
+    return [_json_answer(json.dumps(dict(json.loads(row, object_pairs_hook=_once), points=points))) for row in rows]
 
 
 def _text_answer(text):
@@ -60,6 +76,8 @@ def answers(case, outcome):
     text = outcome.out.decode("utf-8")
     if case.command == "query":
         return [_json_answer(text) if ["--json", None] in case.options else _text_answer(text)]
+    if case.command == "plan":
+        return None if ["--csv", None] in case.options else _plan_answers(text)
     if case.command == "run":
         return [_json_answer(each) for each in text.splitlines()]
     if case.command == "pack" and ["--json", None] in case.options:
@@ -112,7 +130,7 @@ def _written(case, outcome):
     for name in outcome.changed:
         return f"the input {name} was changed"
     for name, data in outcome.written.items():
-        if name not in case.outputs and case.command in ("query", "pack") and case.target != "options":
+        if name not in case.outputs and case.command in ("query", "plan", "pack") and case.target != "options":
             return f"left {name} behind"
         if data is None or case.files.get(name) == data:
             if name in case.outputs and outcome.code in (0, 2, 3) and any(value == name for _, value in case.options):
@@ -121,12 +139,45 @@ def _written(case, outcome):
         try:
             if name.endswith(".glb"):
                 json.loads(scenes.split_glb(data)[0])
+            elif name.endswith(".ply"):
+                ply.read_cloud(data)
             elif os.path.splitext(name)[1] in packings.readers:
                 packings.readers[os.path.splitext(name)[1]](data)
         except (Invalid, ValueError, struct.error) as error:
             return f"{name} was half written: {error}"
         except Unknown:
             pass
+    return None
+
+
+def _option(case, wanted, default=None):
+    return next((value for name, value in case.options if name == wanted), default)
+
+
+def _zones(case, frame, answer):
+    """Why the zones are not what the files mean, or None. Points that may be within count; how far that goes is known of triangles."""
+    if answer.zones is None:
+        return None
+    thresholds = [float(word) for word in _option(case, "--zones").split(",")]
+    least = int(_option(case, "--min-points", 1))
+    full = [z for counts in answer.zones for z, count in enumerate(counts) if count >= least]
+    if answer.innermost != min(full, default=None):
+        return f"the innermost zone is {answer.innermost}, by its points {min(full, default=None)}"
+    for counts, points in zip(answer.zones, frame.near):
+        for threshold, count in zip(thresholds, counts):
+            low = sum(b <= threshold - 1e-5 for _, b in points)
+            high = sum(a <= threshold + 1e-3 for a, _ in points) if _option(case, "--model") == "triangles" else len(points)
+            if not low <= count <= high:
+                return f"{count} points within {threshold}, the files have {low} to {high}"
+    return None
+
+
+def _ahead(frame, answer, slack):
+    if len(answer.plan or []) != len(frame.plan):
+        return f"{len(answer.plan or [])} configurations to come, the files have {len(frame.plan)}"
+    for low, wanted in zip(answer.plan or [], frame.plan):
+        if low > wanted.high + slack:
+            return f"a configuration to come at {low:.6g} or more, the files say {wanted.high:.6g}"
     return None
 
 
@@ -157,8 +208,12 @@ def _disagrees(case, wanted, found, outcome):
         slack = 2e-6 + 1e-6 * min(frame.high, 1e30)
         if case.believes and frame.high < 1e15 and (answer.low > frame.high + slack or answer.high < frame.low - slack):
             return f"bracket {answer.low:.6g} to {answer.high:.6g} ({answer.state}), the files say {frame.low:.6g} to {frame.high:.6g}"
-    margin = next((value for name, value in case.options if name == "--check"), None)
-    codes = [3 if a.state == "no_data" else 2 if margin is not None and not a.low > float(margin) else 0 for a in found]
+        wrong = _zones(case, frame, answer) or _ahead(frame, answer, slack)
+        if wrong:
+            return wrong
+    margin = _option(case, "--check")
+    codes = [3 if a.state == "no_data" else 2 if a.innermost == 0 or margin is not None and not min([a.low, *(a.plan or [])]) > float(margin) else 0
+             for a in found]
     return None if outcome.code == max(codes) else f"exit code {outcome.code}, the answers say {max(codes)}"
 
 

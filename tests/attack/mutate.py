@@ -301,7 +301,7 @@ KINDS = {
 
 # ---- options ----
 
-_read = ("--robot", "--cloud", "--frames", "--trajectory", "--packing")  # only these may name what is outside of the scratch folder
+_read = ("--robot", "--cloud", "--frames", "--trajectory", "--packing", "--configurations", "--plan")  # only these may name what is outside of the scratch folder
 
 
 def options(rng, case):
@@ -338,7 +338,9 @@ def options(rng, case):
             ["--volume", ""], ["--exclude-link", ""], ["--package", ""], ["--joint", ""], ["--cache", ""], ["--geometry", ""], ["--spheres", ""],
             ["--backend", ""], ["--mesh-limit", ""], ["--mesh-limit", "nodes=5"], ["--unfold-limit", ""], ["--check", "nan"], ["--range", "1,1"], ["--range", "0,inf"], ["--joint", "turn=0.5"], ["--joint", "slide=0.5"],
             ["--package", "x=."], ["--cloud", "d.xyz"], ["--ignore-limits", None], ["--zero-is-missing", None], ["--use-viewpoint", None],
-            ["--exclude-link", "b"], ["--check", "-1"], ["--check", "1e300"], ["--spheres", "4294967297"]]))
+            ["--exclude-link", "b"], ["--zones", ""], ["--zones", "0.2,0.1"], ["--zones", "0.1,0.2"], ["--min-points", ""], ["--min-points", "0"], ["--distances", ""],
+            ["--distances", "p.ply"], ["--distances", "p.xyz"], ["--d-max", ""], ["--d-max", "-1"], ["--d-max", "0.2"], ["--plan", ""], ["--plan", "t.csv"],
+            ["--configurations", ""], ["--csv", None], ["--check", "-1"], ["--check", "1e300"], ["--spheres", "4294967297"]]))
 
 
 def mutated(rng, case):

@@ -135,6 +135,17 @@ def _recording_cases():
                                             *more], files, target)
 
 
+def _plan_cases():
+    rows = b"turn,slide\n0,0\n0.25,0.5\n-0.5,-0.25\n"
+    files = {"r.urdf": _arm, "q.csv": rows, "t.csv": b"turn,slide\n0,0\n", "frames.txt": b"c.xyz\nd.xyz\n", "c.xyz": w.xyz(_near), "d.xyz": w.xyz(_inside)}
+    for cloud in ("c.xyz", "d.xyz"):
+        for more in ([], [["--check", "0.01"], ["--d-max", "0.3"]], [["--camera-link", "b"]], [["--csv", None]]):
+            yield Case("plan", "plan", [["--robot", "r.urdf"], ["--configurations", "q.csv"], *more, ["--cloud", cloud], ["--model", "triangles"]], files, "q.csv")
+    for more in ([], [["--merge", None]], [["--check", "0.01"]]):
+        yield Case("plan", "run", [["--robot", "r.urdf"], ["--frames", "frames.txt"], ["--trajectory", "t.csv"], ["--plan", "q.csv"], ["--model", "triangles"],
+                                   *more], files, "q.csv")
+
+
 def _option_cases():
     files = {"r.urdf": _arm, "c.xyz": w.xyz(_near), "d.xyz": w.xyz(_inside), "m.obj": w.obj(w.box(0.2, 0.3, 0.4))}
     for cloud in ("c.xyz", "d.xyz"):
@@ -146,9 +157,14 @@ def _option_cases():
     yield _query("options", image, "options", ["--intrinsics", "10,10,3.5,2.5"], ["--depth-scale", "0.001"], ["--range", "0.1,2"],
                  ["--camera-pose", "0.3,0.3,-0.5,0,0,0,1"], ["--backend", "host"], ["--mesh-limit", "triangles=1000"], ["--unfold-limit", "5"],
                  cloud="c.png")
+    for cloud in ("c.xyz", "d.xyz"):
+        yield _query("options", files, "options", ["--joints", "0.25,0.5"], ["--zones", "0.05,0.2,0.6"], ["--min-points", "2"], ["--distances", "o.ply"],
+                     ["--d-max", "0.5"], ["--scene", "o.glb"], cloud=cloud, outputs=["o.ply", "o.glb"])
+        yield Case("options", "plan", [["--robot", "r.urdf"], ["--configurations", "q.csv"], ["--joint", "slide=0.5"], ["--check", "0.02"], ["--d-max", "0.5"],
+                                       ["--camera-link", "b"], ["--cloud", cloud], ["--model", "triangles"]], dict(files, **{"q.csv": b"turn\n0\n0.5\n"}), "options")
     recorded = dict(files, **{"t.csv": b"turn\n0\n", "frames.txt": b"c.xyz\nd.xyz\n"})
     yield Case("options", "run", [["--robot", "r.urdf"], ["--frames", "frames.txt"], ["--trajectory", "t.csv"], ["--model", "triangles"],
-                                  ["--joint", "slide=0.5"], ["--check", "0"], ["--base-pose", "0.05,0,0,0,0,0,1"], ["--camera-link", "b"]], recorded, "options")
+                                  ["--joint", "slide=0.5"], ["--check", "0"], ["--base-pose", "0.05,0,0,0,0,0,1"], ["--camera-link", "b"], ["--plan", "t.csv"]], recorded, "options")
     yield Case("options", "pack", [["", "m.obj"], ["--spheres", "5"], ["--no-cache", None], ["--gap", "0.05"], ["--smallest-radius", "0.001"],
                                    ["--seconds", "5"], ["--seed", "7"], ["--out", "o.csv"], ["--json", None]], files, "options", outputs=["o.csv"])
     yield Case("options", "demo", [["--spheres", "3"], ["--no-cache", None]], {}, "options", cpu=60)
@@ -162,10 +178,13 @@ def _file_cases():
             case = _query("written files", dict(files, **{k: v for k, v in old.items() if k == "o.glb"}), "r.urdf", ["--scene", "o.glb"],
                           outputs=["o.glb"], file_limit=limit)
             yield case
+            if not old:
+                yield _query("written files", files, "r.urdf", ["--distances", "o.ply"], outputs=["o.ply"], file_limit=limit)
             yield Case("written files", "pack", [["", "m.obj"], ["--spheres", "20"], ["--no-cache", None], ["--out", "o.ist"], ["--json", None]],
                        dict(files, **{k: v for k, v in old.items() if k == "o.ist"}), "m.obj", outputs=["o.ist"], file_limit=limit)
     for target in ("c.xyz", "r.urdf"):
         yield _query("written files", files, "c.xyz", ["--scene", target])
+        yield _query("written files", dict(files, **{"c.ply": w.ply_cloud(_near)}), "c.ply", ["--distances", "c.ply"], cloud="c.ply")
 
 
 def _data_cases(folder):
@@ -192,7 +211,7 @@ def _data_cases(folder):
 def cases(data_folder=None):
     """{format: [case, ...]}, always in the same order."""
     made = {}
-    for source in (_robot_cases, _mesh_cases, _cloud_cases, _packing_cases, _recording_cases, _option_cases, _file_cases):
+    for source in (_robot_cases, _mesh_cases, _cloud_cases, _packing_cases, _recording_cases, _plan_cases, _option_cases, _file_cases):
         for case in source():
             made.setdefault(case.format, []).append(case)
     if data_folder and os.path.isdir(data_folder):

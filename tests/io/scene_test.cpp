@@ -67,6 +67,26 @@ TEST_CASE("a scene file holds every body, point and segment where it is, z up, a
   CHECK(read.nodes.at("world")["children"].size() == 4);
 }
 
+TEST_CASE("points have the colour of their cloud, or each its own, also where some are left out") {
+  io::scene world;
+  const std::vector<vec3> points = {{1, 2, 3}, {not_a_number, 0, 0}, {4, 5, 6}};
+  world.clouds.push_back({.name = "one", .points = points, .paint = {0.5f, 0.25f, 0, 1}});
+  world.clouds.push_back({.name = "each", .points = points, .colours = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}}});
+  const scratch_file file(".glb");
+  io::save_scene(world, file.path);
+  const gltf_file read(file.path);
+  const std::string bytes = io::read_bytes(file.path);
+  const std::size_t data = bytes.find(std::string("BIN\0", 4)) + 4;
+  const auto colours = [&](const std::string& name) {
+    const auto& at = read.all["accessors"][std::size_t(read.meshes.at(name)["primitives"][0]["attributes"]["COLOR_0"])];
+    std::vector<float> values(4 * at["count"].get<std::size_t>());
+    std::memcpy(values.data(), bytes.data() + data + read.all["bufferViews"][std::size_t(at["bufferView"])]["byteOffset"].get<std::size_t>(), 4 * values.size());
+    return values;
+  };
+  CHECK(colours("one") == std::vector<float>{0.5f, 0.25f, 0, 1, 0.5f, 0.25f, 0, 1});
+  CHECK(colours("each") == std::vector<float>{1, 0, 0, 1, 0, 0, 1, 1});
+}
+
 TEST_CASE("the mesh of a scene file is the mesh that went in, turned so that y is up") {
   io::scene world;
   world.bodies.push_back({.name = "a\xffname", .mesh = io::icosphere(1), .pose = Eigen::Isometry3d(Eigen::Translation3d(1, 2, 3))});

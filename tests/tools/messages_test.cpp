@@ -112,6 +112,8 @@ TEST_CASE("names of links and joints reach terminal, JSON and scene in a form th
     std::memcpy(&size, glb.data() + 12, 4);
     CHECK(harmless(std::string_view(glb).substr(20, size)));
     CHECK(nlohmann::json::accept(glb.substr(20, size)));
+    const scratch_file csv(".csv", "j\n0\n");
+    CHECK(checked("plan --csv --model triangles --backend host --robot " + urdf.path + " --cloud " + cloud.path + " --configurations " + csv.path).code == 0);
     if (name.size() > 100000) continue;
     checked("pack " + urdf.path + " --spheres 20 --out " + spheres.path + " --out " + yaml.path);
     CHECK(checked("info " + spheres.path).code == 0);
@@ -162,8 +164,10 @@ TEST_CASE("a refusal is one short printable line that names its file, whatever i
       names_it("query --robot " + good.path + " --cloud " + cloud.path + " --packing " + file.path, file.path);
     }
     const scratch_file rows(".csv", "j\n" + word + "x\n"), head(".csv", word + "\n0\n");
-    for (const auto* csv : {&rows, &head})
+    for (const auto* csv : {&rows, &head}) {
       names_it("run --model triangles --backend host --robot " + good.path + " --frames " + cloud.path + " --trajectory " + csv->path, csv->path);
+      names_it("plan --model triangles --backend host --robot " + good.path + " --cloud " + cloud.path + " --configurations " + csv->path, csv->path);
+    }
   }
   // A NUL that YAML can spell ends no sentence.
   const scratch_file nul(".yaml", "collision_spheres:\n  \"a\\0b\": 3\n");

@@ -33,9 +33,11 @@ std::string quoted_shell(const std::string& word) { return '\'' + word + '\''; }
 TEST_CASE("an option without a value is refused by its name, whichever it is and however it is left out") {
   const scratch_file urdf(".urdf", R"(<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
   const scratch_file cloud(".xyz", "0.1 0.1 0.1\n"), obj(".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  const scratch_file csv(".csv", "\n");
   const std::pair<std::string, std::string> asked[] = {
       {"query", "--robot " + urdf.path + " --cloud " + cloud.path + " --model triangles --backend host"},
       {"run", "--robot " + urdf.path + " --frames " + cloud.path + " --model triangles --backend host"},
+      {"plan", "--robot " + urdf.path + " --cloud " + cloud.path + " --configurations " + csv.path + " --model triangles --backend host"},
       {"pack", obj.path + " --spheres 5"},
       {"demo", ""},
       {"info", ""}};
@@ -54,7 +56,7 @@ TEST_CASE("an option without a value is refused by its name, whichever it is and
         CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
       }
     }
-  CHECK(with_value >= 45);
+  CHECK(with_value >= 72);
   for (const std::string line : {"info ''", "pack '' --spheres 5", "query ''", "'' query", "pack ' ' --spheres 5"})
     refuses(line, "is empty");
 }
@@ -84,9 +86,10 @@ TEST_CASE("every limit of a mesh that a refusal names is set by that name") {
     <node id="m"><instance_geometry url="#g"/></node></node></visual_scene></library_visual_scenes><scene><instance_visual_scene url="#w"/></scene></COLLADA>)");
   const scratch_file urdf(".urdf", "<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh filename=\"file://" + dae.path +
                                        "\"/></geometry></collision></link></robot>");
-  const scratch_file cloud(".xyz", "3 0.1 0.1\n"), frames(".txt", cloud.path + '\n');
+  const scratch_file cloud(".xyz", "3 0.1 0.1\n"), frames(".txt", cloud.path + '\n'), csv(".csv", "\n");
   const std::string ask = " --model triangles --backend host --robot " + urdf.path;
   for (const std::string& line : {"query --cloud " + cloud.path + ask, "run --frames " + frames.path + ask,
+                                  "plan --configurations " + csv.path + " --cloud " + cloud.path + ask,
                                   "pack " + urdf.path + " --spheres 5 --no-cache", "pack " + dae.path + " --spheres 5 --no-cache"}) {
     for (const std::string name : {"bytes", "triangles", "values", "nodes", "depth"}) {
       refuses(line + " --mesh-limit " + name + "=1", "(mesh_limits::" + name + ")");

@@ -30,8 +30,10 @@ class glb_writer {
     if (mesh.corners.empty()) {
       primitive["mode"] = 0;  // points; their colour is written with each vertex, which is where viewers look for it
       std::vector<float> colours;
-      for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-        colours.insert(colours.end(), {paint.red, paint.green, paint.blue, paint.alpha});
+      for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const colour& c = mesh.colours.empty() ? paint : mesh.colours[i];
+        colours.insert(colours.end(), {c.red, c.green, c.blue, c.alpha});
+      }
       primitive["attributes"]["COLOR_0"] = accessor(colours, 4, "VEC4", vertex_data);
     } else {
       primitive["attributes"]["NORMAL"] = accessor(flat(mesh.normals), 3, "VEC3", vertex_data);

@@ -27,6 +27,7 @@ struct scene_points {
   std::vector<vec3> points;  // in the cloud's frame; those that are not finite are left out
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   colour paint = {0.25f, 0.45f, 0.85f, 1};
+  std::vector<colour> colours = {};  // one a point, or none: all have that paint
 };
 
 struct scene_balls {
@@ -63,7 +64,7 @@ inline std::string scene_bytes(const scene& world, const std::string& file) {
     if (!mesh.positions.empty()) out.add(scene_name(name), mesh, pose, paint, group.empty() ? group : scene_name(group));
   };
   for (const auto& body : world.bodies) add(body.name, faces_of(body.mesh), body.pose, body.paint, body.group);
-  for (const auto& cloud : world.clouds) add(cloud.name, points_of(cloud.points), cloud.pose, cloud.paint);
+  for (const auto& cloud : world.clouds) add(cloud.name, points_of(cloud.points, cloud.colours), cloud.pose, cloud.paint);
   for (const auto& set : world.balls) add(set.name, faces_of(set.balls), set.pose, set.paint, set.group);
   for (const auto& s : world.segments) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

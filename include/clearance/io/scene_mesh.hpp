@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -29,6 +28,7 @@ inline std::string scene_name(const std::string& name) { return shortened(printa
 struct drawn_mesh {
   std::vector<vec3> positions, normals;
   std::vector<std::uint32_t> corners;  // three for each triangle; none: they are points
+  std::vector<colour> colours = {};    // of points: one each, or none
 };
 
 inline vec3 to_vec3(const Eigen::Vector3d& v) { return {float(v.x()), float(v.y()), float(v.z())}; }
@@ -49,9 +49,14 @@ inline drawn_mesh faces_of(const triangle_mesh& mesh) {
   return out;
 }
 
-inline drawn_mesh points_of(const std::vector<vec3>& points) {
+/// Those that are finite; `colours`: one a point, or none.
+inline drawn_mesh points_of(const std::vector<vec3>& points, const std::vector<colour>& colours = {}) {
   drawn_mesh out;
-  std::ranges::copy_if(points, std::back_inserter(out.positions), [](vec3 p) { return is_finite(p); });
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!is_finite(points[i])) continue;
+    out.positions.push_back(points[i]);
+    if (!colours.empty()) out.colours.push_back(colours.at(i));
+  }
   return out;
 }
 

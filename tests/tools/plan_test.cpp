@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `clearance plan`, and the plan of `clearance run`: many configurations, against `clearance query` about each alone.
+#include "io/scratch_file.hpp"
+#include "tools/run_command.hpp"
+#include "tools/small_png.hpp"
+
+#include <sstream>
+
+namespace {
+
+/// A box of 0.2 m, a second one on a slide above it, and a camera on the second.
+const char* const robot_text = R"(<robot name="two">
+  <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="tool"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="eye"/>
+  <link name="claw"/>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="tool"/><origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
+    <limit lower="-0.1" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="mount" type="fixed"><parent link="tool"/><child link="eye"/><origin xyz="0 0 0.1"/></joint>
+  <joint name="turn" type="continuous"><parent link="tool"/><child link="claw"/><axis xyz="1 0 0"/></joint>
+</robot>
+)";
+const char* const slides[] = {"0", "0.3", "0.35", "0.1"};  // 0.4, 0.1, 0.05 and 0.3 m below the point
+
+struct path {
+  scratch_file urdf{".urdf", robot_text};
+  scratch_file cloud{".xyz", "5 5 5\n0 0 1.0\nnan 0 0\n"};
+  scratch_file rows{".csv", "turn, slide\n0,0\n0.5,0.3\n1,0.35\n1,0.1\n"};
+  std::string robot = " --backend host --model triangles --robot " + urdf.path;
+  std::string with(const std::string& csv) const { return "plan" + robot + " --cloud " + cloud.path + " --configurations " + csv; }
+  std::string ask = with(rows.path);
+};
+
+std::vector<nlohmann::json> lines(const outcome& o) {
+  INFO(o.err);
+  std::vector<nlohmann::json> all;
+  std::istringstream in(o.out);
+  for (std::string line; std::getline(in, line);) all.push_back(nlohmann::json::parse(line));
+  return all;
+}
+
+const char* const answered[] = {"state", "distance", "upper", "cloud", "point", "pixel", "point_xyz", "part", "primitive", "nearest_xyz", "normal"};
+
+}  // namespace
+
+TEST_CASE("clearance plan answers each configuration as clearance query does") {
+  const path p;
+  for (const std::string model : {"triangles", "spheres --spheres 100"}) {
+    const std::string how = " --backend host --robot " + p.urdf.path + " --cloud " + p.cloud.path + " --model " + model;
+    const outcome o = run_command("plan --configurations " + p.rows.path + how);
+    CHECK(o.code == 0);
+    const auto all = lines(o);
+    REQUIRE(all.size() == 5);
+    for (int k = 0; k < 4; ++k) {
+      const auto alone = parsed(run_command("query --json --joint slide=" + std::string(slides[k]) + how));
+      INFO(model << " row " << k);
+      CHECK(all[k].at("row") == k);
+      for (const char* key : answered) CHECK(all[k].at(key) == alone.at(key));
+      CHECK(all[k].at("lower") <= alone.at("distance"));
+    }
+    const auto& last = all.back();
+    CHECK(last.at("plan") == nlohmann::json({{"rows", 4}, {"least", all[2].at("distance")}, {"at", 2}}));  // nobody asked who is below what
+    CHECK_FALSE(last.contains("check"));
+    CHECK(last.at("points").at("seen") == 3);
+    CHECK(last.at("points").at("valid") == 2);
+    CHECK(last.at("backend") == "host");
+    for (const char* key : {"load", "pack", "build", "upload", "query"}) CHECK(last.at("seconds").at(key).get<double>() >= 0);
+  }
+}
+
+TEST_CASE("--check names the first configuration that is too near, and the exit code says that there is one") {
+  const path p;
+  const auto last = [](const outcome& o) { return lines(o).back(); };
+  const outcome fails = run_command(p.ask + " --check 0.2");
+  CHECK(fails.code == 2);
+  CHECK(last(fails).at("plan").at("first_below") == 1);
+  CHECK(last(fails).at("check") == nlohmann::json({{"margin", 0.2}, {"passes", false}}));
+  const outcome passes = run_command(p.ask + " --check 0.04");
+  CHECK(passes.code == 0);
+  CHECK(last(passes).at("plan").at("first_below").is_null());
+  CHECK(last(passes).at("check").at("passes") == true);
+  CHECK(last(run_command(p.ask + " --check 0.07")).at("plan").at("first_below") == 2);
+  CHECK(last(run_command(p.ask + " --check 0.4")).at("plan").at("first_below") == 0);  // lower is rounded down
+
+  const scratch_file blind(".xyz", "nan nan nan\n");
+  for (const std::string check : {"", " --check 0.1", " --check -1"}) {
+    const outcome o = run_command("plan" + p.robot + " --configurations " + p.rows.path + " --cloud " + blind.path + check);
+    CHECK(o.code == 3);
+    const auto all = lines(o);
+    REQUIRE(all.size() == 5);
+    CHECK(all[1].at("state") == "no_data");
+    for (const char* key : {"distance", "lower", "upper", "cloud", "part"}) CHECK(all[1].at(key).is_null());
+    CHECK(all[4].at("plan").at("least").is_null());
+    if (check.empty()) continue;
+    CHECK(all[4].at("plan").at("first_below") == 0);  // what is not known is not free
+    CHECK(all[4].at("check").at("passes") == false);
+  }
+}
+
+TEST_CASE("beyond --d-max a configuration has no witness, and is still no less certain") {
+  const path p;
+  const auto all = lines(run_command(p.ask + " --d-max 0.2")), exact = lines(run_command(p.ask));
+  REQUIRE(all.size() == 5);
+  for (const int k : {0, 3}) {
+    CHECK(all[k].at("state") == "free");
+    CHECK(all[k].at("distance").is_null());
+    CHECK(all[k].at("part").is_null());
+    CHECK(all[k].at("cloud").is_null());
+    CHECK(all[k].at("lower").get<double>() <= exact[k].at("lower").get<double>());
+    CHECK(all[k].at("lower").get<double>() > 0.19);
+  }
+  for (const int k : {1, 2})
+    for (const char* key : answered) CHECK(all[k].at(key) == exact[k].at(key));
+  CHECK(all[4].at("plan").at("at") == 2);
+  CHECK(run_command(p.ask + " --d-max 0.2 --check 0.15").code == 2);
+  CHECK(lines(run_command(p.ask + " --d-max 0.2 --check 0.15")).back().at("plan").at("first_below") == 1);
+  const auto far = lines(run_command(p.ask + " --d-max 0.01")).back();
+  CHECK(far.at("plan").at("least").is_null());
+  CHECK(far.at("plan").at("at").is_null());
+}
+
+TEST_CASE("--csv says the same in columns, and on stderr which row is the first") {
+  const path p;
+  const outcome o = run_command(p.ask + " --csv --d-max 0.35 --check 0.2");
+  CHECK(o.code == 2);
+  CHECK(o.err.find("row 1 is the first whose lower end is not above the margin") != std::string::npos);
+  CHECK(run_command(p.ask + " --csv --check 0.01").err.find("every row's lower end is above the margin") != std::string::npos);
+  const auto all = lines(run_command(p.ask + " --d-max 0.35"));
+  std::istringstream in(o.out);
+  std::string line;
+  std::getline(in, line);
+  CHECK(line == "row,state,distance,lower,upper,cloud,point,part,primitive,point_x,point_y,point_z,nearest_x,nearest_y,nearest_z");
+  for (int k = 0; k < 4; ++k) {
+    REQUIRE(std::getline(in, line));
+    CHECK(std::count(line.begin(), line.end(), ',') == 14);
+    std::istringstream words(line + ',');
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(words, cell, ',');) cells.push_back(cell);
+    REQUIRE(cells.size() == 15);
+    CHECK(cells[0] == std::to_string(k));
+    CHECK(cells[1] == all[k].at("state").get<std::string>());
+    const bool near = !all[k].at("cloud").is_null();
+    CHECK(cells[2] == (near ? all[k].at("distance").dump() : "inf"));
+    CHECK(cells[3] == all[k].at("lower").dump());
+    CHECK(cells[5] == (near ? p.cloud.path : ""));
+    CHECK(cells[7] == (near ? "tool" : ""));
+    CHECK(cells[11] == (near ? all[k].at("point_xyz").at(2).dump() : ""));
+  }
+  CHECK_FALSE(std::getline(in, line));
+  const scratch_file named(",\"a\".xyz", "0 0 1\n");  // names that CSV must quote
+  const std::string quoted = run_command("plan" + p.robot + " --csv --configurations " + p.rows.path + " --cloud '" + named.path + "'").out;
+  CHECK(quoted.find(",\"\"a\"\".xyz\",0,tool,") != std::string::npos);
+  const scratch_file blind(".xyz", "nan nan nan\n");
+  CHECK(run_command("plan" + p.robot + " --csv --configurations " + p.rows.path + " --cloud " + blind.path).out.find("\n0,no_data,,,,,,,,,,,,,\n") !=
+        std::string::npos);
+}
+
+TEST_CASE("a camera on a link saw the clouds where the first configuration has it") {
+  const path p;
+  const scratch_file depth(".png", png(0, 1000)), start(".csv", "slide,turn\n0.1,0\n0,0\n");
+  const auto all = lines(run_command("plan" + p.robot + " --camera-link eye --intrinsics 500,500,1,0 --cloud " + depth.path + " --configurations " + start.path));
+  REQUIRE(all.size() == 3);
+  for (const int k : {0, 1}) {
+    CHECK(all[k].at("point_xyz").at(2).get<double>() == Approx(1.7));
+    CHECK(all[k].at("pixel") == nlohmann::json({1, 0}));
+  }
+  CHECK(all[0].at("distance").get<double>() == Approx(1.0));
+  CHECK(all[1].at("distance").get<double>() == Approx(1.1));
+}
+
+TEST_CASE("a joint without a column is fixed by --joint, and what is wrong with a plan is one sentence") {
+  const path p;
+  const scratch_file one(".csv", "slide\n0.3\n");
+  CHECK(lines(run_command(p.with(one.path) + " --joint turn=0.5")).front().at("distance").get<double>() == Approx(0.1));
+  const scratch_file list(".txt", p.cloud.path + '\n'), still(".csv", "turn,slide\n0,0\n");
+  const auto with = [&](const std::string& csv, const std::string& sentence) {
+    const scratch_file file(".csv", csv);
+    refuses(p.with(file.path), file.path + sentence);
+    refuses("run" + p.robot + " --frames " + list.path + " --trajectory " + still.path + " --plan " + file.path, file.path + sentence);
+  };
+  with("slide\n0\n", ":1: has no column for joint \"turn\"");
+  with("slide,turn,elbow\n0,0,0\n", ":1: ");
+  with("slide,turn,turn\n0,0,0\n", ":1: has two columns for joint \"turn\"");
+  with("slide,turn\n0\n", ":2: needs 2 numbers");
+  with("slide,turn\n0,0\n0,nan\n", ":3: \"nan\" is not a finite number");
+  with("slide,turn\n0,0\n0,\n", ":3: \"\" is not a number");
+  with("slide,turn\n0,0\n5,0\n", ":3: ");  // beyond its limit
+  with("slide,turn\n", ": has no row");
+  with("", ": is empty");
+  refuses(p.with("nowhere.csv"), "nowhere.csv: there is no such file");
+  refuses("plan" + p.robot + " --cloud " + p.cloud.path, "--configurations is required");
+  refuses("plan" + p.robot + " --configurations " + p.rows.path, "--cloud is required");
+  refuses(p.ask + " --json", "--json");
+  refuses(p.ask + " --volume obb", "--volume");
+  refuses(p.ask + " --joints 0,0", "--joints");
+  refuses(p.ask + " --camera-link elbow", "elbow");
+  refuses(p.ask + " --check nan", "--check: \"nan\" is not a finite number");
+  refuses(p.ask + " --check 0.2 --d-max 0.2", "--d-max: must be above the margin of --check");
+  for (const std::string value : {"0", "-0.1"}) refuses(p.ask + " --d-max " + value, "--d-max: must be above 0");
+}
+
+TEST_CASE("clearance run --plan says in every frame what clearance plan says of its points") {
+  const path p;
+  const scratch_file near(".xyz", "0 0 0.9\n3 0 0\n"), blind(".xyz", "nan nan nan\n"), list(".txt", p.cloud.path + '\n' + near.path + '\n');
+  const scratch_file still(".csv", "turn,slide\n0,0\n");
+  const std::string run = "run" + p.robot + " --trajectory " + still.path + " --plan " + p.rows.path + " --frames ";
+  for (const std::string merge : {"", " --merge"}) {
+    const outcome o = run_command(run + list.path + " --check 0.07" + merge);
+    const auto all = lines(o);
+    REQUIRE(all.size() == 2);
+    CHECK(o.code == 2);
+    for (int k = 0; k < 2; ++k) {
+      const std::string cloud = merge.empty() ? (k == 0 ? p.cloud.path : near.path) : p.cloud.path + " --cloud " + near.path;
+      const auto alone = lines(run_command("plan" + p.robot + " --configurations " + p.rows.path + " --check 0.07 --cloud " + cloud));
+      const auto& plan = all[k].at("plan");
+      CHECK(plan.at("latency_us").get<double>() > 0);
+      CHECK(plan.at("first_below") == (k == 0 && merge.empty() ? 2 : 1));
+      for (const char* key : {"rows", "at", "first_below"}) CHECK(plan.at(key) == alone.back().at("plan").at(key));
+      CHECK(plan.at("least").get<double>() == Approx(alone.back().at("plan").at("least").get<double>()).margin(1e-6));
+      REQUIRE(plan.at("lower").size() == 4);
+      for (int row = 0; row < 4; ++row)
+        CHECK(plan.at("lower").at(row).get<double>() == Approx(alone[row].at("lower").get<double>()).margin(1e-5));
+    }
+  }
+  // The frame itself is far enough.
+  const scratch_file first(".txt", p.cloud.path + '\n'), none(".txt", blind.path + '\n');
+  CHECK(run_command(run + first.path + " --check 0.04").code == 0);
+  CHECK(run_command(run + first.path + " --check 0.07").code == 2);
+  CHECK_FALSE(lines(run_command(run + first.path)).at(0).at("plan").contains("first_below"));
+  const outcome o = run_command(run + none.path + " --check -1");
+  CHECK(o.code == 3);
+  const auto plan = lines(o).at(0).at("plan");
+  CHECK(plan.at("first_below") == 0);
+  CHECK(plan.at("least").is_null());
+  CHECK(plan.at("lower") == nlohmann::json({nullptr, nullptr, nullptr, nullptr}));
+  CHECK_FALSE(lines(run_command("run" + p.robot + " --trajectory " + still.path + " --frames " + first.path)).at(0).contains("plan"));
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "asked_clouds.hpp"
+
+using namespace clearance;
+
+void asked_clouds::load(const query_options& asked, progress& shown, std::vector<std::string>& notes) {
+  for (const cloud_options& from : asked.clouds) {
+    shown.show("reading " + from.file);
+    files.push_back(observe(from));
+    notes.insert(notes.end(), files.back().notes.begin(), files.back().notes.end());
+  }
+}
+
+void asked_clouds::place(const query_options& asked, const io::robot& robot, const std::vector<double>& joints, poses_of poses) {
+  for (observation& cloud : files) {
+    Eigen::Isometry3d carrier = Eigen::Isometry3d::Identity();
+    if (const auto& link = cloud.from.link; !link.empty())
+      carrier = asked.base * about_file(asked.robot, [&] { return robot.link_pose(link, joints, {asked.ignore_limits}); });
+    carriers.push_back(carrier);
+    seen.push_back(about_file(cloud.from.file, [&] {
+      const seen_points made = cloud.seen(carrier, poses);
+      rigid(made.pose, "cloud");
+      return made;
+    }));
+  }
+}

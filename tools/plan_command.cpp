@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "asked_clouds.hpp"
+#include "command_line.hpp"
+#include "messages.hpp"
+#include "recording.hpp"
+#include "report.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+
+using namespace clearance;
+
+namespace {
+
+int run(const query_options& asked) {
+  stopwatch clock;
+  progress shown;
+  shown.show("reading " + asked.robot);
+  const io::robot robot = load_robot(asked);
+  const auto rows = read_rows(asked, robot, asked.configurations);
+  const std::vector<Eigen::Isometry3d> poses = placed_rows(asked, robot, rows, asked.configurations);
+  std::vector<std::string> notes = robot.notes();
+  asked_clouds clouds;
+  clouds.load(asked, shown, notes);
+  clouds.place(asked, robot, rows[0], poses);  // a plan begins where the robot is when it looks
+  plan_report report{.asked = &asked, .clouds = &clouds.files};
+  report.load = clock.lap();
+
+  const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
+  report.bodies = &bodies;
+  report.pack = clock.lap();
+  shown.show("asking about " + std::to_string(rows.size()) + " configurations");
+  const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies});
+  report.upload = there->see(clouds.seen);
+  report.found = there->plan(poses, asked.d_max);
+  report.query = there->query;
+  report.build = there->build;
+  report.upload += there->upload;
+  shown.clear();
+  if (asked.csv && asked.margin) {
+    const auto first = report.first_below();
+    notes.push_back(asked.configurations + (first ? ": row " + std::to_string(*first) + " is the first whose lower end is not above the margin"
+                                                  : ": every row's lower end is above the margin"));
+  }
+  say_notes(notes);
+  std::cout << (asked.csv ? to_csv(report) : to_json(report));
+  return report.code();
+}
+
+}  // namespace
+
+subcommand add_plan(CLI::App& app) {
+  CLI::App* sub = app.add_subcommand("plan", "The least distance of many configurations, such as those of a planned path");
+  return [options = add_query_options(*sub, asking::plan)] { return run(options()); };
+}

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot_on.hpp"
+
+#include <clearance/distances.hpp>
+
+template <class Backend>
+clearance::point_distances robot_on_backend<Backend>::distances(poses_of poses, double d_max) {
+  const clearance::distances_options options{.d_max = clearance::real(d_max), .which = true};
+  return with_usual_trees([&](const auto& trees) { return clearance::distances(on_, trees, poses, clouds_, options); });
+}

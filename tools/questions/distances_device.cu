@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <clearance/distances.cuh>
+
+#include "distances.hpp"
+
+template clearance::point_distances robot_on_backend<clearance::device>::distances(poses_of, double);

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The least distance, with trees of every volume: what they cost is the question there.
+
+#include "trees.hpp"
+
+#include <clearance/min_distance_query.hpp>
+#include <clearance/volume/aabb.hpp>
+
+#include <algorithm>
+
+/// Over a model that somebody else keeps, or that `keeps` does.
+template <class Backend, class Model>
+class query_of final : public prepared_query {
+ public:
+  query_of(const Backend& on, const Model& model, std::shared_ptr<const Model> keeps = {}) : keeps_(std::move(keeps)), query_(on, model) {}
+
+  clearance::min_distance_result least(poses_of poses, const std::vector<placed_points>& clouds) override { return query_(poses, clouds); }
+  clearance::min_distance_result least_per_part(poses_of poses, const std::vector<placed_points>& clouds,
+                                                std::span<clearance::part_minimum> parts) override {
+    return query_.per_part(poses, clouds, parts);
+  }
+  void forget() override { query_.forget(); }
+
+ private:
+  std::shared_ptr<const Model> keeps_;
+  decltype(clearance::min_distance_query(std::declval<const Backend&>(), std::declval<const Model&>())) query_;
+};
+
+template <class Backend>
+prepared_query& robot_on_backend<Backend>::prepared() {
+  if (prepared_) return *prepared_;
+  const auto own = [&]<class Model>(Model model) {
+    const auto kept = std::make_shared<const Model>(std::move(model));
+    prepared_ = std::make_unique<query_of<Backend, Model>>(on_, *kept, kept);
+  };
+  if (asked_.model == model_kind::spheres) {
+    if (asked_.volume == volume_kind::aabb) own(moved(trees_of_spheres<clearance::aabb>));
+    if (asked_.volume == volume_kind::obb) own(moved(trees_of_spheres<clearance::obb>));
+  } else {
+    if (asked_.volume == volume_kind::sphere) own(moved(trees_of_triangles<clearance::sphere>));
+    if (asked_.volume == volume_kind::aabb) own(moved(trees_of_triangles<clearance::aabb>));
+  }
+  if (!prepared_) prepared_ = with_usual_trees([&]<class Model>(const Model& model) -> std::unique_ptr<prepared_query> {
+      return std::make_unique<query_of<Backend, Model>>(on_, model);
+    });
+  return *prepared_;
+}
+
+template <class Backend>
+reply robot_on_backend<Backend>::least(poses_of poses) {
+  prepared_query& asked = prepared();
+  stopwatch clock;
+  reply out{asked.least(poses, clouds_), {}};
+  query = clock.lap();
+  return out;
+}
+
+template <class Backend>
+reply robot_on_backend<Backend>::least_per_part(poses_of poses, int repeat) {
+  prepared_query& asked = prepared();
+  reply out;
+  out.parts.resize(asked_.bodies->size());
+  double spent = 0;
+  stopwatch clock;
+  for (int round = 0; round < repeat && spent < 0.3; ++round) {
+    asked.forget();
+    clock.lap();
+    out.result = asked.least_per_part(poses, clouds_, out.parts);
+    const double seconds = clock.lap();
+    spent += seconds;
+    query = round == 0 ? seconds : std::min(query, seconds);
+  }
+  return out;
+}

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <clearance/min_distance_query.cuh>  // the device's own prepared query
+
+#include "least.hpp"
+
+template reply robot_on_backend<clearance::device>::least(poses_of);
+template reply robot_on_backend<clearance::device>::least_per_part(poses_of, int);

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <clearance/min_distances.cuh>
+
+#include "plan.hpp"
+
+template clearance::min_distances_result robot_on_backend<clearance::device>::plan(poses_of, double);

@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plan.hpp"
+
+template clearance::min_distances_result robot_on_backend<clearance::host>::plan(poses_of, double);

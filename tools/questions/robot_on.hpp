@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// From plain data to the library's templates, for whichever backend includes this: what all questions share.
+
+#include "../backends.hpp"
+#include "../stopwatch.hpp"
+
+#include <clearance/answer/search_on.hpp>
+#include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/primitive/triangle.hpp>
+#include <clearance/robot/model.hpp>
+#include <clearance/solid/winding.hpp>
+#include <clearance/volume/obb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+#include <variant>
+
+/// A cloud as the library takes it.
+using placed_points = std::variant<clearance::placed<clearance::point_span>, clearance::placed<clearance::depth_image<std::uint16_t>>>;
+
+/// The prepared query of a model, whichever its trees are.
+struct prepared_query {
+  virtual ~prepared_query() = default;
+  virtual clearance::min_distance_result least(poses_of poses, const std::vector<placed_points>& clouds) = 0;
+  virtual clearance::min_distance_result least_per_part(poses_of poses, const std::vector<placed_points>& clouds, std::span<clearance::part_minimum> parts) = 0;
+  virtual void forget() = 0;
+};
+
+template <class Backend>
+class robot_on_backend final : public backend_robot {
+ public:
+  robot_on_backend(const Backend& on, const asked_model& asked) : on_(on), asked_(asked) {}
+
+  double see(const std::vector<seen_points>& clouds) override {
+    stopwatch clock;
+    copies_.clear();
+    clouds_.clear();
+    const clearance::minimum::readable_on<Backend> readable{on_, copies_};
+    for (const seen_points& cloud : clouds)
+      std::visit([&](const auto& source) { clouds_.push_back(clearance::placed{readable(source, std::uint32_t(clouds_.size())), cloud.pose}); }, cloud.points);
+    on_.wait();
+    return clock.lap();
+  }
+
+  reply least(poses_of poses) override;
+  reply least_per_part(poses_of poses, int repeat) override;
+  clearance::zones_result zones(poses_of poses, const clearance::zones_options& options) override;
+  clearance::point_distances distances(poses_of poses, double d_max) override;
+  clearance::min_distances_result plan(poses_of poses, double d_max) override;
+
+ private:
+  using sphere_trees = clearance::model<clearance::part<clearance::bvh<clearance::sphere, clearance::inner_sphere, Backend>>, Backend>;
+  using triangle_trees =
+      clearance::model<clearance::part<clearance::bvh<clearance::obb, clearance::triangle, Backend>, clearance::winding<Backend>>, Backend>;
+
+  using trees = std::variant<std::monostate, sphere_trees, triangle_trees>;
+
+  /// The trees that are the quickest for the model that is asked for; they are built once, in trees.hpp.
+  const trees& usual_trees();
+
+  template <class Use>
+  auto with_usual_trees(Use use) {
+    const trees& made = usual_trees();
+    stopwatch clock;
+    auto answer = asked_.model == model_kind::spheres ? use(std::get<sphere_trees>(made)) : use(std::get<triangle_trees>(made));
+    query = clock.lap();
+    return answer;
+  }
+
+  /// `make(bodies)`, a model, where the backend reads it.
+  template <class Make>
+  auto moved(Make make) {
+    stopwatch clock;
+    const auto made = make(*asked_.bodies);
+    build += clock.lap();
+    auto model = made.on(on_);
+    on_.wait();
+    upload += clock.lap();
+    return model;
+  }
+
+  prepared_query& prepared();
+
+  Backend on_;
+  asked_model asked_;
+  trees trees_;
+  std::unique_ptr<prepared_query> prepared_;
+  std::vector<placed_points> clouds_;
+  clearance::minimum::cloud_copies<Backend> copies_;
+};

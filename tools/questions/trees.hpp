@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// From bodies to trees.
+
+#include "robot_on.hpp"
+
+#include <clearance/make_model.hpp>
+
+#include <ranges>
+
+/// Of all bodies, in host memory.
+template <class V>
+auto trees_of_spheres(const std::vector<body>& bodies) {
+  return clearance::make_model<V>(bodies | std::views::transform(&body::packed),
+                                  [&](std::size_t k) { return clearance::part_options{.tolerance = bodies[k].tolerance}; });
+}
+template <class V>
+auto trees_of_triangles(const std::vector<body>& bodies) {
+  return clearance::make_model<V>(bodies | std::views::transform(&body::closed),
+                                  [&](std::size_t k) { return clearance::part_options{.tolerance = bodies[k].tolerance}; });
+}
+
+template <class Backend>
+auto robot_on_backend<Backend>::usual_trees() -> const trees& {
+  if (trees_.index() != 0) return trees_;
+  if (asked_.model == model_kind::spheres)
+    trees_.template emplace<sphere_trees>(moved(trees_of_spheres<clearance::sphere>));
+  else
+    trees_.template emplace<triangle_trees>(moved(trees_of_triangles<clearance::obb>));
+  return trees_;
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What the reports of all commands say in the same words.
+
+#include "json_text.hpp"
+#include "observations.hpp"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+using json = nlohmann::ordered_json;  // keys in the order in which the manual names them
+
+inline constexpr const char* reasons[clearance::drop_reasons] = {"none", "not_finite", "missing", "saturated", "out_of_range", "masked", "too_close"};
+
+/// The pixel of a point of an image.
+std::optional<std::pair<std::uint64_t, std::uint64_t>> pixel(const observation& cloud, std::uint32_t point);
+
+/// What a number is when there is none: infinity and NaN have no place in JSON.
+json or_null(double value);
+
+/// State, distance, bracket and witness, which is `point` of `cloud` (null if there is none).
+json witness(const clearance::min_distance_result& r, const observation* cloud, std::uint32_t point, const std::vector<body>& bodies);
+
+json counts(const clearance::min_distance_result& r);
+
+struct plan_report;
+
+/// How many configurations there are, the least distance of all, at which that is, and, with --check, the first that fails.
+json outcome_of(const plan_report& report);
