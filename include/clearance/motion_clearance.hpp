@@ -129,6 +129,7 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
       put(asked.size() - 1);
     }
   }
+  if (all.nearest.dropped[int(drop_reason::too_close)] != 0) all.lower = 0;  // nothing is free then
   all.state = all.upper <= options.margin ? state::collision : all.lower > options.margin ? state::free : state::possible;
   return all;
 }

@@ -8,7 +8,9 @@
 #include <clearance/in_collision.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
+#include <clearance/min_distances.hpp>
 #include <clearance/min_support.hpp>
+#include <clearance/motion_clearance.hpp>
 #include <clearance/traversal/near_first.hpp>
 #include <clearance/volume/sphere.hpp>
 #include <clearance/zones.hpp>
@@ -58,6 +60,15 @@ TEST_CASE("Nothing is free in a frame with something too close") {
   CHECK(clearance::in_collision(host{}, robot, poses, blocked.image(), 0.1).state == state::possible);
   CHECK(clearance::zones(host{}, robot, poses, clear.image(), {.thresholds = {0.1}}).innermost() == 1);
   CHECK(clearance::zones(host{}, robot, poses, blocked.image(), {.thresholds = {0.1}}).innermost() == 0);
+  for (const real d_max : {clearance::infinity, real(0.1)}) {
+    const auto ask = [&](const auto& frame) { return clearance::min_distances(host{}, robot, poses, frame.image(), {.d_max = d_max}); };
+    CHECK((ask(clear).of[0].state == state::free && ask(clear).first_below(0.05) == 1));
+    CHECK((ask(blocked).of[0].state == state::possible && ask(blocked).of[0].lower == 0 && ask(blocked).first_below(0.05) == 0));
+  }
+  const clearance::straight_motion still(poses, poses);
+  CHECK(motion_clearance(host{}, robot, still, clear.image()).state == state::free);
+  const auto moving = motion_clearance(host{}, robot, still, blocked.image());
+  CHECK((moving.state == state::possible && moving.lower == 0));
   const auto supported = clearance::min_distance_supported(host{}, robot, poses, blocked.image(), {.radius = 0.1});
   CHECK((supported.state == state::possible && supported.lower == 0 && supported.distance == free.distance));
 }

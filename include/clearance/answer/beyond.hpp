@@ -13,6 +13,7 @@ CLEARANCE_HD inline void beyond(min_distance_result& r, real d_max, double slop,
   r.distance = infinity;
   r.lower = lower > 0 ? rounded_down(lower) : 0;
   r.state = r.lower > 0 ? state::free : state::possible;
+  allow_for_too_close(r);
 }
 /// To a whole result, as if its search had stopped there.
 CLEARANCE_HD inline void cut(min_distance_result& r, real d_max, double slop, const frames::float_error& error) {
