@@ -96,6 +96,7 @@ void read_questions(const raw_options& raw, query_options& o) {
   if (!raw.d_max.empty()) {
     o.d_max = number("--d-max", raw.d_max);
     if (!(o.d_max > 0)) throw usage_error("--d-max", "must be above 0 (metres)");
+    if (!(o.d_max >= 1e-30 && o.d_max <= 1e30)) throw usage_error("--d-max", "must be from 1e-30 to 1e30 (metres)");
     if (o.distances.empty() && o.configurations.empty()) throw usage_error("--d-max", "is for --distances");
     if (!o.configurations.empty() && o.margin && !(o.d_max > *o.margin))
       throw usage_error("--d-max", "must be above the margin of --check, or nothing could pass");

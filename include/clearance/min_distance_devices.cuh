@@ -78,8 +78,9 @@ class min_distance_query<devices, PartView> {
     try {
       for (std::size_t k = 0; k < n; ++k)
         each_[k].template begin<PerPart>(poses, clouds, [k, n](const auto& cloud) { return piece_of(cloud, k, n); });
+      for (auto& query : each_) query.answered();
     } catch (...) {
-      on_.wait();  // those that have begun read the caller's memory
+      on_.wait_for_all();  // those that have begun read the caller's memory, and write into ours
       throw;
     }
     min_distance_result all = in_whole(each_[0].answered(), 0), nearest = all;

@@ -30,8 +30,8 @@ class min_distances_query<device, PartView> {
   /// std::invalid_argument if they are no whole configurations.
   void place(std::span<const Eigen::Isometry3d> poses) {
     detail::count_configurations(search_.parts(), poses.size());
+    search_.place(poses);
     poses_.assign(poses.begin(), poses.end());
-    search_.place(poses_);
   }
   /// The configurations that were placed, against a new frame.
   template <class Clouds>
@@ -44,7 +44,8 @@ class min_distances_query<device, PartView> {
     return result_;
   }
   /// Enqueues it: what is returned is memory of the device, one result a configuration, for what follows in its stream. Clouds must be
-  /// readable there. If a pose is not rigid, which cannot be thrown there, the state is `possible` and the distance NaN.
+  /// readable there. If a pose is not rigid, which cannot be thrown there, the state is `possible` and the distance NaN. A graph that
+  /// captures this is void once more configurations are placed, or a larger cloud is asked.
   template <class Clouds>
   const min_distance_result* enqueue(const Clouds& clouds, const min_distances_options& options = {}) {
     ask(clouds, options, minimum::as_it_is{});
@@ -58,6 +59,7 @@ class min_distances_query<device, PartView> {
   template <class Clouds, class Here>
   void ask(const Clouds& clouds, const min_distances_options& options, Here&& here) {
     static_assert(explain_clouds<Clouds>());
+    if (search_.size() * search_.parts() != poses_.size()) throw std::logic_error("clearance: the last configurations could not be placed");
     detail::check(options);
     search_.enqueue(clouds, options.d_max, [&](const auto& source, std::uint32_t cloud) { return here(source, cloud); });
   }

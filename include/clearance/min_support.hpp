@@ -76,12 +76,12 @@ std::vector<std::uint32_t> count_around(const On& on, std::span<const part_facts
 
 /// The least distance over points that have at least `min_points` - 1 other valid points of all clouds within `radius` of them, by world
 /// coordinates in double. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that does, if min_points or most is 0,
-/// most is above 2^20, or the radius is negative or NaN.
+/// most is above 2^20, or the radius is negative or not finite.
 template <class On, robot Robot, class Clouds>
 supported_distance min_distance_supported(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                           const support_options& options = {}) {
   static_assert(explain_clouds<Clouds>());
-  if (options.min_points == 0 || !(options.radius >= 0))
+  if (options.min_points == 0 || !(options.radius >= 0 && options.radius < infinity))
     throw std::invalid_argument("clearance: a point cannot be confirmed by " + std::to_string(options.min_points) + " points within " +
                                 std::to_string(options.radius) + " m");
   const auto model = view_of(robot);

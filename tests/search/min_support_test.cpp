@@ -68,5 +68,6 @@ TEST_CASE("What confirms nothing is refused") {
   CHECK_THROWS_AS(ask({.min_points = 0}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.radius = -1}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.radius = double(clearance::not_a_number)}), std::invalid_argument);
+  CHECK_THROWS_AS(ask({.radius = double(clearance::infinity)}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.most = 0}), std::invalid_argument);
 }

@@ -6,6 +6,7 @@
 
 #include <clearance/bvh/flat_list.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -77,6 +78,24 @@ concept asks = requires(const Given&... given) { min_distance(host{}, given...);
 bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
 
 }  // namespace
+
+TEST_CASE("Spheres so small that squares of their distances vanish are found") {
+  dice d(514);
+  verdict v;
+  for (const double size : {1e-24, 1e-23, 1e-22, 1e-20, 1e-18}) {
+    std::vector<inner_sphere> all;
+    for (int k = 0; k < 3000; ++k) all.push_back({clearance::scaled(real(size), d.point(1)), real(size * d.number(0.001, 0.01))});
+    const std::vector<vec3> points{{0, 0, 0}, clearance::scaled(real(size), d.point(1))};
+    real least = infinity;
+    for (const vec3 p : points)
+      for (const inner_sphere& s : all) least = std::min(least, s.distance(p));
+    const auto ask = [&](auto volume) {
+      const clearance::model robot{std::vector{clearance::make_part(clearance::build<decltype(volume)>(all))}};
+      return min_distance(host{}, robot, std::vector{identity()}, point_span(points)).distance;
+    };
+    v.require(ask(clearance::sphere{}) == least && ask(clearance::aabb{}) == least && ask(clearance::obb{}) == least, "of size ", size, ": not ", least);
+  }
+}
 
 TEST_CASE("The distance to inner spheres is the oracle's, and so are bracket and witness") {
   check_truth<clearance::sphere, inner_sphere>();

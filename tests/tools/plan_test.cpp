@@ -197,6 +197,7 @@ TEST_CASE("a joint without a column is fixed by --joint, and what is wrong with 
   refuses(p.ask + " --check nan", "--check: \"nan\" is not a finite number");
   refuses(p.ask + " --check 0.2 --d-max 0.2", "--d-max: must be above the margin of --check");
   for (const std::string value : {"0", "-0.1"}) refuses(p.ask + " --d-max " + value, "--d-max: must be above 0");
+  for (const std::string value : {"1e-60", "1e300"}) refuses(p.ask + " --d-max " + value, "--d-max: must be from 1e-30 to 1e30");
 }
 
 TEST_CASE("clearance run --plan says in every frame what clearance plan says of its points") {

@@ -10,6 +10,7 @@
 #include <clearance/robot/model.hpp>
 
 #include <memory>
+#include <utility>
 
 namespace clearance::minimum {
 
@@ -52,12 +53,14 @@ class device_batch {
     staged_.clear();
     for (const Eigen::Isometry3d& pose : poses) staged_.emplace_back(pose);
     const std::size_t n = staged_.size();
+    const std::uint32_t before = std::exchange(configurations_, 0);  // so that nothing is asked of poses that were not placed
     grow(poses_, n), grow(places_, n), grow(bounds_, n);
     grow(of_all_, count), grow(all_, count), grow(seeds_, count), grow(results_, count), grow(last_, count);
-    if (count != configurations_) configurations_ = count, forget();
     if (n == 0) return;
     const device_guard guard(on_.id);
     check_cuda(cudaMemcpyAsync(poses_.data(), staged_.data(), n * sizeof staged_[0], cudaMemcpyHostToDevice, on_.stream), "cudaMemcpyAsync");
+    if (count != before) clear(last_.data(), 0xff, count);  // no cloud's
+    configurations_ = count;
   }
 
   /// Enqueues a frame. `here(source, cloud)` is what the device can read of a cloud.

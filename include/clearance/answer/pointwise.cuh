@@ -6,6 +6,8 @@
 #include <clearance/scan/launch.cuh>
 #include <clearance/scan/packet_kernel.cuh>
 
+#include <utility>
+
 namespace clearance::pointwise {
 
 /// What was nearest to a point: the number of the part, or ~0u, and where the primitive is in its tree.
@@ -126,8 +128,8 @@ class device_points {
     std::size_t points = 0;
     for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
     if (points <= last_.size()) return;
-    last_ = {};
-    last_ = device_buffer<remembered<PartView>>(points, on_.id, memory_);
+    device_buffer<remembered<PartView>> larger(points, on_.id, memory_);
+    outgrown_.push_back(std::exchange(last_, std::move(larger)));  // a graph may have captured it
     forget();
   }
 
@@ -137,6 +139,7 @@ class device_points {
   std::vector<part_facts> facts_;
   scan::launcher<PartView> launch_;
   device_buffer<remembered<PartView>> last_;
+  std::vector<device_buffer<remembered<PartView>>> outgrown_;
 };
 
 }  // namespace clearance::pointwise

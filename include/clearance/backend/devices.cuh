@@ -46,6 +46,15 @@ class devices {
   void wait() const {
     for (const device& on : each_) on.wait();
   }
+  /// The same, whatever has gone wrong on one of them.
+  void wait_for_all() const noexcept {
+    for (const device& on : each_) {
+      try {
+        on.wait();
+      } catch (...) {  // what is told is what went wrong first
+      }
+    }
+  }
 
  private:
   static int count() {

@@ -22,7 +22,7 @@ struct morton_grid {
     const vec3 size = b - a;
     const real side = max(max(size.x, size.y), size.z) * 1.5f;
     low = {(a.x + b.x - side) / 2, (a.y + b.y - side) / 2, (a.z + b.z - side) / 2};
-    per_metre = side > 0 ? (1 << bits) / side : 0;
+    per_metre = side > least_normal * (4 << bits) ? (1 << bits) / side : 0;  // never infinite
   }
   /// Which of so many samples, in ascending order, are these quantiles.
   CLEARANCE_HD static std::uint32_t low_rank(std::uint32_t count) { return count / 16; }

@@ -23,6 +23,8 @@ inline constexpr real least_normal = std::numeric_limits<real>::min(), largest_r
 /// Relative slack by which every lower bound is lowered and every fit inflated: 32 units of rounding (2^-24), more than
 /// all errors of a bound and of a leaf formula together.
 inline constexpr real slack = 0x1p-19f;
+/// And metres by which every fit is inflated: squares of less than 1e-19 vanish, which no relative slack covers.
+inline constexpr double vanishing = 0x1p-60;
 
 struct vec3 {
   real x, y, z;

@@ -23,7 +23,7 @@ struct aabb {
         hi[k] = std::max(hi[k], c[k] + b.radius);
       }
     }
-    const double margin = 2.0 * slack * std::hypot(hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]);
+    const double margin = 2.0 * slack * std::hypot(hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]) + vanishing;
     const auto down = [&](double x) { return std::nextafter(real(x - margin), -infinity); };
     const auto up = [&](double x) { return std::nextafter(real(x + margin), infinity); };
     return {{down(lo[0]), down(lo[1]), down(lo[2])}, {up(hi[0]), up(hi[1]), up(hi[2])}};

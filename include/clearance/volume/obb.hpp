@@ -82,7 +82,7 @@ struct obb {
     const Eigen::Vector3d middle = near + axes.inverse() * ((lo + hi) / 2);
     box.center = {to_float(middle.x()), to_float(middle.y()), to_float(middle.z())};
     const Eigen::Vector3d at = axes * (Eigen::Vector3d(box.center.x, box.center.y, box.center.z) - near);
-    const double margin = 2.0 * slack * (hi - lo).norm();
+    const double margin = 2.0 * slack * (hi - lo).norm() + vanishing;
     for (int k = 0; k < 3; ++k)
       box.half[k] = std::nextafter(real(std::max(hi[k] - at[k], at[k] - lo[k]) + margin), infinity);
     return box;

@@ -47,7 +47,7 @@ struct sphere {
     c[0] = center.x, c[1] = center.y, c[2] = center.z;
     double radius = 0;
     for (const ball& b : balls) radius = std::max(radius, reach(b));
-    return {center, std::nextafter(real(radius * (1 + 2.0 * slack)), infinity)};
+    return {center, std::nextafter(real(radius * (1 + 2.0 * slack) + vanishing), infinity)};
   }
 
   CLEARANCE_HD real lower_bound(vec3 q) const { return fma(rough_length(q - center), 1 - slack, -radius); }
