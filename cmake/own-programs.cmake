@@ -60,8 +60,11 @@ if(CLEARANCE_WARNINGS_AS_ERRORS)
     $<$<COMPILE_LANGUAGE:CXX>:-Werror> $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Werror=all-warnings -Xcompiler=-Werror>)
 endif()
 if(CLEARANCE_SANITIZE)
+  # Checks of every access for null and for an object's size find what the address sanitizer finds. One for alignment is for
+  # programs that look into bytes which may lie anywhere (CLEARANCE_READS_BYTES). Together they double the time of compiling.
   target_compile_options(clearance_own INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined
-                         -fno-sanitize-recover=undefined -fno-omit-frame-pointer>)
+                         -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+                         $<$<NOT:$<BOOL:$<TARGET_PROPERTY:CLEARANCE_READS_BYTES>>>:-fno-sanitize=alignment>>)
   target_link_options(clearance_own INTERFACE -fsanitize=address,undefined)
 endif()
 
