@@ -24,3 +24,10 @@ void asked_clouds::place(const query_options& asked, const io::robot& robot, con
     }));
   }
 }
+
+void asked_clouds::hide(std::span<const point_label> labels) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    hidden.push_back(files[i].hide(labels.first(files[i].size()), seen[i]));
+    labels = labels.subspan(files[i].size());
+  }
+}

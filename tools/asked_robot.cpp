@@ -4,8 +4,11 @@
 #include "command_line.hpp"
 #include "robot_bodies.hpp"
 
+#include <clearance/io/mesh.hpp>
 #include <clearance/io/spheres_file.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 using namespace clearance;
@@ -45,48 +48,114 @@ void note_packing(const query_options& asked, const body_account& account, std::
     notes.push_back(asked.packing + ": has no spheres for " + std::to_string(rest) + " links, which were packed");
 }
 
+/// "claw+cup.stl", or "claw+cup.stl (2)" if that is taken.
+std::string name_of(const attachment_options& from, const asked_robot& robot) {
+  const std::string plain = from.link + '+' + std::filesystem::path(from.file).filename().string();
+  const auto taken = [&](const std::string& name) {
+    return std::ranges::any_of(robot.description.parts(), [&](const auto& part) { return part.name == name; }) ||
+           std::ranges::any_of(robot.held, [&](const auto& thing) { return thing.name == name; });
+  };
+  std::string name = plain;
+  for (int k = 2; taken(name); ++k) name = plain + " (" + std::to_string(k) + ')';
+  return name;
+}
+
+attached_thing load_attached(const query_options& asked, const attachment_options& from, const asked_robot& robot, std::vector<std::string>& notes) {
+  attached_thing made{.name = name_of(from, robot), .from = from, .link = 0, .mesh = {}, .spheres = {}};
+  try {
+    made.link = robot.description.kinematics().link(from.link);
+  } catch (const std::invalid_argument& error) {
+    throw usage_error("--attach", error.what());
+  }
+  if (io::spheres_format(from.file).empty()) {
+    made.mesh = io::load_mesh(from.file, asked.limits);
+    return made;
+  }
+  if (asked.model != model_kind::spheres) throw usage_error("--attach", from.file + " holds spheres, which are for --model spheres");
+  auto parts = io::within_memory(from.file, [&] { return io::load_spheres(from.file); });
+  if (parts.size() != 1) io::refuse(from.file, "holds the spheres of " + std::to_string(parts.size()) + " parts, and --attach takes those of one");
+  if (!std::isfinite(parts[0].spheres.gap)) {
+    parts[0].spheres.gap = 0;  // nobody knows of a mesh that they stand for
+    notes.push_back(from.file + ": has no certificate, so its spheres themselves are taken for what link " + io::quoted(from.link) + " holds");
+  }
+  made.spheres = std::move(parts[0]);
+  return made;
+}
+
+body_options body_options_of(const query_options& asked) {
+  return {.model = asked.model, .pack = {.count = asked.spheres}, .cache = chosen_cache(asked.no_cache, asked.cache)};
+}
+
+body make_held(const query_options& asked, const attached_thing& thing, progress& shown) {
+  if (thing.spheres) return {thing.name, thing.spheres->spheres, {}, thing.spheres->tolerance};
+  const body_source source{thing.name, &thing.mesh};
+  body_account account;
+  try {
+    return std::move(make_bodies(std::vector{source}, body_options_of(asked), shown, account)[0]);
+  } catch (const std::runtime_error& error) {  // it is known by its file, and is no link
+    std::string why = error.what();
+    if (const std::string link = "link " + io::quoted(thing.name) + ": "; why.starts_with(link)) why.erase(0, link.size());
+    io::refuse(thing.from.file, why);
+  }
+}
+
 }  // namespace
 
-io::robot load_robot(const query_options& asked) {
+asked_robot load_robot(const query_options& asked, std::vector<std::string>& notes) {
   io::robot_options options;
   options.geometry = asked.visual.value_or(false) ? io::robot_geometry::visual : io::robot_geometry::collision;
   for (const auto& [name, folder] : asked.packages) options.packages[name] = folder;
   options.exclude_links = asked.excluded;
   options.limits = asked.limits;
-  return io::within_memory(asked.robot, [&] { return about_file(asked.robot, [&] { return io::load_robot(asked.robot, options); }); });
+  asked_robot made{io::within_memory(asked.robot, [&] { return about_file(asked.robot, [&] { return io::load_robot(asked.robot, options); }); }), {}};
+  notes.insert(notes.end(), made.description.notes().begin(), made.description.notes().end());
+  for (const attachment_options& from : asked.attached) made.held.push_back(load_attached(asked, from, made, notes));
+  return made;
 }
 
-std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const io::robot& robot,
-                                            const std::vector<double>& joints, const std::string& when) {
+std::vector<Eigen::Isometry3d> all_links(const query_options& asked, const io::robot& robot, const std::vector<double>& joints) {
   return about_file(asked.robot, [&] {
-    auto poses = robot.poses(joints, {asked.ignore_limits});
-    for (std::size_t k = 0; k < poses.size(); ++k) {
-      poses[k] = asked.base * poses[k];
-      rigid(poses[k], ("link " + io::quoted(robot.parts()[k].name) + when).c_str());
+    auto links = robot.kinematics().link_poses(joints, {asked.ignore_limits});
+    for (Eigen::Isometry3d& link : links) link = asked.base * link;
+    return links;
+  });
+}
+
+std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const asked_robot& robot,
+                                            const std::vector<double>& joints, const std::string& when) {
+  const auto links = all_links(asked, robot.description, joints);
+  std::vector<Eigen::Isometry3d> poses;
+  return about_file(asked.robot, [&] {
+    for (const io::robot_part& part : robot.description.parts()) {
+      poses.push_back(links[part.link]);
+      rigid(poses.back(), ("link " + io::quoted(part.name) + when).c_str());
+    }
+    for (const attached_thing& thing : robot.held) {
+      poses.push_back(links[thing.link] * thing.from.pose);
+      rigid(poses.back(), (io::quoted(thing.name) + when).c_str());
     }
     return poses;
   });
 }
 
-std::vector<body> make_bodies(const query_options& asked, const io::robot& robot, progress& shown,
+std::vector<body> make_bodies(const query_options& asked, const asked_robot& robot, progress& shown,
                               std::vector<std::string>& notes) {
   std::vector<io::packed_part> given;
   if (!asked.packing.empty()) given = io::within_memory(asked.packing, [&] { return io::load_spheres(asked.packing); });
-  const auto spheres_of = assigned(given, robot, asked);
+  const auto spheres_of = assigned(given, robot.description, asked);
   std::vector<body_source> sources;
-  for (std::size_t k = 0; k < robot.parts().size(); ++k) {
-    const io::robot_part& part = robot.parts()[k];
+  for (std::size_t k = 0; k < robot.description.parts().size(); ++k) {
+    const io::robot_part& part = robot.description.parts()[k];
     sources.push_back({part.name, &part.mesh, part.tessellation_error, spheres_of[k]});
   }
-  const body_options how{
-      .model = asked.model, .pack = {.count = asked.spheres}, .cache = chosen_cache(asked.no_cache, asked.cache)};
   body_account account;
   std::vector<body> bodies;
   try {
-    bodies = make_bodies(sources, how, shown, account);
+    bodies = make_bodies(sources, body_options_of(asked), shown, account);
   } catch (const std::runtime_error& error) {  // it names the link
     io::refuse(asked.robot, error.what());
   }
   note_packing(asked, account, notes);
+  for (const attached_thing& thing : robot.held) bodies.push_back(make_held(asked, thing, shown));
   return bodies;
 }

@@ -5,6 +5,7 @@
 #include "progress.hpp"
 #include "query_options.hpp"
 
+#include <clearance/io/packed_part.hpp>
 #include <clearance/io/robot.hpp>
 
 /// What `ask()` returns; what it refuses about joints, links and poses is said of this file.
@@ -21,13 +22,39 @@ auto about_file(const std::string& file, Ask ask) {
   }
 }
 
-/// The robot of --robot.
-clearance::io::robot load_robot(const query_options& asked);
+/// What a link holds: a mesh, or the spheres that it is made of.
+struct attached_thing {
+  std::string name;  // as a part, of which no other has it
+  attachment_options from;
+  std::size_t link;  // its number in the kinematic tree
+  clearance::triangle_mesh mesh;
+  std::optional<clearance::io::packed_part> spheres;
+};
 
-/// The robot's poses, moved by the base; throws if one of its links is where no query can be. `when` says more of it.
-std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const clearance::io::robot& robot,
+/// The robot of --robot, and what it holds by --attach: one part more each, behind its own.
+struct asked_robot {
+  clearance::io::robot description;
+  std::vector<attached_thing> held;
+
+  /// The part's number as that of something held; nullptr for the robot's own.
+  const attached_thing* held_as(std::size_t part) const {
+    const std::size_t own = description.parts().size();
+    return part < own ? nullptr : &held[part - own];
+  }
+  /// The number of the link that carries a part.
+  std::size_t link_of(std::size_t part) const { return held_as(part) ? held_as(part)->link : description.parts()[part].link; }
+};
+
+/// Reads all files. Notes are what a user should see.
+asked_robot load_robot(const query_options& asked, std::vector<std::string>& notes);
+
+/// The poses of all links, moved by the base.
+std::vector<Eigen::Isometry3d> all_links(const query_options& asked, const clearance::io::robot& robot, const std::vector<double>& joints);
+
+/// The poses of all parts; throws if one of them is where no query can be. `when` says more of it.
+std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const asked_robot& robot,
                                             const std::vector<double>& joints, const std::string& when = {});
 
 /// One body for each of its parts, packed if the model is of spheres. Notes are what a user should see.
-std::vector<body> make_bodies(const query_options& asked, const clearance::io::robot& robot, progress& shown,
+std::vector<body> make_bodies(const query_options& asked, const asked_robot& robot, progress& shown,
                               std::vector<std::string>& notes);

@@ -23,6 +23,9 @@ struct zones_options;
 struct zones_result;
 struct point_distances;
 struct min_distances_result;
+struct self_filter_result;
+struct support_options;
+struct supported_distance;
 }  // namespace clearance
 
 enum class model_kind { spheres, triangles };
@@ -70,7 +73,12 @@ class backend_robot {
   // These have trees of one volume for each model: their answers do not depend on it.
   virtual clearance::zones_result zones(poses_of poses, const clearance::zones_options& options) = 0;
   virtual clearance::point_distances distances(poses_of poses, double d_max) = 0;
-  /// `poses`: those of one configuration after another.
+  /// Which points are the robot itself, `padding` metres around it included.
+  virtual clearance::self_filter_result own_points(poses_of poses, double padding) = 0;
+  virtual clearance::supported_distance supported(poses_of poses, const clearance::support_options& options) = 0;
+  /// Where the minima of least_per_part are.
+  virtual std::vector<clearance::part_witness> witnesses(poses_of poses, std::span<const clearance::part_minimum> minima) = 0;
+  /// `poses`: those of one configuration after another. It is prepared when it is first asked, and remembers where minima were.
   virtual clearance::min_distances_result plan(poses_of poses, double d_max) = 0;
 
   // Seconds: what the last question took, and what trees have taken until now, to be made and to be where the backend reads them.

@@ -81,7 +81,23 @@ std::vector<Eigen::Vector3d> observation::in_world(const Eigen::Isometry3d& carr
   return at;
 }
 
+std::vector<vec3> observation::hide(std::span<const point_label> labels, const seen_points& seen) {
+  std::vector<vec3> where;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] != point_label::own) continue;
+    where.push_back(std::visit([&](const auto& source) { return source[i].position; }, seen.points));
+    if (auto* frame = std::get_if<io::depth_frame>(&data))
+      frame->pixels[i] = 0;
+    else
+      floats_.points[i].x = not_a_number;
+  }
+  hidden_ = where.size();
+  return where;
+}
+
 void observation::recount(min_distance_result& r) const {
+  r.dropped[int(image() ? drop_reason::missing : drop_reason::not_finite)] -= hidden_;
+  r.dropped[int(drop_reason::masked)] += hidden_;
   r.dropped[int(drop_reason::not_finite)] -= zeros;
   r.dropped[int(drop_reason::missing)] += zeros;
 }

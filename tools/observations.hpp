@@ -6,6 +6,7 @@
 
 #include <clearance/io/cloud.hpp>
 #include <clearance/io/depth.hpp>
+#include <clearance/points/masked.hpp>
 
 #include <map>
 #include <variant>
@@ -30,7 +31,10 @@ struct observation {
   /// Where its points are in the world, by their numbers; of those that do not count, anywhere. `seen`: what seen(carrier, ...) gave.
   std::vector<Eigen::Vector3d> in_world(const Eigen::Isometry3d& carrier, const seen_points& seen) const;
 
-  /// Counts what was turned into NaN as missing.
+  /// Takes points out of what seen() gave: those that are labelled as the robot's own. Where they were, in that frame.
+  std::vector<clearance::vec3> hide(std::span<const clearance::point_label> labels, const seen_points& seen);
+
+  /// Counts what was turned into NaN as missing, and what was hidden as masked.
   void recount(clearance::min_distance_result& r) const;
 
   /// Frees the memory of points and pixels.
@@ -38,6 +42,7 @@ struct observation {
 
  private:
   clearance::io::float_cloud floats_;
+  std::uint64_t hidden_ = 0;
 };
 
 /// Reads the file. Throws if it is damaged.

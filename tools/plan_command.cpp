@@ -17,13 +17,13 @@ int run(const query_options& asked) {
   stopwatch clock;
   progress shown;
   shown.show("reading " + asked.robot);
-  const io::robot robot = load_robot(asked);
-  const auto rows = read_rows(asked, robot, asked.configurations);
+  std::vector<std::string> notes;
+  const asked_robot robot = load_robot(asked, notes);
+  const auto rows = read_rows(asked, robot.description, asked.configurations);
   const std::vector<Eigen::Isometry3d> poses = placed_rows(asked, robot, rows, asked.configurations);
-  std::vector<std::string> notes = robot.notes();
   asked_clouds clouds;
   clouds.load(asked, shown, notes);
-  clouds.place(asked, robot, rows[0], poses);  // a plan begins where the robot is when it looks
+  clouds.place(asked, robot.description, rows[0], poses);  // a plan begins where the robot is when it looks
   plan_report report{.asked = &asked, .clouds = &clouds.files};
   report.load = clock.lap();
 

@@ -6,6 +6,8 @@
 #include "report.hpp"
 #include "stopwatch.hpp"
 
+#include <clearance/io/jacobian.hpp>
+
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
@@ -26,20 +28,47 @@ std::vector<double> configuration(const query_options& asked, const io::kinemati
   return tree.configuration({asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits});
 }
 
-void draw(const query_report& report, const io::robot& robot, poses_of poses, const asked_clouds& clouds, const point_distances* distances) {
+/// How the distances of all parts change.
+std::vector<part_gradient> gradients(const query_options& asked, const asked_robot& robot, const std::vector<double>& joints, poses_of poses,
+                                     std::span<const part_witness> witnesses) {
+  const io::kinematic_tree& tree = robot.description.kinematics();
+  const std::vector<Eigen::Isometry3d> links = all_links(asked, robot.description, joints);
+  std::vector<part_gradient> all;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    all.push_back({gradient(witnesses[k], Eigen::Vector3d(poses[k].translation())), {}});
+    all.back().of_joints = io::joint_gradient(tree, links, robot.link_of(k), all.back().of_pose);
+  }
+  return all;
+}
+
+void draw(const query_report& report, const asked_robot& robot, poses_of poses, const asked_clouds& clouds, const point_distances* distances) {
   io::scene scene;
   const min_distance_result& r = report.found.result;
   // A glTF file holds floats: a scene far away is drawn around its robot.
   const Eigen::Vector3d base = report.asked->base.translation();
   if (base.norm() > 1000) scene.origin = base;
-  for (std::size_t k = 0; k < robot.parts().size(); ++k) {
-    scene.bodies.push_back({.name = robot.parts()[k].name, .mesh = robot.parts()[k].mesh, .pose = poses[k]});
-    if (r.part == k) scene.bodies.back().paint = {0.95f, 0.6f, 0.2f, 1};
+  const io::colour nearest{0.95f, 0.6f, 0.2f, 1};
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const attached_thing* held = robot.held_as(k);
+    if (held && held->spheres) {
+      scene.balls.push_back({.name = held->name, .balls = {}, .pose = poses[k]});
+      for (const inner_sphere& s : held->spheres->spheres.spheres) scene.balls.back().balls.push_back({s.center, s.radius});
+      if (r.part == k) scene.balls.back().paint = nearest;
+      continue;
+    }
+    const triangle_mesh& mesh = held ? held->mesh : robot.description.parts()[k].mesh;
+    scene.bodies.push_back({.name = (*report.bodies)[k].name, .mesh = mesh, .pose = poses[k]});
+    if (r.part == k) scene.bodies.back().paint = nearest;
   }
   std::size_t first = 0;
   for (std::size_t i = 0; i < clouds.files.size(); ++i) {
     scene.clouds.push_back(drawn(*report.asked, clouds.files[i], clouds.seen[i], distances, first));
     first += clouds.files[i].size();
+    if (!clouds.hidden.empty() && !clouds.hidden[i].empty())  // what is filtered out is seen, in grey
+      scene.clouds.push_back({.name = clouds.files[i].from.file + " (the robot's own)",
+                              .points = clouds.hidden[i],
+                              .pose = clouds.seen[i].pose,
+                              .paint = {0.55f, 0.55f, 0.55f, 1}});
   }
   if (r.state != state::no_data)
     scene.segments.push_back({.name = "witness", .from = {r.nearest.x, r.nearest.y, r.nearest.z}, .to = {r.at.x, r.at.y, r.at.z}});
@@ -60,15 +89,15 @@ int run(const query_options& asked) {
   progress shown;
   shown.show("reading " + asked.robot);
   io::files_read inputs;
-  const io::robot robot = load_robot(asked);
-  const auto joints = about_file(asked.robot, [&] { return configuration(asked, robot.kinematics()); });
   query_report report;
   report.asked = &asked;
-  report.notes = robot.notes();
+  const asked_robot robot = load_robot(asked, report.notes);
+  report.robot = &robot;
+  const auto joints = about_file(asked.robot, [&] { return configuration(asked, robot.description.kinematics()); });
   const std::vector<Eigen::Isometry3d> poses = placed_links(asked, robot, joints);
   asked_clouds clouds;
   clouds.load(asked, shown, report.notes);
-  clouds.place(asked, robot, joints, poses);
+  clouds.place(asked, robot.description, joints, poses);
   check_outputs(asked, inputs);  // known before the robot is packed
   report.load = clock.lap();
 
@@ -79,9 +108,16 @@ int run(const query_options& asked) {
   shown.show("asking");
   const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies});
   report.upload = there->see(clouds.seen);
+  if (asked.self_filter) {
+    report.filter = there->own_points(poses, *asked.self_filter);
+    clouds.hide(report.filter->labels);
+    report.upload += there->see(clouds.seen);
+  }
   report.found = there->least_per_part(poses, 1);
   report.query = there->query;
   if (!asked.zones.empty()) report.zones = there->zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
+  if (asked.support) report.support = there->supported(poses, {.min_points = asked.support->min_points, .radius = asked.support->radius});
+  if (asked.gradient) report.gradients = gradients(asked, robot, joints, poses, there->witnesses(poses, report.found.parts));
   std::optional<point_distances> distances;
   if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max);
   report.build = there->build;

@@ -3,12 +3,14 @@
 
 #include "command_line.hpp"
 
+#include <clearance/ground/pose.hpp>
 #include <clearance/io/cloud_file.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 bool cloud_options::is_image() const { return clearance::io::extension(file) == ".png"; }
 
@@ -22,9 +24,9 @@ using texts = std::vector<std::string>;
 
 struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames, trajectory, unfolded;
-  std::string zones, min_points, distances, d_max, configurations, plan;
-  texts joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges;
-  bool ignore_limits = false, json = false, no_cache = false, merge = false, csv = false;
+  std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, svg;
+  texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges;
+  bool ignore_limits = false, json = false, no_cache = false, merge = false, csv = false, gradient = false;
 };
 
 /// Sets one per-cloud option, as it was given on the command line.
@@ -54,13 +56,18 @@ void set(cloud_options& cloud, const std::string& option, const std::string& tex
     throw usage_error(option, "is for point clouds, and " + cloud.file + " is a depth image");
 }
 
+/// Every option with its value, as they were given one after another.
+std::vector<std::pair<std::string, std::string>> in_order(const CLI::App& app) {
+  std::vector<std::pair<std::string, std::string>> all;
+  std::map<const CLI::Option*, std::size_t> taken;
+  for (const CLI::Option* option : app.parse_order()) all.emplace_back(option->get_name(), option->results().at(taken[option]++));
+  return all;
+}
+
 /// The clouds in their order; an option before the first goes to `all`, one after a cloud to that one.
 std::vector<cloud_options> clouds_of(const CLI::App& app, cloud_options& all) {
   std::vector<cloud_options> clouds;
-  std::map<const CLI::Option*, std::size_t> taken;
-  for (const CLI::Option* option : app.parse_order()) {
-    const std::string name = option->get_name();
-    const std::string& text = option->results().at(taken[option]++);
+  for (const auto& [name, text] : in_order(app)) {
     if (name == "--cloud") {
       clouds.push_back(all);
       clouds.back().file = text;
@@ -70,6 +77,45 @@ std::vector<cloud_options> clouds_of(const CLI::App& app, cloud_options& all) {
   }
   for (const auto& cloud : clouds) cloud.check("--cloud");
   return clouds;
+}
+
+/// What links hold; a pose is that of the thing before it.
+std::vector<attachment_options> attached_of(const CLI::App& app) {
+  std::vector<attachment_options> things;
+  bool placed = false;
+  for (const auto& [name, text] : in_order(app)) {
+    if (name == "--attach") {
+      const auto [link, file] = assignment(name, text);
+      things.push_back({.link = link, .file = file});
+      placed = false;
+    } else if (name == "--attach-pose") {
+      if (things.empty()) throw usage_error(name, "is for the --attach before it, and there is none");
+      if (std::exchange(placed, true)) throw usage_error(name, "is given twice for " + things.back().file);
+      try {
+        things.back().pose = clearance::rigid(pose(name, text), "what is attached");
+      } catch (const usage_error&) {
+        throw;
+      } catch (const std::invalid_argument& error) {
+        throw usage_error(name, error.what());
+      }
+    }
+  }
+  return things;
+}
+
+/// Metres from 0 on, of which squares are numbers.
+double length(const std::string& option, const std::string& text) {
+  const double metres = number(option, text);
+  if (!(metres >= 0 && metres <= 1e15)) throw usage_error(option, "must be from 0 to 1e15 (metres)");
+  return metres;
+}
+
+support_asked support_of(const std::string& option, const std::string& text) {
+  const std::size_t at = text.find('@');
+  if (at == text.npos) throw usage_error(option, clearance::io::quoted(text) + " is not of the form N@RADIUS, such as 3@0.02");
+  const std::size_t points = whole_number(option, text.substr(0, at));
+  if (points < 2) throw usage_error(option, "needs at least 2 points: one alone always confirms itself");
+  return {std::uint32_t(points), length(option, text.substr(at + 1))};
 }
 
 std::vector<double> thresholds(const std::string& option, const std::string& text) {
@@ -90,9 +136,15 @@ void read_questions(const raw_options& raw, query_options& o) {
   o.distances = raw.distances;
   if (!o.distances.empty() && clearance::io::extension(o.distances) != ".ply")
     throw usage_error("--distances", o.distances + ": its name must end in .ply, which is what is written");
+  if (!raw.self_filter.empty()) o.self_filter = length("--self-filter", raw.self_filter);
+  if (!raw.min_support.empty()) o.support = support_of("--min-support", raw.min_support);
+  o.gradient = raw.gradient;
   o.configurations = raw.configurations;
   o.csv = raw.csv;
   o.recording.plan = raw.plan;
+  o.recording.svg = raw.svg;
+  if (!raw.svg.empty() && clearance::io::extension(raw.svg) != ".svg")
+    throw usage_error("--svg", raw.svg + ": its name must end in .svg, which is what is written");
   if (!raw.d_max.empty()) {
     o.d_max = number("--d-max", raw.d_max);
     if (!(o.d_max > 0)) throw usage_error("--d-max", "must be above 0 (metres)");
@@ -121,6 +173,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   if (!raw.base.empty()) o.base = pose("--base-pose", raw.base);
   if (!raw.unfolded.empty()) o.recording.camera.limits.unfolded = std::uint64_t(whole_number("--unfold-limit", raw.unfolded)) << 20;
   o.clouds = clouds_of(app, o.recording.camera);
+  o.attached = attached_of(app);
   o.recording.frames = raw.frames;
   o.recording.trajectory = raw.trajectory;
   o.recording.merge = raw.merge;
@@ -192,6 +245,9 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   app.add_flag("--no-cache", raw->no_cache, "Pack anew, and keep nothing");
   one("--cache", raw->cache, "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
   app.add_option("--exclude-link", raw->excluded, "Leave out this link's geometry");
+  app.add_option("--attach", raw->attached,
+                 "LINK=FILE: this link holds something, which counts as a part of the robot: a mesh, or spheres (.ist, .yaml, .csv); may be repeated");
+  app.add_option("--attach-pose", raw->attached_poses, "x,y,z,qx,qy,qz,qw: link-from-thing, of the --attach before it (m; default: the link's origin)");
   one("--backend", raw->backend, "host or device (default: device where there is one)");
   one("--check", raw->check,
       std::string("Margin in m: exit code 2 unless the lower end of the bracket is above it") +
@@ -206,6 +262,7 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
     return [raw, &app] { return read(app, *raw); };
   }
   if (recorded) {
+    one("--svg", raw->svg, "Write a picture to this .svg file once all frames are answered: the distance in every frame, in the band of its bracket");
     app.footer("Prints one line per frame, a JSON object. latency_us is the time of the query alone, on the host's clock; a frame's points\n"
                "are read before. The exit code is 3 if a frame has no valid point, also with --check.");
     return [raw, &app] { return read(app, *raw); };
@@ -218,6 +275,12 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   one("--distances", raw->distances,
       "Write every valid point with its distance to this .ply file, in world coordinates; red at 0 m, blue at --d-max (or 1 m) and beyond");
   one("--d-max", raw->d_max, "Metres: points farther than that are written as inf (default: none are)");
+  one("--self-filter", raw->self_filter,
+      "Metres: points that certainly are within that of the robot, or of what it holds, are its own and hidden from all questions; how many is said");
+  one("--min-support", raw->min_support,
+      "N@RADIUS: also the least distance to a point that has N points, itself among them, within RADIUS m; nearer points that have not are told apart");
+  app.add_flag("--gradient", raw->gradient,
+               "How each part's distance changes with its pose, and with the joints: m per m and m per rad of a twist at the part's origin");
   app.footer(of_clouds);
   return [raw, &app] { return read(app, *raw); };
 }

@@ -35,12 +35,25 @@ struct cloud_options {
   void check(const std::string& option) const;
 };
 
+/// One --attach: something that a link holds.
+struct attachment_options {
+  std::string link, file;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // link-from-thing
+};
+
+/// --min-support N@RADIUS.
+struct support_asked {
+  std::uint32_t min_points;
+  double radius;  // metres
+};
+
 /// What `clearance run` plays.
 struct recording_options {
   std::string frames, trajectory;
   cloud_options camera;  // holds for every frame; .file is empty
   bool merge = false;
   std::string plan;  // configurations to come, asked about in every frame; empty: none
+  std::string svg;   // a picture of all frames; empty: none
 };
 
 struct query_options {
@@ -60,6 +73,7 @@ struct query_options {
   bool no_cache = false;
   std::string cache;
   std::vector<std::string> excluded;
+  std::vector<attachment_options> attached;
   bool on_device = false;
   std::optional<double> margin;
   bool json = false;
@@ -68,6 +82,9 @@ struct query_options {
   std::size_t min_points = 1;   // of a zone that counts
   std::string distances;        // --distances: a file; empty: nobody asks
   double d_max = clearance::infinity;
+  std::optional<double> self_filter;     // --self-filter: metres around the robot that are its own
+  std::optional<support_asked> support;  // --min-support
+  bool gradient = false;
   std::string configurations;   // of `clearance plan`
   bool csv = false;             // of `clearance plan`
   recording_options recording;  // of `clearance run`

@@ -107,7 +107,7 @@ std::vector<std::vector<double>> read_rows(const query_options& asked, const io:
   return read_trajectory(file, robot.kinematics(), {asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits});
 }
 
-std::vector<Eigen::Isometry3d> placed_rows(const query_options& asked, const io::robot& robot, const std::vector<std::vector<double>>& rows,
+std::vector<Eigen::Isometry3d> placed_rows(const query_options& asked, const asked_robot& robot, const std::vector<std::vector<double>>& rows,
                                            const std::string& file) {
   std::vector<Eigen::Isometry3d> all;
   for (std::size_t k = 0; k < rows.size(); ++k) {

@@ -21,8 +21,8 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
 /// The same of what is asked, --joint among it.
 std::vector<std::vector<double>> read_rows(const query_options& asked, const clearance::io::robot& robot, const std::string& file);
 
-/// The links' poses in one row of `file` after another.
-std::vector<Eigen::Isometry3d> placed_rows(const query_options& asked, const clearance::io::robot& robot, const std::vector<std::vector<double>>& rows,
+/// The parts' poses in one row of `file` after another.
+std::vector<Eigen::Isometry3d> placed_rows(const query_options& asked, const asked_robot& robot, const std::vector<std::vector<double>>& rows,
                                            const std::string& file);
 
 /// The clouds of many frames as one, in the world. Points that do not count keep their places, as NaN.

@@ -1,75 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.hpp"
 
-#include "report_json.hpp"
+#include "questions_report.hpp"
+#include "report_text.hpp"
 
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 using namespace clearance;
-
-namespace {
-
-std::string text(const char* format, ...) {
-  char line[1024];
-  va_list values;
-  va_start(values, format);
-  std::vsnprintf(line, sizeof line, format, values);
-  va_end(values);
-  return line;
-}
-
-/// Who and where a point of a zone is.
-json place(const query_report& report, std::uint32_t cloud, std::uint32_t point) {
-  return {{"cloud", (*report.clouds)[cloud].from.file}, {"point", point}};
-}
-
-/// The zones of a part, the innermost first.
-json zones_of(const query_report& report, std::size_t part) {
-  json all = json::array();
-  for (std::size_t z = 0; z < report.zones->per_part; ++z) {
-    const zone& found = report.zones->of(part, z);
-    json one = {{"within", report.asked->zones[z]}, {"points", found.points}, {"nearest", nullptr}, {"first", nullptr}};
-    if (found.points != 0) {
-      one["nearest"] = {{"distance", or_null(found.nearest)}};
-      one["nearest"].update(place(report, found.nearest_cloud, found.nearest_point));
-      one["first"] = place(report, found.first_cloud, found.first_point);
-    }
-    all.push_back(std::move(one));
-  }
-  return all;
-}
-
-std::string zones_text(const query_report& report) {
-  const auto named = [&](std::uint32_t cloud, std::uint32_t point) {
-    const std::string of = report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[cloud].from.file) : "";
-    return text("point %u", point) + of;
-  };
-  std::string out = "\nzones" + (report.asked->min_points > 1 ? text(" (fewer than %zu points do not count)", report.asked->min_points) : "") + '\n';
-  for (std::size_t k = 0; k < report.bodies->size(); ++k) {
-    const std::string name = io::printable((*report.bodies)[k].name);
-    for (std::size_t z = 0; z < report.zones->per_part; ++z) {
-      const zone& found = report.zones->of(k, z);
-      out += "  " + (z == 0 ? name : "") + std::string(z > 0 ? 28 : name.size() < 28 ? 28 - name.size() : 1, ' ');
-      out += text("%10g m, %8llu points", report.asked->zones[z], (unsigned long long)found.points);
-      if (found.points != 0)
-        out += text(", nearest %.6f m, ", double(found.nearest)) + named(found.nearest_cloud, found.nearest_point) + "; first " +
-               named(found.first_cloud, found.first_point);
-      out += '\n';
-    }
-  }
-  return out;
-}
-
-/// What the zones say of the robot.
-std::string innermost_text(const query_report& report) {
-  if (report.zones->counts.valid == 0) return "nothing is known, which counts as the first";
-  const std::size_t z = report.zones->innermost();
-  return z < report.zones->per_part ? text("the innermost is within %g m", report.asked->zones[z]) : "all are empty";
-}
-
-}  // namespace
 
 std::string to_json(const frame_report& report) {
   json out = {{"frame", report.frame}, {"file", report.file}};
@@ -104,7 +41,10 @@ std::string to_json(const query_report& report) {
                  {"primitive", found && m.primitive != none ? json(m.primitive) : json(nullptr)},
                  {"caps", {{"loops", made.closed.caps.loops}, {"area", made.closed.caps.area}}}};
     if (report.asked->model == model_kind::spheres) part["gap"] = or_null(made.packed.gap);
+    if (const attached_thing* held = report.robot->held_as(k))
+      part["attached"] = {{"link", held->from.link}, {"file", held->from.file}, {"pose", pose_of(held->from.pose)}};
     if (report.zones) part["zones"] = zones_of(report, k);
+    if (!report.gradients.empty()) part["gradient"] = gradient_of(report, k);
     out["parts"].push_back(std::move(part));
   }
   out["points"] = counts(r);
@@ -113,12 +53,7 @@ std::string to_json(const query_report& report) {
   out["backend"] = report.asked->on_device ? "device" : "host";
   out["seconds"] = {{"load", report.load}, {"pack", report.pack}, {"build", report.build}, {"upload", report.upload}, {"query", report.query}};
   if (report.asked->margin) out["check"] = {{"margin", *report.asked->margin}, {"passes", report.passes()}};
-  if (report.zones) {
-    const std::size_t z = report.zones->innermost();
-    out["zones"] = {{"thresholds", report.asked->zones},
-                    {"min_points", report.zones->min_points},
-                    {"innermost", z < report.zones->per_part ? json(z) : json(nullptr)}};
-  }
+  add_questions(report, out);
   if (report.distances)
     out["distances"] = {{"file", report.asked->distances},
                         {"points", report.distances->points},
@@ -170,7 +105,7 @@ std::string to_text(const query_report& report) {
               report.build, report.upload, report.query);
   if (asked.margin)
     out += text("check     lower end %s %g m: %s\n", report.passes() ? "above" : "not above", *asked.margin, report.passes() ? "passes" : "fails");
-  if (report.zones) out += "zones     " + innermost_text(report) + '\n';
+  out += questions_text(report);
   if (report.distances) {
     const distances_written& d = *report.distances;
     out += "distances " + io::printable(asked.distances) + text(": %zu points, %zu left out, %zu beyond %g m; red at 0 m, blue at %g m\n", d.points,
@@ -185,9 +120,9 @@ std::string to_text(const query_report& report) {
     out += m.point == none ? "         -" : text("%10.6f m, point %u", double(m.distance), m.point);
     if (m.point != none && report.clouds->size() > 1) out += " of " + io::printable((*report.clouds)[m.cloud].from.file);
     if (asked.model == model_kind::spheres) out += text(", gap %.4f m", made.packed.gap);
+    if (const attached_thing* held = report.robot->held_as(k)) out += ", held by link " + io::printable(held->from.link);
     if (made.closed.caps.loops != 0) out += text(", %u holes closed (%.2g m2)", made.closed.caps.loops, made.closed.caps.area);
     out += '\n';
   }
-  if (report.zones) out += zones_text(report);
-  return out;
+  return out + parts_text(report);
 }

@@ -1,21 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "asked_robot.hpp"
 #include "backends.hpp"
 #include "distances_file.hpp"
 #include "observations.hpp"
 #include "robot_bodies.hpp"
 
+#include <clearance/gradient.hpp>
 #include <clearance/min_distances.hpp>
+#include <clearance/min_support.hpp>
+#include <clearance/self_filter.hpp>
 #include <clearance/zones.hpp>
+
+/// How the least distance of a part changes with its twist, and with the robot's joints (not known where the former is not).
+struct part_gradient {
+  clearance::pose_gradient of_pose;
+  std::optional<Eigen::VectorXd> of_joints;
+};
 
 /// All that `clearance query` has to say.
 struct query_report {
   const query_options* asked = nullptr;
   const std::vector<observation>* clouds = nullptr;
   const std::vector<body>* bodies = nullptr;
+  const asked_robot* robot = nullptr;
   reply found;
+  std::optional<clearance::self_filter_result> filter;
   std::optional<clearance::zones_result> zones;
+  std::optional<clearance::supported_distance> support;
+  std::vector<part_gradient> gradients;  // of all parts; empty: nobody asks
   std::optional<distances_written> distances;
   double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds; query: of the least distance
   std::vector<std::string> notes;

@@ -1,17 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "asked_robot.hpp"
+#include "clearance_svg.hpp"
 #include "command_line.hpp"
 #include "messages.hpp"
 #include "recording.hpp"
 #include "report.hpp"
 
+#include <clearance/io/write_file.hpp>
+
 #include <CLI/CLI.hpp>
 
+#include <sys/stat.h>
+
+#include <filesystem>
 #include <iostream>
 
 using namespace clearance;
 
 namespace {
+
+/// A file that will be read, and so must not be written.
+void note_file(const std::string& file) {
+  struct ::stat there {};
+  if (::stat(file.c_str(), &there) == 0) io::files_read::note({there.st_dev, there.st_ino});
+}
 
 void print(const std::vector<std::string>& notes, progress& shown) {
   shown.clear();
@@ -21,8 +33,8 @@ void print(const std::vector<std::string>& notes, progress& shown) {
 /// The robot along its trajectory, and the camera with it.
 class motion {
  public:
-  motion(const query_options& asked, const io::robot& robot)
-      : asked_(asked), robot_(robot), rows_(read_rows(asked, robot, asked.recording.trajectory)) {}
+  motion(const query_options& asked, const asked_robot& robot)
+      : asked_(asked), robot_(robot), rows_(read_rows(asked, robot.description, asked.recording.trajectory)) {}
 
   std::size_t size() const { return rows_.size(); }
 
@@ -32,21 +44,23 @@ class motion {
   Eigen::Isometry3d carrier(std::size_t frame) const {
     const std::string& link = asked_.recording.camera.link;
     if (link.empty()) return Eigen::Isometry3d::Identity();
-    return asked_.base * about_file(asked_.robot, [&] { return robot_.link_pose(link, row(frame), {asked_.ignore_limits}); });
+    return asked_.base * about_file(asked_.robot, [&] { return robot_.description.link_pose(link, row(frame), {asked_.ignore_limits}); });
   }
 
  private:
   const std::vector<double>& row(std::size_t frame) const { return rows_.size() == 1 ? rows_[0] : rows_[frame]; }
 
   const query_options& asked_;
-  const io::robot& robot_;
+  const asked_robot& robot_;
   std::vector<std::vector<double>> rows_;
 };
 
 int run(const query_options& asked) {
   progress shown;
   shown.show("reading " + asked.robot);
-  const io::robot robot = load_robot(asked);
+  io::files_read inputs;
+  std::vector<std::string> notes;
+  const asked_robot robot = load_robot(asked, notes);
   std::vector<cloud_options> frames;
   for (const std::string& file : list_frames(asked.recording.frames)) {
     frames.push_back(asked.recording.camera);
@@ -59,7 +73,7 @@ int run(const query_options& asked) {
                                           " rows, but there are " + std::to_string(frames.size()) +
                                           " frames (one row would hold for all)");
   std::vector<Eigen::Isometry3d> waypoints;
-  if (!asked.recording.plan.empty()) waypoints = placed_rows(asked, robot, read_rows(asked, robot, asked.recording.plan), asked.recording.plan);
+  if (!asked.recording.plan.empty()) waypoints = placed_rows(asked, robot, read_rows(asked, robot.description, asked.recording.plan), asked.recording.plan);
   const auto load = [&](std::size_t k) {
     shown.show("frame " + std::to_string(k + 1) + '/' + std::to_string(frames.size()));
     observation frame = observe(frames[k]);
@@ -72,13 +86,19 @@ int run(const query_options& asked) {
   else
     moves.carrier(0);  // a wrong --camera-link is known before the robot is packed
 
-  std::vector<std::string> notes = robot.notes();
+  if (!asked.recording.svg.empty()) {  // known before a frame is answered, or read
+    for (const cloud_options& each : frames) note_file(each.file);
+    io::check_output(asked.recording.svg, inputs);
+    const auto folder = std::filesystem::path(asked.recording.svg).parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder)) io::refuse(asked.recording.svg, "cannot be written: there is no such folder");
+  }
   const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
   print(notes, shown);
   const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies});
   int code = 0;
   double upload = asked.recording.merge ? there->see({merged.finish(moves.poses(0))}) : 0;
   std::optional<observation> frame;
+  std::vector<min_distance_result> seen;  // for the picture
   for (std::size_t k = 0; k < frames.size(); ++k) {
     if (!asked.recording.merge) {
       observation next = load(k);
@@ -104,9 +124,14 @@ int run(const query_options& asked) {
           frame ? std::pair<const observation*, std::uint32_t>(&*frame, r.point) : merged.origin(r.point);
     frame ? frame->recount(r) : merged.recount(r);
     std::cout << to_json(report);
-    if (!std::cout) break;  // main says so
+    if (!std::cout) return code;  // main says so
+    if (!asked.recording.svg.empty()) seen.push_back(r);
     const int each = r.state == state::no_data ? 3 : asked.margin && !(r.lower > *asked.margin) ? 2 : 0;
     code = std::max({code, each, report.plan ? plan.code() : 0});
+  }
+  if (!asked.recording.svg.empty()) {
+    io::check_output(asked.recording.svg, inputs);
+    io::write_bytes(asked.recording.svg, clearance_svg(seen, asked.recording.frames, asked.margin));
   }
   return code;
 }

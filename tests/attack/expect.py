@@ -13,22 +13,22 @@ import robots
 from geometry import IDENTITY, apply, compose, distance_range, inverse, quaternion
 from strict import Unknown, demand, lines_of, number, text_of, whole
 
-FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache", "--json", "--merge", "--allow-overlap", "--csv"}
+FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache", "--json", "--merge", "--allow-overlap", "--csv", "--gradient"}
 PER_CLOUD = {"--camera-pose", "--camera-link", "--intrinsics", "--depth-scale", "--range", "--use-viewpoint", "--zero-is-missing"}
 SINGLE = {
     "query": {"--robot", "--joints", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend",
-              "--check", "--scene", "--unfold-limit", "--zones", "--min-points", "--distances", "--d-max"},
+              "--check", "--scene", "--unfold-limit", "--zones", "--min-points", "--distances", "--d-max", "--self-filter", "--min-support"},
     "plan": {"--robot", "--geometry", "--base-pose", "--model", "--spheres", "--packing", "--cache", "--backend", "--check", "--unfold-limit",
              "--configurations", "--d-max"},
     "run": {"--robot", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend", "--check",
-            "--frames", "--trajectory", "--unfold-limit", "--plan"},
+            "--frames", "--trajectory", "--unfold-limit", "--plan", "--svg"},
     "pack": {"", "--spheres", "--gap", "--smallest-radius", "--seconds", "--seed", "--cache", "--geometry", "--joints"},
     "demo": {"--spheres", "--cache", "--scene"},
     "info": {""},
 }
-_of_robots = {"--package", "--exclude-link", "--mesh-limit"}
-MANY = {"query": {"--joint", "--cloud"} | _of_robots, "plan": {"--joint", "--cloud"} | _of_robots, "run": {"--joint"} | _of_robots, "pack": {"--out"} | _of_robots, "demo": set(),
-        "info": set()}
+_of_robots = {"--package", "--exclude-link", "--mesh-limit", "--attach", "--attach-pose"}
+MANY = {"query": {"--joint", "--cloud"} | _of_robots, "plan": {"--joint", "--cloud"} | _of_robots, "run": {"--joint"} | _of_robots,
+        "pack": {"--out", "--package", "--exclude-link", "--mesh-limit"}, "demo": set(), "info": set()}
 OWN_FLAGS = {"pack": {"--no-cache", "--json", "--allow-overlap"}, "demo": {"--no-cache"}, "info": {"--json"}}
 FAR = 1e18  # metres; the square of what is beyond it is no float, and it may count as not finite
 
@@ -100,13 +100,18 @@ class _Options:
 
     def __init__(self, case):
         self.command, self.one, self.many, self.flags, self.sensors = case.command, {}, {}, set(), []
-        before, current = {}, None
+        before, current, attached = {}, None, None
         for name, value in case.options:
             if name in FLAGS:
                 demand(value is None, f"{name} takes no value")
             else:
                 demand(name and value is not None, "a word that belongs to no option")
                 demand(value != "", f"{name} is empty")
+            if name == "--attach-pose":
+                _pose(value)
+                demand(attached == "bare", "a pose of nothing, or one twice")
+            if name in ("--attach", "--attach-pose"):
+                attached = "bare" if name == "--attach" else "placed"
             if name in PER_CLOUD:
                 (before if current is None else current)[name] = value
                 if current is not None:
@@ -155,6 +160,26 @@ class _Options:
             demand(_real(self.one["--d-max"]) > 0, "--d-max is not above 0")
             demand("--distances" in self.one or self.command == "plan", "--d-max without --distances")
             demand(self.command != "plan" or "--check" not in self.one or _real(self.one["--d-max"]) > _real(self.one["--check"]), "--d-max within --check")
+
+        if "--self-filter" in self.one:
+            demand(0 <= _real(self.one["--self-filter"]) <= 1e15, "a padding that is none")
+        if "--min-support" in self.one:
+            points, _, radius = self.one["--min-support"].partition("@")
+            whole(points, 2, 10_000_000)
+            demand(0 <= _real(radius) <= 1e15, "a radius that is none")
+        if "--svg" in self.one:
+            demand(os.path.splitext(self.one["--svg"])[1].lower() == ".svg", "a picture that is no SVG")
+
+    def held(self, robot, files):
+        """What links hold. It is one part more, or many points fewer: then only manners count."""
+        for text in self.many.get("--attach", []):
+            link, name = _assignment(text)
+            demand(link in robot.links, "something held by no link")
+            ending = os.path.splitext(name)[1].lower()
+            demand(name.removeprefix("./") in files, f"there is no {name[:40]!r}")
+            demand(ending not in (".ist", ".csv", ".yaml", ".yml") or self.one.get("--model", "spheres") == "spheres", "spheres among triangles")
+        if "--attach" in self.many or "--self-filter" in self.one:
+            raise Unknown("something held, or hidden")
 
     def joints(self, robot):
         ignore = "--ignore-limits" in self.flags
@@ -266,6 +291,7 @@ def _query(case):
         if not options.one["--scene"].endswith(".glb"):
             raise Unknown("a scene by another name")
     carriers = [_carrier(robot, given, options.base, sensor) for sensor in options.sensors]
+    options.held(robot, case.files)
     return [_frame(robot, given, options.base, options.sensors, carriers, case.files)]
 
 
@@ -301,6 +327,7 @@ def _plan(case):
     rows = _rows(options, robot, options.one["--configurations"], case.files)
     _check_packing(options, robot, case.files)
     carriers = [_carrier(robot, rows[0], options.base, sensor) for sensor in options.sensors]
+    options.held(robot, case.files)
     return [_frame(robot, row, options.base, options.sensors, carriers, case.files) for row in rows]
 
 
@@ -317,6 +344,7 @@ def _run(case):
     demand(len(rows) in (1, len(listed)), "rows for other than the frames")
     sensors = [dict(options.before, file=os.path.normpath(name)) for name in listed]
     rows = rows if len(rows) > 1 else rows * len(listed)
+    options.held(robot, case.files)
     frames, carriers = [], [_carrier(robot, row, options.base, sensor) for row, sensor in zip(rows, sensors)]
     for k, row in enumerate(rows):
         merged = "--merge" in options.flags

@@ -6,6 +6,7 @@ import math
 import os
 import re
 import struct
+import xml.etree.ElementTree
 from dataclasses import dataclass
 
 import expect
@@ -141,9 +142,11 @@ def _written(case, outcome):
                 json.loads(scenes.split_glb(data)[0])
             elif name.endswith(".ply"):
                 ply.read_cloud(data)
+            elif name.endswith(".svg"):
+                xml.etree.ElementTree.fromstring(data)
             elif os.path.splitext(name)[1] in packings.readers:
                 packings.readers[os.path.splitext(name)[1]](data)
-        except (Invalid, ValueError, struct.error) as error:
+        except (Invalid, ValueError, struct.error, xml.etree.ElementTree.ParseError) as error:
             return f"{name} was half written: {error}"
         except Unknown:
             pass

@@ -160,11 +160,14 @@ def _option_cases():
     for cloud in ("c.xyz", "d.xyz"):
         yield _query("options", files, "options", ["--joints", "0.25,0.5"], ["--zones", "0.05,0.2,0.6"], ["--min-points", "2"], ["--distances", "o.ply"],
                      ["--d-max", "0.5"], ["--scene", "o.glb"], cloud=cloud, outputs=["o.ply", "o.glb"])
+        yield _query("options", files, "options", ["--joints", "0.25,0.5"], ["--min-support", "3@0.5"], ["--gradient", None], ["--check", "0.02"], cloud=cloud)
+        yield _query("options", files, "options", ["--joints", "0.25,0.5"], ["--self-filter", "0.05"], ["--attach", "c=m.obj"],
+                     ["--attach-pose", "0,0,0.2,0,0,0,1"], ["--gradient", None], cloud=cloud)
         yield Case("options", "plan", [["--robot", "r.urdf"], ["--configurations", "q.csv"], ["--joint", "slide=0.5"], ["--check", "0.02"], ["--d-max", "0.5"],
                                        ["--camera-link", "b"], ["--cloud", cloud], ["--model", "triangles"]], dict(files, **{"q.csv": b"turn\n0\n0.5\n"}), "options")
     recorded = dict(files, **{"t.csv": b"turn\n0\n", "frames.txt": b"c.xyz\nd.xyz\n"})
     yield Case("options", "run", [["--robot", "r.urdf"], ["--frames", "frames.txt"], ["--trajectory", "t.csv"], ["--model", "triangles"],
-                                  ["--joint", "slide=0.5"], ["--check", "0"], ["--base-pose", "0.05,0,0,0,0,0,1"], ["--camera-link", "b"], ["--plan", "t.csv"]], recorded, "options")
+                                  ["--joint", "slide=0.5"], ["--check", "0"], ["--base-pose", "0.05,0,0,0,0,0,1"], ["--camera-link", "b"], ["--plan", "t.csv"], ["--svg", "o.svg"]], recorded, "options", outputs=["o.svg"])
     yield Case("options", "pack", [["", "m.obj"], ["--spheres", "5"], ["--no-cache", None], ["--gap", "0.05"], ["--smallest-radius", "0.001"],
                                    ["--seconds", "5"], ["--seed", "7"], ["--out", "o.csv"], ["--json", None]], files, "options", outputs=["o.csv"])
     yield Case("options", "demo", [["--spheres", "3"], ["--no-cache", None]], {}, "options", cpu=60)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `clearance query --zones` and `--distances`.
+// What `clearance query` asks beside the least distance, and what a robot holds by `--attach`.
 #include "io/scratch_file.hpp"
 #include "tools/run_command.hpp"
 #include "tools/small_png.hpp"
@@ -24,6 +24,29 @@ struct question {
   scratch_file cloud{".xyz", "5 5 5\n0 0 1.0\nnan 0 0\n0.3 0 0\n"};  // 0.4 m above the tool, and 0.2 m beside the base
   std::string robot = "query --backend host --model triangles --robot " + urdf.path;
   std::string ask = robot + " --json --cloud " + cloud.path;
+};
+
+/// A second box of 0.2 m on a slide above the first, and a claw on it that turns and is no part.
+const char* const moving_text = R"(<robot name="moving">
+  <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="tool"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="claw"/>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="tool"/><origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
+    <limit lower="-0.1" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="turn" type="continuous"><parent link="tool"/><child link="claw"/><axis xyz="1 0 0"/></joint>
+</robot>
+)";
+/// A cube of 0.1 m.
+const char* const cube_text = "v -.05 -.05 -.05\nv .05 -.05 -.05\nv .05 .05 -.05\nv -.05 .05 -.05\nv -.05 -.05 .05\nv .05 -.05 .05\nv .05 .05 .05\nv -.05 .05 .05\n"
+                              "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+struct moving {
+  scratch_file urdf{".urdf", moving_text};
+  scratch_file cloud{".xyz", "5 5 5\n0 0 1.0\nnan 0 0\n0.3 0 0\n"};
+  scratch_file cube{".obj", cube_text};
+  std::string robot = " --backend host --model triangles --robot " + urdf.path;
+  std::string ask = "query --json --cloud " + cloud.path + robot;
+  std::string file(const scratch_file& of) const { return std::filesystem::path(of.path).filename().string(); }
 };
 
 /// A record of the file that --distances writes.
@@ -260,4 +283,226 @@ TEST_CASE("what is wrong with zones and distances is one sentence that names the
   const scratch_file input(".ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n3 0 0\n");
   refuses(q.robot + " --cloud " + input.path + " --distances " + input.path, input.path + ": is a file that this reads");
   refuses("run --robot x --frames y --zones 0.1", "--zones");
+}
+
+TEST_CASE("--self-filter hides what is the robot's own from every question, and says how many points that are") {
+  const question q;
+  const scratch_file cloud(".xyz", "5 5 5\n0 0 0.605\n0 0 0.7\nnan 0 0\n0.3 0 0\n"), without(".xyz", "5 5 5\nnan 0 0\n0 0 0.7\nnan 0 0\n0.3 0 0\n");
+  const scratch_file ply(".ply"), glb(".glb");
+  const std::string ask = q.robot + " --json --self-filter 0.01 --check 0.05 --zones 0.02,0.15 --distances " + ply.path + " --scene " + glb.path + " --cloud ";
+  const outcome o = run_command(ask + cloud.path);
+  CHECK(o.code == 0);
+  const auto j = parsed(o), bare = parsed(run_command(q.robot + " --json --cloud " + without.path));
+  CHECK(j.at("filter") == nlohmann::json::parse(R"({"padding": 0.01, "own": 1, "uncertain": 0, "nearest_is": "rest"})"));
+  for (const char* key : {"state", "distance", "lower", "upper", "point", "point_xyz", "part", "primitive", "nearest_xyz", "normal"}) CHECK(j.at(key) == bare.at(key));
+  CHECK(j.at("point") == 2);
+  CHECK(j.at("points").at("seen") == 5);
+  CHECK(j.at("points").at("valid") == 3);
+  CHECK(j.at("points").at("dropped").at("masked") == 1);
+  CHECK(j.at("points").at("dropped").at("not_finite") == 1);
+  CHECK(j.at("parts").at(1).at("zones").at(0).at("points") == 0);
+  CHECK(j.at("parts").at(1).at("zones").at(1).at("nearest").at("point") == 2);
+  CHECK(j.at("distances").at("left_out") == 2);
+  CHECK(records(ply.path).size() == 3);
+  std::ifstream in(glb.path, std::ios::binary);
+  CHECK(std::string(std::istreambuf_iterator<char>(in), {}).find("(the robot's own)") != std::string::npos);  // hidden, and shown
+  CHECK(run_command(q.robot + " --check 0.05 --cloud " + cloud.path).code == 2);
+  CHECK(run_command(q.robot + " --self-filter 0.01 --cloud " + cloud.path).out.find("1 points are the robot's own (within 0.01 m), and hidden; 0 may be") !=
+        std::string::npos);
+
+  // What only may be its own stays.
+  const auto edge = parsed(run_command(q.robot + " --json --self-filter 0.005 --cloud " + cloud.path));
+  CHECK(edge.at("filter").at("own") == 0);
+  CHECK(edge.at("filter").at("uncertain") == 1);
+  CHECK(edge.at("filter").at("nearest_is") == "uncertain");
+  CHECK(edge.at("point") == 1);
+  CHECK_FALSE(parsed(run_command(q.ask)).contains("filter"));
+
+  // Where nothing is left, nothing is known; images keep their pixels' numbers.
+  const scratch_file own(".xyz", "0 0 0.605\n"), depth(".png", png(0, 1000));
+  for (const std::string& all : {own.path, depth.path + " --intrinsics 500,500,0,0 --camera-pose 0,0,-0.395,0,0,0,1"})
+    for (const std::string check : {"", " --check -1"}) {
+      const outcome blind = run_command(q.robot + " --json --self-filter 0.02" + check + " --cloud " + all);
+      CHECK(blind.code == 3);
+      CHECK(parsed(blind).at("state") == "no_data");
+      CHECK(parsed(blind).at("filter").at("own") == 1);
+      CHECK(parsed(blind).at("filter").at("nearest_is").is_null());
+      CHECK(parsed(blind).at("points").at("dropped").at("masked") == 1);
+      CHECK(parsed(blind).at("points").at("dropped").at("missing") == (all == own.path ? 0 : 1));
+    }
+}
+
+TEST_CASE("--min-support tells the nearest point that others confirm, and what is nearer, but alone") {
+  const question q;
+  const scratch_file cloud(".xyz", "0 0 0.65\n0.3 0 0\n0.301 0 0\n0.302 0 0\n");
+  const std::string ask = q.robot + " --json --cloud " + cloud.path;
+  const outcome o = run_command(ask + " --min-support 3@0.01 --check 0.1");
+  CHECK(o.code == 2);  // of all points: nothing is taken from it
+  const auto j = parsed(o), s = j.at("support");
+  CHECK(j.at("point") == 0);
+  CHECK(s.at("state") == "free");
+  CHECK(s.at("distance").get<double>() == Approx(0.2));
+  CHECK(s.at("lower").get<double>() < s.at("distance").get<double>());
+  CHECK(s.at("cloud") == cloud.path);
+  CHECK(s.at("point") == 1);
+  CHECK(s.at("part") == "base");
+  CHECK(s.at("passes") == true);
+  CHECK(s.at("complete") == true);
+  CHECK(s.at("isolated") == 1);
+  CHECK(s.at("nearest_isolated") == nlohmann::json({{"distance", j.at("distance")}, {"cloud", cloud.path}, {"point", 0}, {"part", "tool"}}));
+  CHECK(s.at("min_points") == 3);
+  CHECK(s.at("radius") == 0.01);
+  const std::string text = run_command(q.robot + " --min-support 3@0.01 --cloud " + cloud.path).out;
+  CHECK(text.find("3 points within 0.01 m, point 1 and part base; 1 nearer points are alone, the first at 0.050000 m, point 0 and part tool\n") != text.npos);
+
+  const auto none = parsed(run_command(ask + " --min-support 3@0.0001 --check 0.01")).at("support");
+  CHECK(none.at("state") == "possible");
+  CHECK(none.at("passes") == false);
+  for (const char* key : {"distance", "cloud", "point", "part", "primitive"}) CHECK(none.at(key).is_null());
+  CHECK(none.at("lower") == 0);
+  CHECK(none.at("isolated") == 4);
+  CHECK(parsed(run_command(ask + " --min-support 2@0")).at("support").at("state") == "possible");
+  const scratch_file blind(".xyz", "nan nan nan\n");
+  const outcome nothing = run_command(q.robot + " --json --min-support 3@1 --check -1 --cloud " + blind.path);
+  CHECK(nothing.code == 3);
+  CHECK(parsed(nothing).at("support").at("state") == "no_data");
+  CHECK(parsed(nothing).at("support").at("passes") == false);
+  // What is hidden confirms nobody.
+  const auto rest = parsed(run_command(ask + " --self-filter 0.2015 --min-support 2@0.01"));
+  CHECK(rest.at("filter").at("own") == 3);
+  CHECK(rest.at("support").at("isolated") == 1);
+}
+
+TEST_CASE("--gradient says how every part's distance changes with its pose and with the joints") {
+  const moving m;
+  const auto distances = [&](double slide) {
+    const auto j = parsed(run_command(m.ask + " --gradient --joint slide=" + std::to_string(slide)));
+    return std::array{j.at("parts").at(0).at("distance").get<double>(), j.at("parts").at(1).at("distance").get<double>()};
+  };
+  const auto j = parsed(run_command(m.ask + " --gradient --base-pose 0,0,0.02,0,0,0,1"));
+  const auto before = distances(0.01), after = distances(0.03);
+  for (int k = 0; k < 2; ++k) {
+    const auto g = j.at("parts").at(k).at("gradient");
+    CHECK(g.at("state") == "known");
+    CHECK(g.at("joints").at("slide").get<double>() == Approx((after[k] - before[k]) / 0.02).margin(1e-4));
+    CHECK(g.at("joints").at("turn") == 0);
+    CHECK(g.at("angular").size() == 3);
+    CHECK(g.at("about").at(2).get<double>() == Approx(k == 0 ? 0.02 : 0.52));
+  }
+  CHECK(j.at("parts").at(0).at("gradient").at("linear").at(0).get<double>() == Approx(-1));
+  CHECK(j.at("gradient").at("part") == j.at("part"));
+  CHECK(j.at("gradient").at("joints") == j.at("parts").at(0).at("gradient").at("joints"));
+  const std::string text = run_command("query --gradient --cloud " + m.cloud.path + m.robot).out;
+  CHECK(text.find("slide -1.000000, turn +0.000000\n") != text.npos);
+
+  const scratch_file inside(".xyz", "0 0 0\n"), blind(".xyz", "nan nan nan\n");
+  const auto at_zero = parsed(run_command("query --json --gradient --cloud " + inside.path + m.robot)).at("gradient");
+  CHECK(at_zero.at("state") == "at_zero");
+  for (const char* key : {"linear", "angular", "joints"}) CHECK(at_zero.at(key).is_null());
+  CHECK(run_command("query --gradient --cloud " + inside.path + m.robot).out.find("none: at_zero\n") != std::string::npos);
+  const outcome nothing = run_command("query --json --gradient --cloud " + blind.path + m.robot);
+  CHECK(nothing.code == 3);
+  CHECK(parsed(nothing).at("gradient").at("part").is_null());
+  CHECK(parsed(nothing).at("parts").at(0).at("gradient").at("state") == "no_data");
+  const question fixed;
+  CHECK_FALSE(parsed(run_command(fixed.ask + " --gradient")).at("gradient").contains("joints"));
+  CHECK_FALSE(parsed(run_command(fixed.ask)).contains("gradient"));
+}
+
+TEST_CASE("--attach puts a mesh or spheres on a link: one part more, in every command and for every question") {
+  const moving m;
+  const std::string holds = " --attach claw=" + m.cube.path + " --attach-pose 0,0,0.15,0,0,0,1", name = "claw+" + m.file(m.cube);
+  for (const std::string turn : {"0", "1.5707963267948966"}) {  // above the tool, or beside it
+    const auto j = parsed(run_command(m.ask + holds + " --gradient --joint turn=" + turn));
+    REQUIRE(j.at("parts").size() == 3);
+    CHECK(j.at("parts").at(2).at("name") == name);
+    CHECK(j.at("parts").at(2).at("attached") ==
+          nlohmann::json({{"link", "claw"}, {"file", m.cube.path}, {"pose", {0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0}}}));
+    CHECK_FALSE(j.at("parts").at(1).contains("attached"));
+    CHECK(j.at("parts").at(2).at("distance").get<double>() == Approx(turn == "0" ? 0.3 : std::hypot(0.45, 0.1)));
+    CHECK(j.at("parts").at(2).at("gradient").at("joints").at("slide").get<double>() == Approx(turn == "0" ? -1 : -0.45 / std::hypot(0.45, 0.1)));
+    if (turn != "0") CHECK(j.at("parts").at(2).at("gradient").at("joints").at("turn").get<double>() != 0);
+  }
+  const std::string text = run_command("query --cloud " + m.cloud.path + m.robot + holds).out;
+  CHECK(text.find(name) != text.npos);
+  CHECK(text.find(", held by link claw\n") != text.npos);
+  const auto alone = parsed(run_command(m.ask)), held = parsed(run_command(m.ask + holds + " --exclude-link base"));
+  CHECK(alone.at("part") == "base");
+  CHECK(held.at("part") == name);
+
+  // The robot's own points are also those of what it holds.
+  const scratch_file touching(".xyz", "0 0 0.705\n0 0 1.0\n");
+  const auto filtered = parsed(run_command("query --json --self-filter 0.01 --cloud " + touching.path + m.robot + holds));
+  CHECK(filtered.at("filter").at("own") == 1);
+  CHECK(filtered.at("distance").get<double>() == Approx(0.3));
+
+  // Two of a kind, each with its pose, have names of their own; a link without geometry will do.
+  const auto two = parsed(run_command(m.ask + holds + " --attach claw=" + m.cube.path));
+  REQUIRE(two.at("parts").size() == 4);
+  CHECK(two.at("parts").at(3).at("name") == name + " (2)");
+  CHECK(two.at("parts").at(3).at("attached").at("pose").at(2) == 0);
+
+  // Plans and recordings hold it as well.
+  const scratch_file rows(".csv", "slide,turn\n0,0\n0.2,0\n"), list(".txt", m.cloud.path + '\n' + m.cloud.path + '\n');
+  for (const std::string& line : {"plan --configurations " + rows.path + " --cloud " + m.cloud.path, "run --trajectory " + rows.path + " --frames " + list.path}) {
+    const outcome o = run_command(line + m.robot + holds + " --exclude-link base");
+    const auto first = nlohmann::json::parse(o.out.substr(0, o.out.find('\n')));
+    CHECK(first.at("part") == name);
+    CHECK(first.at("distance") == held.at("distance"));
+  }
+}
+
+TEST_CASE("spheres that a link holds are what they are, or what their certificate says") {
+  const moving m;
+  const scratch_file csv(".csv", "x,y,z,r\n0,0,0,0.05\n"), ist(".ist"), glb(".glb");
+  const std::string robot = "query --json --spheres 20 --no-cache --backend host --cloud " + m.cloud.path + " --robot " + m.urdf.path +
+                            " --exclude-link base --scene " + glb.path, at = " --attach-pose 0,0,0.15,0,0,0,1";
+  const outcome o = run_command(robot + " --attach claw=" + csv.path + at);
+  const auto j = parsed(o);
+  CHECK(o.code == 0);
+  CHECK(j.at("parts").at(1).at("gap") == 0);
+  CHECK(j.at("parts").at(1).at("distance").get<double>() == Approx(0.3));
+  CHECK(o.err.find("has no certificate, so its spheres themselves are taken for what link \"claw\" holds") != std::string::npos);
+  CHECK(run_command("pack " + m.cube.path + " --no-cache --spheres 20 --out " + ist.path).code == 0);
+  const outcome proven = run_command(robot + " --attach claw=" + ist.path + at), packed = run_command(robot + " --attach claw=" + m.cube.path + at);
+  CHECK(proven.err.find("certificate") == std::string::npos);
+  for (const char* key : {"gap", "distance", "primitive"}) CHECK(parsed(proven).at("parts").at(1).at(key) == parsed(packed).at("parts").at(1).at(key));
+  CHECK(parsed(proven).at("lower") == parsed(packed).at("lower"));
+}
+
+TEST_CASE("what is wrong with filter, support, gradient and what is held is one sentence that names the option") {
+  const moving m;
+  for (const std::string value : {"-0.01", "-1e-30", "1e16"}) refuses(m.ask + " --self-filter " + value, "--self-filter: must be from 0 to 1e15");
+  for (const std::string value : {"nan", "inf", "near", "0.1,0.2", "1e999"}) refuses(m.ask + " --self-filter " + value, "--self-filter: ");
+  refuses(m.ask + " --self-filter 0.1 --self-filter 0.1", "--self-filter");
+  for (const std::string value : {"3", "3@", "@0.1", "@", "0@0.1", "-3@0.1", "2.5@0.1", "1@0.1", "3@-0.1", "3@nan", "3@inf", "3@1e16", "3@0.1@0.2", "99999999999@1"})
+    refuses(m.ask + " --min-support " + value, "--min-support: ");
+  refuses(m.ask + " --min-support 3@0.1 --min-support 3@0.1", "--min-support");
+
+  const std::string cube = " --attach claw=" + m.cube.path, pose = " --attach-pose 0,0,0,0,0,0,1";
+  for (const std::string& value : {std::string("claw"), std::string("="), std::string("claw="), "=" + m.cube.path}) refuses(m.ask + " --attach " + value, "--attach: ");
+  refuses(m.ask + " --attach elbow=" + m.cube.path, "--attach: the robot has no link \"elbow\"");
+  refuses(m.ask + " --attach claw=nowhere.stl", "nowhere.stl: there is no such file");
+  refuses(m.ask + " --attach claw=" + m.cloud.path, m.cloud.path + ": ");
+  refuses(m.ask + " --attach claw=/dev/zero", "/dev/zero: ");
+  refuses(m.ask + pose + cube, "--attach-pose: is for the --attach before it, and there is none");
+  refuses(m.ask + cube + pose + pose, "--attach-pose: is given twice for " + m.cube.path);
+  for (const std::string value : {"0,0,0", "0,0,0,0,0,0,2", "nan,0,0,0,0,0,1", "1e19,0,0,0,0,0,1", "0,0,0,0,0,0"})
+    refuses(m.ask + cube + " --attach-pose " + value, "--attach-pose: ");
+  const scratch_file spheres(".csv", "0,0,0,0.05\n"), broken(".csv", "0,0,0,-1\n"), flat(".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  refuses(m.ask + " --attach claw=" + spheres.path, "--attach: " + spheres.path + " holds spheres, which are for --model spheres");
+  const std::string balls = "query --spheres 5 --no-cache --backend host --robot " + m.urdf.path + " --cloud " + m.cloud.path + " --attach claw=";
+  refuses(balls + "nowhere.csv", "nowhere.csv: there is no such file");
+  refuses(balls + broken.path, broken.path + ":1: ");
+  refuses(balls + flat.path, flat.path + ": ");
+  const scratch_file yaml(".yaml", "collision_spheres:\n  a:\n    - {center: [0, 0, 0], radius: 0.1}\n  b:\n    - {center: [0, 0, 0], radius: 0.1}\n");
+  refuses(balls + yaml.path, yaml.path + ": holds the spheres of 2 parts, and --attach takes those of one");
+  for (const std::string more : {" --self-filter 0.1", " --min-support 3@0.1", " --gradient"}) {
+    refuses("run --robot x --frames y" + more, more.substr(1, 10));
+    refuses("plan --robot x --cloud y --configurations z" + more, more.substr(1, 10));
+  }
+  refuses(m.ask + " --svg x.svg", "--svg");
+  const scratch_file input(".ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                                   "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  refuses(m.ask + " --attach claw=" + input.path + " --distances " + input.path, input.path + ": is a file that this reads");
 }

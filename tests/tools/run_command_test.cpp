@@ -4,6 +4,8 @@
 #include "io/scratch_file.hpp"
 #include "tools/small_png.hpp"
 
+#include <clearance/io/xml.hpp>
+
 #include <sstream>
 
 namespace {
@@ -246,4 +248,101 @@ TEST_CASE("a robot whose joints are all fixed needs no trajectory, and one witho
   refuses(ask + box.path + " --trajectory " + values.path, values.path);
   CHECK(lines(run_command(ask + r.urdf.path + " --joint turn=0 --joint slide=0")).size() == 3);
   refuses(ask + r.urdf.path + " --joint turn=0", "joint \"slide\" has no value");
+}
+
+TEST_CASE("--svg draws the distance of every frame in the band of its bracket, and what is not known as such") {
+  const recording r;
+  const scratch_file svg(".svg", "old");
+  const auto picture = [&] {
+    std::ifstream in(svg.path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  /// Where the points of a path are.
+  const auto path = [](const clearance::io::xml_element& root, const std::string& id) {
+    std::vector<std::pair<double, double>> points;
+    for (const auto& each : root.children) {
+      const std::string* name = each.attribute("id");
+      if (!name || *name != id) continue;
+      std::istringstream in(*each.attribute("d"));
+      for (std::string word; in >> word;)
+        if (word == "M" || word == "L") in >> points.emplace_back().first >> points.back().second;
+    }
+    return points;
+  };
+  fs::permissions(svg.path, fs::perms(0640));
+  const outcome plain = run_command(r.run()), o = run_command(r.run() + " --check 0.05 --svg " + svg.path);
+  CHECK(o.code == 0);
+  CHECK(fs::status(svg.path).permissions() == fs::perms(0640));
+  const auto all = lines(o), before = lines(plain);
+  REQUIRE(all.size() == 3);
+  for (int k = 0; k < 3; ++k)
+    for (const char* key : answered) CHECK(all[k].at(key) == before[k].at(key));
+  auto root = clearance::io::read_xml(picture(), svg.path);
+  const auto line = path(root, "distance"), band = path(root, "bracket");
+  REQUIRE(line.size() == 3);
+  REQUIRE(band.size() == 6);
+  const auto metres = [&](int k, const char* key) { return all[k].at(key).get<double>(); };
+  const double scale = (line[1].second - line[0].second) / (metres(1, "distance") - metres(0, "distance"));
+  CHECK(scale < 0);  // up is far
+  for (int k = 0; k < 3; ++k) {
+    CHECK(line[k].second == Approx(line[0].second + scale * (metres(k, "distance") - metres(0, "distance"))).margin(0.05));
+    CHECK(band[k].second == Approx(line[0].second + scale * (metres(k, "upper") - metres(0, "distance"))).margin(0.05));
+    CHECK(band[5 - k].second == Approx(line[0].second + scale * (metres(k, "lower") - metres(0, "distance"))).margin(0.05));
+    CHECK(band[5 - k].first == line[k].first);
+    if (k > 0) CHECK(line[k].first > line[k - 1].first);
+  }
+  CHECK(picture().find("margin 0.05 m") != std::string::npos);
+  CHECK(picture().find("no data") == std::string::npos);
+
+  // Frames without data are bars, and the line ends there; one frame is a dot. Names are text, whatever is in them.
+  r.put("2.xyz", "nan nan nan\n");
+  const fs::path odd = r.folder / "a<b>&\"'\x01\xEF\xBF\xBF.txt";
+  r.put(odd.filename().string(), "1.xyz\n2.xyz\n3.xyz\n");
+  const std::string quoted = "\"$(printf '" + (r.folder / "a<b>&").string() + "\\042\\047\\001\\357\\277\\277.txt')\"";
+  CHECK(run_command(r.run(quoted, r.trajectory.path) + " --svg " + svg.path).code == 3);
+  root = clearance::io::read_xml(picture(), svg.path);
+  CHECK(path(root, "distance").size() == 2);
+  CHECK(picture().find("a&lt;b&gt;&amp;&quot;&apos;\\x01\xEF\xBF\xBD.txt") != std::string::npos);
+  CHECK(picture().find("red: no data") != std::string::npos);
+  CHECK(picture().find("<rect x=") != std::string::npos);
+  for (const std::string frame : {"1.xyz", "2.xyz"}) {
+    r.put("list", frame + '\n');
+    run_command("run --backend host --model triangles --robot " + r.urdf.path + " --joint slide=0 --joint turn=0 --frames " + (r.folder / "list").string() +
+                " --svg " + svg.path);
+    CHECK(path(clearance::io::read_xml(picture(), svg.path), "distance").size() == (frame == "1.xyz" ? 1 : 0));
+  }
+}
+
+TEST_CASE("a picture is written when all is answered, whole or not at all, and never onto what is read") {
+  const recording r;
+  const std::string ask = r.run() + " --svg ", svg = (r.folder / "out.svg").string();
+  for (const std::string name : {"out.png", "out", ".svg/"}) refuses(ask + (r.folder / name).string(), "--svg: ");
+  refuses(ask + svg + " --svg " + svg, "--svg");
+  refuses(ask + "/nonexistent/folder/x.svg", "/nonexistent/folder/x.svg: cannot be written");
+  fs::create_symlink(r.frame(0), svg);
+  refuses(ask + svg, "out.svg: is a symbolic link");
+  fs::remove(svg);
+  for (const std::string& input : {r.frame(1), r.urdf.path, r.trajectory.path}) {  // a frame that is not read yet is an input, too
+    fs::create_hard_link(input, svg);
+    refuses(ask + svg, "out.svg: is a file that this reads");
+    fs::remove(svg);
+  }
+  r.put("out.svg", "old");
+  const auto left = [&] {
+    std::ifstream in(svg);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  std::string many;
+  for (int k = 0; k < 200; ++k) many += "1.xyz\n";
+  r.put("list", many);
+  const std::string still = "run --backend host --model triangles --robot " + r.urdf.path + " --joint slide=0 --joint turn=0 --frames " + (r.folder / "list").string();
+  const outcome full = run_command(still + " --svg " + svg, {}, "ulimit -f 1; ");
+  CHECK(full.code == 1);
+  CHECK(full.err.find("out.svg: cannot be written") != std::string::npos);
+  CHECK(left() == "old");
+  r.put("3.xyz", "0 0 zero\n");
+  CHECK(run_command(ask + svg).code == 1);  // a frame is damaged: what is not whole is not written
+  CHECK(left() == "old");
+  CHECK(run_command(still + " --svg " + svg).code == 0);
+  CHECK(left().starts_with("<?xml"));
 }

@@ -4,9 +4,15 @@
 #include "robot_on.hpp"
 
 #include <clearance/distances.hpp>
+#include <clearance/part_witnesses.hpp>
 
 template <class Backend>
 clearance::point_distances robot_on_backend<Backend>::distances(poses_of poses, double d_max) {
   const clearance::distances_options options{.d_max = clearance::real(d_max), .which = true};
   return with_usual_trees([&](const auto& trees) { return clearance::distances(on_, trees, poses, clouds_, options); });
+}
+
+template <class Backend>
+std::vector<clearance::part_witness> robot_on_backend<Backend>::witnesses(poses_of poses, std::span<const clearance::part_minimum> minima) {
+  return with_usual_trees([&](const auto& trees) { return clearance::part_witnesses(on_, trees, poses, clouds_, minima); });
 }

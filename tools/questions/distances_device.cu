@@ -4,3 +4,4 @@
 #include "distances.hpp"
 
 template clearance::point_distances robot_on_backend<clearance::device>::distances(poses_of, double);
+template std::vector<clearance::part_witness> robot_on_backend<clearance::device>::witnesses(poses_of, std::span<const clearance::part_minimum>);

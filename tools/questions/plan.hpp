@@ -5,7 +5,39 @@
 
 #include <clearance/min_distances.hpp>
 
+#include <algorithm>
+
+/// Over a model that somebody else keeps. Poses go to the backend when they are new.
+template <class Backend, class Model>
+class plan_of final : public prepared_plan {
+ public:
+  plan_of(const Backend& on, const Model& model) : query_(on, model) {}
+
+  const clearance::min_distances_result& ask(poses_of poses, const std::vector<placed_points>& clouds, double d_max) override {
+    const clearance::min_distances_options options{.d_max = clearance::real(d_max)};
+    if constexpr (requires { query_.place(poses); }) {
+      if (!std::ranges::equal(poses, placed_, [](const auto& a, const auto& b) { return a.matrix() == b.matrix(); })) {
+        query_.place(poses);
+        placed_.assign(poses.begin(), poses.end());
+      }
+      return query_(clouds, options);
+    } else {
+      return query_(poses, clouds, options);
+    }
+  }
+
+ private:
+  decltype(clearance::min_distances_query(std::declval<const Backend&>(), std::declval<const Model&>())) query_;
+  std::vector<Eigen::Isometry3d> placed_;
+};
+
 template <class Backend>
 clearance::min_distances_result robot_on_backend<Backend>::plan(poses_of poses, double d_max) {
-  return with_usual_trees([&](const auto& trees) { return clearance::min_distances(on_, trees, poses, clouds_, {.d_max = clearance::real(d_max)}); });
+  if (!planned_)
+    planned_ = with_usual_trees(
+        [&]<class Model>(const Model& model) -> std::unique_ptr<prepared_plan> { return std::make_unique<plan_of<Backend, Model>>(on_, model); });
+  stopwatch clock;
+  const clearance::min_distances_result& found = planned_->ask(poses, clouds_, d_max);
+  query = clock.lap();
+  return found;
 }

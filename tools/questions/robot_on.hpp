@@ -26,6 +26,12 @@ struct prepared_query {
   virtual void forget() = 0;
 };
 
+/// The prepared query of many configurations.
+struct prepared_plan {
+  virtual ~prepared_plan() = default;
+  virtual const clearance::min_distances_result& ask(poses_of poses, const std::vector<placed_points>& clouds, double d_max) = 0;
+};
+
 template <class Backend>
 class robot_on_backend final : public backend_robot {
  public:
@@ -45,7 +51,10 @@ class robot_on_backend final : public backend_robot {
   reply least(poses_of poses) override;
   reply least_per_part(poses_of poses, int repeat) override;
   clearance::zones_result zones(poses_of poses, const clearance::zones_options& options) override;
+  clearance::self_filter_result own_points(poses_of poses, double padding) override;
+  clearance::supported_distance supported(poses_of poses, const clearance::support_options& options) override;
   clearance::point_distances distances(poses_of poses, double d_max) override;
+  std::vector<clearance::part_witness> witnesses(poses_of poses, std::span<const clearance::part_minimum> minima) override;
   clearance::min_distances_result plan(poses_of poses, double d_max) override;
 
  private:
@@ -85,6 +94,7 @@ class robot_on_backend final : public backend_robot {
   asked_model asked_;
   trees trees_;
   std::unique_ptr<prepared_query> prepared_;
+  std::unique_ptr<prepared_plan> planned_;
   std::vector<placed_points> clouds_;
   clearance::minimum::cloud_copies<Backend> copies_;
 };

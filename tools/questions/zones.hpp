@@ -1,11 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// What is asked of pairs: which points are near, whose they are, and which confirm one another.
 
 #include "robot_on.hpp"
 
+#include <clearance/min_support.hpp>
+#include <clearance/self_filter.hpp>
 #include <clearance/zones.hpp>
 
 template <class Backend>
 clearance::zones_result robot_on_backend<Backend>::zones(poses_of poses, const clearance::zones_options& options) {
   return with_usual_trees([&](const auto& trees) { return clearance::zones(on_, trees, poses, clouds_, options); });
+}
+
+template <class Backend>
+clearance::self_filter_result robot_on_backend<Backend>::own_points(poses_of poses, double padding) {
+  return with_usual_trees([&](const auto& trees) { return clearance::self_filter(on_, trees, poses, clouds_, {.padding = {padding}}); });
+}
+
+template <class Backend>
+clearance::supported_distance robot_on_backend<Backend>::supported(poses_of poses, const clearance::support_options& options) {
+  return with_usual_trees([&](const auto& trees) { return clearance::min_distance_supported(on_, trees, poses, clouds_, options); });
 }

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "clearance_svg.hpp"
+
+#include "report_text.hpp"
+
+#include <clearance/io/sentence.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+using namespace clearance;
+
+namespace {
+
+constexpr double width = 960, height = 400, left = 80, right = width - 20, top = 50, bottom = height - 50;
+
+/// Text of an XML file: one printable line of UTF-8, without what means something there, and without the two characters that it may not hold.
+std::string escaped(const std::string& words) {
+  std::string line = io::sentence(words, 80), out;
+  for (const char* never : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
+    for (std::size_t at; (at = line.find(never)) != line.npos;) line.replace(at, 3, "\xEF\xBF\xBD");
+  for (const char c : line) {
+    constexpr const char* names[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&apos;"};
+    const std::size_t which = std::string_view("&<>\"'").find(c);
+    which == std::string_view::npos ? out += c : out += names[which];
+  }
+  return out;
+}
+
+struct axes {
+  double low, high;  // metres
+  std::size_t frames;
+
+  double x(double frame) const { return frames < 2 ? (left + right) / 2 : left + (right - left) * frame / double(frames - 1); }
+  double y(double metres) const { return std::clamp(bottom - (bottom - top) * ((metres - low) / (high - low)), top, bottom); }
+  std::string at(std::size_t frame, double metres) const { return text("%.2f %.2f", x(double(frame)), y(metres)); }
+};
+
+/// All that is drawn is in sight, and 0 too.
+axes around(std::span<const min_distance_result> frames, std::optional<double> margin) {
+  axes made{0, 0, frames.size()};
+  const auto hold = [&](double metres) {
+    if (std::isfinite(metres)) made.low = std::min(made.low, metres), made.high = std::max(made.high, metres);
+  };
+  if (margin) hold(*margin);
+  for (const min_distance_result& r : frames)
+    if (r.state != state::no_data)
+      for (const real end : {r.distance, r.lower, r.upper}) hold(end);
+  if (!(made.high - made.low > 0)) made.high = made.low + 1;
+  return made;
+}
+
+/// A round number of about a fifth.
+double step_of(double range) {
+  const double power = std::pow(10, std::floor(std::log10(range / 5)));
+  for (const double step : {power, 2 * power, 5 * power})
+    if (range / step <= 6) return step;
+  return 10 * power;
+}
+
+std::string words(double x, double y, const char* anchor, const std::string& says) {
+  return text("<text x=\"%.2f\" y=\"%.2f\" text-anchor=\"%s\">", x, y, anchor) + says + "</text>\n";
+}
+
+std::string grid(const axes& to) {
+  std::string out;
+  const double step = step_of(to.high - to.low), frame_step = std::max(1.0, step_of(double(std::max<std::size_t>(to.frames, 2) - 1)));
+  for (double tick = std::ceil(to.low / step); tick * step <= to.high; ++tick)
+    out += text("<path stroke=\"#ddd\" d=\"M %.2f %.2f H %.2f\"/>\n", left, to.y(tick * step), right) +
+           words(left - 6, to.y(tick * step) + 4, "end", text("%g", tick * step + 0));  // no -0
+  for (double tick = 0; tick < double(to.frames); tick += frame_step) out += words(to.x(tick), bottom + 18, "middle", text("%g", tick));
+  return out + words((left + right) / 2, height - 12, "middle", "frame") + words(left - 6, top - 12, "end", "m");
+}
+
+}  // namespace
+
+std::string clearance_svg(std::span<const min_distance_result> frames, const std::string& name, std::optional<double> margin) {
+  const axes to = around(frames, margin);
+  std::string band, line, blind;
+  for (std::size_t begin = 0, end; begin < frames.size(); begin = end) {
+    const bool known = frames[begin].state != state::no_data;
+    for (end = begin; end < frames.size() && (frames[end].state != state::no_data) == known;) ++end;
+    if (!known) {
+      const double from = std::max(left, to.x(double(begin) - 0.5)), until = std::min(right, to.x(double(end) - 0.5));
+      blind += text("<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\"/>\n", from, top, std::max(until - from, 2.0), bottom - top);
+      continue;
+    }
+    for (std::size_t k = begin; k < end; ++k) {
+      band += (k == begin ? "M " : "L ") + to.at(k, frames[k].upper) + '\n';
+      line += (k == begin ? "M " : "L ") + to.at(k, frames[k].distance) + '\n';
+    }
+    for (std::size_t k = end; k-- > begin;) band += "L " + to.at(k, frames[k].lower) + '\n';
+    band += "Z\n";
+    if (end - begin == 1) line += "h 0\n";  // a round end is a dot
+  }
+  std::string out = text("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" "
+                         "font-family=\"sans-serif\" font-size=\"12\" fill=\"none\">\n<title>Clearance in ",
+                         width, height) + escaped(name) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
+  out += "<g fill=\"#333\">\n" + words(left, 20, "start", "Clearance in " + escaped(name)) + grid(to) +
+         words(right, 20, "end", blind.empty() ? "distance, in its bracket" : "distance, in its bracket; red: no data") + "</g>\n";
+  if (!blind.empty()) out += "<g fill=\"#d33\" fill-opacity=\"0.35\">\n" + blind + "</g>\n";
+  if (!line.empty())
+    out += "<path id=\"bracket\" fill=\"#48c\" fill-opacity=\"0.35\" stroke=\"#48c\" stroke-opacity=\"0.6\" stroke-width=\"0.5\" d=\"" + band +
+           "\"/>\n<path id=\"distance\" stroke=\"#136\" stroke-width=\"1.5\" stroke-linecap=\"round\" stroke-linejoin=\"round\" d=\"" + line + "\"/>\n";
+  if (margin)
+    out += text("<path id=\"margin\" stroke=\"#d33\" stroke-dasharray=\"6 4\" d=\"M %.2f %.2f H %.2f\"/>\n", left, to.y(*margin), right) + "<g fill=\"#d33\">\n" +
+           words(right, to.y(*margin) - 4, "end", text("margin %g m", *margin)) + "</g>\n";
+  return out + "</svg>\n";
+}

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "questions_report.hpp"
+
+#include "report_text.hpp"
+
+#include <cmath>
+
+using namespace clearance;
+
+namespace {
+
+/// Who and where a point of a zone is.
+json place(const query_report& report, std::uint32_t cloud, std::uint32_t point) {
+  return {{"cloud", (*report.clouds)[cloud].from.file}, {"point", point}};
+}
+
+}  // namespace
+
+json zones_of(const query_report& report, std::size_t part) {
+  json all = json::array();
+  for (std::size_t z = 0; z < report.zones->per_part; ++z) {
+    const zone& found = report.zones->of(part, z);
+    json one = {{"within", report.asked->zones[z]}, {"points", found.points}, {"nearest", nullptr}, {"first", nullptr}};
+    if (found.points != 0) {
+      one["nearest"] = {{"distance", or_null(found.nearest)}};
+      one["nearest"].update(place(report, found.nearest_cloud, found.nearest_point));
+      one["first"] = place(report, found.first_cloud, found.first_point);
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+
+json gradient_of(const query_report& report, std::size_t part) {
+  const part_gradient& g = report.gradients[part];
+  const auto known = [&](json value) { return g.of_pose ? value : json(nullptr); };
+  const auto xyz = [](const vec3& v) { return json{v.x + 0, v.y + 0, v.z + 0}; };  // no -0
+  json out = {{"state", to_string(g.of_pose.state)},
+              {"about", {g.of_pose.about.x, g.of_pose.about.y, g.of_pose.about.z}},
+              {"linear", known(xyz(g.of_pose.linear))},
+              {"angular", known(xyz(g.of_pose.angular))}};
+  const io::kinematic_tree& tree = report.robot->description.kinematics();
+  if (tree.size() == 0) return out;
+  out["joints"] = g.of_joints ? json::object() : json(nullptr);
+  if (g.of_joints)
+    for (std::size_t i = 0; i < tree.size(); ++i) out["joints"][tree.movable(i).name] = (*g.of_joints)[Eigen::Index(i)];
+  return out;
+}
+
+json pose_of(const Eigen::Isometry3d& pose) {
+  const Eigen::Vector3d t = pose.translation();
+  const Eigen::Quaterniond q(pose.linear());
+  return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+}
+
+namespace {
+
+bool nearest_is_uncertain(const query_report& report) {
+  const min_distance_result& r = report.found.result;
+  return r.point != none && report.filter->labels[report.filter->offsets[r.cloud] + r.point] == point_label::uncertain;
+}
+
+json filter_of(const query_report& report) {
+  const bool any = report.found.result.point != none;
+  return {{"padding", *report.asked->self_filter},
+          {"own", report.filter->counts.own},
+          {"uncertain", report.filter->counts.uncertain},
+          {"nearest_is", any ? json(nearest_is_uncertain(report) ? "uncertain" : "rest") : json(nullptr)}};
+}
+
+std::string filter_text(const query_report& report) {
+  return text("filter    %llu points are the robot's own (within %g m), and hidden; %llu may be, and are not hidden%s\n",
+              (unsigned long long)report.filter->counts.own, *report.asked->self_filter, (unsigned long long)report.filter->counts.uncertain,
+              nearest_is_uncertain(report) ? ", the nearest among them" : "");
+}
+
+/// With --check: is the nearest confirmed point certainly farther away than the margin?
+bool passes(const query_report& report) { return report.support->state != state::no_data && report.support->lower > *report.asked->margin; }
+
+json support_of(const query_report& report) {
+  const supported_distance& s = *report.support;
+  const bool any = s.point != none;
+  const auto given = [](bool there, json value) { return there ? value : json(nullptr); };
+  json out = {{"min_points", report.asked->support->min_points}, {"radius", report.asked->support->radius}, {"state", to_string(s.state)},
+              {"distance", given(any, or_null(s.distance))}, {"lower", given(s.state != state::no_data, or_null(s.lower))}};
+  out.update(any ? place(report, s.cloud, s.point) : json{{"cloud", nullptr}, {"point", nullptr}});
+  out["part"] = any ? json((*report.bodies)[s.part].name) : json(nullptr);
+  out["primitive"] = given(any && s.primitive != none, s.primitive);
+  out["complete"] = !(s.state == state::possible && std::isnan(s.distance));  // false: only the nearest points were asked
+  out["isolated"] = s.isolated;
+  out["nearest_isolated"] = nullptr;
+  if (s.isolated != 0) {
+    json& alone = out["nearest_isolated"] = {{"distance", or_null(s.nearest_isolated.distance)}};
+    alone.update(place(report, s.nearest_isolated.cloud, s.nearest_isolated.point));
+    alone["part"] = (*report.bodies)[s.nearest_isolated.part].name;
+  }
+  if (report.asked->margin) out["passes"] = passes(report);
+  return out;
+}
+
+std::string support_text(const query_report& report) {
+  const supported_distance& s = *report.support;
+  const auto named = [&](std::uint32_t cloud, std::uint32_t point, std::uint32_t part) {
+    const std::string of = report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[cloud].from.file) : "";
+    return text("point %u", point) + of + " and part " + io::printable((*report.bodies)[part].name);
+  };
+  const std::string enough = text("%u points within %g m", report.asked->support->min_points, report.asked->support->radius);
+  std::string out = "support   ";
+  if (s.state == state::no_data) return out + "nothing is known\n";
+  if (s.point != none)
+    out += text("%.6f m, certainly at least %.6f m: the nearest point that has ", double(s.distance), double(s.lower)) + enough + ", " +
+           named(s.cloud, s.point, s.part);
+  else
+    out += (std::isnan(s.distance) ? "none of the nearest points has " : "no point has ") + enough;
+  out += text("; %llu nearer points are alone", (unsigned long long)s.isolated);
+  if (s.isolated != 0)
+    out += text(", the first at %.6f m, ", double(s.nearest_isolated.distance)) +
+           named(s.nearest_isolated.cloud, s.nearest_isolated.point, s.nearest_isolated.part);
+  if (report.asked->margin) out += text("; %s %g m", passes(report) ? "above" : "not above", *report.asked->margin);
+  return out + '\n';
+}
+
+std::string zones_text(const query_report& report) {
+  const auto named = [&](std::uint32_t cloud, std::uint32_t point) {
+    const std::string of = report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[cloud].from.file) : "";
+    return text("point %u", point) + of;
+  };
+  std::string out = "\nzones" + (report.asked->min_points > 1 ? text(" (fewer than %zu points do not count)", report.asked->min_points) : "") + '\n';
+  for (std::size_t k = 0; k < report.bodies->size(); ++k) {
+    const std::string name = io::printable((*report.bodies)[k].name);
+    for (std::size_t z = 0; z < report.zones->per_part; ++z) {
+      const zone& found = report.zones->of(k, z);
+      out += "  " + (z == 0 ? name : "") + std::string(z > 0 ? 28 : name.size() < 28 ? 28 - name.size() : 1, ' ');
+      out += text("%10g m, %8llu points", report.asked->zones[z], (unsigned long long)found.points);
+      if (found.points != 0)
+        out += text(", nearest %.6f m, ", double(found.nearest)) + named(found.nearest_cloud, found.nearest_point) + "; first " +
+               named(found.first_cloud, found.first_point);
+      out += '\n';
+    }
+  }
+  return out;
+}
+
+std::string gradients_text(const query_report& report) {
+  const io::kinematic_tree& tree = report.robot->description.kinematics();
+  std::string out = "\ngradients (of each distance, by a twist of its part at its origin, in world axes: m/m and m/rad; and by joints: m/m or m/rad)\n";
+  for (std::size_t k = 0; k < report.bodies->size(); ++k) {
+    const part_gradient& g = report.gradients[k];
+    const std::string name = io::printable((*report.bodies)[k].name);
+    out += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ');
+    if (!g.of_pose) {
+      out += text("none: %s\n", to_string(g.of_pose.state));
+      continue;
+    }
+    for (const auto& [what, v] : {std::pair("linear", g.of_pose.linear), {", angular", g.of_pose.angular}})
+      out += what + text(" %.6f %.6f %.6f", double(v.x + 0), double(v.y + 0), double(v.z + 0));  // no -0
+    for (std::size_t i = 0; i < tree.size(); ++i) out += (i ? ", " : "; ") + io::printable(tree.movable(i).name) + text(" %+.6f", (*g.of_joints)[Eigen::Index(i)]);
+    out += '\n';
+  }
+  return out;
+}
+
+/// What the zones say of the robot.
+std::string innermost_text(const query_report& report) {
+  if (report.zones->counts.valid == 0) return "nothing is known, which counts as the first";
+  const std::size_t z = report.zones->innermost();
+  return z < report.zones->per_part ? text("the innermost is within %g m", report.asked->zones[z]) : "all are empty";
+}
+
+}  // namespace
+
+void add_questions(const query_report& report, json& out) {
+  if (report.filter) out["filter"] = filter_of(report);
+  if (report.zones) {
+    const std::size_t z = report.zones->innermost();
+    out["zones"] = {{"thresholds", report.asked->zones},
+                    {"min_points", report.zones->min_points},
+                    {"innermost", z < report.zones->per_part ? json(z) : json(nullptr)}};
+  }
+  if (report.support) out["support"] = support_of(report);
+  if (report.gradients.empty()) return;
+  const std::uint32_t part = report.found.result.part;
+  out["gradient"] = {{"part", part == none ? json(nullptr) : json((*report.bodies)[part].name)}};
+  if (part != none) out["gradient"].update(gradient_of(report, part));
+}
+
+std::string questions_text(const query_report& report) {
+  std::string out;
+  if (report.filter) out += filter_text(report);
+  if (report.zones) out += "zones     " + innermost_text(report) + '\n';
+  if (report.support) out += support_text(report);
+  return out;
+}
+
+std::string parts_text(const query_report& report) {
+  std::string out;
+  if (report.zones) out += zones_text(report);
+  if (!report.gradients.empty()) out += gradients_text(report);
+  return out;
+}
