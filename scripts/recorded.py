@@ -56,8 +56,8 @@ class Paper:
             raise Mistake(f"{axis}, {variant}, {scene}, {metric} was not measured")
         return found
 
-    def ratios(self, axis, over, under, scene=None):
-        above, below = self.values(axis, over, scene), self.values(axis, under, scene)
+    def ratios(self, axis, over, under, scene=None, under_axis=None):
+        above, below = self.values(axis, over, scene), self.values(under_axis or axis, under, scene)
         if above.keys() != below.keys():
             raise Mistake(f"{axis}: {over} and {under} were measured with different clouds")
         return [above[cloud] / below[cloud] for cloud in above]
@@ -86,18 +86,23 @@ def paper_claims(paper):
         titles = "".join(f"{scene + ' ' + thousands(points):>{width}}" for scene, points in clouds)
         return f"{'':<48}{titles}" + f"{last:>20}".rstrip() + "\n"
 
-    def microseconds(name, axis, variant):
-        try:
-            all_clouds = span(paper.values(axis, variant).values(), number)
-        except Mistake:
-            all_clouds = "-"
-        return line(name, lambda t: number(t(axis, variant)), 16, all_clouds)
+    def measured(*variants):
+        """Whether a run has them: an older one does not have all."""
+        return all((axis, s, "us") in paper.points_of and variant in paper.points_of[axis, s, "us"] for axis, variant in variants for s in scenes)
 
-    def times(name, axis, over, under):
-        all_clouds = span(paper.ratios(axis, over, under), factor) + " x"
-        return line(name, lambda t: factor(t(axis, over) / t(axis, under)) + " x", 16, all_clouds)
+    def microseconds(name, axis, variant):
+        if not measured((axis, variant)):
+            return ""
+        return line(name, lambda t: number(t(axis, variant)), 16, span(paper.values(axis, variant).values(), number))
+
+    def times(name, axis, over, under, under_axis=None):
+        if not measured((axis, over), (under_axis or axis, under)):
+            return ""
+        all_clouds = span(paper.ratios(axis, over, under, under_axis=under_axis), factor) + " x"
+        return line(name, lambda t: factor(t(axis, over) / t(under_axis or axis, under)) + " x", 16, all_clouds)
 
     ours, papers = "GPU ours, ", "GPU the paper's, "
+    cores = next(iter(paper.points_of["competitors", "table", "threads"].get("CPU ours (all threads)", {0: 16}).values()))
     clouds = (("table", 307200), ("table", 1000000), ("room", 307200), ("room", 5000000))
     claims = [
         heading(16, "all clouds"),
@@ -114,15 +119,33 @@ def paper_claims(paper):
         microseconds("  octree, then GPU (octree given)", "competitors", "octree + GPU"),
         microseconds("  CPU octree, query", "competitors", "CPU octree query"),
         microseconds("  CPU octree, construction", "competitors", "CPU octree construction"),
+        microseconds("  CPU octree, construction and query", "competitors", "CPU octree construction and query"),
         microseconds("  CPU, the paper's Algorithm 1, one thread", "competitors", "CPU Algorithm 1 (1 thread)"),
+        microseconds("  CPU, the same, SIMD, eight points", "competitors", "CPU SIMD, eight points (1 thread)"),
+        microseconds("  CPU, the same, SIMD, eight children", "competitors", "CPU SIMD, eight children (1 thread)"),
+        microseconds("  CPU, the same, SIMD, points, then children", "competitors", "CPU SIMD, both (1 thread)"),
         microseconds("  CPU, ours, one thread", "competitors", "CPU ours (1 thread)"),
-        microseconds("  CPU, ours, all 16 processors", "competitors", "CPU ours (all threads)"),
+        microseconds(f"  CPU, SIMD, eight points, all {cores:.0f} processors", "competitors", "CPU SIMD, eight points (all threads)"),
+        microseconds(f"  CPU, SIMD, eight children, all {cores:.0f}", "competitors", "CPU SIMD, eight children (all threads)"),
+        microseconds(f"  CPU, SIMD, points, then children, all {cores:.0f}", "competitors", "CPU SIMD, both (all threads)"),
+        microseconds(f"  CPU, ours, all {cores:.0f} processors", "competitors", "CPU ours (all threads)"),
+        *([] if not measured(("competitors", "CPU SIMD, both (1 thread)")) else [
+            "CPU over the paper's kernels, points resident: times as long\n",
+            *(times("  " + name, "competitors", variant, "the paper's kernels", "transfer") for name, variant in (
+                ("Algorithm 1 as compiled, one thread", "CPU Algorithm 1 (1 thread)"),
+                ("SIMD, eight points, one thread", "CPU SIMD, eight points (1 thread)"),
+                ("SIMD, points, then children, one thread", "CPU SIMD, both (1 thread)"),
+                (f"SIMD, points, then children, all {cores:.0f}", "CPU SIMD, both (all threads)"),
+                ("ours, one thread", "CPU ours (1 thread)"),
+                (f"ours, all {cores:.0f} processors", "CPU ours (all threads)"))),
+        ]),
         "the paper's kernels, one axis changed: times as long as its own choice\n",
         times("  stack instead of recursion", "traversal", "stack", "recursive"),
         times("  near child first instead of recursion", "traversal", "near first", "recursive"),
         times("  eight lanes per point instead of recursion", "traversal", "cooperative", "recursive"),
         times("  parts in sequence instead of streams", "schedule", "recursive; sequential", "recursive; streams"),
         times("  parts fused instead of streams", "schedule", "recursive; fused", "recursive; streams"),
+        times("  a grid of parts x points instead of streams", "schedule", "recursive; grid", "recursive; streams"),
         times("  trees moved beforehand instead of points", "transform", "trees beforehand", "points into parts"),
         times("  volumes moved in the walk instead of points", "transform", "volumes in the walk", "points into parts"),
         times("  balls around parts first, then points", "transform", "survivors into parts", "points into parts"),
@@ -134,10 +157,12 @@ def paper_claims(paper):
         times("  last witness as seed instead of none", "seed", "recursive streams; last witness", "recursive streams; none"),
     ]
     clouds = (("table", 102400), ("table", 1000000), ("room", 307200), ("room", 5000000))
-    claims += ["\n" + heading(), "node tests per point, all parts (accepted updates of the bound per point)\n"]
+    claims += ["\n" + heading(), "node tests per point, all parts (updates of the bound per point)\n"]
     for variant in ("recursive; sequential", "recursive; nobody", "recursive; block", "recursive; all", "recursive; all; sequential parts",
-                    "recursive; all; fused parts", "recursive; block; few threads", "recursive; all; few threads", "near first; nobody",
+                    "recursive; all; fused parts", "recursive; all; grid of parts", "recursive; block; few threads", "recursive; all; few threads", "near first; nobody",
                     "near first; block", "near first; all", "near first; all; last witness"):
+        if not paper.points_of["culling", "table", "node_tests"].get(variant):
+            continue
         label = variant.replace("recursive; sequential", "recursive; on one CPU thread") if variant.endswith("sequential") else variant
         claims.append(line("  " + label.replace(";", ","),
                            lambda t: f"{number(t('culling', variant, 'node_tests'))} ({digits(t('culling', variant, 'updates'))})"))
@@ -149,7 +174,7 @@ def paper_claims(paper):
     clouds = (("table", 307200), ("room", 307200))
     claims += ["\n" + heading(30), "microseconds: the paper's kernels | near first, fused, otherwise the same | ours cold | ours warm\n"]
     methods = ("the paper's; ", "near first fused; ", "ours cold; ", "ours warm; ")
-    for axis in ("width", "volume", "fit"):
+    for axis in ("width", "volume", "fit", "split"):
         measured = paper.points_of[axis, "table", "us"]
         for variant in dict.fromkeys(v.split("; ", 1)[1] for v in measured):
             claims.append(line("  " + variant.replace(";", ","),
@@ -228,9 +253,9 @@ def phrases(folder):
         """The range of some values; without a format they are factors."""
         return span(list(values), lambda v: format(v, form) if form else factor(v))
 
-    def times(axis, over, under, scene=None, form=""):
-        """How many times as long `over` takes as `under`: the range over all clouds that were measured."""
-        return spread(paper.ratios(axis, over, under, scene), form)
+    def times(axis, over, under, scene=None, form="", under_axis=None):
+        """How many times as long `over` takes as `under` (of another axis): the range over all clouds that were measured."""
+        return spread(paper.ratios(axis, over, under, scene, under_axis), form)
 
     def clouds(*keys, scene=None):
         """For each cloud that was measured the values of all keys: (axis, variant[, metric]), or "points"."""
@@ -243,9 +268,9 @@ def phrases(folder):
     def measured(axis, variant, scene=None, metric="us", scale=1, form=",.0f"):
         return spread([scale * v for v in paper.values(axis, variant, scene, metric).values()], form)
 
-    def along(variant, scene, scale=1, form=",.0f"):
+    def along(variant, scene, scale=1, form=",.0f", metric="us"):
         """The range along the run of the robot (axis motion)."""
-        return spread([scale * v for v in paper.steps_of["motion", scene, "us"][variant].values()], form)
+        return spread([scale * v for v in paper.steps_of["motion", scene, metric][variant].values()], form)
 
     def goal(value, limit, form, prefix="", least=False):
         """What was measured, and whether it is within its goal."""

@@ -150,6 +150,7 @@ int main(int argc, char** argv) {
   add(r, "wrapped", wrapped{}, "median", median_split{});
   add(r, "wrapped", wrapped{}, "principal", principal_split{});
   add(r, "wrapped", wrapped{}, "two_means", two_means_split{});
+  add(r, "wrapped", wrapped{}, "neural_gas", neural_gas_split{});
   add(r, "layered", layered{}, "surface_area", surface_area_split{});
   benchmark::RegisterBenchmark("tree/memory/spheres:14000/width:8", [&r](benchmark::State& state) {
     std::vector<inner_sphere> spheres;

@@ -37,11 +37,11 @@ struct word_bound {
   CLEARANCE_HD real reach() const { return clearance::from_ordered(clearance::load_relaxed(word)); }
   CLEARANCE_HD void offer(std::uint32_t, real distance) {
     if (!(distance < reach())) return;
-    ++accepted;
+    const std::uint32_t mine = clearance::ordered(distance);
 #if defined(__CUDA_ARCH__)
-    atomicMin(word, clearance::ordered(distance));
+    accepted += mine < atomicMin(word, mine);  // who loses a race has lowered nothing
 #else
-    *word = clearance::ordered(distance);  // nearer than what is there; one thread
+    *word = mine, ++accepted;  // nearer than what is there; one thread
 #endif
   }
   CLEARANCE_HD real result() const { return reach(); }

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Everything on the CPU over the size of the cloud (the paper's Fig. 9): Algorithm 1, the octree with and without its
-// construction, and ours.
+// Everything on the CPU over the size of the cloud (the paper's Fig. 9): Algorithm 1 as compilers make it and by hand with SIMD, the
+// octree with and without its construction, and ours.
 
 #include "octree.hpp"
 #include "report.hpp"
 #include "scenes.hpp"
 #include "sequential.hpp"
+#include "simd.hpp"
 
 #include <clearance/min_distance_query.hpp>
 #include <clearance/traversal/recursive.hpp>
+
+#include <thread>
 
 namespace bench::paper {
 
@@ -27,6 +30,7 @@ void host_competitors(report& out, const scenario& scene, std::size_t count, con
   const double reference = clearance::min_distance(clearance::host{.threads = 1}, model, poses, placed).distance;
 
   out.begin("competitors", scene.name, count);
+  if (quick) out.expect("brute force", brute_force(model, frame, cloud), reference);
   double found = 0;
   const auto measure = [&](const std::string& name, auto ask, int least = 3) {
     out.times(name, repeat([&] { return host_time([&] { found = ask(); }); }, host_budget, least));
@@ -34,24 +38,60 @@ void host_competitors(report& out, const scenario& scene, std::size_t count, con
   };
   measure(
       "CPU Algorithm 1 (1 thread)", [&] { return sequential(binary.view(), frame, cloud, clearance::recursive{}); }, 1);
+  out.row("CPU ours (all threads)", "threads", std::thread::hardware_concurrency());
+#ifdef CLEARANCE_BENCH_SIMD
+  const auto wide = make_wide_trees(view);
+#endif
   for (const unsigned threads : {1u, 2u, 0u}) {
     const clearance::host cpu{.threads = threads};
+    const std::string how = " (" + (threads == 0 ? std::string("all") : std::to_string(threads)) + " thread" + (threads == 1 ? ")" : "s)");
     clearance::min_distance_query query(cpu, model);
     query(poses, placed);
-    measure("CPU ours (" + (threads == 0 ? std::string("all") : std::to_string(threads)) + " thread" +
-                (threads == 1 ? ")" : "s)"),
-            [&] { return query(poses, placed).distance; });
+    measure("CPU ours" + how, [&] { return query(poses, placed).distance; });
+#ifdef CLEARANCE_BENCH_SIMD
+    if (threads == 2) continue;
+    measure("CPU SIMD, eight points" + how, [&] { return eight_points(cpu, binary.view(), frame, cloud); });
+    measure("CPU SIMD, eight children" + how, [&] { return eight_children(cpu, view, wide, frame, cloud); });
+    measure("CPU SIMD, both" + how, [&] { return eight_of_each(cpu, view, wide, frame, cloud); });
+#endif
   }
 #ifdef CLEARANCE_BENCH_OCTOMAP
   using tree_of_points = octree<typename Model::view_type>;
   std::optional<tree_of_points> tree;
-  const auto build = [&] {
+  std::vector<double> builds;  // for a cloud that is new: first the tree, then the query
+  const auto whole = [&] {
     tree.reset();
-    return host_time([&] { tree.emplace(cloud, frame.origin, scene.cell); });
+    builds.push_back(host_time([&] { tree.emplace(cloud, frame.origin, scene.cell); }));
+    return builds.back() + host_time([&] { found = tree->distance(view, frame); });
   };
-  out.times("CPU octree construction", repeat(build, host_budget, 1));
+  const std::vector<double> both = repeat(whole, host_budget, 1);
+  out.times("CPU octree construction", {builds.end() - std::ptrdiff_t(both.size()), builds.end()});
+  out.times("CPU octree construction and query", both);
+  out.expect("CPU octree construction and query", found, reference);
   measure("CPU octree query", [&] { return tree->distance(view, frame); });
 #endif
+}
+
+/// The distances along the run of the robot, and what one thread of ours takes for them.
+template <class Model>
+void host_along_motion(report& out, const scenario& scene, std::size_t count, const Model& model, int steps, int passes) {
+  const auto points = scene.points(count);
+  const clearance::placed<clearance::point_span> placed{clearance::point_span(points), scene.world_from_cloud};
+  clearance::min_distance_query query(clearance::host{.threads = 1}, model);
+  for (int step = 0; step < steps; ++step) {
+    const auto poses = scene.poses(double(step) / (steps - 1));
+    out.begin("motion", scene.name, count, step);
+    const double reference = clearance::min_distance(clearance::host{}, model, poses, placed).distance;
+    out.row("distance", "m", reference);
+    if (quick) out.expect("brute force", brute_force(model, clearance::frames::cloud_frame(model.view().facts, poses, scene.world_from_cloud), placed.source), reference);
+    std::vector<double> times;
+    for (int pass = 0; pass < passes; ++pass) {
+      double found = 0;
+      times.push_back(host_time([&] { found = query(poses, placed).distance; }));
+      out.expect("CPU ours (1 thread)", found, reference);
+    }
+    out.times("CPU ours (1 thread)", times);
+  }
 }
 
 }  // namespace bench::paper

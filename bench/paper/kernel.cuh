@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 // The paper's kernel, one thread (or group of lanes) a point, and its launches: parts one after another, one stream a
-// part, or all in one kernel.
+// part, or all in one kernel: fused in a thread's loop, or in a grid of parts x points.
 
 #include "policies.cuh"
 
@@ -33,6 +33,7 @@ __global__ void paper_kernel(const __grid_constant__ parts_at<View> parts, unsig
     if (threadIdx.x == 0) of_block = clearance::ordered(clearance::infinity);
     __syncthreads();
   }
+  if (gridDim.y > 1) begin += blockIdx.y, end = begin + 1;  // a grid of parts x points
   const std::size_t all_lanes = gridDim.x * std::size_t(blockDim.x);
   const std::size_t first = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x;
   for (std::size_t i = first / lanes_of<Walk>() * stride; i < cloud.size();
@@ -65,7 +66,7 @@ __global__ void paper_kernel(const __grid_constant__ parts_at<View> parts, unsig
   }
 }
 
-enum class schedule { sequential, streams, fused };
+enum class schedule { sequential, streams, fused, grid };
 
 /// CUDA streams, one a part, that start after and end before what is on the main one (the default stream).
 class part_streams {
@@ -113,16 +114,16 @@ struct method {
     return paper_kernel<Sharing, Walk, Transform, Count, View, Source>;
   }
 
-  /// One kernel over parts begin .. end-1 and every `stride`-th point.
+  /// One kernel over parts begin .. end-1 and every `stride`-th point; of a grid, each row has one of the parts.
   template <class View, class Source>
   void launch(const parts_at<View>& parts, unsigned begin, unsigned end, const Source& cloud, std::uint32_t* bound,
-              counts* all, cudaStream_t on, std::size_t stride = 1) const {
+              counts* all, cudaStream_t on, std::size_t stride = 1, unsigned rows = 1) const {
     const std::size_t n = (cloud.size() + stride - 1) / stride * lanes_of<Walk>();
     std::size_t shared = 0;
     if constexpr (lanes_of<Walk>() > 1) shared = Walk::shared_bytes(threads);
     if (n == 0) return;
     const unsigned blocks = unsigned(std::min<std::size_t>((n + threads - 1) / threads, most_blocks));
-    kernel<View, Source>()<<<blocks, threads, shared, on>>>(parts, begin, end, cloud, stride, bound, all);
+    kernel<View, Source>()<<<dim3(blocks, rows), threads, shared, on>>>(parts, begin, end, cloud, stride, bound, all);
     check_cuda(cudaGetLastError(), "kernel launch");
   }
 
@@ -131,6 +132,7 @@ struct method {
   void enqueue(const part_streams& streams, const parts_at<View>& parts, const Source& cloud, std::uint32_t* bound,
                counts* all) const {
     if (order == schedule::fused) return launch(parts, 0, parts.count, cloud, bound, all, nullptr);
+    if (order == schedule::grid) return launch(parts, 0, parts.count, cloud, bound, all, nullptr, 1, parts.count);
     if (order == schedule::streams)
       return streams.fork(parts.count,
                           [&](unsigned k, cudaStream_t on) { launch(parts, k, k + 1, cloud, bound, all, on); });

@@ -6,6 +6,7 @@
 #include "kernel.cuh"
 #include "report.hpp"
 #include "scenes.hpp"
+#include "sequential.hpp"
 
 #include <clearance/min_distance_query.cuh>
 #include <clearance/traversal/recursive.hpp>
@@ -48,7 +49,10 @@ class lab {
   template <class Model>
   double reference(const Model& model) const {
     const clearance::placed<clearance::point_span> placed{points, scene->world_from_cloud};
-    return clearance::min_distance(clearance::host{}, model, poses, placed).distance;
+    const double least = clearance::min_distance(clearance::host{}, model, poses, placed).distance;
+    if (quick)
+      out.expect("brute force", brute_force(model, clearance::frames::cloud_frame(model.view().facts, poses, scene->world_from_cloud), placed.source), least);
+    return least;
   }
 
   /// A model on the device as a kernel of the paper's gets it.

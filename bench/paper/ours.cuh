@@ -5,7 +5,7 @@
 
 #include "lab.cuh"
 
-#include <clearance/bvh/fit.hpp>
+#include <clearance/bvh/build.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/strided_points.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -82,6 +82,35 @@ inline void fits(lab& l, const scene& robot) {
     volume_of(l, "wrapped; " + name_of(options), sphere_model<clearance::sphere>(robot, options));
     volume_of(l, "layered; " + name_of(options), clearance::model(std::move(parts)));
   }
+}
+
+/// The same parts, their trees built by another rule.
+template <class Model, class Split>
+Model rebuilt(const Model& model, Split split) {
+  auto parts = model.parts();
+  for (auto& p : parts) {
+    auto primitives = p.tree.primitives;
+    for (std::size_t i = 0; i < primitives.size(); ++i) primitives[p.tree.ids[i]] = p.tree.primitives[i];
+    using volume = std::remove_cvref_t<decltype(p.tree.volumes[0])>;
+    p.tree = clearance::build<volume>(primitives, {}, clearance::wrapped{}, split);
+  }
+  return Model(std::move(parts));
+}
+
+/// How nodes are split: the rules that a tree may be built by.
+inline void splits(lab& l, const scene& robot) {
+  l.out.begin("split", l.scene->name, l.points.size());
+  const auto spheres = sphere_model<clearance::sphere>(robot);
+  const auto triangles = triangle_model<clearance::aabb>(robot);
+  const auto by = [&](const std::string& name, auto split) {
+    volume_of(l, "spheres, " + name, rebuilt(spheres, split));
+    volume_of(l, "triangles, " + name, rebuilt(triangles, split));
+  };
+  by("surface area", clearance::surface_area_split{});
+  by("median", clearance::median_split{});
+  by("principal", clearance::principal_split{});
+  by("two means", clearance::two_means_split{});
+  by("neural gas", clearance::neural_gas_split{});
 }
 
 /// x, y and z each in an array of its own: a point source like any other.

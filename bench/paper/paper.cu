@@ -2,7 +2,8 @@
 // The design space of Kaluschke et al. (2014) on today's GPU, beside this library: every axis, on both of the paper's
 // scenarios, as CSV. All variants must find the minimum that min_distance finds, else the exit code is 1.
 //
-//   bench_paper_device [FILE.csv [STAMP]]     scripts/paper-figures draws what it writes
+//   bench_paper_device [FILE.csv [STAMP]]     scripts/paper runs it, and draws what it writes; with CLEARANCE_QUICK=1 a test:
+//                                             small clouds, exact against brute force
 #include "axes.cuh"
 #include "competitors.cuh"
 #include "ours.cuh"
@@ -22,8 +23,8 @@ std::string stamp(const char* given) {
          std::to_string(driver % 1000 / 10) + (given == nullptr ? "" : std::string("; ") + given);
 }
 
-/// The whole design space for one scenario. `quick`: one small cloud and few runs, to see that all is right.
-void explore(lab& l, const bench::scene& robot, const scenario& s, bool quick) {
+/// The whole design space for one scenario.
+void explore(lab& l, const bench::scene& robot, const scenario& s) {
   using model = decltype(bench::sphere_model<clearance::sphere>(robot));
   std::vector<model> on_host;
   std::vector<decltype(on_host[0].on(l.gpu))> models;
@@ -33,7 +34,7 @@ void explore(lab& l, const bench::scene& robot, const scenario& s, bool quick) {
   }
 
   // The headline's sizes first: they say which width is the paper's best.
-  const std::vector<std::size_t> one = {20'000}, most = {5'000'000, 307'200};
+  const std::vector<std::size_t> one = {quick_points}, most = {5'000'000, 307'200};
   std::size_t best = 0;
   for (const std::size_t n : quick ? one : most) {
     l.set(s, n);
@@ -60,6 +61,7 @@ void explore(lab& l, const bench::scene& robot, const scenario& s, bool quick) {
       layouts(l, on_host.back());
       volumes(l, robot);
       fits(l, robot);
+      splits(l, robot);
     }
     device_competitors(l, on_host.back(), models.back(), paper_model, reference);
     host_competitors(l.out, s, n, on_host.back(), on_host[best]);
@@ -76,12 +78,11 @@ int main(int count, char** arguments) try {
     std::fprintf(stderr, "SKIPPED: no CUDA device\n");
     return 77;
   }
-  const bool quick = std::getenv("CLEARANCE_QUICK") != nullptr;
   if (quick) budget = 0, host_budget = 0;
   report out(count > 1 ? arguments[1] : nullptr, stamp(count > 2 ? arguments[2] : nullptr));
   lab l(out);
   const bench::scene& robot = bench::the_scene();
-  for (const scenario& s : scenarios(robot)) explore(l, robot, s, quick);
+  for (const scenario& s : scenarios(robot)) explore(l, robot, s);
   return out.faults() == 0 ? 0 : 1;
 } catch (const std::exception& e) {
   std::fprintf(stderr, "%s\n", e.what());

@@ -5,11 +5,16 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace bench::paper {
+
+/// Small clouds and few runs, each against a plain loop over all points and primitives: to see that all is right (CLEARANCE_QUICK=1).
+inline const bool quick = std::getenv("CLEARANCE_QUICK") != nullptr;
+inline constexpr std::size_t quick_points = 5'003;
 
 /// The CSV, one value a line: axis, scene, points, x (where the axis has one), variant, metric, value.
 class report {

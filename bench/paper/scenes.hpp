@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The paper's two scenarios (its section 5), and a motion in each: the robot before a table that a Kinect has seen,
-// clouds merged to a larger one; and an artificial room whose points are far away and evenly spread.
+// The paper's two scenarios (its section 5), and a recorded motion of all seven joints in each: the robot before a table that a Kinect
+// has seen, clouds merged to a larger one; and an artificial room whose points are far away and evenly spread.
 
 #include "../min_distance/scene.hpp"
 
 #include <clearance/io/cloud_file.hpp>
 
+#include <array>
 #include <functional>
+#include <memory>
 #include <random>
 
 namespace bench::paper {
@@ -87,6 +89,22 @@ inline std::vector<Eigen::Isometry3d> carried(const std::vector<Eigen::Isometry3
   return moved;
 }
 
+/// The path of path.csv, which make-path made: seconds, and the angle of each joint.
+inline constexpr std::array<double, 8> path[] = {
+#include "path.inc"
+};
+
+/// Poses of the arm along the path, or nothing of another robot.
+inline std::function<std::vector<Eigen::Isometry3d>(double)> along_path(const scene& robot) {
+  if (robot.name != "kuka") return {};
+  const auto arm = std::make_shared<const clearance::io::robot>(clearance::io::load_robot(
+      std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf", {.geometry = clearance::io::robot_geometry::visual}));
+  return [arm](double t) {
+    const auto& row = path[std::size_t(std::lround(t * double(std::size(path) - 1)))];
+    return arm->poses(std::vector<double>(row.begin() + 1, row.end()));
+  };
+}
+
 inline std::vector<scenario> scenarios(const scene& robot) {
   std::vector<clearance::vec3> frames = robot.cloud;
   const std::filesystem::path folder = std::filesystem::path(CLEARANCE_TEST_DATA) / "clouds/kinect_seq";
@@ -100,15 +118,16 @@ inline std::vector<scenario> scenarios(const scene& robot) {
                  .sizes = {102'400, 307'200, 614'400, 1'000'000},
                  .cell = 0.03};
   table.points = [frames, one = robot.cloud.size()](std::size_t n) { return merged(frames, one, n); };
-  // Back from the table and up, and down to it again.
-  table.poses = [start = robot.poses](double t) {
-    const double away = 0.5 - 0.5 * std::cos(2 * 3.14159265358979 * t);
-    return carried(start, {-1.2 * away, 0.2 * away, 0.5 * away});
-  };
+  table.poses = along_path(robot);
+  if (!table.poses)  // a robot without a path: back from the table and up, and down to it again
+    table.poses = [start = robot.poses](double t) {
+      const double away = 0.5 - 0.5 * std::cos(2 * 3.14159265358979 * t);
+      return carried(start, {-1.2 * away, 0.2 * away, 0.5 * away});
+    };
   scenario hall{.name = "room", .sizes = {307'200, 1'000'000, 2'500'000, 5'000'000}, .cell = 0.1};
   hall.points = room;
-  // Towards the wall.
-  hall.poses = [start = robot.poses](double t) { return carried(start, {1.6 + 1.8 * t, 0.6 * t, 0}); };
+  // Its platform drives towards the wall, while the arm moves.
+  hall.poses = [start = robot.poses, arm = along_path(robot)](double t) { return carried(arm ? arm(t) : start, {1.6 + 1.8 * t, 0.6 * t, 0}); };
   return {table, hall};
 }
 

@@ -4,8 +4,11 @@
 
 #include "bounds.hpp"
 
+#include <clearance/backend/host.hpp>
 #include <clearance/frame/frame.hpp>
 #include <clearance/robot/model.hpp>
+
+#include <mutex>
 
 namespace bench::paper {
 
@@ -28,6 +31,26 @@ real sequential(clearance::model_view<PartView> model, const clearance::frames::
     }
   if constexpr (Count) all->accepted += bound.accepted;
   return bound.best;
+}
+
+/// Every point against every primitive: what nobody's tree and nobody's bound can change.
+template <class Model, clearance::point_source Source>
+real brute_force(const Model& model, const clearance::frames::cloud_frame& frame, const Source& cloud) {
+  real least = clearance::infinity;
+  std::mutex one_at_a_time;
+  clearance::host{}.for_ranges(cloud.size(), [&](clearance::indices range) {
+    real mine = clearance::infinity;
+    for (std::size_t k = 0; k < model.size(); ++k)
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        const clearance::sample s = cloud[i];
+        if (!s.valid()) continue;
+        const clearance::vec3 p = frame.places[k].part_from_cloud(s.position - frame.origin);
+        for (const auto& primitive : model.parts()[k].tree.primitives) mine = clearance::min(mine, primitive.distance(p));
+      }
+    const std::lock_guard lock(one_at_a_time);
+    least = clearance::min(least, mine);
+  });
+  return least;
 }
 
 }  // namespace bench::paper

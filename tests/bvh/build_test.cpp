@@ -80,6 +80,7 @@ TEST_CASE("Every split rule gives a tree") {
   check<clearance::sphere, inner_sphere>(clearance::wrapped{}, clearance::principal_split{});
   check<clearance::sphere, inner_sphere>(clearance::wrapped{}, clearance::two_means_split{});
   check<clearance::aabb, triangle>(clearance::wrapped{}, clearance::two_means_split{});
+  check<clearance::sphere, inner_sphere>(clearance::wrapped{}, clearance::neural_gas_split{});
 }
 
 TEST_CASE("Trees of triangles hold every one once, enclosed by all their nodes") {

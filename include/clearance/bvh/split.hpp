@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -94,6 +95,41 @@ struct two_means_split {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     for (const auto& i : items) sum += i.center();
     return sum / float(items.size());
+  }
+};
+
+/// Split rule: two clusters by batch neural gas (Cottrell et al. 2006), as Weller & Zachmann (2009) split inner sphere trees: each item
+/// pulls the nearer mean by its volume and the farther one by ever less of it, so that little depends on where they begin. Neither side
+/// gets less than a tenth, so that the depth stays logarithmic.
+struct neural_gas_split {
+  std::size_t operator()(std::span<split_item> items) const {
+    const std::size_t n = items.size(), least = std::max<std::size_t>(1, n / 10);
+    constexpr int rounds = 24;
+    const Eigen::Vector3f principal = principal_direction(items);
+    std::sort(items.begin(), items.end(), center_order{principal});
+    std::array<Eigen::Vector3f, 2> mean = {items[n / 4].center(), items[n - 1 - n / 4].center()};
+    for (int round = 0; round < rounds; ++round) {
+      const float width = std::pow(0.01f, float(round) / (rounds - 1));  // of the neighbourhood: from one rank to a hundredth
+      const std::array<float, 2> pull = {1, std::exp(-1 / width)};
+      std::array<Eigen::Vector3f, 2> sum = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
+      std::array<float, 2> all = {0, 0};
+      for (const auto& i : items) {
+        const std::size_t near = (i.center() - mean[1]).squaredNorm() < (i.center() - mean[0]).squaredNorm();
+        const float volume = (i.upper - i.lower).prod();
+        for (const std::size_t k : {near, 1 - near}) {
+          const float by = pull[k != near] * volume;
+          sum[k] += by * i.center(), all[k] += by;
+        }
+      }
+      for (std::size_t k = 0; k < 2; ++k)
+        if (all[k] > 0 && sum[k].allFinite()) mean[k] = sum[k] / all[k];
+    }
+    Eigen::Vector3f way = mean[1] - mean[0];
+    if (!(way.norm() > 0) || !way.allFinite()) way = principal;
+    std::sort(items.begin(), items.end(), center_order{way});
+    const float middle = (mean[0] + mean[1]).dot(way) / 2;
+    const auto beyond = std::find_if(items.begin(), items.end(), [&](const auto& i) { return i.center().dot(way) > middle; });
+    return std::clamp(std::size_t(beyond - items.begin()), least, n - least);
   }
 };
 
