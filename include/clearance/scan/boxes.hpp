@@ -15,10 +15,8 @@ struct boxed_piece {
 
   CLEARANCE_HD bool empty() const { return !(box.lower.x <= box.upper.x); }
   CLEARANCE_HD void add(const sample& s) {
-    if (s.valid())
-      box.add(s.position);
-    else
-      ++dropped[int(s.dropped)];
+    for (int r = 1; r < drop_reasons; ++r) dropped[r] += int(s.dropped) == r;
+    if (s.valid()) box.add(s.position);
   }
   CLEARANCE_HD void add(const extent& more, const std::uint32_t (&drops)[drop_reasons]) {
     box.lower = {min(box.lower.x, more.lower.x), min(box.lower.y, more.lower.y), min(box.lower.z, more.lower.z)};
