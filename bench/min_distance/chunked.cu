@@ -149,7 +149,7 @@ void mapped_reads(benchmark::State& state) {
 }
 
 #define ONCE ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(1)
-#define LARGE ->Args({100000000, 1 << 20}) ONCE
+#define LARGE ->Args({100000000, 1 << 22}) ONCE
 BENCHMARK_CAPTURE(copy_alone, pinned, true) LARGE;
 BENCHMARK_CAPTURE(pinned, first, false)->ArgsProduct({{100000000}, {1 << 18, 1 << 20, 1 << 22}}) ONCE;
 BENCHMARK_CAPTURE(pinned, next, true) LARGE;

@@ -19,7 +19,7 @@ struct point_range {
 template <loaded_cloud C>
 class chunked {
  public:
-  static constexpr std::size_t usual_chunk = std::size_t(1) << 20;
+  static constexpr std::size_t usual_chunk = std::size_t(1) << 22;
 
   /// `chunk`: points at a time, rounded up to what a box is around (4096). Throws std::invalid_argument if there are more points than
   /// answers have numbers for.

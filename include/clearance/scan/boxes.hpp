@@ -29,7 +29,8 @@ struct boxed_piece {
 inline double away(const ball& around, const extent& box) {
   const auto beyond = [](double low, double high, double c) { return std::max({low - c, c - high, 0.0}); };
   const vec3 c = around.center;
-  return std::hypot(beyond(box.lower.x, box.upper.x, c.x), beyond(box.lower.y, box.upper.y, c.y), beyond(box.lower.z, box.upper.z, c.z)) - around.radius;
+  const double x = beyond(box.lower.x, box.upper.x, c.x), y = beyond(box.lower.y, box.upper.y, c.y), z = beyond(box.lower.z, box.upper.z, c.z);
+  return std::sqrt(x * x + y * y + z * z) - around.radius;
 }
 
 /// A source that writes down what a host's scan sees of it on its way. `pieces`: one for each `piece_points`, which one thread scans; or
@@ -39,8 +40,8 @@ struct boxing {
   S source;
   boxed_piece* pieces;
 
-  std::size_t size() const { return source.size(); }
-  sample operator[](std::size_t i) const { return source[i]; }
+  CLEARANCE_HD std::size_t size() const { return source.size(); }
+  CLEARANCE_HD sample operator[](std::size_t i) const { return source[i]; }
   position_error rounding() const { return rounding_of(source); }
   bool unfiltered() const {
     if constexpr (unfiltered_source<S>) return source.unfiltered();
