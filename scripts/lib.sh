@@ -8,7 +8,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 packages_library="cmake g++ make libeigen3-dev libtbb-dev"
 packages_io="$packages_library libexpat1-dev nlohmann-json3-dev libstb-dev liblzf-dev libyaml-cpp-dev libxxhash-dev"
 packages_command="$packages_io libcli11-dev ninja-build"
-packages_test="$packages_command catch2 libfcl-dev python3 ccache"
+packages_test="$packages_command catch2 libfcl-dev python3 ccache libopenmpi-dev openmpi-bin"
 packages_all="$packages_test libbenchmark-dev"
 
 say() { printf '%s\n' "$*"; }

@@ -5,6 +5,7 @@
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/bvh/flat_list.hpp>
+#include <clearance/chunked_query.hpp>
 #include <clearance/collect.hpp>
 #include <clearance/distances.hpp>
 #include <clearance/distances_query.hpp>

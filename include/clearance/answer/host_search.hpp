@@ -37,7 +37,7 @@ class host_search {
   std::size_t parts() const { return model_.size(); }
 
  private:
-  static constexpr std::size_t piece = 4096, sample_tiles = 8;
+  static constexpr std::size_t sample_tiles = 8;
 
   struct seen_at {
     std::uint32_t cloud, point;
@@ -54,7 +54,7 @@ class host_search {
       if (w.cloud == now.cloud) recall(body, w.point);
     if (n >= 4 * sample_tiles * scan::tile_points)
       scan::sample_tiles(body, sample_tiles, [&](vec3 p, std::size_t i, std::uint32_t k) { seed(body, p, now.first + std::uint32_t(i), k); });
-    workers_.for_pieces(n, piece, [&](std::size_t begin, std::size_t end) { body(indices{begin, end, 1}); });
+    workers_.for_pieces(n, scan::piece_points, [&](std::size_t begin, std::size_t end) { body(indices{begin, end, 1}); });
     const resolve_body<PartView, S, any_depth> resolve{model_.parts, frame_.places.data(), parts, source, frame_.origin, frame_.world_from_cloud, now.first,
                                                         now.cloud, bounds, walk_, result, minima};
     for (std::uint32_t k = 0; k <= parts; ++k) resolve(k);

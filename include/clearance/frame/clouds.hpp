@@ -38,6 +38,14 @@ template <class T>
   requires(!point_source<T> && !std::is_convertible_v<const T&, point_span>) && requires(const T t) { std::begin(t); }
 struct is_cloud<T> : is_cloud<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>> {};
 
+template <class T>
+inline constexpr bool one_in_each_place = false;
+template <class T>
+  requires(!point_source<T> && !std::is_convertible_v<const T&, point_span>) && requires(const T t) { std::begin(t), std::size(t); }
+inline constexpr bool one_in_each_place<T> = requires(std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))> cloud) {
+  cloud.source, cloud.pose;
+};
+
 }  // namespace detail
 
 /// What callers may pass for clouds: a source, a placed one, or a vector of points; a range of any of these, a tuple, or a variant.
@@ -63,9 +71,10 @@ void for_each_cloud(const Clouds& clouds, F&& f) {
   }
 }
 
-/// How many that are.
+/// How many that are. A range that knows its size and holds a cloud in each place is not looked into: to look may be to load.
 template <class Clouds>
 std::size_t count_clouds(const Clouds& clouds) {
+  if constexpr (detail::one_in_each_place<Clouds>) return std::size(clouds);
   std::size_t n = 0;
   for_each_cloud(clouds, [&](const auto&, const Eigen::Isometry3d&) { ++n; });
   return n;

@@ -9,6 +9,7 @@
 namespace clearance::scan {
 
 inline constexpr std::size_t tile_points = surveyed_points;
+inline constexpr std::size_t piece_points = 32 * tile_points;  ///< What one thread takes at a time.
 
 /// The points of a tile, less the search's origin. What is no point is NaN and fails every comparison.
 struct tile {

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// A cloud that is read in chunks, and what was seen of it when it was read.
+
+#include <clearance/answer/bracket.hpp>
+#include <clearance/frame/clouds.hpp>
+#include <clearance/points/loaded.hpp>
+#include <clearance/scan/boxes.hpp>
+
+namespace clearance {
+
+/// Points `begin` to `end - 1`.
+struct point_range {
+  std::size_t begin, end;
+};
+
+/// Owns a cloud that is read in chunks, and boxes around its points as the first question saw them: the next one reads what can matter.
+/// Is the cloud another one now, `forget()`. One question at a time.
+template <loaded_cloud C>
+class chunked {
+ public:
+  static constexpr std::size_t usual_chunk = std::size_t(1) << 22;
+
+  /// `chunk`: points at a time, rounded up to what a box is around (4096). Throws std::invalid_argument if there are more points than
+  /// answers have numbers for.
+  explicit chunked(C cloud, std::size_t chunk = usual_chunk)
+      : cloud_(std::move(cloud)), chunk_((std::max<std::size_t>(chunk, 1) + scan::piece_points - 1) / scan::piece_points * scan::piece_points) {
+    if (cloud_.size() >= none)
+      throw std::invalid_argument("clearance: a cloud of " + std::to_string(cloud_.size()) + " points; one has at most 2^32 - 2");
+  }
+
+  const C& cloud() const { return cloud_; }
+  std::size_t size() const { return cloud_.size(); }
+  std::size_t chunk() const { return chunk_; }
+  /// What was seen, in order; empty before all of it was.
+  const std::vector<scan::boxed_piece>& pieces() const { return pieces_; }
+  void forget() { pieces_.clear(); }
+  void keep(std::vector<scan::boxed_piece> seen) { pieces_ = std::move(seen); }
+
+  /// All of it in chunks.
+  std::vector<point_range> all() const {
+    std::vector<point_range> ranges;
+    for (std::size_t at = 0; at < size(); at += chunk_) ranges.push_back({at, std::min(size(), at + chunk_)});
+    return ranges;
+  }
+  /// Where `matters(box)` is true of what was seen. Short gaps are read: they take less time than another chunk.
+  template <class Matters>
+  std::vector<point_range> where(const Matters& matters) const {
+    constexpr std::size_t short_gap = 16 * scan::piece_points;
+    std::vector<point_range> ranges;
+    for (std::size_t k = 0; k < pieces_.size(); ++k) {
+      if (pieces_[k].empty() || !matters(pieces_[k].box)) continue;
+      const point_range its = piece(k);
+      if (!ranges.empty() && its.begin <= ranges.back().end + short_gap && its.end - ranges.back().begin <= chunk_)
+        ranges.back().end = its.end;
+      else
+        ranges.push_back(its);
+    }
+    return ranges;
+  }
+  point_range piece(std::size_t k) const { return {k * scan::piece_points, std::min(size(), (k + 1) * scan::piece_points)}; }
+
+ private:
+  C cloud_;
+  std::size_t chunk_;
+  std::vector<scan::boxed_piece> pieces_;
+};
+
+namespace minimum {
+
+/// The clouds of a call that are loaded when their turn comes: `load(k)` gives the k-th, placed.
+template <class Load>
+class as_they_come {
+ public:
+  as_they_come(std::size_t count, const Load& load) : count_(count), load_(&load) {}
+
+  struct iterator {
+    using iterator_category = std::input_iterator_tag;
+    using difference_type = std::ptrdiff_t;
+    std::size_t k;
+    const Load* load;
+    auto operator*() const { return (*load)(k); }
+    iterator& operator++() { return ++k, *this; }
+    friend bool operator==(const iterator& a, const iterator& b) { return a.k == b.k; }
+  };
+  iterator begin() const { return {0, load_}; }
+  iterator end() const { return {count_, load_}; }
+  std::size_t size() const { return count_; }
+
+ private:
+  std::size_t count_;
+  const Load* load_;
+};
+
+/// What a question about a chunked cloud does, on any backend. `search(ranges, result, minima, pieces)` asks about some of it, and writes
+/// down to `pieces`, if that is not null, what it sees. `minima`: one a part, or empty.
+///
+/// What was seen decides in two steps: of the boxes that are nearest to the parts a first answer, which bounds the last one; then what is
+/// in boxes that are within that bound.
+template <class C, class Search>
+min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose,
+                                std::span<part_minimum> minima, const Search& search) {
+  const std::size_t pieces = (cloud.size() + scan::piece_points - 1) / scan::piece_points;
+  min_distance_result result;
+  const auto ask = [&](const std::vector<point_range>& ranges, std::vector<scan::boxed_piece>* seen) {
+    search(ranges, result, minima, seen);
+    const auto renumber = [&](auto& r) {
+      if (r.cloud != none) r.point += std::uint32_t(ranges[r.cloud].begin), r.cloud = 0;
+    };
+    renumber(result);
+    for (part_minimum& m : minima) renumber(m);
+  };
+  if (cloud.pieces().empty()) {
+    std::vector<scan::boxed_piece> seen(pieces);
+    ask(cloud.all(), &seen);
+    cloud.keep(std::move(seen));
+    return result;
+  }
+  // What arithmetic and poses cost is in the balls; what a source has lost does not matter here.
+  const frames::cloud_frame frame(facts, poses, pose);
+  const auto box_of = [&](const extent& e) { return extent{e.lower - frame.origin, e.upper - frame.origin}; };
+  std::vector<std::size_t> nearest(facts.size(), pieces);
+  std::vector<double> least(facts.size(), double(infinity));
+  for (std::size_t k = 0; k < pieces; ++k)
+    if (!cloud.pieces()[k].empty())
+      for (std::size_t part = 0; part < facts.size(); ++part)
+        if (const double its = scan::away(frame.places[part].around, box_of(cloud.pieces()[k].box)); its < least[part]) least[part] = its, nearest[part] = k;
+  if (minima.empty()) {  // the robot's nearest says enough
+    const auto best = std::size_t(std::ranges::min_element(least) - least.begin());
+    nearest = {nearest[best]};
+  }
+  std::ranges::sort(nearest);
+  nearest.erase(std::ranges::unique(nearest).begin(), nearest.end());
+  std::vector<point_range> first;
+  for (const std::size_t k : nearest)
+    if (k != pieces) first.push_back(cloud.piece(k));
+  ask(first, nullptr);
+  std::vector<real> reach(facts.size(), result.part == none ? infinity : result.distance);
+  for (std::size_t part = 0; part < minima.size(); ++part) reach[part] = minima[part].distance;
+  ask(cloud.where([&](const extent& seen) {
+        const extent box = box_of(seen);
+        for (std::size_t part = 0; part < facts.size(); ++part)
+          if (scan::may_reach(frame.places[part].around, reach[part], box)) return true;
+        return false;
+      }),
+      nullptr);
+  // Counts are those of the whole cloud.
+  result.seen = result.valid = cloud.size();
+  std::ranges::fill(result.dropped, 0);
+  for (const scan::boxed_piece& piece : cloud.pieces())
+    for (int r = 1; r < drop_reasons; ++r) result.dropped[r] += piece.dropped[r], result.valid -= piece.dropped[r];
+  allow_for_too_close(result);
+  return result;
+}
+
+}  // namespace minimum
+
+}  // namespace clearance

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/backend/own_stream.cuh>
+#include <clearance/backend/pinned_buffer.cuh>
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cstring>
+#include <span>
+
+namespace clearance {
+
+/// Bytes on their way to a device, in turns of three rooms: while one is filled, another is copied, and a third is read there. Each
+/// turn: `fill`, `copy`, what reads them into the device's stream, `read`. What is in pinned memory is copied from where it lies.
+class staging_ring {
+ public:
+  static constexpr std::size_t rooms = 3;
+
+  explicit staging_ring(const device& on) : on_(on), copies_(on.id) {
+    const device_guard guard(on.id);
+    for (room& r : rooms_) r.copied = event(on.id), r.read = event(on.id);
+  }
+
+  /// Before the first turn of a call: as large as its largest, on either side.
+  void need(std::size_t pinned, std::size_t there) {
+    if (pinned <= pinned_ && there <= there_) return;
+    wait();
+    pinned_ = std::max(pinned, pinned_), there_ = std::max(there, there_);
+    for (room& r : rooms_) {
+      if (r.pinned.size() < pinned_) r.pinned = {}, r.pinned = pinned_buffer<std::byte>(pinned_, on_.id);
+      if (r.there.size() < there_) r.there = {}, r.there = device_buffer<std::byte>(there_, on_.id);
+    }
+  }
+
+  /// Pinned memory of turn k: waits until what was in it has been copied.
+  std::byte* fill(std::size_t k) {
+    room& r = rooms_[k % rooms];
+    const device_guard guard(on_.id);
+    check_cuda(cudaEventSynchronize(r.copied.get()), "cudaEventSynchronize");
+    return r.pinned.data();
+  }
+  /// Enqueues the copy of `bytes`, which the device's stream waits for. Where they will be.
+  const std::byte* copy(std::size_t k, std::span<const std::byte> bytes) {
+    room& r = rooms_[k % rooms];
+    const device_guard guard(on_.id);
+    const std::byte* from = bytes.data();
+    if (!within(r.pinned, from) && !is_pinned(from)) {
+      constexpr std::size_t grain = std::size_t(1) << 20;  // one thread is slower than the link
+      need_within(bytes.size(), r);
+      tbb::parallel_for(std::size_t(0), (bytes.size() + grain - 1) / grain, [&](std::size_t i) {
+        std::memcpy(r.pinned.data() + i * grain, from + i * grain, std::min(grain, bytes.size() - i * grain));
+      });
+      from = r.pinned.data();
+    }
+    const cudaStream_t stream = copies_.on().stream;
+    check_cuda(cudaStreamWaitEvent(stream, r.read.get()), "cudaStreamWaitEvent");
+    check_cuda(cudaMemcpyAsync(r.there.data(), from, bytes.size(), cudaMemcpyDefault, stream), "cudaMemcpyAsync");
+    check_cuda(cudaEventRecord(r.copied.get(), stream), "cudaEventRecord");
+    check_cuda(cudaStreamWaitEvent(on_.stream, r.copied.get()), "cudaStreamWaitEvent");
+    return r.there.data();
+  }
+  /// What is in the device's stream now is all that reads turn k.
+  void read(std::size_t k) {
+    const device_guard guard(on_.id);
+    check_cuda(cudaEventRecord(rooms_[k % rooms].read.get(), on_.stream), "cudaEventRecord");
+  }
+
+  void wait() const { copies_.on().wait(), on_.wait(); }
+
+ private:
+  class event {
+   public:
+    event() = default;
+    explicit event(int id) : id_(id) { check_cuda(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "cudaEventCreateWithFlags"); }
+    event(event&& other) noexcept { *this = std::move(other); }
+    event& operator=(event&& other) noexcept { return std::swap(event_, other.event_), std::swap(id_, other.id_), *this; }
+    ~event() {
+      if (event_ != nullptr) on_device(id_, [this] { return cudaEventDestroy(event_); });
+    }
+    cudaEvent_t get() const { return event_; }
+
+   private:
+    cudaEvent_t event_ = nullptr;
+    int id_ = 0;
+  };
+  struct room {
+    pinned_buffer<std::byte> pinned;
+    device_buffer<std::byte> there;
+    event copied, read;
+  };
+
+  static bool within(const pinned_buffer<std::byte>& memory, const std::byte* p) {
+    return memory.size() != 0 && std::less_equal<>()(memory.data(), p) && std::less<>()(p, memory.data() + memory.size());
+  }
+  static bool is_pinned(const void* memory) {
+    cudaPointerAttributes attributes{};
+    check_cuda(cudaPointerGetAttributes(&attributes, memory), "cudaPointerGetAttributes");
+    return attributes.type != cudaMemoryTypeUnregistered;
+  }
+  void need_within(std::size_t bytes, room& r) const {
+    if (r.pinned.size() < bytes) r.pinned = {}, r.pinned = pinned_buffer<std::byte>(there_, on_.id);
+  }
+
+  device on_;
+  own_stream copies_;
+  std::array<room, rooms> rooms_;
+  std::size_t pinned_ = 0, there_ = 0;
+};
+
+}  // namespace clearance

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How far is a robot from a cloud that is read in chunks? On the host or on a device.
+
+#include <clearance/answer/device_search.cuh>
+#include <clearance/backend/staging_ring.cuh>
+#include <clearance/chunked_query.hpp>
+#include <clearance/scan/boxes.cuh>
+
+#include <optional>
+
+namespace clearance {
+
+/// On a device: chunks go there through a ring, and a kernel searches one while the next is copied. Its memory is three chunks, and as
+/// much that is pinned where the cloud is not. What is on the device already is read where it is.
+template <class PartView>
+class chunked_query<device, PartView> {
+ public:
+  /// Throws std::invalid_argument as min_distance_query.
+  template <robot Robot>
+  chunked_query(const device& on, const Robot& robot)
+      : on_(on), facts_(view_of(robot).facts), search_(on, view_of(robot)), ring_(on), answer_(1, on.id), minima_(search_.parts(), on.id) {
+    on_.wait();
+  }
+
+  template <loaded_cloud C>
+  min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
+    return ask(poses, cloud, pose, {});
+  }
+  template <loaded_cloud C>
+  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose, std::span<part_minimum> minima) {
+    frames::check_room(search_.parts(), minima.size());
+    return ask(poses, cloud, pose, minima);
+  }
+
+  std::uint64_t loaded() const { return loaded_; }
+
+ private:
+  template <class C>
+  min_distance_result ask(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose, std::span<part_minimum> minima) {
+    loaded_ = 0;
+    return minimum::ask_chunked(cloud, facts_, poses, pose, minima,
+                                [&](const std::vector<point_range>& ranges, min_distance_result& result, std::span<part_minimum> of_parts,
+                                    std::vector<scan::boxed_piece>* seen) {
+                                  try {
+                                    if (of_parts.empty())
+                                      search<false>(cloud.cloud(), ranges, poses, pose, seen);
+                                    else
+                                      search<true>(cloud.cloud(), ranges, poses, pose, seen);
+                                    ring_.wait();
+                                  } catch (...) {
+                                    finish();
+                                    throw;
+                                  }
+                                  result = *answer_.data();
+                                  std::copy_n(minima_.data(), of_parts.size(), of_parts.begin());
+                                });
+  }
+
+  template <bool PerPart, class C>
+  void search(const C& cloud, const std::vector<point_range>& ranges, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose,
+              std::vector<scan::boxed_piece>* seen) {
+    using S = loaded_source<C>;
+    static_assert(requires(const S s) { s.at(s.bytes().data()); }, "a source that does not say where its bytes are cannot be copied to a device");
+    if (seen != nullptr && boxes_.size() < seen->size()) boxes_ = {}, boxes_ = device_buffer<scan::boxed_piece>(seen->size(), on_.id);
+    std::size_t pinned = 0;
+    for (const point_range& r : ranges) pinned = std::max(pinned, cloud.room(r.end - r.begin));
+    ring_.need(pinned, 0);
+    std::optional<S> there;
+    const auto done = [&](std::size_t k) {
+      if (seen != nullptr && there) scan::enqueue_boxes(on_, *there, boxes_.data() + ranges[k].begin / scan::piece_points);
+      ring_.read(k);
+    };
+    const auto load = [&](std::size_t k) {
+      loaded_ += ranges[k].end - ranges[k].begin;
+      return placed<S>{cloud.load(ranges[k].begin, ranges[k].end, ring_.fill(k)), pose};
+    };
+    const auto here = [&]<class Its>(const Its& source, std::uint32_t k) {
+      if constexpr (std::is_same_v<Its, S>) {
+        if (k > 0) done(k - 1);
+        const auto bytes = source.bytes();
+        const bool is_there = bytes.empty() || on_.holds(bytes.data());
+        if (!is_there) ring_.need(0, bytes.size() + 512);  // pieces of a copy begin at multiples of 256
+        there.emplace(is_there ? source : source.at(ring_.copy(k, bytes)));
+        return *there;
+      } else {
+        return source;  // of no ranges, no points
+      }
+    };
+    search_.template enqueue<PerPart>(poses, minimum::as_they_come(ranges.size(), load), answer_.data(), minima_.data(), here);
+    if (!ranges.empty()) done(ranges.size() - 1);
+    if (seen == nullptr || seen->empty()) return;
+    const device_guard guard(on_.id);
+    check_cuda(cudaMemcpyAsync(seen->data(), boxes_.data(), seen->size() * sizeof(scan::boxed_piece), cudaMemcpyDeviceToHost, on_.stream), "cudaMemcpyAsync");
+  }
+
+  /// Whatever has gone wrong: nothing reads or writes any more.
+  void finish() const noexcept {
+    try {
+      ring_.wait();
+    } catch (...) {  // what is told is what went wrong first
+    }
+  }
+
+  device on_;
+  std::span<const part_facts> facts_;
+  minimum::device_search<PartView> search_;
+  staging_ring ring_;
+  pinned_buffer<min_distance_result> answer_;
+  pinned_buffer<part_minimum> minima_;
+  device_buffer<scan::boxed_piece> boxes_;
+  std::uint64_t loaded_ = 0;
+};
+
+}  // namespace clearance

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What ranks tell one another about a question: before it, that it is the same; after it, their answers.
+
+#include <clearance/answer/of_pieces.hpp>
+#include <clearance/frame/clouds.hpp>
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <exception>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace clearance::mpi {
+
+/// One reduction of plain values with their own `add`, which is associative and commutative.
+template <class T>
+void reduce(MPI_Comm comm, T* values, std::size_t count) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  // Made once, and kept as long as the process: nobody may free them after MPI_Finalize.
+  static const MPI_Datatype type = [] {
+    MPI_Datatype made;
+    MPI_Type_contiguous(int(sizeof(T)), MPI_BYTE, &made);
+    MPI_Type_commit(&made);
+    return made;
+  }();
+  static const MPI_Op operation = [] {
+    MPI_Op made;
+    MPI_Op_create(
+        [](void* from, void* to, int* n, MPI_Datatype*) {
+          for (int k = 0; k < *n; ++k) {
+            T a, b;
+            std::memcpy(&a, static_cast<char*>(from) + std::size_t(k) * sizeof(T), sizeof(T));
+            std::memcpy(&b, static_cast<char*>(to) + std::size_t(k) * sizeof(T), sizeof(T));
+            b.add(a);
+            std::memcpy(static_cast<char*>(to) + std::size_t(k) * sizeof(T), &b, sizeof(T));
+          }
+        },
+        1, &made);
+    return made;
+  }();
+  MPI_Allreduce(MPI_IN_PLACE, values, int(count), type, operation, comm);
+}
+
+/// All ranks' values, in order.
+template <class T>
+std::vector<T> gather(MPI_Comm comm, int ranks, const T* values, std::size_t count) {
+  std::vector<T> all(std::size_t(ranks) * count);
+  MPI_Allgather(values, int(count * sizeof(T)), MPI_BYTE, all.data(), int(count * sizeof(T)), MPI_BYTE, comm);
+  return all;
+}
+
+/// One question of all ranks. Every rank does the same with it, whatever goes wrong on one: what that one threw ends all.
+class question {
+ public:
+  explicit question(MPI_Comm comm) : comm_(comm) {
+    int started = 0;
+    if (MPI_Initialized(&started); started == 0 || comm == MPI_COMM_NULL) throw std::invalid_argument("clearance: ranks, but MPI_Init was not called, or there is no communicator");
+    MPI_Comm_rank(comm, &rank_);
+    MPI_Comm_size(comm, &ranks_);
+  }
+
+  /// Does `work()` on this rank. What it throws is kept, and told by `agree` or `answer`.
+  template <class Work>
+  void attempt(const Work& work) {
+    try {
+      if (!thrown_) work();
+    } catch (const std::exception& e) {
+      thrown_ = std::current_exception(), sentence_ = e.what();
+    } catch (...) {
+      thrown_ = std::current_exception(), sentence_ = "something that is no std::exception";
+    }
+  }
+
+  /// Throws on all ranks if one asks about another number of parts or clouds, or other poses. Then `first` is known.
+  template <class Clouds>
+  void agree(std::size_t parts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
+    said mine{parts, 0, 0xcbf29ce484222325, 0};
+    std::vector<std::uint64_t> sizes;
+    attempt([&] {
+      for (const Eigen::Isometry3d& pose : poses) mine.add(pose);
+      for_each_cloud(clouds, [&](const auto& cloud, const Eigen::Isometry3d& pose) { sizes.push_back(cloud.size()), mine.add(pose); });
+      mine.clouds = sizes.size(), mine.points = sizes.empty() ? 0 : sizes[0];
+    });
+    const std::vector<said> all = gather(comm_, ranks_, &mine, 1);
+    for (int r = 1; r < ranks_; ++r) {
+      const auto differs = [&](const char* what, std::uint64_t its, std::uint64_t others) {
+        return "clearance: rank " + std::to_string(r) + " asks about " + std::to_string(its) + " " + what + ", rank 0 about " + std::to_string(others);
+      };
+      const said& its = all[std::size_t(r)];
+      if (its.parts != all[0].parts) throw std::invalid_argument(differs("parts", its.parts, all[0].parts));
+      if (its.clouds != all[0].clouds) throw std::invalid_argument(differs("clouds", its.clouds, all[0].clouds));
+      if (its.poses != all[0].poses) throw std::invalid_argument("clearance: rank " + std::to_string(r) + " asks about other poses than rank 0");
+    }
+    std::vector<std::uint64_t> table;
+    for (const said& its : all) table.push_back(its.points);
+    if (sizes.size() > 1) table = gather(comm_, ranks_, sizes.data(), sizes.size());
+    first_.assign(sizes.size(), 0);
+    std::uint64_t points = 0;
+    for (std::size_t k = 0; k < table.size() && !sizes.empty(); ++k) {
+      if (k < std::size_t(rank_) * sizes.size()) first_[k % sizes.size()] += table[k];
+      points += table[k];
+    }
+    if (points >= none) throw std::invalid_argument("clearance: more than 2^32 - 2 points on all ranks together");
+  }
+
+  /// From this rank's answers, in the numbers of its own clouds, to those of all ranks; `minima` one a part, or empty.
+  min_distance_result answer(const min_distance_result& mine, std::span<part_minimum> minima, bool has_interior) {
+    sum all{minimum::of_pieces(in_whole(mine)), thrown_ ? std::uint32_t(rank_) : none};
+    reduce(comm_, &all, 1);
+    if (all.thrown != none) end_all(int(all.thrown));
+    if (!minima.empty()) {
+      std::vector<part> parts;
+      for (const part_minimum& m : minima) parts.push_back({in_whole(m)});
+      reduce(comm_, parts.data(), parts.size());
+      std::ranges::transform(parts, minima.begin(), [](const part& p) { return p.least; });
+    }
+    return all.pieces.answer(has_interior);
+  }
+
+ private:
+  struct said {
+    std::uint64_t parts, clouds, poses, points;
+
+    void add(const Eigen::Isometry3d& pose) {
+      for (int k = 0; k < 16; ++k) poses = (poses ^ std::bit_cast<std::uint64_t>(pose.matrix().data()[k] + 0.0)) * 0x100000001b3;  // FNV-1a; -0 is 0
+    }
+  };
+  struct sum {
+    minimum::of_pieces pieces;
+    std::uint32_t thrown;  ///< The lowest rank that threw.
+
+    void add(const sum& other) { pieces.add(other.pieces), thrown = std::min(thrown, other.thrown); }
+  };
+  struct part {
+    part_minimum least;
+
+    void add(const part& other) { least = merge(least, other.least); }
+  };
+
+  template <class Answer>
+  Answer in_whole(const Answer& r) const {
+    return r.cloud == none ? r : renumbered(r, 0, std::uint32_t(first_[r.cloud]));
+  }
+  [[noreturn]] void end_all(int by) {
+    char text[512] = {};
+    if (rank_ == by) std::memcpy(text, sentence_.data(), std::min(sentence_.size(), sizeof text - 1));
+    MPI_Bcast(text, sizeof text, MPI_BYTE, by, comm_);
+    if (thrown_) std::rethrow_exception(thrown_);
+    throw std::runtime_error("clearance: rank " + std::to_string(by) + " of " + std::to_string(ranks_) + ": " + text);
+  }
+
+  MPI_Comm comm_;
+  int rank_ = 0, ranks_ = 1;
+  std::vector<std::uint64_t> first_;
+  std::exception_ptr thrown_;
+  std::string sentence_;
+};
+
+}  // namespace clearance::mpi

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Clouds that are brought to memory a range at a time: they may be larger than a device, or than memory.
+
+#include <clearance/points/slice.hpp>
+
+#include <utility>
+
+namespace clearance {
+
+/// A cloud that comes in ranges of points. Optional: `static constexpr bool in_place = true`, if nothing has to be brought.
+///
+/// Law: `load(begin, end, room)` gives points `begin` to `end - 1`, from memory of its own or from the `room(end - begin)` bytes that it
+///      is given (aligned to 64), or throws why it cannot. It is called by one thread at a time, while others read what was loaded before.
+template <class C>
+concept loaded_cloud = requires(const C c, std::size_t i, std::byte* room) {
+  { c.size() } -> std::convertible_to<std::size_t>;
+  { c.room(i) } -> std::convertible_to<std::size_t>;
+  { c.load(i, i, room) } -> point_source;
+};
+template <loaded_cloud C>
+using loaded_source = decltype(std::declval<const C&>().load(0, 0, nullptr));
+
+/// A source in memory, of any kind: host memory, pinned or not, or a device's.
+template <point_source S>
+struct in_memory {
+  static constexpr bool in_place = true;
+
+  S source;
+
+  std::size_t size() const { return source.size(); }
+  std::size_t room(std::size_t) const { return 0; }
+  auto load(std::size_t begin, std::size_t end, std::byte*) const { return slice(source, begin, end); }
+};
+template <point_source S>
+in_memory(S) -> in_memory<S>;
+
+/// Records that somebody reads: `read(offset, bytes)` fills `bytes` (a span) with those that begin `offset` bytes after the first
+/// record's start, or throws; `view(memory, count)` is a source over that many records in memory.
+template <class Read, class View>
+struct read_records {
+  std::size_t count, record_bytes;
+  Read read;
+  View view;
+
+  std::size_t size() const { return count; }
+  std::size_t room(std::size_t points) const { return points * record_bytes; }
+  auto load(std::size_t begin, std::size_t end, std::byte* room) const {
+    if (begin != end) read(begin * record_bytes, std::span<std::byte>(room, (end - begin) * record_bytes));
+    return view(static_cast<const std::byte*>(room), end - begin);
+  }
+};
+template <class Read, class View>
+read_records(std::size_t, std::size_t, Read, View) -> read_records<Read, View>;
+
+}  // namespace clearance

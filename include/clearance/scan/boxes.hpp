@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Where neighbours of a cloud are, kept from the first scan, so that a later one need not read them.
+
+#include <clearance/scan/tile_scan.hpp>
+
+#include <algorithm>
+
+namespace clearance::scan {
+
+/// What is known of `piece_points` neighbours: a box around those that count, and how many do not.
+struct boxed_piece {
+  extent box;
+  std::uint32_t dropped[drop_reasons] = {};
+
+  CLEARANCE_HD bool empty() const { return !(box.lower.x <= box.upper.x); }
+  CLEARANCE_HD void add(const sample& s) {
+    for (int r = 1; r < drop_reasons; ++r) dropped[r] += int(s.dropped) == r;
+    if (s.valid()) box.add(s.position);
+  }
+  CLEARANCE_HD void add(const extent& more, const std::uint32_t (&drops)[drop_reasons]) {
+    box.lower = {min(box.lower.x, more.lower.x), min(box.lower.y, more.lower.y), min(box.lower.z, more.lower.z)};
+    box.upper = {max(box.upper.x, more.upper.x), max(box.upper.y, more.upper.y), max(box.upper.z, more.upper.z)};
+    for (int r = 0; r < drop_reasons; ++r) dropped[r] += drops[r];
+  }
+};
+
+/// About how far a box is from a ball.
+inline double away(const ball& around, const extent& box) {
+  const auto beyond = [](double low, double high, double c) { return std::max({low - c, c - high, 0.0}); };
+  const vec3 c = around.center;
+  const double x = beyond(box.lower.x, box.upper.x, c.x), y = beyond(box.lower.y, box.upper.y, c.y), z = beyond(box.lower.z, box.upper.z, c.z);
+  return std::sqrt(x * x + y * y + z * z) - around.radius;
+}
+
+/// A source that writes down what a host's scan sees of it on its way. `pieces`: one for each `piece_points`, which one thread scans; or
+/// null. The tile that is not whole is not surveyed: `add_rest` adds it.
+template <point_source S>
+struct boxing {
+  S source;
+  boxed_piece* pieces;
+
+  CLEARANCE_HD std::size_t size() const { return source.size(); }
+  CLEARANCE_HD sample operator[](std::size_t i) const { return source[i]; }
+  position_error rounding() const { return rounding_of(source); }
+  bool unfiltered() const {
+    if constexpr (unfiltered_source<S>) return source.unfiltered();
+    return false;
+  }
+
+  bool survey(std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) const {
+    tally mine;
+    if (!scan::survey(source, begin, box, mine)) {
+      tile t;
+      t.load(source, begin, tile_points, 1, mine);
+      box = box_of(t);
+    }
+    for (int r = 0; r < drop_reasons; ++r) dropped[r] += mine.dropped[r];
+    if (pieces == nullptr) return true;
+    boxed_piece& piece = pieces[begin / piece_points];
+    piece.add(box, mine.dropped);
+    return true;
+  }
+  void add_rest() const {
+    for (std::size_t i = size() / tile_points * tile_points; pieces != nullptr && i < size(); ++i) pieces[i / piece_points].add(source[i]);
+  }
+};
+
+}  // namespace clearance::scan
