@@ -83,7 +83,10 @@ void host_along_motion(report& out, const scenario& scene, std::size_t count, co
     out.begin("motion", scene.name, count, step);
     const double reference = clearance::min_distance(clearance::host{}, model, poses, placed).distance;
     out.row("distance", "m", reference);
-    if (quick) out.expect("brute force", brute_force(model, clearance::frames::cloud_frame(model.view().facts, poses, scene.world_from_cloud), placed.source), reference);
+    if (quick) {
+      const clearance::frames::cloud_frame frame(model.view().facts, poses, scene.world_from_cloud);
+      out.expect("brute force", brute_force(model, frame, placed.source), reference);
+    }
     std::vector<double> times;
     for (int pass = 0; pass < passes; ++pass) {
       double found = 0;

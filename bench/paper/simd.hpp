@@ -159,7 +159,9 @@ class wide_tree {
       alignas(32) real each[8];
       _mm256_store_ps(each, bounds);
       const std::uint32_t base = count;
-      for_lanes(within(bounds, reach), [&](int k) { clearance::near_first::push<Tree>(pending, base, count, {each[k], tree_.child(top.node, std::uint32_t(k))}); });
+      for_lanes(within(bounds, reach), [&](int k) {
+        clearance::near_first::push<Tree>(pending, base, count, {each[k], tree_.child(top.node, std::uint32_t(k))});
+      });
     }
   }
 
@@ -177,7 +179,8 @@ class wide_tree {
 
 /// Algorithm 1, eight points of the cloud at once.
 template <class PartView>
-real eight_points(const clearance::host& cpu, clearance::model_view<PartView> model, const clearance::frames::cloud_frame& frame, const clearance::point_span& cloud) {
+real eight_points(const clearance::host& cpu, clearance::model_view<PartView> model, const clearance::frames::cloud_frame& frame,
+                  const clearance::point_span& cloud) {
   shared_least best;
   cpu.for_ranges((cloud.size() + 7) / 8, [&](clearance::indices range) {
     for (std::size_t k = 0; k < model.size(); ++k)
