@@ -83,16 +83,9 @@ class min_distance_query<devices, PartView> {
       on_.wait_for_all();  // those that have begun read the caller's memory, and write into ours
       throw;
     }
-    min_distance_result all = in_whole(each_[0].answered(), 0), nearest = all;
-    for (std::size_t k = 1; k < n; ++k) {
-      const min_distance_result piece = in_whole(each_[k].answered(), k);
-      all = merge(all, piece);
-      if (minimum::nearer(piece, nearest)) nearest = piece;
-    }
-    // Without a solid nothing but the nearest pair decides whether a point is certainly inside. Another piece's nearest may be so,
-    // less deep, in a part with a smaller tolerance.
-    if constexpr (!scan::has_interior<PartView>)
-      if (all.state == state::collision && nearest.state != state::collision) all.state = state::possible, all.upper = nearest.upper;
+    minimum::whole<scan::has_interior<PartView>> pieces;
+    for (std::size_t k = 0; k < n; ++k) pieces.add(in_whole(each_[k].answered(), k));
+    min_distance_result all = pieces.result();
     all.seen = all.valid = seen;  // a device has numbered the points of all pieces
     for (const std::uint64_t dropped : all.dropped) all.valid -= dropped;
     return all;

@@ -63,4 +63,32 @@ CLEARANCE_HD Answer renumbered(Answer r, std::uint32_t cloud, std::uint32_t firs
   return r;
 }
 
+namespace minimum {
+
+/// Answers about pieces of the clouds of one call, each of all of them, in the numbers of the whole: they become that call's answer.
+/// `HasInterior`: the parts know a solid besides their primitives.
+template <bool HasInterior>
+class whole {
+ public:
+  void add(const min_distance_result& piece) {
+    all_ = first_ ? piece : merge(all_, piece);
+    nearest_ = first_ || nearer(piece, nearest_) ? piece : nearest_;
+    first_ = false;
+  }
+  min_distance_result result() const {
+    min_distance_result r = all_;
+    // Without a solid nothing but the nearest pair decides whether a point is certainly inside. Another piece's nearest may be so,
+    // less deep, in a part with a smaller tolerance.
+    if (!HasInterior && r.state == clearance::state::collision && nearest_.state != clearance::state::collision)
+      r.state = clearance::state::possible, r.upper = nearest_.upper;
+    return r;
+  }
+
+ private:
+  min_distance_result all_, nearest_;
+  bool first_ = true;
+};
+
+}  // namespace minimum
+
 }  // namespace clearance
