@@ -11,7 +11,7 @@ namespace clearance::minimum {
 
 template <>
 struct timed_on<device> {
-  static constexpr std::size_t piece = 1 << 20;
+  static constexpr std::size_t piece = 1 << 22;
   template <robot Robot, class Ask>
   static auto with_query(const device& on, const Robot& robot, const Ask& ask) {
     stream_resource memory(on.id, on.stream);

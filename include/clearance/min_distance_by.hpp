@@ -32,7 +32,7 @@ struct timed_on {
 };
 template <>
 struct timed_on<host> {
-  static constexpr std::size_t piece = 1 << 14;
+  static constexpr std::size_t piece = 1 << 18;
   template <robot Robot, class Ask>
   static auto with_query(const host& on, const Robot& robot, const Ask& ask) {
     min_distance_query query(on, robot);
