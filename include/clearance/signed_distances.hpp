@@ -41,7 +41,8 @@ distance_certainty enqueue_signed(const On& on, const Robot& robot, std::span<co
   static_assert(explain_clouds<Clouds>());
   const auto model = view_of(robot);
   using part_view = std::remove_const_t<std::remove_pointer_t<decltype(model.parts)>>;
-  static_assert(scan::has_interior<part_view>, "signed exact distances are to closed meshes: make the parts of closed_mesh; inner spheres are signed in `distances`");
+  static_assert(scan::has_interior<part_view>,
+                "signed exact distances are to closed meshes: make the parts of closed_mesh; inner spheres are signed in `distances`");
   if (!(d_max >= 0)) throw std::invalid_argument("clearance: d_max of signed distances is " + std::to_string(d_max) + " m; it must not be negative");
   if constexpr (requires { typename On::own_scan; }) minimum::check_stack<near_first>(model.depth, model.width);
   const distance_certainty certain = points_on<On>::once(on, model, poses, clouds, out, d_max, counts, here);

@@ -17,14 +17,16 @@ namespace {
 
 /// After every other number of pieces, and of all.
 template <class Model, class Clouds>
-void same_cuts(const Model& on_host, const std::vector<Eigen::Isometry3d>& poses, const Clouds& clouds, std::size_t piece, verdict& v, const std::string& what) {
+void same_cuts(const Model& on_host, const std::vector<Eigen::Isometry3d>& poses, const Clouds& clouds, std::size_t piece, verdict& v,
+               const std::string& what) {
   const device gpu;
   const auto model = on_host.on(gpu);
   min_distance_query query(gpu, model);
   min_distance_query expected(host{1}, on_host);
   for (std::size_t pieces = 0, unseen = 1; unseen != 0; pieces = 2 * pieces + 1) {
     const auto go_on = [pieces] { return [left = pieces]() mutable { return left-- > 0; }; };
-    const auto r = min_distance_while(query, poses, clouds, go_on(), {.piece = piece}), e = min_distance_while(expected, poses, clouds, go_on(), {.piece = piece});
+    const auto r = min_distance_while(query, poses, clouds, go_on(), {.piece = piece});
+    const auto e = min_distance_while(expected, poses, clouds, go_on(), {.piece = piece});
     v.require(same_result(r, e) && r.unseen == e.unseen, what, " after", pieces, " pieces");
     unseen = r.unseen;
   }
