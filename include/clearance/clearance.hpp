@@ -13,6 +13,7 @@
 #include <clearance/in_collision.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
+#include <clearance/min_distance_by.hpp>
 #include <clearance/min_distance_query.hpp>
 #include <clearance/min_distances.hpp>
 #include <clearance/min_support.hpp>
@@ -30,6 +31,7 @@
 #include <clearance/robot/model.hpp>
 #include <clearance/self_filter.hpp>
 #include <clearance/separation.hpp>
+#include <clearance/signed_distances.hpp>
 #include <clearance/solid/implicit.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/traversal/near_first.hpp>

@@ -36,6 +36,10 @@ class min_distance_query<host, PartView> {
     return result;
   }
 
+  /// Of the next frame alone nothing needs to be found that is farther than `within` metres. Without a pair that is not, its answer has
+  /// no witness, and the state `no_data`, whatever points there were. `per_part` is not for such a frame.
+  void bound_by(real within) { search_.bound_by(within); }
+
   /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
   void forget() { search_.forget(); }
 

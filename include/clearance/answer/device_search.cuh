@@ -41,6 +41,12 @@ class device_search {
   /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
   void forget() { launch_.forget(), forget_bounds(); }
 
+  /// Of the next frame alone, which must not be `PerPart`, nothing needs to be found that is farther than `within`. Enqueued.
+  void bound_by(real within) {
+    const std::uint32_t bound = ordered(within);
+    for (std::uint32_t group = 0; group < launch_.groups(); ++group) on_.stage(std::span(&bound, 1), state_.data()[group].bound);
+  }
+
   std::size_t parts() const { return facts_.size(); }
 
   /// Enqueues one frame; `minima`, one a part, are asked for by `PerPart`. `here(source, cloud)` is what the device can read of

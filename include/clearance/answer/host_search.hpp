@@ -5,6 +5,8 @@
 #include <clearance/backend/host.hpp>
 #include <clearance/traversal/any_depth.hpp>
 
+#include <utility>
+
 namespace clearance::minimum {
 
 /// The least distance on the CPU, frame after frame: memory and threads are kept, and where the last minima were is a first
@@ -18,6 +20,7 @@ class host_search {
   template <class Clouds>
   void operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result, part_minimum* minima = nullptr) {
     *result = {}, totals_ = {}, counts_ = {};
+    if (const real within = std::exchange(within_, infinity); within < infinity) totals_.best = make_key(within, none);
     part_best_.assign(minima == nullptr ? 0 : model_.size(), no_key);
     std::fill_n(minima, part_best_.size(), part_minimum{});
     const shared_bounds bounds{&totals_, minima == nullptr ? nullptr : part_best_.data()};
@@ -33,6 +36,9 @@ class host_search {
 
   /// Drops what is known of the last frame. The next one takes longer; its answer is the same.
   void forget() { last_.clear(); }
+
+  /// Of the next frame alone, which must not ask for minima, nothing needs to be found that is farther than `within`.
+  void bound_by(real within) { within_ = within; }
 
   std::size_t parts() const { return model_.size(); }
 
@@ -78,6 +84,7 @@ class host_search {
   scan::drop_counts counts_;
   std::vector<distance_key> part_best_;
   std::vector<seen_at> last_;
+  real within_ = infinity;
 };
 
 }  // namespace clearance::minimum

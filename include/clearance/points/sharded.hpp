@@ -65,8 +65,8 @@ template <point_source S>
 std::size_t first_of_piece(const S& cloud, std::size_t k, std::size_t n) {
   if constexpr (requires { cloud.piece(k); })
     return cloud.first(k);
-  else  // a multiple of four, so that points are read by fours; of one that fits, all are
-    return std::min<std::size_t>(cloud.size(), (cloud.size() + 3) / 4 * k / n * 4);
+  else
+    return first_of_slice(cloud.size(), k, n);
 }
 template <point_source S>
 auto piece_of(const S& cloud, std::size_t k, std::size_t n) {

@@ -4,6 +4,8 @@
 
 #include <clearance/concepts.hpp>
 
+#include <algorithm>
+
 namespace clearance {
 
 namespace detail {
@@ -93,5 +95,9 @@ CLEARANCE_HD auto slice(const S& source, std::size_t begin, std::size_t end) {
   else
     return sliced<S>(source, begin, end - begin);
 }
+
+/// Where slice k of `n` about equal ones of a cloud of so many points begins: at a multiple of four, so that points are read by fours;
+/// of one that fits, all are. The n-th begins where the points end.
+inline std::size_t first_of_slice(std::size_t points, std::size_t k, std::size_t n) { return std::min(points, (points + 3) / 4 * k / n * 4); }
 
 }  // namespace clearance

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Clouds of any kind, each become another.
+
+#include <clearance/frame/clouds.hpp>
+
+namespace clearance {
+
+namespace detail {
+
+/// What kind of clouds they become, and how. Of ranges:
+template <class T, class F>
+struct mapped {
+  using one = mapped<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>, F>;
+  using type = std::vector<typename one::type>;
+  static type of(const T& clouds, F& f) {
+    type all;
+    for (const auto& cloud : clouds) all.push_back(one::of(cloud, f));
+    return all;
+  }
+};
+template <point_source S, class F>
+struct mapped<S, F> {
+  using type = std::invoke_result_t<F&, const S&>;
+  static type of(const S& source, F& f) { return f(source); }
+};
+template <class T, class F>
+  requires(!point_source<T> && std::is_convertible_v<const T&, point_span>)
+struct mapped<T, F> : mapped<point_span, F> {};
+template <point_source S, class F>
+struct mapped<placed<S>, F> {
+  using type = placed<typename mapped<S, F>::type>;
+  static type of(const placed<S>& cloud, F& f) { return {f(cloud.source), cloud.pose}; }
+};
+template <class... T, class F>
+struct mapped<std::tuple<T...>, F> {
+  using type = std::tuple<typename mapped<T, F>::type...>;
+  static type of(const std::tuple<T...>& clouds, F& f) {
+    return std::apply([&](const T&... each) { return type{mapped<T, F>::of(each, f)...}; }, clouds);  // braces: from left to right
+  }
+};
+template <class... T, class F>
+struct mapped<std::variant<T...>, F> {
+  using type = std::variant<typename mapped<T, F>::type...>;
+  static type of(const std::variant<T...>& one, F& f) {
+    return std::visit([&]<class U>(const U& it) -> type { return mapped<U, F>::of(it, f); }, one);
+  }
+};
+
+}  // namespace detail
+
+/// The same clouds (any that a call takes), of each source `f(source)`, in their order. Views: what they are of must outlive them. `F` is
+/// no lambda, because its name becomes part of a kernel's.
+template <class Clouds, class F>
+auto mapped_clouds(const Clouds& clouds, F f) {
+  static_assert(explain_clouds<Clouds>());
+  return detail::mapped<Clouds, F>::of(clouds, f);
+}
+
+}  // namespace clearance

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// On a device every point's signed distance to closed meshes is the host's, and brute force's.
+#include "support/brute_signed.hpp"
+#include "support/product_device.cuh"
+
+#include <clearance/make_model.hpp>
+#include <clearance/signed_distances.cuh>
+#include <clearance/volume/aabb.hpp>
+
+using namespace testing;
+using clearance::device, clearance::host, clearance::placed, clearance::point_span, clearance::signed_distances;
+
+TEST_CASE("Signed distances on a device are those of all triangles, and the host's") {
+  verdict v;
+  const device gpu;
+  dice d(71);
+  for (unsigned round = 0; round < 2; ++round) {
+    const closed_parts parts = closed_scene(60 + round);
+    const auto model = clearance::make_model<clearance::aabb>(parts.meshes);
+    auto points = d.points(2000, 0.7), crowd = d.points(40000, 0.6);
+    for (std::size_t k = 3; k < points.size(); k += 11) points[k].y = clearance::not_a_number;
+    const placed cloud{point_span(points), d.pose(0.1)}, more{point_span(crowd), d.pose(0.1)};
+    for (const real d_max : {real(0), real(0.1), clearance::infinity}) {
+      const std::string what = "round " + std::to_string(round) + ", d_max " + std::to_string(d_max);
+      require_same(signed_distances(gpu, model.on(gpu), parts.poses, cloud, {d_max, true}), brute_signed(parts, cloud.source, cloud.pose, d_max), v, what);
+      const auto two = std::vector{cloud, more};
+      require_same(signed_distances(gpu, model.on(gpu), parts.poses, two, {d_max, true}), signed_distances(host{}, model, parts.poses, two, {d_max, true}), v,
+                   what + ", a crowd");
+    }
+  }
+}
