@@ -10,7 +10,7 @@ namespace bench {
 
 using clearance::check_cuda;
 
-/// Keeps the device busy for 30 us: longer than the host takes to enqueue a frame and two events.
+/// Keeps the device busy for 200 us: longer than the host takes to enqueue a frame and two events.
 template <bool Dummy = true>
 __global__ void spin_kernel() {
   const auto now = [] {
@@ -19,7 +19,7 @@ __global__ void spin_kernel() {
     return ns;
   };
   const unsigned long long start = now();
-  while (now() - start < 30000) {}
+  while (now() - start < 200000) {}
 }
 
 template <bool Dummy = true>

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Questions about pairs on a GPU, the points resident there: zones, the points within a distance, and whether there is one; beside
-// them every part's minimum. CUDA events, behind other work.
+// Questions about pairs on a GPU, the points resident there: zones, the points within a distance, whether there is one, and which are the
+// robot's own; beside them every part's minimum. *close*: the camera before the robot. CUDA events, behind other work.
 #include "device.cuh"
 
 #include <clearance/in_collision.cuh>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/self_filter.cuh>
 #include <clearance/volume/sphere.hpp>
 #include <clearance/within.cuh>
 #include <clearance/zones.cuh>
@@ -29,9 +30,9 @@ struct question {
   clearance::device_buffer<std::uint32_t> first_point = gpu.copy_in(std::span<const std::uint32_t>(std::vector<std::uint32_t>{0}));
   device_clock clock{true};
 
-  explicit question(const benchmark::State& state)
+  explicit question(const benchmark::State& state, bool close = false)
       : points(gpu.copy_in(std::span<const vec3>(repeated(s.cloud, std::size_t(state.range(0)))))),
-        cloud{clearance::point_span(points.data(), points.size()), s.world_from_camera} {}
+        cloud{clearance::point_span(points.data(), points.size()), close ? close_camera() : s.world_from_camera} {}
 
   template <class T>
   clearance::device_buffer<T> of_parts(std::size_t each, const std::vector<T>& values) const {
@@ -55,21 +56,21 @@ struct question {
   }
 };
 
-void zones(benchmark::State& state) {
+void zones(benchmark::State& state, bool close) {
   if (no_device(state)) return;
-  question q(state);
+  question q(state, close);
   const auto reaches = q.of_parts<float>(3, {0.1f, 0.2f, 0.4f});
-  const std::vector<pairwise::zone_words> fresh(reaches.size());
+  const std::vector<pairwise::zone_words> fresh(pairwise::count_in_zones::copies * reaches.size());
   const auto words = q.gpu.copy_in(std::span<const pairwise::zone_words>(fresh));
-  q.ask(state, pairwise::count_in_zones{words.data(), reaches.data(), q.first_point.data(), 3}, words, fresh);
-  double points = 0;
-  for (const auto& w : q.gpu.copy_out(words)) points += double(w.points);
-  state.counters["points"] = points;
+  q.ask(state, pairwise::count_in_zones{words.data(), reaches.data(), q.first_point.data(), 3, std::uint32_t(reaches.size())}, words, fresh);
+  double pairs = 0;
+  for (const auto& w : q.gpu.copy_out(words)) pairs += double(w.points);
+  state.counters["pairs"] = pairs;
 }
 
-void within(benchmark::State& state, float radius) {
+void within(benchmark::State& state, float radius, bool close) {
   if (no_device(state)) return;
-  question q(state);
+  question q(state, close);
   const auto reaches = q.of_parts<float>(1, {radius});
   const std::vector<unsigned long long> fresh(1);
   const auto count = q.gpu.copy_in(std::span<const unsigned long long>(fresh));
@@ -99,13 +100,46 @@ void every_part(benchmark::State& state) {
   for (auto _ : state) state.SetIterationTime(q.clock.seconds(frame));
 }
 
+/// Which points are the robot's own; and then, behind that, every other one's least distance.
+void own(benchmark::State& state, bool minimum) {
+  if (no_device(state)) return;
+  question q(state, true);
+  clearance::min_distance_query query(q.gpu, q.model);
+  const clearance::device_buffer<clearance::point_label> labels(q.points.size(), q.gpu.id);
+  const clearance::device_buffer<clearance::self_filter_counts> counts(1, q.gpu.id);
+  const clearance::device_buffer<clearance::min_distance_result> result(1, q.gpu.id);
+  const auto rest = clearance::masked_clouds(q.cloud, labels.data());
+  const auto frame = [&] {
+    clearance::self_filter_async(q.gpu, q.model, q.s.poses, q.cloud, {.padding = {0.05}}, labels.data(), counts.data());
+    if (minimum) query.enqueue(q.s.poses, rest, result.data());
+  };
+  frame();
+  for (auto _ : state) state.SetIterationTime(q.clock.seconds(frame));
+  state.counters["own"] = double(q.gpu.copy_out(counts)[0].own);
+}
+
+void one_minimum(benchmark::State& state) {
+  if (no_device(state)) return;
+  question q(state, true);
+  clearance::min_distance_query query(q.gpu, q.model);
+  const clearance::device_buffer<clearance::min_distance_result> result(1, q.gpu.id);
+  const auto frame = [&] { query.enqueue(q.s.poses, q.cloud, result.data()); };
+  frame();
+  for (auto _ : state) state.SetIterationTime(q.clock.seconds(frame));
+}
+
 #define TIMES ->Arg(307200)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(50)
 BENCHMARK(every_part) TIMES;
-BENCHMARK(zones) TIMES;
-BENCHMARK_CAPTURE(within, 10cm, 0.1f) TIMES;
-BENCHMARK_CAPTURE(within, 15cm, 0.15f) TIMES;
+BENCHMARK(one_minimum) TIMES;
+BENCHMARK_CAPTURE(zones, of_10_20_40cm, false) TIMES;
+BENCHMARK_CAPTURE(zones, close, true) TIMES;
+BENCHMARK_CAPTURE(within, 10cm, 0.1f, false) TIMES;
+BENCHMARK_CAPTURE(within, 15cm, 0.15f, false) TIMES;
+BENCHMARK_CAPTURE(within, 10cm_close, 0.1f, true) TIMES;
 BENCHMARK_CAPTURE(in_collision, within_5cm, 0.05f) TIMES;
 BENCHMARK_CAPTURE(in_collision, within_10cm, 0.1f) TIMES;
+BENCHMARK_CAPTURE(own, labels, false) TIMES;
+BENCHMARK_CAPTURE(own, labels_then_minimum, true) TIMES;
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 
 #include <clearance/answer/pairwise.hpp>
 #include <clearance/answer/search_on.hpp>
+#include <clearance/backend/staged.hpp>
 #include <clearance/scan/plain_pass.hpp>
 
 namespace clearance {
@@ -18,7 +19,8 @@ struct pairs_on {
   template <class PartView, class Clouds, answer Answer, class Here>
   static void once(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
                    point_counts* counts, const Here& here) {
-    const auto of_cloud = [&](const auto&, const frames::turn& now) { return each_pair<Answer>{answer, now.cloud, now.first}; };
+    auto least = staged(on, std::vector<std::uint32_t>(coarse_answer<Answer> ? model.size() : 0, ordered(infinity)));
+    const auto of_cloud = [&](const auto&, const frames::turn& now) { return each_pair<Answer>{answer, now.cloud, now.first, least.data()}; };
     scan::plain_pass(on, model, poses, clouds, of_cloud, counts, here);
   }
 };

@@ -31,13 +31,11 @@ concept primitive = std::is_trivially_copyable_v<P> && requires(const P p, vec3 
 
 /// A primitive that also says whether it may be as near as `reach`, more cheaply than by its distance, and without a branch: a host
 /// asks so for many points at once, in vectors.
-///
 /// Law: `p.may_reach(q, reach)` is true if `p.distance(q) <= reach`.
 template <class P>
 concept foreseen_primitive = primitive<P> && requires(const P p, vec3 q, real reach) { { p.may_reach(q, reach) } -> std::same_as<bool>; };
 
 /// A primitive that tells quickly how near it can be at most.
-///
 /// Law: `p.lower_bound(q)` is never greater than `p.distance(q)`, rounding included.
 template <class P>
 concept bounded_primitive = primitive<P> && requires(const P p, vec3 q) { { p.lower_bound(q) } -> std::same_as<real>; };
@@ -240,16 +238,21 @@ concept answer = std::is_trivially_copyable_v<A> && requires(const A a, std::uin
 };
 
 /// An answer that can do without some pairs: those are not looked at any further.
-///
 /// Law: `settled(cloud, point, part)` means that `take` of that pair would change nothing; once true it stays so while a scan runs.
 template <class A>
 concept settling_answer = answer<A> && requires(const A a, std::uint32_t n) { { a.settled(n, n, n) } -> std::same_as<bool>; };
 
 /// A settling answer that tells when all later points are settled, too: a host then only counts them.
-///
 /// Law: `ended(cloud, point)` means that every pair of that point, and of those after it in that cloud, is settled.
 template <class A>
 concept ending_answer = settling_answer<A> && requires(const A a, std::uint32_t n) { { a.ended(n, n) } -> std::same_as<bool>; };
+
+/// An answer that need not know how near a pair is, but only in which range of distances: a walk may then stop early.
+/// Law: `reach(part, found, nearest)` is how near another primitive must be for a pair still to matter, once one is `found` away and some
+///      pair of the part no farther than `nearest`; it never grows as those fall. `take` gets such a pair with a primitive that may not be
+///      its nearest, if no nearer one is within that reach.
+template <class A>
+concept coarse_answer = answer<A> && requires(const A a, std::uint32_t part, real d) { { a.reach(part, d, d) } -> std::same_as<real>; };
 
 /// `answer<A>` with reasons.
 template <class A>

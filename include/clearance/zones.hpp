@@ -45,17 +45,17 @@ namespace detail {
 
 /// From what a scan keeps of a zone to what is told of it.
 struct tell_zone {
-  const pairwise::zone_words* words;
-  const std::uint32_t* first;
+  pairwise::count_in_zones counted;
   std::uint32_t clouds;
   zone* zones;
 
   CLEARANCE_HD void operator()(std::size_t i) const {
-    const pairwise::zone_words& w = words[i];
+    const pairwise::zone_words w = counted.joined(i);
+    const std::uint32_t* const first = counted.first_point;
     zone z;
     z.points = w.points;
     if (w.points != 0) {
-      const auto nearest = pairwise::place_of(key_index(w.nearest), first, clouds), lowest = pairwise::place_of(std::uint32_t(w.first), first, clouds);
+      const auto nearest = pairwise::place_of(key_index(w.nearest), first, clouds), lowest = pairwise::place_of(w.first, first, clouds);
       z.nearest = key_distance(w.nearest), z.nearest_cloud = nearest.cloud, z.nearest_point = nearest.point;
       z.first_cloud = lowest.cloud, z.first_point = lowest.point;
     }
@@ -86,11 +86,13 @@ std::size_t enqueue_zones(const On& on, const Robot& robot, std::span<const Eige
   std::vector<real> reaches;
   for (std::size_t k = 0; k < parts; ++k)
     add_reaches(std::span(options.thresholds).subspan(options.each_part ? k * per_part : 0, per_part), model.facts[k], error, reaches);
-  auto words = staged(on, std::vector<pairwise::zone_words>(reaches.size()));
+  auto words = on.template make_scratch<pairwise::zone_words>(pairwise::count_in_zones::copies * reaches.size());
+  on.for_each(pairwise::count_in_zones::copies * reaches.size(), pairwise::empty_zones{words.data()});
   auto near = staged(on, reaches);
   auto start = staged(on, first);
-  pairwise::pairs_on<On>::once(on, model, poses, clouds, pairwise::count_in_zones{words.data(), near.data(), start.data(), std::uint32_t(per_part)}, counts, here);
-  on.for_each(reaches.size(), tell_zone{words.data(), start.data(), std::uint32_t(first.size()), zones});
+  const pairwise::count_in_zones counted{words.data(), near.data(), start.data(), std::uint32_t(per_part), std::uint32_t(reaches.size())};
+  pairwise::pairs_on<On>::once(on, model, poses, clouds, counted, counts, here);
+  on.for_each(reaches.size(), tell_zone{counted, std::uint32_t(first.size()), zones});
   return per_part;
 }
 

@@ -4,6 +4,7 @@
 #include "support/product_device.cuh"
 
 #include <clearance/make_model.hpp>
+#include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 #include <clearance/zones.cuh>
 
@@ -30,4 +31,21 @@ TEST_CASE("Crowds in zones are counted one by one") {
   const auto found = zones(gpu, model.on(gpu), s.poses, point_span(s.points), options);
   require_same(found, zones(host{}, model, s.poses, point_span(s.points), options), v, "crowd");
   CHECK(found.of(0, 2).points > 10000);
+}
+
+TEST_CASE("Crowds in and around solids are counted one by one") {
+  verdict v;
+  const device gpu;
+  dice d(102);
+  clearance::triangle_mesh m;
+  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const auto box = [&] { return clearance::make_part<clearance::aabb>(clearance::close_mesh(m)); };
+  const clearance::model boxes{std::vector{box(), box()}};
+  const std::vector poses{d.pose(0.5), d.pose(0.5)};
+  const auto crowd = d.points(300000, 2);
+  const clearance::zones_options options{.thresholds = {0, 0.05, 0.5}};
+  const auto found = zones(gpu, boxes.on(gpu), poses, point_span(crowd), options);
+  require_same(found, zones(host{}, boxes, poses, point_span(crowd), options), v, "boxes");
+  CHECK((found.of(0, 0).points > 10000 && found.of(0, 1).points > found.of(0, 0).points));
 }

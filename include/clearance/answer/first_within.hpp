@@ -18,6 +18,7 @@ struct first_within {
     return (static_cast<unsigned long long>(first_point[cloud]) + point) << 31 | part;
   }
   CLEARANCE_HD real reach(std::uint32_t part) const { return may_be[part]; }
+  CLEARANCE_HD real reach(std::uint32_t part, real found, real) const { return found <= is[part] ? -infinity : is[part]; }
   CLEARANCE_HD bool settled(std::uint32_t cloud, std::uint32_t point, std::uint32_t part) const {
     return load_relaxed(word) < key(cloud, point, part);  // what is not certain is greater than any key
   }
@@ -27,6 +28,6 @@ struct first_within {
     if (mine < load_relaxed(word)) lower_to(word, mine);
   }
 };
-static_assert(ending_answer<first_within>);
+static_assert(ending_answer<first_within> && coarse_answer<first_within>);
 
 }  // namespace clearance::pairwise

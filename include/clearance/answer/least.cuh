@@ -22,7 +22,7 @@ struct least {
   using scan_type = scan::by_pairs;
   using block = scan::pair_memory<least>;
   using seeds = last_frame<least>;
-  static constexpr bool bound_per_part = PerPart;
+  static constexpr bool bound_per_part = PerPart, goes_ahead = false;
   static constexpr std::uint32_t slots = PerPart ? scan::most_parts : 1;
   /// 73 nodes (three levels) of each of eight sphere trees; as much as leaves room for two blocks on a processor of an H200.
   static constexpr std::size_t top_bytes = PerPart ? 10000 : 14016;
@@ -71,7 +71,7 @@ struct least {
   static __device__ bool settled(const block& s, std::uint32_t part, std::uint32_t point) {
     return scan::fresh(s.answer.least[slot(part)]) < make_key(0, point) && load_relaxed(&s.head.answer.state->certain) != 0;
   }
-  static constexpr __device__ bool skips(const block&, std::uint32_t, std::uint32_t) { return false; }
+  static constexpr __device__ bool skips(const block&, std::uint32_t, std::uint32_t, std::uint32_t, vec3) { return false; }
   static __device__ void take_inside(block& s, std::uint32_t part, std::uint32_t point, std::uint32_t) {
     lower(s, part, 0);
     atomicMin(&s.answer.least[slot(part)], make_key(0, point));

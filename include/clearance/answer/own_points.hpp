@@ -23,6 +23,7 @@ struct own_points {
   const std::uint32_t* first_point;  ///< Of each cloud.
 
   CLEARANCE_HD real reach(std::uint32_t part) const { return may_be[part]; }
+  CLEARANCE_HD real reach(std::uint32_t part, real found, real) const { return found <= is[part] ? -infinity : is[part]; }
   CLEARANCE_HD bool settled(std::uint32_t cloud, std::uint32_t point, std::uint32_t) const {
     const std::uint32_t number = first_point[cloud] + point;
     return (load_relaxed(own + number / 32) >> number % 32 & 1) != 0;
@@ -32,7 +33,7 @@ struct own_points {
     set_bits((pair.distance <= is[pair.part] ? own : perhaps) + number / 32, 1u << number % 32);
   }
 };
-static_assert(settling_answer<own_points>);
+static_assert(settling_answer<own_points> && coarse_answer<own_points>);
 
 /// Before: nothing is anybody's.
 struct clear_own_points {

@@ -18,7 +18,8 @@ struct pairs_of {
   using scan_type = scan::by_pairs;
   using block = scan::pair_memory<pairs_of>;
   static constexpr bool bound_per_part = true;
-  static constexpr std::size_t top_bytes = 7000;  ///< Leaves room for two blocks on a processor of an H200.
+  static constexpr bool coarse = coarse_answer<Answer>, goes_ahead = true;
+  static constexpr std::size_t top_bytes = 6400;  ///< Leaves room for two blocks on a processor of an H200.
 
   struct arguments {
     Answer answer;
@@ -26,9 +27,11 @@ struct pairs_of {
     point_counts* counts;      ///< Or null.
   };
   struct memory {
-    distance_key best[scan::pair_capacity];  ///< Of each pair that is being looked at: its distance and primitive.
+    distance_key best[scan::pair_capacity];              ///< Of each pair that is being looked at: its distance and primitive.
+    std::uint32_t least[coarse ? scan::most_parts : 1];  ///< Of each part, `ordered`: the least distance that this block knows of.
 
     __device__ void clear(std::uint32_t thread) {
+      if (coarse && thread < scan::most_parts) least[thread] = scan::no_bound;
       for (std::uint32_t i = thread; i < scan::pair_capacity; i += scan::block_threads) best[i] = no_key;
     }
   };
@@ -37,22 +40,38 @@ struct pairs_of {
     return s.head.answer.answer.reach(s.head.answer.first_part + part);
   }
   static __device__ real reach_of_pair(const block& s, std::uint32_t part, std::uint32_t pair) {
-    return min(reach_of_part(s, part, 0), key_distance(scan::fresh(s.answer.best[pair])));
+    const distance_key best = scan::fresh(s.answer.best[pair]);
+    if constexpr (coarse) {
+      if (best == no_key) return reach_of_part(s, part, 0);
+      return s.head.answer.answer.reach(s.head.answer.first_part + part, key_distance(best), from_ordered(scan::fresh(s.answer.least[part])));
+    } else {
+      return min(reach_of_part(s, part, 0), key_distance(best));
+    }
   }
   static __device__ std::uint32_t common_bound(const block&) { return 0; }
 
   static __device__ bool settled(const block&, std::uint32_t, std::uint32_t) { return false; }
-  static __device__ bool skips(const block& s, std::uint32_t part, std::uint32_t point) {
-    if constexpr (settling_answer<Answer>) return s.head.answer.answer.settled(s.head.cloud, point - s.head.first, s.head.answer.first_part + part);
-    return false;
+  /// Nothing that is left of the part matters to the pair; `x` is its point in the cloud's frame. In a solid it is 0 away.
+  static __device__ bool skips(const block& s, std::uint32_t part, std::uint32_t point, std::uint32_t pair, vec3 x) {
+    if constexpr (settling_answer<Answer>)
+      if (s.head.answer.answer.settled(s.head.cloud, point - s.head.first, s.head.answer.first_part + part)) return true;
+    if (!coarse || scan::fresh(s.answer.best[pair]) == no_key) return false;
+    const real reach = reach_of_pair(s, part, pair);
+    return !frames::may_reach(scan::frame_parts<pairs_of>::place(part).root.around, scan::has_interior<PartView> ? max(reach, 0) : reach, x);
   }
   static __device__ void take_inside(block& s, std::uint32_t part, std::uint32_t, std::uint32_t pair) {
-    if (reach_of_part(s, part, 0) >= 0) s.answer.best[pair] = make_key(0, none);
+    if (reach_of_part(s, part, 0) >= 0) hear(s, part, pair, make_key(0, none));
   }
   static __device__ bool wants_certain(const block&) { return false; }
   static __device__ void take_certain(block&) {}
   static __device__ void take(block& s, const record& r, const primitive_type&, std::uint32_t pair) {
-    if (r.key != no_key) atomicMin(&s.answer.best[pair], make_key(key_distance(r.key), r.id));
+    if (r.key != no_key) hear(s, r.part, pair, make_key(key_distance(r.key), r.id));
+  }
+  /// A primitive of a pair.
+  static __device__ void hear(block& s, std::uint32_t part, std::uint32_t pair, distance_key found) {
+    atomicMin(&s.answer.best[pair], found);
+    if constexpr (coarse)
+      if (const std::uint32_t distance = ordered(key_distance(found)); distance < scan::fresh(s.answer.least[part])) atomicMin(&s.answer.least[part], distance);
   }
   /// All threads, when the block has nothing left to walk.
   static __device__ void drained(block& s, std::uint32_t count) {

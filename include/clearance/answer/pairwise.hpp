@@ -2,16 +2,40 @@
 #pragma once
 // Answers that want every pair, once.
 
+#include <clearance/ground/ordered.hpp>
 #include <clearance/result.hpp>
 #include <clearance/visitor/nearest.hpp>
 
 namespace clearance::pairwise {
+
+/// A visitor for an answer that need not know the nearest.
+template <coarse_answer Answer>
+struct near_enough {
+  using result_type = nearest::result_type;
+
+  Answer answer;
+  std::uint32_t part;
+  std::uint32_t* least;  ///< The least distance of any pair of the part that is known of, `ordered`.
+  nearest found;
+  real within = found.within;
+
+  CLEARANCE_HD real reach() const { return within; }
+  CLEARANCE_HD void offer(std::uint32_t id, real distance) {
+    if (!(distance <= within)) return;
+    found.offer(id, distance);
+    const std::uint32_t u = ordered(found.within), known = load_relaxed(least);
+    if (u < known) lower_word(least, u);
+    within = answer.reach(part, found.within, from_ordered(u < known ? u : known));
+  }
+  CLEARANCE_HD result_type result() const { return found.result(); }
+};
 
 /// As an answer of `scan_body`.
 template <answer Answer>
 struct each_pair {
   Answer answer;
   std::uint32_t cloud, first;
+  std::uint32_t* least;  ///< Of each part, for an answer that asks for it.
 
   CLEARANCE_HD real reach(std::uint32_t k) const { return answer.reach(k); }
   CLEARANCE_HD real reach_of_pair(std::uint32_t index, std::uint32_t k) const {
@@ -30,9 +54,15 @@ struct each_pair {
     return false;
   }
   CLEARANCE_HD void take_certain() const {}
-  CLEARANCE_HD nearest visitor(std::uint32_t, std::uint32_t k) const { return {answer.reach(k)}; }
-  CLEARANCE_HD void take(std::uint32_t index, std::uint32_t k, const nearest& found) const {
-    if (found.best != none) answer.take({cloud, index - first, k, found.best, found.within});
+  CLEARANCE_HD auto visitor(std::uint32_t, std::uint32_t k) const {
+    if constexpr (coarse_answer<Answer>)
+      return near_enough<Answer>{answer, k, least + k, {answer.reach(k)}};
+    else
+      return nearest{answer.reach(k)};
+  }
+  template <class Visitor>
+  CLEARANCE_HD void take(std::uint32_t index, std::uint32_t k, const Visitor& walked) const {
+    if (const auto found = walked.result(); found.primitive != none) answer.take({cloud, index - first, k, found.primitive, found.distance});
   }
 };
 

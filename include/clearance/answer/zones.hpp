@@ -3,35 +3,74 @@
 // How many points are in zones around parts, as an answer that gets pairs.
 
 #include <clearance/frame/clouds.hpp>
-#include <clearance/result.hpp>
 #include <clearance/ground/ordered.hpp>
+#include <clearance/result.hpp>
 
 namespace clearance::pairwise {
 
-/// What a scan keeps of one zone of one part. Points are numbered through all clouds.
+/// What a scan keeps of one zone of one part, less what is in the zones inside it. Points are numbered through all clouds.
 struct zone_words {
   unsigned long long points = 0;
-  distance_key nearest = no_key;     ///< (distance, point)
-  unsigned long long first = ~0ull;  ///< The lowest point.
+  distance_key nearest = no_key;  ///< (distance, point)
+  std::uint32_t first = ~0u;      ///< The lowest point.
 };
 
-/// The answer: zones of each part, the innermost first.
+/// The answer: zones of each part, the innermost first. A point is put into the innermost zone that it is in; how far away it is
+/// matters no more than that, unless it may be the nearest.
 struct count_in_zones {
-  zone_words* words;                 ///< `zones` a part.
-  const real* reaches;               ///< As many: how near a point must be to be counted.
+  static constexpr std::uint32_t copies = 8;  ///< Of all words, to be joined in the end: else threads would wait for one another.
+
+  zone_words* words;                 ///< `zones` a part, `total` in a copy.
+  const real* reaches;               ///< `zones` a part: how near a point must be to be counted.
   const std::uint32_t* first_point;  ///< Of each cloud.
-  std::uint32_t zones;
+  std::uint32_t zones, total;
 
   CLEARANCE_HD real reach(std::uint32_t part) const { return zones == 0 ? -infinity : reaches[part * zones + zones - 1]; }
-  CLEARANCE_HD void take(const pair_distance& pair) const {
-    const std::uint32_t number = first_point[pair.cloud] + pair.point;
-    for (std::uint32_t z = zones; z-- > 0 && pair.distance <= reaches[pair.part * zones + z];) {
-      zone_words& zone = words[pair.part * zones + z];
-      add_one(&zone.points);
-      if (const distance_key key = make_key(pair.distance, number); key < load_relaxed(&zone.nearest)) lower_to(&zone.nearest, key);
-      if (number < load_relaxed(&zone.first)) lower_to(&zone.first, number);
-    }
+  CLEARANCE_HD real reach(std::uint32_t part, real found, real nearest) const {
+    const std::uint32_t z = innermost(part, found);
+    return max(z == 0 ? -infinity : reaches[part * zones + z - 1], min(found, nearest));
   }
+  CLEARANCE_HD void take(const pair_distance& pair) const {
+    const std::uint32_t z = innermost(pair.part, pair.distance), number = first_point[pair.cloud] + pair.point;
+    if (z == zones) return;
+    zone_words& zone = words[copy_for(number) * total + pair.part * zones + z];
+    add_one(&zone.points);
+    if (const distance_key key = make_key(pair.distance, number); key < load_relaxed(&zone.nearest)) lower_to(&zone.nearest, key);
+    if (number < load_relaxed(&zone.first)) lower_word(&zone.first, number);
+  }
+
+  /// Zone `i` of all, from all copies, with the zones inside it.
+  CLEARANCE_HD zone_words joined(std::size_t i) const {
+    zone_words all;
+    for (std::uint32_t c = 0; c < copies; ++c)
+      for (std::size_t k = i - i % zones; k <= i; ++k) {
+        const zone_words& w = words[c * total + k];
+        all = {all.points + w.points, w.nearest < all.nearest ? w.nearest : all.nearest, w.first < all.first ? w.first : all.first};
+      }
+    return all;
+  }
+
+ private:
+  CLEARANCE_HD static std::uint32_t copy_for([[maybe_unused]] std::uint32_t number) {
+#if defined(__CUDA_ARCH__)
+    return blockIdx.x % copies;
+#else
+    return number / 1024 % copies;
+#endif
+  }
+  /// The innermost zone with a point so far away, or `zones`.
+  CLEARANCE_HD std::uint32_t innermost(std::uint32_t part, real distance) const {
+    std::uint32_t z = zones;
+    while (z > 0 && distance <= reaches[part * zones + z - 1]) --z;
+    return z;
+  }
+};
+static_assert(coarse_answer<count_in_zones>);
+
+/// Before: nothing is in any.
+struct empty_zones {
+  zone_words* words;
+  CLEARANCE_HD void operator()(std::size_t i) const { words[i] = {}; }
 };
 
 }  // namespace clearance::pairwise

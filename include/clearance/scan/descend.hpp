@@ -40,10 +40,10 @@ struct plain_steps {
   CLEARANCE_HD real distance(node_type n, std::uint32_t j, vec3 q) const { return tree.primitive(n, j).distance(q); }
 };
 
-/// From the root always to the child whose volume is nearest: the distance to what is in the leaf, or to this one's share of
-/// it if a team goes down together. Infinite if not `live`, or if that leads nowhere.
+/// From the root always to the child whose volume is nearest: a leaf; `live` becomes false if that leads nowhere. Those that are not
+/// `live` go along.
 template <class Steps, class Team = alone>
-CLEARANCE_HD real descend(const Steps& steps, vec3 q, bool live = true, const Team& team = {}) {
+CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, bool& live, const Team& team = {}) {
   using traits = bounding_volume_traits<typename Steps::volume_type>;
   typename Steps::node_type n{};
   if (live) n = steps.root();
@@ -65,6 +65,13 @@ CLEARANCE_HD real descend(const Steps& steps, vec3 q, bool live = true, const Te
       inner = live && !steps.is_leaf(n);
     }
   }
+  return n;
+}
+
+/// The distance to what is in that leaf, or to this one's share of it if a team goes down together; infinite if there is none.
+template <class Steps, class Team = alone>
+CLEARANCE_HD real descend(const Steps& steps, vec3 q, bool live = true, const Team& team = {}) {
+  const typename Steps::node_type n = nearest_leaf(steps, q, live, team);
   real d = infinity;
   const std::uint32_t size = live ? steps.size(n) : 0;
   CLEARANCE_ROLLED
