@@ -61,7 +61,8 @@ TEST_CASE("A cloud in chunks has the answer of the whole on a device: all scenes
 TEST_CASE("From pageable, pinned and device memory, and from a reader that may fail; chunks that do not divide") {
   verdict v;
   dice d(3);
-  const auto robot = clearance::make_model<clearance::sphere>(std::vector{random_primitives<inner_sphere>(d, 50, 0.3, 0.1), random_primitives<inner_sphere>(d, 30, 0.2, 0.1)});
+  const auto robot = clearance::make_model<clearance::sphere>(
+      std::vector{random_primitives<inner_sphere>(d, 50, 0.3, 0.1), random_primitives<inner_sphere>(d, 30, 0.2, 0.1)});
   const std::vector<Eigen::Isometry3d> poses = {shifted(0, 0, 0), shifted(0.5, 0, 0)};
   for (const std::size_t n : {0, 1, 4095, 4096, 4097, 300001}) {
     const auto cloud = wall(n);
