@@ -42,7 +42,8 @@ void same_bits(benchmark::State& state, const clearance::min_distance_result& r)
   static std::map<std::int64_t, clearance::min_distance_result> known;
   const scene& s = the_scene();
   const auto at = known.find(state.range(0));
-  const auto e = at != known.end() ? at->second : clearance::min_distance(host{}, robot(), s.poses, point_span(cloud(std::size_t(state.range(0)))), s.world_from_camera);
+  const auto e = at != known.end() ? at->second
+                                   : clearance::min_distance(host{}, robot(), s.poses, point_span(cloud(std::size_t(state.range(0)))), s.world_from_camera);
   known[state.range(0)] = e;
   const auto equal = [](const auto& a, const auto& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
   if (!(r.state == e.state && equal(r.distance, e.distance) && equal(r.lower, e.lower) && equal(r.upper, e.upper) && r.cloud == e.cloud && r.point == e.point &&

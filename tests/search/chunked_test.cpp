@@ -13,7 +13,7 @@
 #include <cstring>
 
 using namespace testing;
-using clearance::chunked, clearance::host, clearance::in_memory, clearance::min_distance, clearance::min_distance_per_part, clearance::part_minimum,
+using clearance::chunked, clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::part_minimum,
     clearance::placed, clearance::point_span, clearance::read_records;
 
 namespace {
@@ -60,9 +60,9 @@ TEST_CASE("A cloud in chunks has the answer of the whole: all scenes, spheres fr
   for (const auto& s : scenes<inner_sphere>()) {
     const sources<inner_sphere> all(s);
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
-    chunked points(in_memory{all.span}, 1);
+    chunked points(all.span, 1);
     ask_often(model, s.poses, points, all.span, s.cloud_pose, v, s.name + ", points");
-    chunked image(in_memory{all.raw});
+    chunked image(all.raw);
     ask_often(model, s.poses, image, all.raw, all.camera_pose, v, s.name + ", image");
   }
 }
@@ -80,7 +80,7 @@ TEST_CASE("Chunks that do not divide the cloud are the cloud, before spheres and
     const auto cloud = wall(n);
     for (const std::size_t chunk : {1, 8192, 1 << 20}) {
       const std::string what = std::to_string(n) + " in chunks of " + std::to_string(chunk);
-      chunked first(in_memory{point_span(cloud)}, chunk), second = first;
+      chunked first(point_span(cloud), chunk), second = first;
       ask_often(spheres, arm_poses, first, point_span(cloud), shifted(0.1, 0, 0), v, what);
       ask_often(solid, arm_poses, second, point_span(cloud), shifted(0.1, 0, 0), v, what + ", solid");
     }
@@ -119,7 +119,7 @@ TEST_CASE("Records that are read have the answer of those in memory, and a failu
 TEST_CASE("The second question about a cloud reads what can matter") {
   const auto cloud = wall(400000);
   const auto model = arm();
-  chunked in_chunks(in_memory{point_span(cloud)}, 16384);
+  chunked in_chunks(point_span(cloud), 16384);
   clearance::chunked_query query(host{}, model);
   query(arm_poses, in_chunks);
   CHECK(query.loaded() == cloud.size());
@@ -139,7 +139,7 @@ TEST_CASE("More points than numbers are refused, and so are poses that are none"
                     "clearance: a cloud of 4294967295 points; one has at most 2^32 - 2");
   const auto cloud = wall(9000);
   const auto model = arm();
-  chunked in_chunks(in_memory{point_span(cloud)});
+  chunked in_chunks{point_span(cloud)};
   clearance::chunked_query query(host{}, model);
   for (int round = 0; round < 2; ++round) {
     CHECK_THROWS_AS(query({arm_poses.data(), 1}, in_chunks), std::invalid_argument);

@@ -10,7 +10,7 @@
 #include <cstring>
 
 using namespace testing;
-using clearance::chunked, clearance::device, clearance::host, clearance::in_memory, clearance::min_distance, clearance::part_minimum, clearance::placed,
+using clearance::chunked, clearance::device, clearance::host, clearance::min_distance, clearance::part_minimum, clearance::placed,
     clearance::point_span;
 
 namespace {
@@ -51,9 +51,9 @@ TEST_CASE("A cloud in chunks has the answer of the whole on a device: all scenes
   for (const auto& s : scenes<inner_sphere>()) {
     const sources<inner_sphere> all(s);
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
-    chunked points(in_memory{all.span}, 1);
+    chunked points(all.span, 1);
     ask_often(model, s.poses, points, all.span, s.cloud_pose, v, s.name + ", points");
-    chunked image(in_memory{all.raw}, 1);
+    chunked image(all.raw, 1);
     ask_often(model, s.poses, image, all.raw, all.camera_pose, v, s.name + ", image");
   }
 }
@@ -61,7 +61,8 @@ TEST_CASE("A cloud in chunks has the answer of the whole on a device: all scenes
 TEST_CASE("From pageable, pinned and device memory, and from a reader that may fail; chunks that do not divide") {
   verdict v;
   dice d(3);
-  const auto robot = clearance::make_model<clearance::sphere>(std::vector{random_primitives<inner_sphere>(d, 50, 0.3, 0.1), random_primitives<inner_sphere>(d, 30, 0.2, 0.1)});
+  const auto robot = clearance::make_model<clearance::sphere>(
+      std::vector{random_primitives<inner_sphere>(d, 50, 0.3, 0.1), random_primitives<inner_sphere>(d, 30, 0.2, 0.1)});
   const std::vector<Eigen::Isometry3d> poses = {shifted(0, 0, 0), shifted(0.5, 0, 0)};
   for (const std::size_t n : {0, 1, 4095, 4096, 4097, 300001}) {
     const auto cloud = wall(n);
@@ -77,7 +78,7 @@ TEST_CASE("From pageable, pinned and device memory, and from a reader that may f
     const auto view = [](const std::byte* bytes, std::size_t count) { return point_span(reinterpret_cast<const vec3*>(bytes), count); };
     for (const std::size_t chunk : {1, 20000, 1 << 20}) {
       const std::string what = std::to_string(n) + " in chunks of " + std::to_string(chunk);
-      chunked a(in_memory{pageable}, chunk), b(in_memory{point_span(memory.data(), n)}, chunk), c(in_memory{point_span(there.data(), n)}, chunk);
+      chunked a(pageable, chunk), b(point_span(memory.data(), n), chunk), c(point_span(there.data(), n), chunk);
       chunked e(clearance::read_records(n, sizeof(vec3), read, view), chunk);
       ask_often(robot, poses, a, pageable, shifted(0.1, 0, 0), v, what + ", pageable");
       ask_often(robot, poses, b, pageable, shifted(0.1, 0, 0), v, what + ", pinned");

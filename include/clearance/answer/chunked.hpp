@@ -65,6 +65,8 @@ class chunked {
   std::size_t chunk_;
   std::vector<scan::boxed_piece> pieces_;
 };
+template <point_source S>
+chunked(S, std::size_t = 0) -> chunked<in_memory<S>>;
 
 namespace minimum {
 
@@ -130,7 +132,7 @@ min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> f
     nearest = {nearest[best]};
   }
   std::ranges::sort(nearest);
-  nearest.erase(std::ranges::unique(nearest).begin(), nearest.end());
+  nearest.erase(std::unique(nearest.begin(), nearest.end()), nearest.end());
   std::vector<point_range> first;
   for (const std::size_t k : nearest)
     if (k != pieces) first.push_back(cloud.piece(k));

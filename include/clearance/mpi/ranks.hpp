@@ -59,7 +59,8 @@ class question {
  public:
   explicit question(MPI_Comm comm) : comm_(comm) {
     int started = 0;
-    if (MPI_Initialized(&started); started == 0 || comm == MPI_COMM_NULL) throw std::invalid_argument("clearance: ranks, but MPI_Init was not called, or there is no communicator");
+    if (MPI_Initialized(&started); started == 0 || comm == MPI_COMM_NULL)
+      throw std::invalid_argument("clearance: ranks, but MPI_Init was not called, or there is no communicator");
     MPI_Comm_rank(comm, &rank_);
     MPI_Comm_size(comm, &ranks_);
   }

@@ -21,19 +21,19 @@ concept loaded_cloud = requires(const C c, std::size_t i, std::byte* room) {
 template <loaded_cloud C>
 using loaded_source = decltype(std::declval<const C&>().load(0, 0, nullptr));
 
-/// A source in memory, of any kind: host memory, pinned or not, or a device's.
+/// A source in memory, of any kind: host memory, pinned or not, or a device's. `chunked` makes it of a source.
 template <point_source S>
 struct in_memory {
   static constexpr bool in_place = true;
 
   S source;
 
+  in_memory(const S& source) : source(source) {}
+
   std::size_t size() const { return source.size(); }
   std::size_t room(std::size_t) const { return 0; }
   auto load(std::size_t begin, std::size_t end, std::byte*) const { return slice(source, begin, end); }
 };
-template <point_source S>
-in_memory(S) -> in_memory<S>;
 
 /// Records that somebody reads: `read(offset, bytes)` fills `bytes` (a span) with those that begin `offset` bytes after the first
 /// record's start, or throws; `view(memory, count)` is a source over that many records in memory.
@@ -43,6 +43,9 @@ struct read_records {
   Read read;
   View view;
 
+  read_records(std::size_t count, std::size_t record_bytes, Read read, View view)
+      : count(count), record_bytes(record_bytes), read(std::move(read)), view(std::move(view)) {}
+
   std::size_t size() const { return count; }
   std::size_t room(std::size_t points) const { return points * record_bytes; }
   auto load(std::size_t begin, std::size_t end, std::byte* room) const {
@@ -50,7 +53,4 @@ struct read_records {
     return view(static_cast<const std::byte*>(room), end - begin);
   }
 };
-template <class Read, class View>
-read_records(std::size_t, std::size_t, Read, View) -> read_records<Read, View>;
-
 }  // namespace clearance
