@@ -10,6 +10,7 @@ import sys
 LAYERS = [
     ["ground/*"],
     ["point_source.hpp"],
+    ["concepts/*"],
     ["concepts.hpp"],
     ["result.hpp"],
     ["primitive/", "volume/", "points/*", "visitor/"],
