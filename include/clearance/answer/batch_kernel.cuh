@@ -15,7 +15,9 @@ struct batch_room {
   Pair *stack, *made;
   distance_key* orders;  ///< Of what was made.
 
-  CLEARANCE_HD static constexpr std::uint32_t depth(std::uint32_t threads) { return 384 + threads; }
+  /// Pairs are opened by ones before it is full, down to the last level.
+  static constexpr std::uint32_t reserve = 128;
+  CLEARANCE_HD static constexpr std::uint32_t depth(std::uint32_t threads) { return 512 + threads; }
   /// A pair of more children than lanes leaves, besides those, itself.
   CLEARANCE_HD static constexpr std::uint32_t most(std::uint32_t threads) { return threads + threads / lanes; }
   static constexpr std::size_t bytes(std::uint32_t threads) {
@@ -86,8 +88,8 @@ __global__ void __launch_bounds__(512, 2) batch_kernel(const __grid_constant__ b
       put_back(0);
       continue;
     }
-    const std::uint32_t fit = (room_type::depth(threads) - count) / lanes;
-    const std::uint32_t take = scan::lower_of(scan::lower_of(threads / lanes, count), fit);
+    const std::uint32_t left = room_type::depth(threads) - count, many = left > room_type::reserve ? (left - room_type::reserve) / (2 * lanes) : 0;
+    const std::uint32_t take = scan::lower_of(scan::lower_of(threads / lanes, count), many > 0 ? many : left / lanes > 0);
     if (take == 0) {
       const pair top = room.stack[count - 1];
       visit_all(top);

@@ -94,8 +94,8 @@ struct tree_search {
     if constexpr (solid) return body.answer.settled(body.first + least(p), 0);
     return false;
   }
-  /// Of two pairs the nearer goes first. A part with an interior has nothing nearer than 0: there it is that of the lowest number.
-  CLEARANCE_HD distance_key order(const pair& p) const { return solid ? make_key(max(p.bound, 0), least(p)) : make_key(p.bound, 0); }
+  /// Of two pairs the nearer goes first. A part with an interior has nothing nearer than 0: once that is found, the lowest number does.
+  CLEARANCE_HD distance_key order(const pair& p) const { return solid && reach() <= 0 ? make_key(0, least(p)) : make_key(p.bound, 0); }
 
   CLEARANCE_HD void visit(const cloud_tree::numbered_point& p, std::uint32_t k) const { body.visit(p.at - body.origin, body.first + p.number, k); }
 
@@ -165,6 +165,7 @@ struct tree_search {
     const part_view& part = body.parts[p.part];
     if (!frames::may_reach({place.around.center, place.around.radius + b.radius}, 0, x)) return p.whole = false, true;
     if (!(reach() >= 0)) return false;
+    p.bound = max(p.bound, lowered(length(x - place.around.center) - place.around.radius - b.radius, place.around.radius + b.radius));
     if (!(b.radius < part.facts.radius)) return true;
     const vec3 q = place.part_from_cloud(x);
     if (inside(part, q)) return true;
