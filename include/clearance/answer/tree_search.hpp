@@ -7,6 +7,8 @@
 #include <clearance/result.hpp>
 #include <clearance/scan/scan_body.hpp>
 
+#include <tuple>
+
 namespace clearance::minimum {
 
 /// What a part's distance to a ball of points can be, from its distance to the ball's middle: no point is nearer or farther by more
