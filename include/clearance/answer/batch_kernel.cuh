@@ -7,131 +7,108 @@
 
 namespace clearance::minimum {
 
-/// A warp's own memory: nodes that are still to be opened, each for one part, and pairs of a node or point and a part that are to be
-/// looked at.
+/// What a block of so many threads keeps: pairs that are still to be opened, the nearest on top, and those that a round has made.
+template <class Pair>
 struct batch_room {
-  static constexpr std::uint32_t depth = 256, queue = 64;
-  struct pending {
-    real bound;
-    std::uint32_t node, part;
-  };
-  pending stack[depth];
-  std::uint32_t what[queue], whose[queue];
+  static constexpr std::uint32_t lanes = 8;  ///< That open a pair together, a child each.
+
+  Pair *stack, *made;
+  distance_key* orders;  ///< Of what was made.
+
+  /// Pairs are opened by ones before it is full, down to the last level.
+  static constexpr std::uint32_t reserve = 128;
+  CLEARANCE_HD static constexpr std::uint32_t depth(std::uint32_t threads) { return 512 + threads; }
+  /// A pair of more children than lanes leaves, besides those, itself.
+  CLEARANCE_HD static constexpr std::uint32_t most(std::uint32_t threads) { return threads + threads / lanes; }
+  static constexpr std::size_t bytes(std::uint32_t threads) {
+    return most(threads) * (sizeof(distance_key) + sizeof(Pair)) + depth(threads) * sizeof(Pair);
+  }
+  __device__ batch_room(distance_key* memory, std::uint32_t threads)
+      : stack(reinterpret_cast<Pair*>(memory + most(threads))), made(stack + depth(threads)), orders(memory) {}
 };
 
-/// A block is a configuration, whose parts its warps take in turn; they share its bound. A warp opens nodes, nearest first, each by a
-/// lane a child, until 32 pairs are within reach of a part's ball: then each lane takes one of those down its part's tree.
+/// A block is a configuration, whose parts share its bound. In every round it opens the nearest pairs of its stack, each by eight lanes, and
+/// puts what they made back in order: many at once, because what is found first decides how much the others are worth.
 template <class PartView, class Tree>
-__global__ void __launch_bounds__(256) batch_kernel(const __grid_constant__ batch_arguments<PartView> a, const __grid_constant__ Tree tree) {
+__global__ void __launch_bounds__(512, 2) batch_kernel(const __grid_constant__ batch_arguments<PartView> a, const __grid_constant__ Tree tree) {
   using body_type = typename batch_arguments<PartView>::body_type;
-  using scan::all_lanes;
-  constexpr std::uint32_t is_point = 1u << 31;
-  extern __shared__ batch_room rooms[];
-  __shared__ alignas(totals) std::byte memory[sizeof(totals)];
-  __shared__ std::uint32_t next_part;
-  totals& best = *reinterpret_cast<totals*>(memory);
-  const std::uint32_t c = blockIdx.x, lane = threadIdx.x % 32;
-  if (threadIdx.x == 0) best = a.all[c], next_part = 0;
+  using search_type = tree_search<body_type, Tree>;
+  using pair = typename search_type::pair;
+  using room_type = batch_room<pair>;
+  constexpr std::uint32_t lanes = room_type::lanes;
+  extern __shared__ distance_key memory[];
+  __shared__ alignas(totals) std::byte memory_of_best[sizeof(totals)];
+  __shared__ std::uint32_t made[2];  // of this round, and of the next
+  totals& best = *reinterpret_cast<totals*>(memory_of_best);
+  const std::uint32_t c = blockIdx.x, t = threadIdx.x, threads = blockDim.x;
+  if (!a.facts[c].rigid) return;
+  const room_type room(memory, threads);
+  if (t == 0) best = a.all[c], made[0] = made[1] = 0;
   __syncthreads();
   const body_type body = a.body(c, &best);
-  const tree_search<body_type, Tree> search{body, tree, a.bounds + std::size_t(c) * a.part_count};
-  for (std::uint32_t i = threadIdx.x; i < 3 * a.part_count; i += blockDim.x)  // where it, and its neighbours, were nearest
-    if (const std::uint32_t from = c + i / a.part_count - 1; from < a.configurations && a.facts[c].rigid)
+  const search_type search{body, tree, a.bounds + std::size_t(c) * a.part_count};
+  for (std::uint32_t i = t; i < 3 * a.part_count; i += threads)  // where it, and its neighbours, were nearest
+    if (const std::uint32_t from = c + i / a.part_count - 1; from < a.configurations)
       if (const auto seed = a.seeds[from]; seed.number != none) search.visit(seed, i % a.part_count);
   __syncthreads();
 
-  batch_room& room = rooms[threadIdx.x / 32];
-  std::uint32_t pending = 0, queued = 0;
-  const auto enqueue = [&](bool mine, std::uint32_t what, std::uint32_t whose) {
-    const unsigned those = __ballot_sync(all_lanes, mine);
-    if (const std::uint32_t at = queued + __popc(those & ((1u << lane) - 1)); mine) room.what[at] = what, room.whose[at] = whose;
-    queued += __popc(those);
-    __syncwarp();
+  std::uint32_t count = 0, round = 0;
+  const auto make = [&](const pair& p) {
+    const std::uint32_t at = atomicAdd(&made[round % 2], 1u);
+    room.made[at] = p, room.orders[at] = search.order(p);
   };
-  // Of a node around `around` that is not nearer to part k than `bound`.
-  const auto open_nodes = [&](std::uint32_t level, std::uint32_t begin, std::uint32_t end, const ball& around, real bound, std::uint32_t k) {
-    const std::uint32_t node = tree.begin[level] + begin + lane;
-    bool mine = begin + lane < end;
-    if (mine) {
-      const ball b = tree.balls[node];
-      mine = search.may_reach(around, bound, b.center, b.radius) && search.may_reach(b, k);
+  /// Instead of the stack's last `taken` pairs what was made of them, the nearest on top.
+  const auto put_back = [&](std::uint32_t taken) {
+    __syncthreads();
+    const std::uint32_t n = made[round % 2];
+    if (t == 0) made[(round + 1) % 2] = 0;
+    count -= taken;
+    for (std::uint32_t i = t; i < n; i += threads) {
+      const distance_key mine = room.orders[i];
+      std::uint32_t below = 0;
+      for (std::uint32_t j = 0; j < n; ++j) below += room.orders[j] > mine || (room.orders[j] == mine && j > i);
+      room.stack[count + below] = room.made[i];
     }
-    enqueue(mine, node, k);
+    count += n, ++round;
+    __syncthreads();
   };
-  const auto open_points = [&](std::uint32_t begin, std::uint32_t end, const ball& around, real bound, std::uint32_t k) {
-    const std::uint32_t i = begin + lane;
-    bool mine = i < end;
-    if (mine) {
-      const vec3 at = tree.points[i].at;
-      mine = search.may_reach(around, bound, at, 0) && frames::may_reach(body.places[k].around, search.reach(), at - body.origin);
-    }
-    enqueue(mine, i, k | is_point);
-  };
-  /// Up to 32 pairs; of the nodes among them the nearest will be opened first.
-  const auto look = [&] {
-    const std::uint32_t take = scan::lower_of(queued, 32);
-    queued -= take;
-    real bound = infinity;
-    std::uint32_t what = 0, whose = 0;
-    if (lane < take) {
-      what = room.what[queued + lane], whose = room.whose[queued + lane];
-      if ((whose & is_point) != 0)
-        search.visit(tree.points[what], whose & ~is_point);
-      else
-        bound = search.look(tree.balls[what], whose);
-    }
-    const bool mine = bound < infinity;
-    const unsigned those = __ballot_sync(all_lanes, mine);
-    if (those == 0) return;
-    distance_key order = no_key;
-    if (mine) order = search.order(bound, tree.least[what]);
-    std::uint32_t below = 0;
-    for (unsigned left = those; left != 0; left &= left - 1) {
-      const int other = __ffs(int(left)) - 1;
-      const distance_key its = __shfl_sync(all_lanes, order, other);
-      below += its > order || (its == order && std::uint32_t(other) > lane);
-    }
-    if (mine) room.stack[pending + below] = {bound, what, whose};
-    pending += __popc(those);
-    __syncwarp();
-  };
-  const auto open_next = [&] {
-    const batch_room::pending top = room.stack[--pending];
-    __syncwarp();
-    // Lanes may see bounds of different moments; what one knows is true for all.
-    if (__any_sync(all_lanes, search.settled(top.bound, tree.least[top.node]))) return;
-    std::uint32_t level = 0;
-    while (top.node >= tree.begin[level + 1]) ++level;
-    const std::uint32_t node = top.node - tree.begin[level];
-    const ball around = tree.balls[top.node];
-    const std::uint32_t first = tree.first_below(level, node), behind = tree.end_below(level, node);
-    if (level == 0) return open_points(first, behind, around, top.bound, top.part);
-    if (pending + 64 <= batch_room::depth) return open_nodes(level - 1, first, behind, around, top.bound, top.part);
-    std::uint64_t begin = node, end = node + 1;  // no room for what is below it: all its points at once
-    for (std::uint32_t l = 0; l <= level; ++l) begin *= l == 0 ? Tree::tile : Tree::fan, end *= l == 0 ? Tree::tile : Tree::fan;
-    end = end < tree.count ? end : tree.count;
-    for (; begin < end; begin += 32) {
-      open_points(std::uint32_t(begin), std::uint32_t(end), around, top.bound, top.part);
-      if (queued >= 32) look();
-    }
+  /// No room for what is below it: all its points at once.
+  const auto visit_all = [&](const pair& p) {
+    std::uint64_t begin = p.at, end = p.at + 1;
+    for (std::uint32_t l = 0; l < p.level; ++l) begin *= l == 0 ? Tree::tile : Tree::fan, end *= l == 0 ? Tree::tile : Tree::fan;
+    const cloud_tree::numbered_point* const points = tree.points;
+    for (begin += t, end = end < tree.count ? end : tree.count; begin < end; begin += threads) search.visit(points[begin], p.part);
   };
 
-  for (bool more = tree.levels != 0 && a.facts[c].rigid; more || pending > 0 || queued > 0;) {
-    while (queued < 32 && (more || pending > 0)) {
-      if (more && pending <= 32) {
-        std::uint32_t k = 0;
-        if (lane == 0) k = atomicAdd(&next_part, 1u);
-        k = __shfl_sync(all_lanes, k, 0);
-        more = k < a.part_count;
-        if (more) open_nodes(tree.levels - 1, 0, tree.size(tree.levels - 1), {}, -infinity, k);
-      } else if (pending > 0) {
-        open_next();
+  for (std::uint32_t next = 0, starts = search.starts(); next < starts || count > 0;) {
+    if (count == 0) {
+      pair p;
+      if (next + t < starts && search.start(next + t, p)) make(p);
+      next += threads;
+      put_back(0);
+      continue;
+    }
+    const std::uint32_t left = room_type::depth(threads) - count, many = left > room_type::reserve ? (left - room_type::reserve) / (2 * lanes) : 0;
+    const std::uint32_t take = scan::lower_of(scan::lower_of(threads / lanes, count), many > 0 ? many : left / lanes > 0);
+    if (take == 0) {
+      const pair top = room.stack[count - 1];
+      visit_all(top);
+      put_back(1);
+      continue;
+    }
+    if (t / lanes < take) {
+      const pair top = room.stack[count - 1 - t / lanes];
+      const std::uint32_t j = top.from + t % lanes;
+      if (!search.settled(top)) {
+        const std::uint32_t size = search.children(top);
+        pair p;
+        if (j < size && search.child(top, j, p)) make(p);
+        if (t % lanes == 0 && top.from + lanes < size) p = top, p.from += lanes, make(p);
       }
     }
-    if (queued > 0) look();
+    put_back(take);
   }
-  __syncthreads();
-  if (threadIdx.x == 0) a.all[c] = best;
+  if (t == 0) a.all[c] = best;
 }
 
 }  // namespace clearance::minimum

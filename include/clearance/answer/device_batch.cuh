@@ -9,6 +9,7 @@
 #include <clearance/frame/clouds.hpp>
 #include <clearance/robot/model.hpp>
 
+#include <bit>
 #include <memory>
 #include <utility>
 
@@ -94,9 +95,11 @@ class device_batch {
                       all_.data(),    last_.data(),                 seeds_.data(),       results_.data(), &counts_.data()->dropped, &counts_.data()->lost};
     const unsigned blocks = (configurations_ + 3) / 4;
     on_.launch(place_configurations<PartView, S>, blocks, 128, 0, a, source);
-    // As many warps as a device has room for: of few configurations each gets more.
-    const unsigned warps = std::clamp(32 * unsigned(processors_) / configurations_, 1u, std::min(8u, a.part_count));
-    on_.launch(batch_kernel<PartView, cloud_tree::device_tree::view_type>, configurations_, 32 * warps, warps * sizeof(batch_room), a, tree);
+    // As many threads as a device has room for: of few configurations each gets more.
+    unsigned threads = std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 512u);
+    using room = batch_room<node_pair<typename PartView::hierarchy_type::node_type>>;
+    while (room::bytes(threads) > 48 * 1024) threads /= 2;  // as much as a block always has
+    on_.launch(batch_kernel<PartView, cloud_tree::device_tree::view_type>, configurations_, threads, room::bytes(threads), a, tree);
     on_.launch(finish_configurations<PartView, S>, blocks, 128, 0, a, source);
   }
 

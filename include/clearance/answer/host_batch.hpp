@@ -53,7 +53,7 @@ class host_batch {
   struct room {
     frames::cloud_frame frame;
     std::vector<ball_bounds> bounds;
-    std::vector<pending_node> pending;
+    std::vector<pending_pair<node_pair<typename PartView::hierarchy_type::node_type>>> pending;
   };
 
   template <class Clouds>
@@ -74,7 +74,7 @@ class host_batch {
       for (std::uint32_t k = 0; k < parts; ++k) own.bounds.emplace_back(model_.facts[k], places[k].part_from_cloud);
       const auto& tree = trees_[now.cloud].view();
       const tree_search<std::remove_const_t<decltype(body)>, cloud_tree::host_tree::view_type> search{body, tree, own.bounds.data()};
-      tree_walk(search, own.pending).run();
+      with_vectors([&] { walk_trees(search, own.pending); });
       resolve_body<PartView, S, any_depth>{model_.parts, places.data(), parts, source, own.frame.origin, own.frame.world_from_cloud, now.first,
                                            now.cloud,    bounds,        walk_, &result, nullptr}(parts);
     });

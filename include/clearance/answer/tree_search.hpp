@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The least distance of one configuration by branch and bound down a tree over the points.
+// The least distance of one configuration by branch and bound down two trees at once: that over the points, and a part's own.
 
 #include <clearance/answer/shared_bounds.hpp>
 #include <clearance/cloud_tree/tree_view.hpp>
 #include <clearance/result.hpp>
 #include <clearance/scan/scan_body.hpp>
+
+#include <tuple>
 
 namespace clearance::minimum {
 
@@ -30,10 +32,36 @@ struct ball_bounds {
   CLEARANCE_HD real upper(real distance, real radius) const { return distance + radius + off(distance, radius); }
 };
 
+/// What is below a node of the tree over the points, or one of its points, and what is below a node of a part's tree.
+template <class Node>
+struct node_pair {
+  real bound;               ///< No two of them are nearer.
+  std::uint32_t at, part;
+  std::uint32_t from;       ///< The children of `node` before this one are done with.
+  Node node;
+  std::uint8_t level;       ///< 0: a point; else one more than the level of the points' node.
+  std::uint8_t depth;       ///< Of `node`, as far as it is counted.
+  bool by_points;           ///< It is the points' node that is to be opened.
+  bool whole;               ///< Points may be inside the part's solid: `node` stays the root.
+};
+
+/// A volume that is one ball, and shows it.
+template <class V>
+concept round_volume = requires(const V v) {
+  requires std::tuple_size<decltype(bounding_volume_traits<V>::balls(v))>::value == 1;
+  { v.center } -> std::convertible_to<vec3>;
+  { v.radius } -> std::convertible_to<real>;
+};
+
 /// One configuration's parts in one cloud, and a tree over its points. `Body` is a scan_body, whose answer is `shared_bounds`.
 template <class Body, class Tree>
 struct tree_search {
   using part_view = std::remove_cvref_t<decltype(*std::declval<Body>().parts)>;
+  using hierarchy_type = typename part_view::hierarchy_type;
+  using volume_type = typename hierarchy_type::volume_type;
+  using traits = bounding_volume_traits<volume_type>;
+  using pair = node_pair<typename hierarchy_type::node_type>;
+  static constexpr bool solid = scan::has_interior<part_view>;
 
   const Body& body;
   const Tree& tree;
@@ -42,57 +70,114 @@ struct tree_search {
   /// How near the robot must be.
   CLEARANCE_HD real reach() const { return body.answer.reach(0); }
 
-  /// Is a node's ball within reach of part k's?
-  CLEARANCE_HD bool may_reach(const ball& b, std::uint32_t k) const {
-    const ball& around = body.places[k].around;
-    return frames::may_reach({around.center, around.radius + b.radius}, reach(), b.center - body.origin);
+  /// Pairs to begin with: each node of the top with each part.
+  CLEARANCE_HD std::uint32_t starts() const { return tree.levels == 0 ? 0 : tree.size(tree.levels - 1) * body.part_count; }
+  CLEARANCE_HD bool start(std::uint32_t i, pair& p) const {
+    const std::uint32_t top = tree.size(tree.levels - 1);
+    p = {-infinity, i % top, i / top, 0, body.parts[i / top].tree.root(), std::uint8_t(tree.levels), 0, true, solid};
+    return look(p);
+  }
+  CLEARANCE_HD std::uint32_t children(const pair& p) const {
+    return p.by_points ? tree.end_below(p.level - 1, p.at) - tree.first_below(p.level - 1, p.at) : body.parts[p.part].tree.size(p.node);
+  }
+  /// Child `j`; false if nothing in it matters any more.
+  CLEARANCE_HD bool child(const pair& p, std::uint32_t j, pair& c) const {
+    c = p, c.from = 0;
+    if (p.by_points)
+      c.at = tree.first_below(p.level - 1, p.at) + j, --c.level;
+    else
+      c.node = body.parts[p.part].tree.child(p.node, j), c.depth += c.depth != 255;
+    return look(c);
   }
 
-  /// How near a node's points can be to part k at least; infinite, if they do not matter. Some point is as near as the middle's
-  /// distance and the radius say: so the bound falls before a point is looked at.
-  CLEARANCE_HD real look(const ball& b, std::uint32_t k) const {
-    const vec3 x = b.center - body.origin;
-    const frames::placement& place = body.places[k];
-    const part_view& part = body.parts[k];
-    real least = lowered(length(x - place.around.center) - place.around.radius - b.radius, place.around.radius + b.radius);
-    if (b.radius < part.facts.radius) {  // else the ball around the part says as much
-      const vec3 q = place.part_from_cloud(x);
-      if (!inside(part, q)) {
-        nearest near{bounds[k].within(reach(), b.radius)};
-        body.walk(part.tree, q, near);
-        if (near.best == nearest::none) return infinity;
-        if (const real most = bounds[k].upper(near.within, b.radius); most < reach()) body.answer.lower(none, k, most);
-        least = bounds[k].lower(near.within, b.radius);
-      }
-    }
-    return least <= reach() ? least : infinity;
-  }
-
-  /// Of two nodes that with the nearer points goes first. A part with an interior has nothing nearer than 0: there it is the one with the
-  /// lowest number.
-  CLEARANCE_HD static distance_key order(real bound, std::uint32_t least) {
-    return scan::has_interior<part_view> ? make_key(max(bound, 0), least) : make_key(bound, 0);
-  }
-
-  /// May what is in a ball around `center`, below a node that is not nearer than `bound`, be within reach? The node's middle was that
-  /// far away and its radius more, and every step towards it comes no nearer than its length.
-  CLEARANCE_HD bool may_reach(const ball& node, real bound, vec3 center, real radius) const {
-    return !(bound + node.radius - cloud_tree::rough_length_up(center - node.center) - radius > reach());
-  }
-
-  /// Is there nothing left to learn from points numbered `first_number` and higher, that are not nearer than `bound`?
-  CLEARANCE_HD bool settled(real bound, std::uint32_t first_number) const {
-    if (!(bound <= reach())) return true;
-    if constexpr (scan::has_interior<part_view>) return body.answer.settled(body.first + first_number, 0);
+  /// Is there nothing left to learn from it?
+  CLEARANCE_HD bool settled(const pair& p) const {
+    if (!(p.bound <= reach())) return true;
+    if constexpr (solid) return body.answer.settled(body.first + least(p), 0);
     return false;
   }
+  /// Of two pairs the nearer goes first. A part with an interior has nothing nearer than 0: once that is found, the lowest number does.
+  CLEARANCE_HD distance_key order(const pair& p) const { return solid && reach() <= 0 ? make_key(0, least(p)) : make_key(p.bound, 0); }
 
   CLEARANCE_HD void visit(const cloud_tree::numbered_point& p, std::uint32_t k) const { body.visit(p.at - body.origin, body.first + p.number, k); }
 
  private:
+  CLEARANCE_HD std::uint32_t node_of(const pair& p) const { return tree.begin[p.level - 1] + p.at; }
+  CLEARANCE_HD std::uint32_t least(const pair& p) const { return p.level == 0 ? tree.points[p.at].number : tree.least[node_of(p)]; }
   CLEARANCE_HD static bool inside(const part_view& part, vec3 q) {
-    if constexpr (scan::has_interior<part_view>) return part.interior.inside(q);
+    if constexpr (solid) return part.interior.inside(q);
     return false;
+  }
+
+  /// What a pair can be worth, and which of the two is to be opened; false if nothing in it matters, or all has been looked at.
+  CLEARANCE_HD bool look(pair& p) const {
+    if (p.level == 0) return look_at_point(p);
+    const ball b = tree.balls[node_of(p)];
+    if (!(b.radius >= 0)) return false;  // no point of it counts
+    const vec3 x = b.center - body.origin;
+    if (solid && p.whole && !look_inside(p, b, x)) return false;
+    p.by_points = true;
+    if (!p.whole) {
+      const part_view& part = body.parts[p.part];
+      const volume_type& volume = part.tree.volume(p.node);
+      real bound, size;
+      if constexpr (round_volume<volume_type>) {
+        size = volume.radius;
+        bound = bounds[p.part].lower(away(tree.boxes[node_of(p)], b, x, volume.center, p.part), size);
+      } else {
+        bound = bounds[p.part].lower(traits::lower_bound(volume, body.places[p.part].part_from_cloud(x)), b.radius);
+        size = part.facts.radius / real(1u << (p.depth < 20 ? p.depth * 3 / 2 : 30));  // surfaces of eight children each
+      }
+      p.bound = max(p.bound, bound);
+      p.by_points = 10 * b.radius > 7 * size || part.tree.is_leaf(p.node);
+    }
+    return p.bound <= reach();
+  }
+
+  /// How far a position in a part is from a node's points at least: from their box, and from their ball. What is computed is off by no
+  /// more than a point's way into the part's frame: from there to here it is the same way.
+  CLEARANCE_HD real away(const extent& box, const ball& b, vec3 x, vec3 center, std::uint32_t k) const {
+    const rigid_transform& to = body.places[k].part_from_cloud;
+    const vec3 d = center - to.translation;
+    const vec3 w{to.row[0].x * d.x + to.row[1].x * d.y + to.row[2].x * d.z, to.row[0].y * d.x + to.row[1].y * d.y + to.row[2].y * d.z,
+                 to.row[0].z * d.x + to.row[1].z * d.y + to.row[2].z * d.z};
+    const vec3 low = box.lower - body.origin - w, high = w - (box.upper - body.origin);
+    const vec3 beyond{rough_max(rough_max(low.x, high.x), 0), rough_max(rough_max(low.y, high.y), 0), rough_max(rough_max(low.z, high.z), 0)};
+    return rough_max(rough_length(beyond), rough_length(x - w) - b.radius * (1 + slack));
+  }
+
+  CLEARANCE_HD bool look_at_point(pair& p) const {
+    const cloud_tree::numbered_point here = tree.points[p.at];
+    if (solid && p.whole) return visit(here, p.part), false;
+    const auto& its = body.parts[p.part].tree;
+    const vec3 q = body.places[p.part].part_from_cloud(here.at - body.origin);
+    const real bound = traits::lower_bound(its.volume(p.node), q);
+    if (!(bound <= reach())) return false;
+    if (!its.is_leaf(p.node)) return p.bound = max(p.bound, bound), p.by_points = false, true;
+    shared_nearest ask = body.answer.visitor(body.first + here.number, p.part);
+    offer_leaf(its, p.node, q, ask);
+    body.answer.take(body.first + here.number, p.part, ask);
+    return false;
+  }
+
+  /// Points within a part's ball may be inside its solid. From the distance to the surface of their ball's middle follows whether they
+  /// are, how near they can be at least, and how near some of them must be.
+  CLEARANCE_HD bool look_inside(pair& p, const ball& b, vec3 x) const {
+    const frames::placement& place = body.places[p.part];
+    const part_view& part = body.parts[p.part];
+    if (!frames::may_reach({place.around.center, place.around.radius + b.radius}, 0, x)) return p.whole = false, true;
+    if (!(reach() >= 0)) return false;
+    p.bound = max(p.bound, lowered(length(x - place.around.center) - place.around.radius - b.radius, place.around.radius + b.radius));
+    if (!(b.radius < part.facts.radius)) return true;
+    const vec3 q = place.part_from_cloud(x);
+    if (inside(part, q)) return true;
+    nearest near{bounds[p.part].within(reach(), b.radius)};
+    body.walk(part.tree, q, near);
+    if (near.best == nearest::none) return false;
+    if (const real most = bounds[p.part].upper(near.within, b.radius); most < reach()) body.answer.lower(none, p.part, most);
+    p.bound = max(p.bound, bounds[p.part].lower(near.within, b.radius));
+    p.whole = !(p.bound > 0);
+    return true;
   }
 };
 

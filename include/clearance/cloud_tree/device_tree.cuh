@@ -64,34 +64,35 @@ struct tree_room {
   extent* boxes;
 };
 
-template <class F>
-__device__ real of_warp(real mine, F f) {
+inline constexpr std::uint32_t siblings = 8;  ///< Lanes that make a node of what each of them has.
+
+template <class T, class F>
+__device__ T of_siblings(T mine, F f) {
 #pragma unroll
-  for (int step = 16; step > 0; step /= 2) mine = f(mine, __shfl_xor_sync(scan::all_lanes, mine, step));
+  for (int step = siblings / 2; step > 0; step /= 2) mine = f(mine, __shfl_xor_sync(scan::all_lanes, mine, step));
   return mine;
 }
 
-/// A node around what the lanes of a warp have: a box each, which may be empty, and how far `reach(center)` that goes. Of nothing it
-/// is a ball that nothing can be near.
+/// A node around what siblings have: a box each, which may be empty, and how far `reach(center)` that goes. Of nothing it is a ball
+/// that nothing can be near. All of a warp's lanes call it; where `node` is none, nothing is put.
 template <class Reach>
 __device__ void put_node(const tree_room& to, std::uint32_t node, const extent& mine, std::uint32_t least, Reach reach) {
-  const auto low = [](real x) { return of_warp(x, [](real a, real b) { return min(a, b); }); };
-  const auto high = [](real x) { return of_warp(x, [](real a, real b) { return max(a, b); }); };
+  const auto low = [](real x) { return of_siblings(x, [](real a, real b) { return min(a, b); }); };
+  const auto high = [](real x) { return of_siblings(x, [](real a, real b) { return max(a, b); }); };
   const extent box{{low(mine.lower.x), low(mine.lower.y), low(mine.lower.z)}, {high(mine.upper.x), high(mine.upper.y), high(mine.upper.z)}};
   const bool nothing = !(box.lower.x <= box.upper.x);
   const vec3 center = nothing ? vec3{0, 0, 0} : middle(box);
   const real radius = high(mine.lower.x <= mine.upper.x ? reach(center) : -infinity);
-  least = scan::least_of(scan::all_lanes, least);
-  if (threadIdx.x % 32 != 0) return;
+  least = of_siblings(least, [](std::uint32_t a, std::uint32_t b) { return a < b ? a : b; });
+  if (threadIdx.x % siblings != 0 || node == none) return;
   to.boxes[node] = box, to.balls[node] = {center, nothing ? -infinity : min(radius, farthest(box, center))}, to.least[node] = least;
 }
 
 template <class Source, class Tree>
 __global__ void __launch_bounds__(256) tile_kernel(const __grid_constant__ Source source, const __grid_constant__ Tree tree, const std::uint32_t* numbers,
                                                    const tree_room to) {
-  static_assert(Tree::tile == 32);
-  const std::uint32_t tile = (blockIdx.x * 256 + threadIdx.x) / 32, i = tile * 32 + threadIdx.x % 32;
-  if (tile >= tree.size(0)) return;
+  static_assert(Tree::tile == siblings);
+  const std::uint32_t i = blockIdx.x * 256 + threadIdx.x, tile = i / siblings;
   numbered_point p{{not_a_number, not_a_number, not_a_number}, ~0u};
   extent box;
   if (i < tree.count) {
@@ -99,20 +100,18 @@ __global__ void __launch_bounds__(256) tile_kernel(const __grid_constant__ Sourc
     if (const sample s = source[number]; s.valid()) p = {s.position, number}, box.add(s.position);
     to.points[i] = p;
   }
-  put_node(to, tile, box, p.number, [&](vec3 center) { return rough_length_up(p.at - center); });
+  put_node(to, tile < tree.size(0) ? tile : none, box, p.number, [&](vec3 center) { return rough_length_up(p.at - center); });
 }
 
 template <class Tree>
 __global__ void __launch_bounds__(256) node_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
-  static_assert(Tree::fan == 32);
-  const std::uint32_t node = (blockIdx.x * 256 + threadIdx.x) / 32;
-  if (node >= tree.size(level)) return;
-  const std::uint32_t child = tree.first_below(level, node) + threadIdx.x % 32, at = tree.begin[level - 1] + child;
+  static_assert(Tree::fan == siblings);
+  const std::uint32_t child = blockIdx.x * 256 + threadIdx.x, node = child / siblings, at = tree.begin[level - 1] + child;
   extent box;
   ball b{{0, 0, 0}, -infinity};
   std::uint32_t least = ~0u;
-  if (child < tree.end_below(level, node)) box = to.boxes[at], b = to.balls[at], least = to.least[at];
-  put_node(to, tree.begin[level] + node, box, least, [&](vec3 center) { return (rough_length_up(b.center - center) + b.radius) * (1 + slack); });
+  if (child < tree.size(level - 1)) box = to.boxes[at], b = to.balls[at], least = to.least[at];
+  put_node(to, node < tree.size(level) ? tree.begin[level] + node : none, box, least, [&](vec3 center) { return (rough_length_up(b.center - center) + b.radius) * (1 + slack); });
 }
 
 }  // namespace detail
@@ -121,7 +120,7 @@ __global__ void __launch_bounds__(256) node_kernel(const __grid_constant__ Tree 
 /// shape is known before they are read, and nobody waits.
 class device_tree {
  public:
-  using view_type = tree_view<32, 32>;
+  using view_type = tree_view<8, 8>;
 
   explicit device_tree(const device& on, std::pmr::memory_resource* memory = nullptr) : on_(on), memory_(memory), grid_(1, on.id, memory) {}
 
@@ -133,12 +132,12 @@ class device_tree {
     if (n == 0) return;
     grow(codes_, n), grow(sorted_codes_, n), grow(numbers_, n), grow(sorted_, n), grow(points_, n);
     grow(balls_, view_.nodes()), grow(least_, view_.nodes()), grow(boxes_, view_.nodes());
-    view_.points = points_.data(), view_.balls = balls_.data(), view_.least = least_.data();
+    view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(), view_.least = least_.data();
     on_.launch(detail::grid_kernel<S>, 1, morton_grid::samples, 0, source, grid_.data());
     on_.for_ranges(n, detail::encode_body<S>{source, grid_.data(), codes_.data(), numbers_.data(), dropped});
     sort(n);
     const detail::tree_room to{points_.data(), balls_.data(), least_.data(), boxes_.data()};
-    const auto blocks = [](std::uint32_t nodes) { return (nodes + 7) / 8; };
+    const auto blocks = [](std::uint32_t nodes) { return (nodes + 31) / 32; };
     on_.launch(detail::tile_kernel<S, view_type>, blocks(view_.size(0)), 256, 0, source, view_, sorted_.data(), to);
     for (std::uint32_t level = 1; level < view_.levels; ++level)
       on_.launch(detail::node_kernel<view_type>, blocks(view_.size(level)), 256, 0, view_, level, to);

@@ -101,7 +101,7 @@ class host_tree {
 
   void put_up(host_workers& workers) {
     points_.resize(view_.count), boxes_.resize(view_.nodes()), balls_.resize(view_.nodes()), least_.resize(view_.nodes());
-    view_.points = points_.data(), view_.balls = balls_.data(), view_.least = least_.data();
+    view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(), view_.least = least_.data();
     for (std::uint32_t level = 0; level < view_.levels; ++level)
       workers.for_pieces(view_.size(level), piece / view_type::tile, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) level == 0 ? put_tile(std::uint32_t(n)) : put_node(level, std::uint32_t(n));

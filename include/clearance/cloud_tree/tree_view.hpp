@@ -21,6 +21,7 @@ struct tree_view {
 
   const numbered_point* points = nullptr;  ///< Neighbours in space are neighbours here.
   const ball* balls = nullptr;             ///< Of all nodes, level by level, tiles first.
+  const extent* boxes = nullptr;           ///< As tight as may be, of the same nodes.
   const std::uint32_t* least = nullptr;    ///< The lowest number of a node's points.
   std::uint32_t count = 0;                 ///< Of points.
   std::uint32_t levels = 0;
