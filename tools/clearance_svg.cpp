@@ -104,7 +104,7 @@ std::string clearance_svg(std::span<const min_distance_result> frames, const std
     out += "<path id=\"bracket\" fill=\"#48c\" fill-opacity=\"0.35\" stroke=\"#48c\" stroke-opacity=\"0.6\" stroke-width=\"0.5\" d=\"" + band +
            "\"/>\n<path id=\"distance\" stroke=\"#136\" stroke-width=\"1.5\" stroke-linecap=\"round\" stroke-linejoin=\"round\" d=\"" + line + "\"/>\n";
   if (margin)
-    out += text("<path id=\"margin\" stroke=\"#d33\" stroke-dasharray=\"6 4\" d=\"M %.2f %.2f H %.2f\"/>\n", left, to.y(*margin), right) + "<g fill=\"#d33\">\n" +
-           words(right, to.y(*margin) - 4, "end", text("margin %g m", *margin)) + "</g>\n";
+    out += text("<path id=\"margin\" stroke=\"#d33\" stroke-dasharray=\"6 4\" d=\"M %.2f %.2f H %.2f\"/>\n", left, to.y(*margin), right) +
+           "<g fill=\"#d33\">\n" + words(right, to.y(*margin) - 4, "end", text("margin %g m", *margin)) + "</g>\n";
   return out + "</svg>\n";
 }

@@ -155,7 +155,8 @@ std::string gradients_text(const query_report& report) {
     }
     for (const auto& [what, v] : {std::pair("linear", g.of_pose.linear), {", angular", g.of_pose.angular}})
       out += what + text(" %.6f %.6f %.6f", double(v.x + 0), double(v.y + 0), double(v.z + 0));  // no -0
-    for (std::size_t i = 0; i < tree.size(); ++i) out += (i ? ", " : "; ") + io::printable(tree.movable(i).name) + text(" %+.6f", (*g.of_joints)[Eigen::Index(i)]);
+    for (std::size_t i = 0; i < tree.size(); ++i)
+      out += (i ? ", " : "; ") + io::printable(tree.movable(i).name) + text(" %+.6f", (*g.of_joints)[Eigen::Index(i)]);
     out += '\n';
   }
   return out;
