@@ -113,7 +113,7 @@ int run(const query_options& asked) {
     clouds.hide(report.filter->labels);
     report.upload += there->see(clouds.seen);
   }
-  report.found = there->least_per_part(poses, 1);
+  report.found = asked.deadline ? there->least_by(poses, *asked.deadline / 1000) : there->least_per_part(poses, 1);
   report.query = there->query;
   if (!asked.zones.empty()) report.zones = there->zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
   if (asked.support) report.support = there->supported(poses, {.min_points = asked.support->min_points, .radius = asked.support->radius});
@@ -122,7 +122,8 @@ int run(const query_options& asked) {
   if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max);
   report.build = there->build;
   report.upload += there->upload;
-  for (const observation& cloud : clouds.files) cloud.recount(report.found.result);
+  if (report.found.unseen == 0)  // else nobody knows which of them were seen
+    for (const observation& cloud : clouds.files) cloud.recount(report.found.result);
   check_outputs(asked, inputs);
   if (distances) report.distances = write_distances(asked, clouds, *distances);
   if (!asked.scene.empty()) draw(report, robot, poses, clouds, distances ? &*distances : nullptr);
