@@ -26,7 +26,7 @@ struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames, trajectory, unfolded;
   std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, svg, deadline;
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges;
-  bool ignore_limits = false, json = false, no_cache = false, merge = false, csv = false, gradient = false;
+  bool ignore_limits = false, json = false, no_cache = false, merge = false, csv = false, gradient = false, shard = false;
 };
 
 /// Sets one per-cloud option, as it was given on the command line.
@@ -136,6 +136,7 @@ void check_alone(const std::string& option, const query_options& o) {
     if (asked) throw usage_error(option, std::string("is for the least distance alone, and cannot be mixed with ") + other);
 }
 
+/// How the least distance is asked for: until when, and by whom.
 void read_deadline(const raw_options& raw, query_options& o) {
   if (!raw.deadline.empty()) {
     const double milliseconds = number("--deadline", raw.deadline);
@@ -146,6 +147,10 @@ void read_deadline(const raw_options& raw, query_options& o) {
       throw usage_error("--volume", std::string("cannot be ") + to_string(o.volume) + " with --deadline, which has " + to_string(usual_volume(o.model)) +
                                         " for --model " + to_string(o.model));
   }
+  o.shard = raw.shard;
+  if (!o.shard) return;
+  check_alone("--shard", o);
+  if (o.deadline) throw usage_error("--shard", "cannot be mixed with --deadline: ranks wait for one another");
 }
 
 /// What is asked beside the least distance.
@@ -307,6 +312,7 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
                "How each part's distance changes with its pose, and with the joints: m per m and m per rad of a twist at the part's origin");
   one("--deadline", raw->deadline,
       "Milliseconds for the least distance: what is known by then is the answer, with how many points are unseen, which may be anywhere; parts have none");
+  app.add_flag("--shard", raw->shard, "Under mpirun: each rank asks about its share of every cloud, and rank 0 prints the one answer");
   app.footer(of_clouds);
   return [raw, &app] { return read(app, *raw); };
 }

@@ -576,18 +576,28 @@ TEST_CASE("a deadline between nothing and all is no free robot") {
   }
 }
 
-TEST_CASE("what is wrong with a deadline is one sentence that names the option") {
+TEST_CASE("what is wrong with a deadline or with ranks is one sentence that names the option") {
   const question q;
   for (const std::string value : {"-1", "-1e-300", "1e300", "1e10"}) refuses(q.ask + " --deadline " + value, "--deadline: must be from 0 to 1e9 (milliseconds)");
   for (const std::string value : {"nan", "inf", "-inf", "soon", "1,2", "5ms", "1e999"}) refuses(q.ask + " --deadline " + value, "--deadline: ");
   refuses(q.ask + " --deadline ''", "--deadline: has an empty value");
   refuses(q.ask + " --deadline 5 --deadline 5", "--deadline");
   refuses(q.ask + " --deadline 5 --volume aabb", "--volume: cannot be aabb with --deadline, which has obb for --model triangles");
-  for (const std::string option : {"--deadline 5"}) {
+  for (const std::string option : {"--deadline 5", "--shard"}) {
     const std::string name = option.substr(0, option.find(' '));
     for (const std::string other : {"--zones 0.1", "--distances x.ply", "--self-filter 0.1", "--min-support 3@0.1", "--gradient"})
       refuses(q.ask + ' ' + option + ' ' + other, name + ": is for the least distance alone, and cannot be mixed with " + other.substr(0, other.find(' ')));
     refuses("run --robot x --frames y " + option, name);
     refuses("plan --robot x --cloud y --configurations z " + option, name);
   }
+  refuses(q.ask + " --shard --deadline 5", "--shard: cannot be mixed with --deadline");
+}
+
+TEST_CASE("--shard without mpirun is one rank, or refused where there is no MPI") {
+  const question q;
+  const outcome o = run_command(q.ask + " --shard");
+  if (o.code != 0) return refuses(q.ask + " --shard", "--shard: this clearance was built without MPI");
+  auto one = parsed(o), plain = parsed(run_command(q.ask));
+  for (auto* each : {&one, &plain}) each->erase("seconds");
+  CHECK(one == plain);
 }
