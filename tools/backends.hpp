@@ -36,6 +36,9 @@ inline const char* to_string(volume_kind kind) {
   return kind == volume_kind::sphere ? "sphere" : kind == volume_kind::aabb ? "aabb" : "obb";
 }
 
+/// Of the trees that are the quickest for a model.
+inline volume_kind usual_volume(model_kind kind) { return kind == model_kind::spheres ? volume_kind::sphere : volume_kind::obb; }
+
 /// One rigid body: what its models are built from.
 struct body {
   std::string name;
@@ -52,6 +55,7 @@ struct seen_points {
 struct reply {
   clearance::min_distance_result result;
   std::vector<clearance::part_minimum> parts;  // of least_per_part
+  std::uint64_t unseen = 0;                    // points that least_by had no time for
 };
 
 using poses_of = std::span<const Eigen::Isometry3d>;
@@ -71,6 +75,8 @@ class backend_robot {
   virtual reply least_per_part(poses_of poses, int repeat) = 0;
 
   // These have trees of one volume for each model: their answers do not depend on it.
+  /// As much of the least distance as is known so many seconds after it is asked; of single parts nothing.
+  virtual reply least_by(poses_of poses, double deadline) = 0;
   virtual clearance::zones_result zones(poses_of poses, const clearance::zones_options& options) = 0;
   virtual clearance::point_distances distances(poses_of poses, double d_max) = 0;
   /// Which points are the robot itself, `padding` metres around it included.

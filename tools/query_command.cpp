@@ -3,6 +3,7 @@
 #include "command_line.hpp"
 #include "distances_file.hpp"
 #include "messages.hpp"
+#include "ranks.hpp"
 #include "report.hpp"
 #include "stopwatch.hpp"
 
@@ -84,7 +85,9 @@ void check_outputs(const query_options& asked, const io::files_read& inputs) {
     throw usage_error("--distances", "is the same file as --scene: " + asked.distances);
 }
 
-int run(const query_options& asked) {
+/// `ranks`: of --shard.
+int run(const query_options& asked, all_ranks* ranks) {
+  const bool speaks = !ranks || ranks->speaks();
   stopwatch clock;
   progress shown;
   shown.show("reading " + asked.robot);
@@ -98,7 +101,7 @@ int run(const query_options& asked) {
   asked_clouds clouds;
   clouds.load(asked, shown, report.notes);
   clouds.place(asked, robot.description, joints, poses);
-  check_outputs(asked, inputs);  // known before the robot is packed
+  if (speaks) check_outputs(asked, inputs);  // known before the robot is packed
   report.load = clock.lap();
 
   const std::vector<body> bodies = make_bodies(asked, robot, shown, report.notes);
@@ -107,13 +110,16 @@ int run(const query_options& asked) {
   report.bodies = &bodies;
   shown.show("asking");
   const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies});
-  report.upload = there->see(clouds.seen);
+  const std::vector<seen_points> seen = ranks ? ranks->share(clouds.seen) : clouds.seen;
+  report.upload = there->see(seen);
   if (asked.self_filter) {
     report.filter = there->own_points(poses, *asked.self_filter);
     clouds.hide(report.filter->labels);
     report.upload += there->see(clouds.seen);
   }
-  report.found = there->least_per_part(poses, 1);
+  const auto ask = [&] { return asked.deadline ? there->least_by(poses, *asked.deadline / 1000) : there->least_per_part(poses, 1); };
+  report.found = ranks ? ranks->together(ask, poses, seen, asked.model == model_kind::triangles) : ask();
+  if (!speaks) return 0;
   report.query = there->query;
   if (!asked.zones.empty()) report.zones = there->zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
   if (asked.support) report.support = there->supported(poses, {.min_points = asked.support->min_points, .radius = asked.support->radius});
@@ -122,7 +128,8 @@ int run(const query_options& asked) {
   if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max);
   report.build = there->build;
   report.upload += there->upload;
-  for (const observation& cloud : clouds.files) cloud.recount(report.found.result);
+  if (report.found.unseen == 0)  // else nobody knows which of them were seen
+    for (const observation& cloud : clouds.files) cloud.recount(report.found.result);
   check_outputs(asked, inputs);
   if (distances) report.distances = write_distances(asked, clouds, *distances);
   if (!asked.scene.empty()) draw(report, robot, poses, clouds, distances ? &*distances : nullptr);
@@ -138,5 +145,8 @@ int run(const query_options& asked) {
 
 subcommand add_query(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("query", "The least distance between a robot and what a sensor saw");
-  return [options = add_query_options(*sub, asking::query)] { return run(options()); };
+  return [options = add_query_options(*sub, asking::query)] {
+    const query_options asked = options();
+    return asked.shard ? on_all_ranks([&](all_ranks& ranks) { return run(asked, &ranks); }) : run(asked, nullptr);
+  };
 }

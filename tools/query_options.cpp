@@ -24,9 +24,9 @@ using texts = std::vector<std::string>;
 
 struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames, trajectory, unfolded;
-  std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, svg;
+  std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, svg, deadline;
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges;
-  bool ignore_limits = false, json = false, no_cache = false, merge = false, csv = false, gradient = false;
+  bool ignore_limits = false, json = false, no_cache = false, merge = false, csv = false, gradient = false, shard = false;
 };
 
 /// Sets one per-cloud option, as it was given on the command line.
@@ -125,6 +125,34 @@ std::vector<double> thresholds(const std::string& option, const std::string& tex
   return values;
 }
 
+/// Throws if something is asked beside the least distance, which is all that `option` knows.
+void check_alone(const std::string& option, const query_options& o) {
+  const std::pair<const char*, bool> others[] = {{"--zones", !o.zones.empty()},
+                                                 {"--distances", !o.distances.empty()},
+                                                 {"--self-filter", o.self_filter.has_value()},
+                                                 {"--min-support", o.support.has_value()},
+                                                 {"--gradient", o.gradient}};
+  for (const auto& [other, asked] : others)
+    if (asked) throw usage_error(option, std::string("is for the least distance alone, and cannot be mixed with ") + other);
+}
+
+/// How the least distance is asked for: until when, and by whom.
+void read_deadline(const raw_options& raw, query_options& o) {
+  if (!raw.deadline.empty()) {
+    const double milliseconds = number("--deadline", raw.deadline);
+    if (!(milliseconds >= 0 && milliseconds <= 1e9)) throw usage_error("--deadline", "must be from 0 to 1e9 (milliseconds)");
+    o.deadline = milliseconds + 0.0;  // no -0
+    check_alone("--deadline", o);
+    if (o.volume != usual_volume(o.model))
+      throw usage_error("--volume", std::string("cannot be ") + to_string(o.volume) + " with --deadline, which has " + to_string(usual_volume(o.model)) +
+                                        " for --model " + to_string(o.model));
+  }
+  o.shard = raw.shard;
+  if (!o.shard) return;
+  check_alone("--shard", o);
+  if (o.deadline) throw usage_error("--shard", "cannot be mixed with --deadline: ranks wait for one another");
+}
+
 /// What is asked beside the least distance.
 void read_questions(const raw_options& raw, query_options& o) {
   if (!raw.check.empty()) o.margin = number("--check", raw.check);
@@ -178,7 +206,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.recording.trajectory = raw.trajectory;
   o.recording.merge = raw.merge;
   o.model = model_kind(choice("--model", raw.model, {"spheres", "triangles"}));
-  o.volume = o.model == model_kind::spheres ? volume_kind::sphere : volume_kind::obb;
+  o.volume = usual_volume(o.model);
   if (!raw.volume.empty()) o.volume = volume_kind(choice("--volume", raw.volume, {"sphere", "aabb", "obb"}));
   o.spheres = whole_number("--spheres", raw.spheres);
   o.packing = raw.packing;
@@ -190,6 +218,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.json = raw.json;
   o.scene = raw.scene;
   read_questions(raw, o);
+  read_deadline(raw, o);
   return o;
 }
 
@@ -281,6 +310,9 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
       "N@RADIUS: also the least distance to a point that has N points, itself among them, within RADIUS m; nearer points that have not are told apart");
   app.add_flag("--gradient", raw->gradient,
                "How each part's distance changes with its pose, and with the joints: m per m and m per rad of a twist at the part's origin");
+  one("--deadline", raw->deadline,
+      "Milliseconds for the least distance: what is known by then is the answer, with how many points are unseen, which may be anywhere; parts have none");
+  app.add_flag("--shard", raw->shard, "Under mpirun: each rank asks about its share of every cloud, and rank 0 prints the one answer");
   app.footer(of_clouds);
   return [raw, &app] { return read(app, *raw); };
 }

@@ -85,6 +85,8 @@ struct query_options {
   std::optional<double> self_filter;     // --self-filter: metres around the robot that are its own
   std::optional<support_asked> support;  // --min-support
   bool gradient = false;
+  std::optional<double> deadline;  // --deadline: milliseconds for the least distance
+  bool shard = false;              // --shard: one of the ranks that mpirun started
   std::string configurations;   // of `clearance plan`
   bool csv = false;             // of `clearance plan`
   recording_options recording;  // of `clearance run`

@@ -162,6 +162,14 @@ std::string gradients_text(const query_report& report) {
   return out;
 }
 
+std::string deadline_text(const query_report& report) {
+  const reply& found = report.found;
+  const std::string by = text("deadline  %g ms: ", *report.asked->deadline);
+  if (found.unseen == 0) return by + "all points were looked at\n";
+  return by + text("%llu of %llu points were not looked at, and may be anywhere\n", (unsigned long long)found.unseen,
+                   (unsigned long long)(found.unseen + found.result.seen));
+}
+
 /// What the zones say of the robot.
 std::string innermost_text(const query_report& report) {
   if (report.zones->counts.valid == 0) return "nothing is known, which counts as the first";
@@ -172,6 +180,8 @@ std::string innermost_text(const query_report& report) {
 }  // namespace
 
 void add_questions(const query_report& report, json& out) {
+  if (report.asked->deadline)
+    out["deadline"] = {{"milliseconds", *report.asked->deadline}, {"unseen", report.found.unseen}, {"complete", report.found.unseen == 0}};
   if (report.filter) out["filter"] = filter_of(report);
   if (report.zones) {
     const std::size_t z = report.zones->innermost();
@@ -188,6 +198,7 @@ void add_questions(const query_report& report, json& out) {
 
 std::string questions_text(const query_report& report) {
   std::string out;
+  if (report.asked->deadline) out += deadline_text(report);
   if (report.filter) out += filter_text(report);
   if (report.zones) out += "zones     " + innermost_text(report) + '\n';
   if (report.support) out += support_text(report);

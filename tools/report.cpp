@@ -80,7 +80,8 @@ std::string to_text(const query_report& report) {
   const query_options& asked = *report.asked;
   std::string out;
   if (r.state == state::no_data) {
-    out += "state     no data: there is no valid point, so nothing is known about the robot's surroundings\n";
+    out += std::string("state     no data: ") + (report.found.unseen != 0 ? "no valid point was seen in time" : "there is no valid point") +
+           ", so nothing is known about the robot's surroundings\n";
   } else {
     const observation& cloud = (*report.clouds)[r.cloud];
     const body& part = (*report.bodies)[r.part];

@@ -17,7 +17,8 @@ FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache"
 PER_CLOUD = {"--camera-pose", "--camera-link", "--intrinsics", "--depth-scale", "--range", "--use-viewpoint", "--zero-is-missing"}
 SINGLE = {
     "query": {"--robot", "--joints", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend",
-              "--check", "--scene", "--unfold-limit", "--zones", "--min-points", "--distances", "--d-max", "--self-filter", "--min-support"},
+              "--check", "--scene", "--unfold-limit", "--zones", "--min-points", "--distances", "--d-max", "--self-filter", "--min-support",
+              "--deadline"},
     "plan": {"--robot", "--geometry", "--base-pose", "--model", "--spheres", "--packing", "--cache", "--backend", "--check", "--unfold-limit",
              "--configurations", "--d-max"},
     "run": {"--robot", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend", "--check",
@@ -167,19 +168,25 @@ class _Options:
             points, _, radius = self.one["--min-support"].partition("@")
             whole(points, 2, 10_000_000)
             demand(0 <= _real(radius) <= 1e15, "a radius that is none")
+        if "--deadline" in self.one:
+            demand(0 <= _real(self.one["--deadline"]) <= 1e9, "a deadline that is none")
+            demand(not any(name in self.one for name in ("--zones", "--distances", "--self-filter", "--min-support")) and "--gradient" not in self.flags,
+                   "more than a deadline is for")
+            usual = "obb" if self.one.get("--model") == "triangles" else "sphere"
+            demand(self.one.get("--volume", usual) == usual, "--deadline with another volume")
         if "--svg" in self.one:
             demand(os.path.splitext(self.one["--svg"])[1].lower() == ".svg", "a picture that is no SVG")
 
     def held(self, robot, files):
-        """What links hold. It is one part more, or many points fewer: then only manners count."""
+        """What links hold. It is one part more, or many points fewer: then only manners count, as by a deadline."""
         for text in self.many.get("--attach", []):
             link, name = _assignment(text)
             demand(link in robot.links, "something held by no link")
             ending = os.path.splitext(name)[1].lower()
             demand(name.removeprefix("./") in files, f"there is no {name[:40]!r}")
             demand(ending not in (".ist", ".csv", ".yaml", ".yml") or self.one.get("--model", "spheres") == "spheres", "spheres among triangles")
-        if "--attach" in self.many or "--self-filter" in self.one:
-            raise Unknown("something held, or hidden")
+        if "--attach" in self.many or "--self-filter" in self.one or "--deadline" in self.one:
+            raise Unknown("something held, hidden, or not looked at")
 
     def joints(self, robot):
         ignore = "--ignore-limits" in self.flags

@@ -342,7 +342,8 @@ def options(rng, case):
             ["--distances", "p.ply"], ["--distances", "p.xyz"], ["--d-max", ""], ["--d-max", "-1"], ["--d-max", "0.2"], ["--plan", ""], ["--plan", "t.csv"],
             ["--configurations", ""], ["--csv", None], ["--check", "-1"], ["--check", "1e300"], ["--spheres", "4294967297"],
             ["--self-filter", ""], ["--self-filter", "0.02"], ["--self-filter", "nan"], ["--self-filter", "-1"], ["--self-filter", "1e15"], ["--min-support", ""],
-            ["--min-support", "3@0.1"], ["--min-support", "3@"], ["--min-support", "1@0.1"], ["--min-support", "2@nan"], ["--gradient", None], ["--attach", ""],
+            ["--min-support", "3@0.1"], ["--min-support", "3@"], ["--min-support", "1@0.1"], ["--min-support", "2@nan"], ["--gradient", None],
+            ["--deadline", ""], ["--deadline", "0"], ["--deadline", "1e9"], ["--deadline", "-1"], ["--deadline", "nan"], ["--deadline", "1e300"], ["--attach", ""],
             ["--attach", "a=m.obj"], ["--attach", "b=c.xyz"], ["--attach", "x=m.obj"], ["--attach-pose", "0,0,1,0,0,0,1"], ["--attach-pose", "0,0,1,0,0,0,2"],
             ["--svg", ""], ["--svg", "o.svg"], ["--svg", "c.xyz"], ["--svg", "r.urdf.svg"]]))
 

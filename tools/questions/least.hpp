@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The least distance, with trees of every volume: what they cost is the question there.
+// The least distance, with trees of every volume: what they cost is the question there. And by a deadline.
 
 #include "trees.hpp"
 
-#include <clearance/min_distance_query.hpp>
+#include <clearance/min_distance_by.hpp>
 #include <clearance/volume/aabb.hpp>
 
 #include <algorithm>
@@ -71,5 +71,20 @@ reply robot_on_backend<Backend>::least_per_part(poses_of poses, int repeat) {
     spent += seconds;
     query = round == 0 ? seconds : std::min(query, seconds);
   }
+  return out;
+}
+
+template <class Backend>
+reply robot_on_backend<Backend>::least_by(poses_of poses, double deadline) {
+  double seconds = 0;
+  reply out = with_usual_trees([&](const auto& trees) {
+    clearance::min_distance_query asked(on_, trees);  // prepared before the time runs
+    stopwatch clock;
+    const auto known = clearance::min_distance_by(asked, poses, clouds_, std::chrono::duration<double>(deadline));
+    seconds = clock.lap();
+    return reply{known, {}, known.unseen};
+  });
+  out.parts.resize(asked_.bodies->size());
+  query = seconds;
   return out;
 }

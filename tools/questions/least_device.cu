@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/min_distance_query.cuh>  // the device's own prepared query
+#include <clearance/min_distance_by.cuh>  // with the device's own prepared query
 
 #include "least.hpp"
 
 template reply robot_on_backend<clearance::device>::least(poses_of);
 template reply robot_on_backend<clearance::device>::least_per_part(poses_of, int);
+template reply robot_on_backend<clearance::device>::least_by(poses_of, double);

@@ -3,3 +3,4 @@
 
 template reply robot_on_backend<clearance::host>::least(poses_of);
 template reply robot_on_backend<clearance::host>::least_per_part(poses_of, int);
+template reply robot_on_backend<clearance::host>::least_by(poses_of, double);

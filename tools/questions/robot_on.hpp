@@ -50,6 +50,7 @@ class robot_on_backend final : public backend_robot {
 
   reply least(poses_of poses) override;
   reply least_per_part(poses_of poses, int repeat) override;
+  reply least_by(poses_of poses, double deadline) override;
   clearance::zones_result zones(poses_of poses, const clearance::zones_options& options) override;
   clearance::self_filter_result own_points(poses_of poses, double padding) override;
   clearance::supported_distance supported(poses_of poses, const clearance::support_options& options) override;
