@@ -16,9 +16,7 @@ auto about_file(const std::string& file, Ask ask) {
   } catch (const usage_error&) {
     throw;
   } catch (const std::invalid_argument& error) {
-    std::string why = error.what();
-    if (why.starts_with("clearance: ")) why.erase(0, 11);
-    clearance::io::refuse(file, why);
+    clearance::io::refuse(file, without_prefix(error.what()));
   }
 }
 

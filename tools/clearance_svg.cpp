@@ -77,7 +77,7 @@ std::string grid(const axes& to) {
 
 std::string clearance_svg(std::span<const min_distance_result> frames, const std::string& name, std::optional<double> margin) {
   const axes to = around(frames, margin);
-  std::string band, line, blind;
+  std::string band, line, alone, blind;
   for (std::size_t begin = 0, end; begin < frames.size(); begin = end) {
     const bool known = frames[begin].state != state::no_data;
     for (end = begin; end < frames.size() && (frames[end].state != state::no_data) == known;) ++end;
@@ -92,7 +92,7 @@ std::string clearance_svg(std::span<const min_distance_result> frames, const std
     }
     for (std::size_t k = end; k-- > begin;) band += "L " + to.at(k, frames[k].lower) + '\n';
     band += "Z\n";
-    if (end - begin == 1) line += "h 0\n";  // a round end is a dot
+    if (end - begin == 1) alone += "M " + to.at(begin, frames[begin].distance) + " h 0\n";  // a round end is a dot
   }
   std::string out = text("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" "
                          "font-family=\"sans-serif\" font-size=\"12\" fill=\"none\">\n<title>Clearance in ",
@@ -103,6 +103,7 @@ std::string clearance_svg(std::span<const min_distance_result> frames, const std
   if (!line.empty())
     out += "<path id=\"bracket\" fill=\"#48c\" fill-opacity=\"0.35\" stroke=\"#48c\" stroke-opacity=\"0.6\" stroke-width=\"0.5\" d=\"" + band +
            "\"/>\n<path id=\"distance\" stroke=\"#136\" stroke-width=\"1.5\" stroke-linecap=\"round\" stroke-linejoin=\"round\" d=\"" + line + "\"/>\n";
+  if (!alone.empty()) out += "<path id=\"alone\" stroke=\"#136\" stroke-width=\"5\" stroke-linecap=\"round\" d=\"" + alone + "\"/>\n";
   if (margin)
     out += text("<path id=\"margin\" stroke=\"#d33\" stroke-dasharray=\"6 4\" d=\"M %.2f %.2f H %.2f\"/>\n", left, to.y(*margin), right) +
            "<g fill=\"#d33\">\n" + words(right, to.y(*margin) - 4, "end", text("margin %g m", *margin)) + "</g>\n";

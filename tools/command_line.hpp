@@ -24,6 +24,9 @@ struct usage_error : std::invalid_argument {
       : std::invalid_argument(clearance::io::sentence_about(option, why)) {}
 };
 
+/// What the library says; the command begins its own sentences.
+inline std::string without_prefix(std::string why) { return why.starts_with("clearance: ") ? why.substr(11) : why; }
+
 /// A subcommand: its options are filled in when `run` is called; what it returns is the exit code.
 using subcommand = std::function<int()>;
 

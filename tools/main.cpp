@@ -68,9 +68,8 @@ void check_subcommand(int argc, char** argv, const CLI::App& app) {
   throw usage_error(argv[1], "there is no such subcommand; there are " + names);
 }
 
-int fail(std::string why) {
-  if (why.starts_with("clearance: ")) why.erase(0, 11);
-  say("clearance", why);
+int fail(const std::string& why) {
+  say("clearance", without_prefix(why));
   return failure;
 }
 

@@ -5,6 +5,7 @@
 #include "messages.hpp"
 #include "ranks.hpp"
 #include "report.hpp"
+#include "report_text.hpp"
 #include "stopwatch.hpp"
 
 #include <clearance/io/jacobian.hpp>
@@ -76,6 +77,18 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
   io::save_scene(scene, report.asked->scene);
 }
 
+/// Who asks about nothing but what is hidden should know that.
+void note_hidden(const query_options& asked, std::vector<std::string>& notes) {
+  const auto note = [&](const char* option, double metres) {
+    if (metres >= 0 && metres <= *asked.self_filter)
+      notes.push_back(text("%s %g: points that are certainly so near, an obstacle's too, are hidden by --self-filter %g; "
+                           "only uncertain ones lead to exit code 2",
+                           option, metres, *asked.self_filter));
+  };
+  if (asked.margin) note("--check", *asked.margin);
+  if (!asked.zones.empty()) note("--zones", asked.zones[0]);
+}
+
 /// What is written is no input, and not two things.
 void check_outputs(const query_options& asked, const io::files_read& inputs) {
   if (!asked.scene.empty()) io::check_output(asked.scene, inputs);
@@ -114,6 +127,7 @@ int run(const query_options& asked, all_ranks* ranks) {
   report.upload = there->see(seen);
   if (asked.self_filter) {
     report.filter = there->own_points(poses, *asked.self_filter);
+    note_hidden(asked, report.notes);
     clouds.hide(report.filter->labels);
     report.upload += there->see(clouds.seen);
   }

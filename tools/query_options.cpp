@@ -96,7 +96,7 @@ std::vector<attachment_options> attached_of(const CLI::App& app) {
       } catch (const usage_error&) {
         throw;
       } catch (const std::invalid_argument& error) {
-        throw usage_error(name, error.what());
+        throw usage_error(name, without_prefix(error.what()));
       }
     }
   }
@@ -305,9 +305,10 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
       "Write every valid point with its distance to this .ply file, in world coordinates; red at 0 m, blue at --d-max (or 1 m) and beyond");
   one("--d-max", raw->d_max, "Metres: points farther than that are written as inf (default: none are)");
   one("--self-filter", raw->self_filter,
-      "Metres: points that certainly are within that of the robot, or of what it holds, are its own and hidden from all questions; how many is said");
+      "Metres: hide the points that certainly are within that of the robot, or of what it holds, from all questions, --check among them; says how many "
+      "they are; exit code 3 if none is left");
   one("--min-support", raw->min_support,
-      "N@RADIUS: also the least distance to a point that has N points, itself among them, within RADIUS m; nearer points that have not are told apart");
+      "N@RADIUS, such as 3@0.02: say also how far the nearest point is that has N points, itself among them, within RADIUS m; --check stays about all points");
   app.add_flag("--gradient", raw->gradient,
                "How each part's distance changes with its pose, and with the joints: m per m and m per rad of a twist at the part's origin");
   one("--deadline", raw->deadline,

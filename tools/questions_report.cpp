@@ -70,9 +70,11 @@ json filter_of(const query_report& report) {
 }
 
 std::string filter_text(const query_report& report) {
-  return text("filter    %llu points are the robot's own (within %g m), and hidden; %llu may be, and are not hidden%s\n",
-              (unsigned long long)report.filter->counts.own, *report.asked->self_filter, (unsigned long long)report.filter->counts.uncertain,
-              nearest_is_uncertain(report) ? ", the nearest among them" : "");
+  const auto own = (unsigned long long)report.filter->counts.own;
+  const std::string hidden = text("filter    %llu points are the robot's own (within %g m), and hidden; ", own, *report.asked->self_filter);
+  if (own != 0 && report.found.result.state == state::no_data) return hidden + "no valid point is left\n";
+  return hidden + text("%llu may be, and are not hidden%s\n", (unsigned long long)report.filter->counts.uncertain,
+                       nearest_is_uncertain(report) ? ", the nearest among them" : "");
 }
 
 /// With --check: is the nearest confirmed point certainly farther away than the margin?
@@ -113,7 +115,7 @@ std::string support_text(const query_report& report) {
            named(s.cloud, s.point, s.part);
   else
     out += (std::isnan(s.distance) ? "none of the nearest points has " : "no point has ") + enough;
-  out += text("; %llu nearer points are alone", (unsigned long long)s.isolated);
+  out += text("; %llu %spoints are alone", (unsigned long long)s.isolated, s.point != none ? "nearer " : "");
   if (s.isolated != 0)
     out += text(", the first at %.6f m, ", double(s.nearest_isolated.distance)) +
            named(s.nearest_isolated.cloud, s.nearest_isolated.point, s.nearest_isolated.part);

@@ -87,7 +87,8 @@ std::string to_text(const query_report& report) {
     const body& part = (*report.bodies)[r.part];
     out += text("state     %s\n", r.state == state::collision ? "collision: a point is certainly inside the robot"
                                   : r.state == state::possible ? "possible: the bracket contains 0"
-                                                               : "free");
+                                  : report.filter && report.filter->counts.own != 0 ? "free, of the points that are not hidden"
+                                                                                    : "free");
     out += text("distance  %.6f m; to the solid certainly %.6f to %.6f m\n", double(r.distance), double(r.lower), double(r.upper));
     out += "cloud     " + io::printable(cloud.from.file) + text(", point %u", r.point);
     if (const auto at = pixel(cloud, r.point)) out += text(", pixel %llu,%llu", (unsigned long long)at->first, (unsigned long long)at->second);

@@ -13,9 +13,7 @@ using namespace clearance;
 namespace {
 
 [[noreturn]] void refuse(const std::string& name, const std::invalid_argument& error) {
-  std::string why = error.what();
-  if (why.starts_with("clearance: ")) why.erase(0, 11);
-  io::refuse("link " + io::quoted(name), why);
+  io::refuse("link " + io::quoted(name), without_prefix(error.what()));
 }
 
 /// The part's tolerance holds either way; what sticks out of the solid goes there.

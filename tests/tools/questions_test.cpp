@@ -318,6 +318,16 @@ TEST_CASE("--self-filter hides what is the robot's own from every question, and 
   CHECK(edge.at("point") == 1);
   CHECK_FALSE(parsed(run_command(q.ask)).contains("filter"));
 
+  // A question about nothing but what is hidden is said to be one, and a state is that of the rest.
+  const auto asked = [&](const std::string& more) { return run_command(q.robot + " --cloud " + cloud.path + " --self-filter " + more); };
+  const outcome vain = asked("0.05 --check 0.05 --zones 0.03,0.1");
+  CHECK(vain.code == 0);
+  for (const std::string option : {"--check 0.05", "--zones 0.03"})
+    CHECK(vain.err.find("note: " + option + ": points that are certainly so near, an obstacle's too, are hidden by --self-filter 0.05") != std::string::npos);
+  CHECK(vain.out.starts_with("state     free, of the points that are not hidden\n"));
+  CHECK(asked("0.01 --check 0.02 --zones 0.02").err.empty());
+  CHECK(asked("0.001").out.starts_with("state     free\n"));
+
   // Where nothing is left, nothing is known; images keep their pixels' numbers.
   const scratch_file own(".xyz", "0 0 0.605\n"), depth(".png", png(0, 1000));
   for (const std::string& all : {own.path, depth.path + " --intrinsics 500,500,0,0 --camera-pose 0,0,-0.395,0,0,0,1"})
@@ -330,6 +340,7 @@ TEST_CASE("--self-filter hides what is the robot's own from every question, and 
       CHECK(parsed(blind).at("points").at("dropped").at("masked") == 1);
       CHECK(parsed(blind).at("points").at("dropped").at("missing") == (all == own.path ? 0 : 1));
     }
+  CHECK(run_command(q.robot + " --self-filter 0.02 --cloud " + own.path).out.find("and hidden; no valid point is left\n") != std::string::npos);
 }
 
 TEST_CASE("--min-support tells the nearest point that others confirm, and what is nearer, but alone") {
@@ -361,6 +372,8 @@ TEST_CASE("--min-support tells the nearest point that others confirm, and what i
   for (const char* key : {"distance", "cloud", "point", "part", "primitive"}) CHECK(none.at(key).is_null());
   CHECK(none.at("lower") == 0);
   CHECK(none.at("isolated") == 4);
+  CHECK(run_command(q.robot + " --min-support 3@0.0001 --cloud " + cloud.path).out.find("no point has 3 points within 0.0001 m; 4 points are alone") !=
+        std::string::npos);
   CHECK(parsed(run_command(ask + " --min-support 2@0")).at("support").at("state") == "possible");
   const scratch_file blind(".xyz", "nan nan nan\n");
   const outcome nothing = run_command(q.robot + " --json --min-support 3@1 --check -1 --cloud " + blind.path);
@@ -489,6 +502,7 @@ TEST_CASE("what is wrong with filter, support, gradient and what is held is one 
   refuses(m.ask + cube + pose + pose, "--attach-pose: is given twice for " + m.cube.path);
   for (const std::string value : {"0,0,0", "0,0,0,0,0,0,2", "nan,0,0,0,0,0,1", "1e19,0,0,0,0,0,1", "0,0,0,0,0,0"})
     refuses(m.ask + cube + " --attach-pose " + value, "--attach-pose: ");
+  refuses(m.ask + cube + " --attach-pose 1e19,0,0,0,0,0,1", "--attach-pose: the pose of what is attached is not rigid");
   const scratch_file spheres(".csv", "0,0,0,0.05\n"), broken(".csv", "0,0,0,-1\n"), flat(".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   refuses(m.ask + " --attach claw=" + spheres.path, "--attach: " + spheres.path + " holds spheres, which are for --model spheres");
   const std::string balls = "query --spheres 5 --no-cache --backend host --robot " + m.urdf.path + " --cloud " + m.cloud.path + " --attach claw=";

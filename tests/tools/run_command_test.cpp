@@ -293,6 +293,7 @@ TEST_CASE("--svg draws the distance of every frame in the band of its bracket, a
   }
   CHECK(picture().find("margin 0.05 m") != std::string::npos);
   CHECK(picture().find("no data") == std::string::npos);
+  CHECK(path(root, "alone").empty());
 
   // Frames without data are bars, and the line ends there; one frame is a dot. Names are text, whatever is in them.
   r.put("2.xyz", "nan nan nan\n");
@@ -302,6 +303,7 @@ TEST_CASE("--svg draws the distance of every frame in the band of its bracket, a
   CHECK(run_command(r.run(quoted, r.trajectory.path) + " --svg " + svg.path).code == 3);
   root = clearance::io::read_xml(picture(), svg.path);
   CHECK(path(root, "distance").size() == 2);
+  CHECK(path(root, "alone") == path(root, "distance"));  // a line of one frame is nothing to see
   CHECK(picture().find("a&lt;b&gt;&amp;&quot;&apos;\\x01\xEF\xBF\xBD.txt") != std::string::npos);
   CHECK(picture().find("red: no data") != std::string::npos);
   CHECK(picture().find("<rect x=") != std::string::npos);
