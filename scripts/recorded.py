@@ -4,8 +4,10 @@
 import collections
 import csv
 import functools
+import math
 import pathlib
 import re
+import sys
 
 root = pathlib.Path(__file__).resolve().parent.parent
 scenes = ("table", "room")
@@ -32,15 +34,47 @@ def span(values, text):
 class Paper:
     """What bench_paper_device wrote: value[axis, scene, metric][variant][points], and [x] for what is no cloud's size."""
 
+    columns = ("axis", "scene", "points", "x", "variant", "metric", "value")
+
     def __init__(self, file):
-        lines = file.read_text().splitlines()
-        self.stamp = "; ".join(line.lstrip("# ") for line in lines if line.startswith("#"))
+        try:
+            text = file.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise Mistake(f"{file.name} cannot be read: {error}") from None
+        lines = text.splitlines()
+        heads = [line for line in lines if line.startswith("#")]
+        self.stamp = "; ".join(line.lstrip("# ") for line in heads)
+        if lines[: len(heads) + 1] != [*heads, ",".join(self.columns)] or "commit " not in self.stamp:
+            raise Mistake(f"{file.name} is not what bench_paper_device writes: it begins with no stamp (GPU, driver, commit), or not with its columns")
         self.points_of = collections.defaultdict(lambda: collections.defaultdict(dict))
         self.steps_of = collections.defaultdict(lambda: collections.defaultdict(dict))
-        for r in csv.DictReader(line for line in lines if not line.startswith("#")):
-            key = r["axis"], r["scene"], r["metric"]
-            self.points_of[key][r["variant"]][int(r["points"])] = float(r["value"])
-            self.steps_of[key][r["variant"]][float(r["x"])] = float(r["value"])
+        seen = set()
+        for at, r in enumerate(csv.reader(lines[len(heads) + 1 :]), len(heads) + 2):
+            try:
+                axis, scene, points, x, variant, metric, value = r
+                points, x, value = int(points), float(x), float(value)
+                what = axis, scene, metric, variant, points, x
+                least = sys.float_info.min if metric.startswith("us") else 0  # no time is 0; a count may be
+                if scene not in scenes or not (value >= least and math.isfinite(value) and math.isfinite(x)) or what in seen:
+                    raise ValueError
+            except ValueError:
+                raise Mistake(f"{file.name}, line {at}: not a row of a measurement, or the second of the same") from None
+            seen.add(what)
+            self.points_of[axis, scene, metric][variant][points] = value
+            self.steps_of[axis, scene, metric][variant][x] = value
+        if not text.endswith("\n"):
+            raise Mistake(f"{file.name} ends within a line")
+
+    def require_figures(self):
+        """Throws unless all that the figures are drawn from was measured."""
+        for axis in ("traversal", "schedule", "transform", "sharing", "cache", "seed", "transfer", "competitors", "culling", "block size", "motion"):
+            for scene in scenes:
+                if (axis, scene, "node_tests" if axis == "culling" else "us") not in self.points_of:
+                    raise Mistake(f"of {axis}, {scene}, nothing was measured")
+        steps = {(variant, *sorted(self.steps_of["motion", scene, metric][variant])) for scene in scenes for metric in ("m", "us", "us_p10", "us_p90")
+                 for variant in self.steps_of["motion", scene, metric]}
+        if len({whole[1:] for whole in steps}) != 1:
+            raise Mistake("the run of the robot (motion) was not measured to its end")
 
     def value(self, axis, variant, scene, points, metric="us"):
         try:

@@ -57,7 +57,11 @@ int main(int argc, char** argv) {
              {"pack/one_by_one", one_by_one, usual},
              {"pack/all/strictly_largest_first", together, {.count = sphere_count, .gap_per_radius = infinity}},
              {"pack/all/overlapping", together, {.count = sphere_count, .allow_overlap = true}},
-             {"pack/all/one_thread", together, {.count = sphere_count, .threads = 1}}};
+             {"pack/all/one_thread", together, {.count = sphere_count, .threads = 1}},
+             {"pack/all/seed:1", together, {.count = sphere_count, .seed = 1}},
+             {"pack/all/seed:2", together, {.count = sphere_count, .seed = 2}},
+             {"pack/all/seed:3", together, {.count = sphere_count, .seed = 3}},
+             {"pack/all/four_times_as_many", together, {.count = 4 * sphere_count}}};
   for (const auto& variant : all) measure(variant.name, [&] { return variant.pack(meshes, variant.options); });
   benchmark::RunSpecifiedBenchmarks();
 }
