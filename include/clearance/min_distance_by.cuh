@@ -16,7 +16,12 @@ struct timed_on<device> {
   static auto with_query(const device& on, const Robot& robot, const Ask& ask) {
     stream_resource memory(on.id, on.stream);
     min_distance_query<device, typename decltype(view_of(robot))::part_type> query(on, robot, &memory, kept_pinned());
-    return ask(query);
+    try {
+      return ask(query);
+    } catch (...) {
+      on.wait();  // the clouds before the one that was refused are written to pinned memory, which is kept for others
+      throw;
+    }
   }
 };
 

@@ -98,7 +98,7 @@ min_distance_so_far min_distance_while(min_distance_query<On, PartView>& query, 
   for (; i < n && go_on(); ++i) {
     const std::size_t k = minimum::spread(i, n);
     const auto some = mapped_clouds(clouds, minimum::some_slices{k, k + 1, n});  // of every cloud, so that errors are those of all
-    if (nearest < infinity) query.bound_by(nearest);
+    query.bound_by(nearest);  // the first by nothing, whatever the query was told before
     const min_distance_result r = query(poses, some);
     if (r.part != none) nearest = r.distance;
     add(r.cloud == none ? r : renumbered(r, 0, std::uint32_t(first_of_slice(sizes[r.cloud], k, n))));

@@ -18,7 +18,9 @@ using clearance::chunked, clearance::host;
 extern "C" {
 int __real_madvise(void*, std::size_t, int);
 int broken_disk = 0;  // what populating says instead
+std::string moved_there, moved_here;  // another file takes the name of one that is open
 int __wrap_madvise(void* at, std::size_t bytes, int advice) {
+  if (!moved_there.empty()) std::filesystem::rename(std::exchange(moved_there, {}), moved_here);
   if (advice == 22 && broken_disk != 0) return errno = broken_disk, -1;
   return __real_madvise(at, bytes, advice);
 }
@@ -101,6 +103,29 @@ TEST_CASE("What cannot be mapped is refused in a sentence") {
   CHECK(refusal([&] { map_pcd(none.path); }).find("POINTS is 0") != std::string::npos);
   CHECK(refusal([&] { map_pcd(doubles.path); }).find("field x is of TYPE F and SIZE 8, not F and 4") != std::string::npos);
   CHECK(map_pcd<double>(doubles.path).size() == 50);
+
+  const std::string knot = odd.path + ".knot";
+  std::filesystem::create_symlink(knot, knot);
+  CHECK(refusal([&] { map_points(knot); }).find("cannot be opened for reading: ") != std::string::npos);
+  std::filesystem::remove(knot);
+}
+
+TEST_CASE("A PCD file that takes the name of one that is being opened is not taken for it") {
+  const auto points = some_points(100);
+  auto others = some_points(300);
+  std::ranges::reverse(others);
+  const auto file = [](const std::vector<vec3>& all) {
+    std::vector<std::array<float, 4>> records;
+    for (const vec3& p : all) records.push_back({p.x, p.y, p.z, 0});
+    return pcd("x y z i", "4 4 4 4", all.size()) + bytes_of(records);
+  };
+  const scratch_file old(".pcd", file(points)), fresh(".pcd", file(others));
+  moved_there = fresh.path, moved_here = old.path;
+  const auto cloud = clearance::io::map_pcd(old.path);
+  CHECK(moved_there.empty());
+  CHECK(cloud.size() == 100);
+  CHECK(cloud.source[99].position == points[99]);
+  same(clearance::io::map_pcd(old.path), others);
 }
 
 TEST_CASE("A file that changes its size, and a disk that fails, are told, and the question can be asked again") {

@@ -15,6 +15,15 @@ using clearance::host, clearance::min_distance, clearance::min_distance_per_part
     clearance::slice;
 namespace mpi = clearance::mpi;
 
+// As MPI does in a communicator that returns its errors.
+bool gathering_fails = false, reducing_fails = false;
+extern "C" int MPI_Allgather(const void* from, int n, MPI_Datatype type, void* to, int m, MPI_Datatype their, MPI_Comm comm) {
+  return gathering_fails ? MPI_ERR_OTHER : PMPI_Allgather(from, n, type, to, m, their, comm);
+}
+extern "C" int MPI_Allreduce(const void* from, void* to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm) {
+  return reducing_fails ? MPI_ERR_OTHER : PMPI_Allreduce(from, to, n, type, op, comm);
+}
+
 namespace {
 
 /// Catch2's own main runs in between.
@@ -38,6 +47,17 @@ const mpi::shard on{MPI_COMM_WORLD, host{1}};
 bool same_minimum(const part_minimum& a, const part_minimum& b) {
   return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
 }
+/// A cloud that on one rank cannot even say how large it is.
+struct unplugged {
+  point_span points;
+  bool here;
+
+  std::size_t size() const {
+    if (here) throw std::runtime_error("clearance: the camera is unplugged");
+    return points.size();
+  }
+  clearance::sample operator[](std::size_t i) const { return points[i]; }
+};
 template <class F>
 std::string refused(F f) {
   try {
@@ -145,11 +165,27 @@ TEST_CASE("A rank that throws ends all with its sentence, and all can ask again"
   if (ranks() > 1) {
     const std::vector<Eigen::Isometry3d> other = {shifted(rank() == last ? 1e-9 : 0, 0, 0)};
     CHECK(refused([&] { query(other, mine); }) == "clearance: rank " + std::to_string(last) + " asks about other poses than rank 0");
+    for (int axis = 0; axis < 3; ++axis) {  // half a turn changes nothing but signs
+      Eigen::Isometry3d turned = poses[0];
+      const Eigen::Vector3d about = Eigen::Vector3d::Unit(axis);
+      if (rank() == last) turned.linear() = 2 * about * about.transpose() - Eigen::Matrix3d::Identity();
+      CHECK(refused([&] { query(std::vector{turned}, mine); }).find(" asks about other poses than rank 0") != std::string::npos);
+    }
+    const double side = rank() == last ? -1 : 1;
+    CHECK(refused([&] { query(std::vector{shifted(side, 2 * side, 0)}, mine); }).find(" asks about other poses than rank 0") != std::string::npos);
     const std::vector<placed<point_span>> clouds(rank() == last ? 2 : 1, placed<point_span>{mine});
     CHECK(refused([&] { query(poses, clouds); }) == "clearance: rank " + std::to_string(last) + " asks about 2 clouds, rank 0 about 1");
   }
+  std::vector<part_minimum> room(rank() == last ? 2 : 1);
+  CHECK(refused([&] { query.per_part(poses, mine, room); }).find("clearance: there are 1 parts, but room for 2 minima") != std::string::npos);
+  CHECK(refused([&] { query(poses, unplugged{mine, rank() == last}); }).find("clearance: the camera is unplugged") != std::string::npos);
   const point_span huge(points.data(), (std::size_t(1) << 32) / std::size_t(ranks()));  // never read
   CHECK(refused([&] { query(poses, huge); }) == "clearance: more than 2^32 - 2 points on all ranks together");
   CHECK(refused([&] { mpi::question none(MPI_COMM_NULL); }).find("no communicator") != std::string::npos);
+  for (bool* const call : {&gathering_fails, &reducing_fails}) {
+    *call = true;
+    CHECK(refused([&] { query(poses, mine); }).find("clearance: MPI_All") == 0);
+    *call = false;
+  }
   CHECK(same_result(query(poses, mine), expected));
 }

@@ -139,6 +139,7 @@ TEST_CASE("More points than numbers are refused, and so are poses that are none"
                     "clearance: a cloud of 4294967295 points; one has at most 2^32 - 2");
   const auto cloud = wall(9000);
   const auto model = arm();
+  for (const std::size_t all_at_once : {~std::size_t(0), ~std::size_t(0) - 4096}) CHECK(chunked(point_span(cloud), all_at_once).all().size() == 1);
   chunked in_chunks{point_span(cloud)};
   clearance::chunked_query query(host{}, model);
   for (int round = 0; round < 2; ++round) {

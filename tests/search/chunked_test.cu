@@ -99,3 +99,10 @@ TEST_CASE("From pageable, pinned and device memory, and from a reader that may f
     }
   }
 }
+
+TEST_CASE("Rooms that memory has run out for are there when less is needed") {
+  clearance::staging_ring ring(device{});
+  CHECK_THROWS_AS(ring.need(1000, std::size_t(1) << 50), clearance::cuda_error);
+  ring.need(1000, 1000);
+  for (std::size_t k = 0; k < clearance::staging_ring::rooms; ++k) CHECK(ring.fill(k) != nullptr);
+}

@@ -101,6 +101,10 @@ TEST_CASE("Points inside a closed mesh are found in whatever piece") {
   const auto some = min_distance_while(query, poses, crowd, [left = 20]() mutable { return left-- > 0; }, {.piece = 50});
   CHECK((some.state == clearance::state::collision && some.lower == 0 && some.upper == 0 && some.unseen > 0));  // what is certain stays so
   CHECK(same_result(query(poses, crowd), min_distance(host{1}, model, poses, crowd)));
+  // A bound that the query was given for some other frame is none of this one's.
+  const std::vector<vec3> two{{9, 0, 0}, {9, 0, 0}, {9, 0, 0}, {9, 0, 0}, {99, 0, 0}};
+  query.bound_by(1);
+  CHECK(same_result(min_distance_by(query, poses, two, ever, {.piece = 4}), min_distance(host{1}, model, poses, two)));
 }
 
 TEST_CASE("No time, little time, and deadlines that are none") {

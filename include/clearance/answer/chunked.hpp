@@ -24,7 +24,7 @@ class chunked {
   /// `chunk`: points at a time, rounded up to what a box is around (4096). Throws std::invalid_argument if there are more points than
   /// answers have numbers for.
   explicit chunked(C cloud, std::size_t chunk = usual_chunk)
-      : cloud_(std::move(cloud)), chunk_((std::max<std::size_t>(chunk, 1) + scan::piece_points - 1) / scan::piece_points * scan::piece_points) {
+      : cloud_(std::move(cloud)), chunk_((std::clamp<std::size_t>(chunk, 1, none) + scan::piece_points - 1) / scan::piece_points * scan::piece_points) {
     if (cloud_.size() >= none)
       throw std::invalid_argument("clearance: a cloud of " + std::to_string(cloud_.size()) + " points; one has at most 2^32 - 2");
   }

@@ -6,6 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <span>
@@ -25,12 +26,12 @@ class staging_ring {
 
   /// Before the first turn of a call: as large as its largest, on either side.
   void need(std::size_t pinned, std::size_t there) {
-    if (pinned <= pinned_ && there <= there_) return;
+    // Asked of the rooms themselves: some have none where memory once ran out.
+    if (std::ranges::all_of(rooms_, [&](const room& r) { return pinned <= r.pinned.size() && there <= r.there.size(); })) return;
     wait();
-    pinned_ = std::max(pinned, pinned_), there_ = std::max(there, there_);
     for (room& r : rooms_) {
-      if (r.pinned.size() < pinned_) r.pinned = {}, r.pinned = pinned_buffer<std::byte>(pinned_, on_.id);
-      if (r.there.size() < there_) r.there = {}, r.there = device_buffer<std::byte>(there_, on_.id);
+      if (r.pinned.size() < pinned) r.pinned = {}, r.pinned = pinned_buffer<std::byte>(pinned, on_.id);
+      if (r.there.size() < there) r.there = {}, r.there = device_buffer<std::byte>(there, on_.id);
     }
   }
 
@@ -100,13 +101,12 @@ class staging_ring {
     return attributes.type != cudaMemoryTypeUnregistered;
   }
   void need_within(std::size_t bytes, room& r) const {
-    if (r.pinned.size() < bytes) r.pinned = {}, r.pinned = pinned_buffer<std::byte>(there_, on_.id);
+    if (r.pinned.size() < bytes) r.pinned = {}, r.pinned = pinned_buffer<std::byte>(r.there.size(), on_.id);
   }
 
   device on_;
   own_stream copies_;
   std::array<room, rooms> rooms_;
-  std::size_t pinned_ = 0, there_ = 0;
 };
 
 }  // namespace clearance

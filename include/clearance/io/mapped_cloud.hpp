@@ -39,10 +39,11 @@ inline mapped_cloud<point_span> map_points(const std::string& file, std::size_t 
   return {mapped, point_span(reinterpret_cast<const vec3*>(mapped->bytes().data() + header), (bytes - header) / sizeof(vec3))};
 }
 
-/// Records as `layout` says: its step, offsets, origin and filter. Its `count` is what the file has, if it is 0.
+namespace detail {
+
 template <class Scalar>
-mapped_cloud<strided_points<Scalar>> map_records(const std::string& file, strided_points<Scalar> layout, std::size_t header = 0) {
-  const auto mapped = std::make_shared<const mapped_file>(file);
+mapped_cloud<strided_points<Scalar>> records_of(const std::shared_ptr<const mapped_file>& mapped, strided_points<Scalar> layout, std::size_t header) {
+  const std::string& file = mapped->name();
   const std::size_t bytes = mapped->bytes().size();
   for (const std::uint32_t offset : layout.offset)
     if (offset + sizeof(Scalar) > layout.step)
@@ -58,25 +59,30 @@ mapped_cloud<strided_points<Scalar>> map_records(const std::string& file, stride
   return {mapped, layout, {}};
 }
 
+}  // namespace detail
+
+/// Records as `layout` says: its step, offsets, origin and filter. Its `count` is what the file has, if it is 0.
+template <class Scalar>
+mapped_cloud<strided_points<Scalar>> map_records(const std::string& file, const strided_points<Scalar>& layout, std::size_t header = 0) {
+  return detail::records_of(std::make_shared<const mapped_file>(file), layout, header);
+}
+
 /// A PCD file with DATA binary, whose x, y, z are Scalars. Throws std::runtime_error as load_pcd, and if it is another kind of PCD file.
 template <class Scalar = float>
 mapped_cloud<strided_points<Scalar>> map_pcd(const std::string& file) {
-  pcd_header header;
-  std::size_t before = 0;
-  {
-    const mapped_file mapped(file);
-    const std::span<const std::byte> all = mapped.bytes();
-    mapped.bring(all.first(std::min<std::size_t>(all.size(), 1 << 16)));
-    std::string_view rest(reinterpret_cast<const char*>(all.data()), all.size());
-    header = take_pcd_header(rest, file);
-    before = all.size() - rest.size();
-    if (header.data != pcd_header::encoding::binary) refuse(file, "is a PCD file whose DATA is not binary, which alone can be mapped (load_pcd reads it)");
-    if (header.points > rest.size() / header.record_bytes)
-      refuse(file, "POINTS says " + std::to_string(header.points) + " records of " + std::to_string(header.record_bytes) + " bytes, but the file ends " +
-                       std::to_string(rest.size()) + " bytes after the header");
-    mapped.bring(all.last(std::min<std::size_t>(rest.size() - header.points * header.record_bytes, 4096)));
-    check_pcd_end(rest.substr(header.points * header.record_bytes), header, file);
-  }
+  // Opened once: by the time that its header is read there may be another file of that name.
+  const auto mapped = std::make_shared<const mapped_file>(file);
+  const std::span<const std::byte> all = mapped->bytes();
+  mapped->bring(all.first(std::min<std::size_t>(all.size(), 1 << 16)));
+  std::string_view rest(reinterpret_cast<const char*>(all.data()), all.size());
+  const pcd_header header = take_pcd_header(rest, file);
+  const std::size_t before = all.size() - rest.size();
+  if (header.data != pcd_header::encoding::binary) refuse(file, "is a PCD file whose DATA is not binary, which alone can be mapped (load_pcd reads it)");
+  if (header.points > rest.size() / header.record_bytes)
+    refuse(file, "POINTS says " + std::to_string(header.points) + " records of " + std::to_string(header.record_bytes) + " bytes, but the file ends " +
+                     std::to_string(rest.size()) + " bytes after the header");
+  mapped->bring(all.last(std::min<std::size_t>(rest.size() - header.points * header.record_bytes, 4096)));
+  check_pcd_end(rest.substr(header.points * header.record_bytes), header, file);
   strided_points<Scalar> layout;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const pcd_field& field = header.fields[header.xyz[axis]];
@@ -88,7 +94,7 @@ mapped_cloud<strided_points<Scalar>> map_pcd(const std::string& file) {
   if (header.record_bytes > 0xffffffff) refuse(file, "records of " + std::to_string(header.record_bytes) + " bytes");
   layout.step = std::uint32_t(header.record_bytes), layout.count = header.points;
   if (header.points == 0) refuse(file, "POINTS is 0: there is nothing to map");
-  mapped_cloud<strided_points<Scalar>> made = map_records(file, layout, before);
+  mapped_cloud<strided_points<Scalar>> made = detail::records_of(mapped, layout, before);
   made.viewpoint = header.viewpoint;
   return made;
 }

@@ -19,8 +19,10 @@ class mapped_file {
  public:
   /// Throws std::runtime_error if there is no such file, or it is empty, a folder or a device, or cannot be mapped.
   explicit mapped_file(const std::string& file) : file_(file) {
+    errno = ENOENT;
     descriptor_ = file.find('\0') != file.npos ? -1 : ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (descriptor_ < 0) refuse(file, errno == EACCES ? "cannot be opened for reading" : "there is no such file");
+    if (descriptor_ < 0)
+      refuse(file, errno == ENOENT || errno == ENOTDIR ? "there is no such file" : std::string("cannot be opened for reading: ") + std::strerror(errno));
     try {
       struct ::stat status {};
       if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) refuse(file, "is no regular file, which alone can be mapped");

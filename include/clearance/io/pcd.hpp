@@ -87,7 +87,7 @@ inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_h
 
 /// Refuses data that POINTS does not count: more than a line end, or the zeros that some writers fill a page with.
 inline void check_pcd_end(std::string_view rest, const pcd_header& header, const std::string& file) {
-  const bool padding = rest.find_first_not_of('\0') == rest.npos && rest.size() < 4096;
+  const bool padding = rest.size() < 4096 && rest.find_first_not_of('\0') == rest.npos;
   if (!padding && rest != "\n" && rest != "\r\n")
     refuse(file, "POINTS says " + std::to_string(header.points) + ", but " + std::to_string(rest.size()) +
                      " bytes follow the last record");

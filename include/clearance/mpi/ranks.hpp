@@ -17,6 +17,15 @@
 
 namespace clearance::mpi {
 
+/// Throws std::runtime_error where a communicator returns its errors (MPI_ERRORS_RETURN); by default they end the program.
+inline void check(int error, const char* call) {
+  if (error == MPI_SUCCESS) return;
+  char text[MPI_MAX_ERROR_STRING] = {};
+  int length = 0;
+  MPI_Error_string(error, text, &length);
+  throw std::runtime_error(std::string("clearance: ") + call + ": " + text);
+}
+
 /// One reduction of plain values with their own `add`, which is associative and commutative.
 template <class T>
 void reduce(MPI_Comm comm, T* values, std::size_t count) {
@@ -24,33 +33,32 @@ void reduce(MPI_Comm comm, T* values, std::size_t count) {
   // Made once, and kept as long as the process: nobody may free them after MPI_Finalize.
   static const MPI_Datatype type = [] {
     MPI_Datatype made;
-    MPI_Type_contiguous(int(sizeof(T)), MPI_BYTE, &made);
-    MPI_Type_commit(&made);
+    check(MPI_Type_contiguous(int(sizeof(T)), MPI_BYTE, &made), "MPI_Type_contiguous");
+    check(MPI_Type_commit(&made), "MPI_Type_commit");
     return made;
   }();
   static const MPI_Op operation = [] {
     MPI_Op made;
-    MPI_Op_create(
-        [](void* from, void* to, int* n, MPI_Datatype*) {
-          for (int k = 0; k < *n; ++k) {
-            T a, b;
-            std::memcpy(&a, static_cast<char*>(from) + std::size_t(k) * sizeof(T), sizeof(T));
-            std::memcpy(&b, static_cast<char*>(to) + std::size_t(k) * sizeof(T), sizeof(T));
-            b.add(a);
-            std::memcpy(static_cast<char*>(to) + std::size_t(k) * sizeof(T), &b, sizeof(T));
-          }
-        },
-        1, &made);
+    MPI_User_function* const add = [](void* from, void* to, int* n, MPI_Datatype*) {
+      for (int k = 0; k < *n; ++k) {
+        T a, b;
+        std::memcpy(&a, static_cast<char*>(from) + std::size_t(k) * sizeof(T), sizeof(T));
+        std::memcpy(&b, static_cast<char*>(to) + std::size_t(k) * sizeof(T), sizeof(T));
+        b.add(a);
+        std::memcpy(static_cast<char*>(to) + std::size_t(k) * sizeof(T), &b, sizeof(T));
+      }
+    };
+    check(MPI_Op_create(add, 1, &made), "MPI_Op_create");
     return made;
   }();
-  MPI_Allreduce(MPI_IN_PLACE, values, int(count), type, operation, comm);
+  check(MPI_Allreduce(MPI_IN_PLACE, values, int(count), type, operation, comm), "MPI_Allreduce");
 }
 
 /// All ranks' values, in order.
 template <class T>
 std::vector<T> gather(MPI_Comm comm, int ranks, const T* values, std::size_t count) {
   std::vector<T> all(std::size_t(ranks) * count);
-  MPI_Allgather(values, int(count * sizeof(T)), MPI_BYTE, all.data(), int(count * sizeof(T)), MPI_BYTE, comm);
+  check(MPI_Allgather(values, int(count * sizeof(T)), MPI_BYTE, all.data(), int(count * sizeof(T)), MPI_BYTE, comm), "MPI_Allgather");
   return all;
 }
 
@@ -58,11 +66,12 @@ std::vector<T> gather(MPI_Comm comm, int ranks, const T* values, std::size_t cou
 class question {
  public:
   explicit question(MPI_Comm comm) : comm_(comm) {
-    int started = 0;
-    if (MPI_Initialized(&started); started == 0 || comm == MPI_COMM_NULL)
-      throw std::invalid_argument("clearance: ranks, but MPI_Init was not called, or there is no communicator");
-    MPI_Comm_rank(comm, &rank_);
-    MPI_Comm_size(comm, &ranks_);
+    int started = 0, ended = 0;
+    MPI_Initialized(&started), MPI_Finalized(&ended);
+    if (started == 0 || ended != 0 || comm == MPI_COMM_NULL)
+      throw std::invalid_argument("clearance: ranks, but MPI_Init was not called, or MPI_Finalize was, or there is no communicator");
+    check(MPI_Comm_rank(comm, &rank_), "MPI_Comm_rank");
+    check(MPI_Comm_size(comm, &ranks_), "MPI_Comm_size");
   }
 
   /// Does `work()` on this rank. What it throws is kept, and told by `agree` or `answer`.
@@ -77,17 +86,20 @@ class question {
     }
   }
 
-  /// Throws on all ranks if one asks about another number of parts or clouds, or other poses. Then `first` is known.
+  /// Throws on all ranks if one has thrown, or asks about another number of parts or clouds, or other poses. Then `first` is known.
   template <class Clouds>
   void agree(std::size_t parts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
-    said mine{parts, 0, 0xcbf29ce484222325, 0};
+    said mine{parts, 0, 0, 0, 0};
     std::vector<std::uint64_t> sizes;
     attempt([&] {
       for (const Eigen::Isometry3d& pose : poses) mine.add(pose);
       for_each_cloud(clouds, [&](const auto& cloud, const Eigen::Isometry3d& pose) { sizes.push_back(cloud.size()), mine.add(pose); });
       mine.clouds = sizes.size(), mine.points = sizes.empty() ? 0 : sizes[0];
     });
+    mine.thrown = thrown_ ? 1 : 0;
     const std::vector<said> all = gather(comm_, ranks_, &mine, 1);
+    for (int r = 0; r < ranks_; ++r)
+      if (all[std::size_t(r)].thrown != 0) end_all(r);
     for (int r = 1; r < ranks_; ++r) {
       const auto differs = [&](const char* what, std::uint64_t its, std::uint64_t others) {
         return "clearance: rank " + std::to_string(r) + " asks about " + std::to_string(its) + " " + what + ", rank 0 about " + std::to_string(others);
@@ -125,10 +137,15 @@ class question {
 
  private:
   struct said {
-    std::uint64_t parts, clouds, poses, points;
+    std::uint64_t parts, clouds, poses, points, thrown;
 
+    /// Each step is one to one, and spreads every bit: half a turn, which flips the signs of some numbers, must not hide itself.
     void add(const Eigen::Isometry3d& pose) {
-      for (int k = 0; k < 16; ++k) poses = (poses ^ std::bit_cast<std::uint64_t>(pose.matrix().data()[k] + 0.0)) * 0x100000001b3;  // FNV-1a; -0 is 0
+      for (int k = 0; k < 16; ++k) {
+        poses = (poses ^ std::bit_cast<std::uint64_t>(pose.matrix().data()[k] + 0.0)) * 0xbf58476d1ce4e5b9;  // -0 is 0; as splitmix64
+        poses = (poses ^ poses >> 30) * 0x94d049bb133111eb;
+        poses ^= poses >> 31;
+      }
     }
   };
   struct sum {
@@ -150,7 +167,7 @@ class question {
   [[noreturn]] void end_all(int by) {
     char text[512] = {};
     if (rank_ == by) std::memcpy(text, sentence_.data(), std::min(sentence_.size(), sizeof text - 1));
-    MPI_Bcast(text, sizeof text, MPI_BYTE, by, comm_);
+    check(MPI_Bcast(text, sizeof text, MPI_BYTE, by, comm_), "MPI_Bcast");
     if (thrown_) std::rethrow_exception(thrown_);
     throw std::runtime_error("clearance: rank " + std::to_string(by) + " of " + std::to_string(ranks_) + ": " + text);
   }
