@@ -59,6 +59,9 @@ TEST_CASE("Crowds, points inside solids, and more parts than a kernel takes give
   const clearance::model boxes{std::vector{box(), box()}};
   const auto crowd = d.points(300000, 2);
   same_pairs(boxes, {d.pose(0.5), d.pose(0.5)}, point_span(crowd), 0.5f, v, "boxes");
+  auto on_faces = d.points(100000, 1);  // 0 away from triangles, and of every second face inside as well: then no triangle is named
+  for (std::size_t i = 0; i < on_faces.size(); ++i) (i % 3 == 0 ? on_faces[i].x : i % 3 == 1 ? on_faces[i].y : on_faces[i].z) = i % 2 ? 1 : -1;
+  same_pairs(boxes, std::vector(2, Eigen::Isometry3d::Identity()), point_span(on_faces), 0.5f, v, "faces of boxes");
   scene<inner_sphere> s;
   for (int part = 0; part < 200; ++part) {
     s.parts.emplace_back();

@@ -46,6 +46,19 @@ void all_scenes() {
   }
 }
 
+/// No ball, though it shows a middle, a radius, and one ball around it.
+struct padded {
+  vec3 center;
+  real radius, padding;  ///< It ends at their sum.
+
+  static padded fit(std::span<const clearance::ball> balls) {
+    const auto all = clearance::sphere::fit(balls);
+    return {all.center, all.radius / 8, all.radius};
+  }
+  real lower_bound(vec3 q) const { return clearance::sphere{center, radius + padding}.lower_bound(q); }
+  std::array<clearance::ball, 1> balls() const { return {{{center, radius + padding}}}; }
+};
+
 }  // namespace
 
 TEST_CASE("Least distances of many configurations of inner spheres are those of each") {
@@ -106,6 +119,17 @@ TEST_CASE("A tree of somebody else's, however deep or wide, is a robot's") {
   const auto volumes = wide_volumes<clearance::sphere>(spheres);
   const wide_view<clearance::sphere, inner_sphere> wide{volumes.data(), spheres.data(), 200};
   check(clearance::model{std::vector{clearance::part{wide, clearance::no_interior{}, facts}}}, 1, poses, point_span(points), 1, v, "a wide tree");
+}
+
+TEST_CASE("A volume is a ball if it says so, and not because it has a middle and a radius") {
+  static_assert(clearance::minimum::is_ball<clearance::sphere> && clearance::bounding_volume<padded> && !clearance::minimum::is_ball<padded>);
+  verdict v;
+  const auto s = scenes<inner_sphere>()[0];
+  dice d(419);
+  const auto model = make_model<padded>(s, {}, clearance::wrapped{});
+  const auto poses = configurations_of(s, d, 40);
+  require_same(min_distances(host{}, model, poses, point_span(s.points)), poses, s.parts.size(), infinity,
+               [&](auto own) { return min_distance(host{}, model, own, point_span(s.points)); }, v, "padded");
 }
 
 TEST_CASE("Clouds in order and in none, large ones, and one point far from all others") {

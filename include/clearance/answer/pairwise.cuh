@@ -59,8 +59,11 @@ struct pairs_of {
     const real reach = reach_of_pair(s, part, pair);
     return !frames::may_reach(scan::frame_parts<pairs_of>::place(part).root.around, scan::has_interior<PartView> ? max(reach, 0) : reach, x);
   }
+  /// Whoever calls it has the pair for itself. A leaf that it went ahead to may be 0 away, too: that is not what is told then.
   static __device__ void take_inside(block& s, std::uint32_t part, std::uint32_t, std::uint32_t pair) {
-    if (reach_of_part(s, part, 0) >= 0) hear(s, part, pair, make_key(0, none));
+    if (!(reach_of_part(s, part, 0) >= 0)) return;
+    s.answer.best[pair] = make_key(0, none);
+    hear(s, part, pair, make_key(0, none));
   }
   static __device__ bool wants_certain(const block&) { return false; }
   static __device__ void take_certain(block&) {}

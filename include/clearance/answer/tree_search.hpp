@@ -6,8 +6,7 @@
 #include <clearance/cloud_tree/tree_view.hpp>
 #include <clearance/result.hpp>
 #include <clearance/scan/scan_body.hpp>
-
-#include <tuple>
+#include <clearance/volume/sphere.hpp>
 
 namespace clearance::minimum {
 
@@ -45,13 +44,11 @@ struct node_pair {
   bool whole;               ///< Points may be inside the part's solid: `node` stays the root.
 };
 
-/// A volume that is one ball, and shows it.
+/// A volume that is a ball, `center` and `radius`, and says so; members of these names alone could be anything.
 template <class V>
-concept round_volume = requires(const V v) {
-  requires std::tuple_size<decltype(bounding_volume_traits<V>::balls(v))>::value == 1;
-  { v.center } -> std::convertible_to<vec3>;
-  { v.radius } -> std::convertible_to<real>;
-};
+inline constexpr bool is_ball = false;
+template <>
+inline constexpr bool is_ball<sphere> = true;
 
 /// One configuration's parts in one cloud, and a tree over its points. `Body` is a scan_body, whose answer is `shared_bounds`.
 template <class Body, class Tree>
@@ -121,7 +118,7 @@ struct tree_search {
       const part_view& part = body.parts[p.part];
       const volume_type& volume = part.tree.volume(p.node);
       real bound, size;
-      if constexpr (round_volume<volume_type>) {
+      if constexpr (is_ball<volume_type>) {
         size = volume.radius;
         bound = bounds[p.part].lower(away(tree.boxes[node_of(p)], b, x, volume.center, p.part), size);
       } else {
