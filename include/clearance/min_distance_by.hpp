@@ -83,6 +83,7 @@ struct some_slices {
 template <class On, class PartView, class Clouds, class GoOn>
 min_distance_so_far min_distance_while(min_distance_query<On, PartView>& query, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, GoOn go_on,
                                        const deadline_options& options = {}) {
+  static_assert(explain_clouds<Clouds>());
   std::vector<std::size_t> sizes;
   std::uint64_t total = 0;
   for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { sizes.push_back(source.size()), total += source.size(); });
