@@ -122,7 +122,7 @@ TEST_CASE("A tree of somebody else's, however deep or wide, is a robot's") {
 }
 
 TEST_CASE("A volume is a ball if it says so, and not because it has a middle and a radius") {
-  static_assert(clearance::minimum::is_ball<clearance::sphere> && clearance::bounding_volume<padded> && !clearance::minimum::is_ball<padded>);
+  static_assert(clearance::round_volume<clearance::sphere> && clearance::bounding_volume<padded> && !clearance::round_volume<padded>);
   verdict v;
   const auto s = scenes<inner_sphere>()[0];
   dice d(419);

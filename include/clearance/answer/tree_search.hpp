@@ -6,7 +6,6 @@
 #include <clearance/cloud_tree/tree_view.hpp>
 #include <clearance/result.hpp>
 #include <clearance/scan/scan_body.hpp>
-#include <clearance/volume/sphere.hpp>
 
 namespace clearance::minimum {
 
@@ -43,12 +42,6 @@ struct node_pair {
   bool by_points;           ///< It is the points' node that is to be opened.
   bool whole;               ///< Points may be inside the part's solid: `node` stays the root.
 };
-
-/// A volume that is a ball, `center` and `radius`, and says so; members of these names alone could be anything.
-template <class V>
-inline constexpr bool is_ball = false;
-template <>
-inline constexpr bool is_ball<sphere> = true;
 
 /// One configuration's parts in one cloud, and a tree over its points. `Body` is a scan_body, whose answer is `shared_bounds`.
 template <class Body, class Tree>
@@ -118,9 +111,10 @@ struct tree_search {
       const part_view& part = body.parts[p.part];
       const volume_type& volume = part.tree.volume(p.node);
       real bound, size;
-      if constexpr (is_ball<volume_type>) {
-        size = volume.radius;
-        bound = bounds[p.part].lower(away(tree.boxes[node_of(p)], b, x, volume.center, p.part), size);
+      if constexpr (round_volume<volume_type>) {
+        const ball around = traits::as_ball(volume);
+        size = around.radius;
+        bound = bounds[p.part].lower(away(tree.boxes[node_of(p)], b, x, around.center, p.part), size);
       } else {
         bound = bounds[p.part].lower(traits::lower_bound(volume, body.places[p.part].part_from_cloud(x)), b.radius);
         size = part.facts.radius / real(1u << (p.depth < 20 ? p.depth * 3 / 2 : 30));  // surfaces of eight children each

@@ -70,6 +70,12 @@ struct bounding_volume_traits {
   {
     return v.may_reach(q, reach);
   }
+  /// Optional: see round_volume.
+  CLEARANCE_HD static ball as_ball(const V& v)
+    requires requires { { v.as_ball() } -> std::same_as<ball>; }
+  {
+    return v.as_ball();
+  }
   /// Optional: a few balls whose convex hull contains the volume. Needed by the layered fit alone.
   static auto balls(const V& v)
     requires requires { std::span<const ball>(v.balls()); }
@@ -101,6 +107,12 @@ concept bounding_volume = copied_as_bytes<V> && requires(const V v, vec3 q, std:
 template <class V>
 concept rootless_volume =
     bounding_volume<V> && requires(const V v, vec3 q, real reach) { { bounding_volume_traits<V>::may_reach(v, q, reach) } -> std::same_as<bool>; };
+
+/// A volume that is a ball, and says so: how far it is from a box then takes no more than its middle's distance.
+///
+/// Law: `as_ball(v)` contains all that the volume encloses.
+template <class V>
+concept round_volume = bounding_volume<V> && requires(const V v) { { bounding_volume_traits<V>::as_ball(v) } -> std::same_as<ball>; };
 
 /// `bounding_volume<V>` with reasons: nvcc does not say which requirement of a concept failed.
 template <class V>

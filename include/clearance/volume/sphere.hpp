@@ -58,9 +58,10 @@ struct sphere {
     return bool(int(most >= 0) & int(d.x * d.x + d.y * d.y + d.z * d.z <= most * most));
   }
 
-  std::array<ball, 1> balls() const { return {{{center, radius}}}; }
+  CLEARANCE_HD ball as_ball() const { return {center, radius}; }
+  std::array<ball, 1> balls() const { return {{as_ball()}}; }
 };
 
-static_assert(bounding_volume<sphere>);
+static_assert(round_volume<sphere>);
 
 }  // namespace clearance
