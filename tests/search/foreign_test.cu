@@ -189,3 +189,20 @@ TEST_CASE("More parts than a kernel takes are looked at in groups", "[slow]") {
         point_span(first), v, std::to_string(parts) + " parts, tied");
   }
 }
+
+TEST_CASE("Parts of unequal tolerance are one robot, in groups too") {
+  verdict v;
+  const device gpu;
+  std::vector<std::vector<inner_sphere>> bodies(130, {{{50, 50, 50}, 0.1f}});
+  bodies[0] = {{{0, 0, 0}, 1}}, bodies[128] = {{{5, 0, 0}, 1}};
+  const std::vector<Eigen::Isometry3d> poses(bodies.size(), Eigen::Isometry3d::Identity());
+  const std::vector<vec3> points = {{0.4f, 0, 0}, {5.5f, 0, 0}};  // deepest in the first part, and certainly inside the other alone
+  for (const double tolerance : {0.0, 0.7}) {
+    const auto on_host = clearance::make_model<clearance::sphere>(bodies, [&](std::size_t k) -> clearance::part_options {
+      return {.build = {}, .tolerance = k == 0 ? tolerance : 0};
+    });
+    const auto expected = min_distance(host{}, on_host, poses, point_span(points));
+    v.require(expected.part == 0 && expected.state == (tolerance > 0 ? clearance::state::possible : clearance::state::collision), "the scene is not what it was meant to be");
+    ask(on_host, on_host.on(gpu), poses, point_span(points), v, "tolerance " + std::to_string(tolerance));
+  }
+}

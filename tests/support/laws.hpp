@@ -80,6 +80,13 @@ template <clearance::bounding_volume V>
 void check_bounds(dice& d, const std::vector<ball>& balls, double size, verdict& v) {
   using traits = clearance::bounding_volume_traits<V>;
   const V volume = traits::fit(balls);
+  if constexpr (clearance::round_volume<V>) {
+    const ball around = traits::as_ball(volume);
+    for (const ball& b : balls) {
+      const wide deepest = oracle::to_sphere(wider(b.center), wider(around.center), around.radius);
+      v.require(deepest + b.radius <= 0, "a ball at ", b.center, b.radius, " sticks out of the volume that is one");
+    }
+  }
   for (const vec3 q : probes(d, balls, size)) {
     const real bound = traits::lower_bound(volume, q);
     for (const ball& b : balls) {

@@ -2,23 +2,23 @@
 #pragma once
 
 #include <clearance/answer/least.cuh>
-#include <clearance/answer/merge.hpp>
+#include <clearance/answer/of_pieces.hpp>
 #include <clearance/frame/clouds.hpp>
 #include <clearance/scan/launch.cuh>
 
 namespace clearance::minimum {
 
-/// Groups of parts, which were looked at by kernels of their own, become one robot again.
-template <int = 0>
+/// Groups of parts, which were looked at by kernels of their own, become one robot again. Each has seen the same points.
+template <bool HasInterior>
 __global__ void merge_groups(const min_distance_result* of_group, std::uint32_t groups, min_distance_result* result, std::uint32_t* done,
                              std::uint32_t number) {
-  min_distance_result r = of_group[0];
+  of_pieces robot(of_group[0]);
   for (std::uint32_t g = 1; g < groups; ++g) {
-    min_distance_result next = of_group[g];
-    if (next.part != none) next.part += g * scan::most_parts;
-    r = merged(r, next);
+    of_pieces next(of_group[g]);
+    if (next.all.part != none) next.all.part += g * scan::most_parts;
+    robot.add_parts(next);
   }
-  *result = r;
+  *result = robot.answer(HasInterior);
   if (done == nullptr) return;
   __threadfence_system();
   *static_cast<volatile std::uint32_t*>(done) = number;
@@ -106,7 +106,7 @@ class device_search {
   }
   void conclude(const ending& end) {
     if (launch_.groups() == 1) return;
-    on_.launch(merge_groups<>, 1, 1, 0, of_group_.data(), launch_.groups(), end.result, end.done, end.number);
+    on_.launch(merge_groups<scan::has_interior<PartView>>, 1, 1, 0, of_group_.data(), launch_.groups(), end.result, end.done, end.number);
   }
 
   device on_;
