@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <clearance/distances.cuh>  // a device's scan
+#include <clearance/distances_per_part.cuh>
 
 #include "distances.hpp"
 

@@ -3,6 +3,7 @@
 // How far is every point of a cloud from a robot, and from which of its links?
 
 #include <clearance/distances.hpp>
+#include <clearance/distances_per_part.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -30,7 +31,13 @@ int example(const Backend& on) {
               100.0 * all.distance[first], all.part[first]);
   // [distances]
 
+  // [parts]
+  const auto each = clearance::distances_per_part(on, robot, poses, wall);  // of every link to every point
+  std::printf("that point is %.1f cm from link 0 and %.1f cm from link 1\n", 100.0 * each.of(0)[first], 100.0 * each.of(1)[first]);
+  // [parts]
+
   for (std::size_t i = 0; i < wall.size(); ++i) {
+    if (all.distance[i] <= 0.5f && all.distance[i] != std::min(each.of(0)[i], each.of(1)[i])) return 1;
     clearance::real least = clearance::infinity;
     for (const auto& link : links)
       for (const auto& s : link) least = std::min(least, s.distance(wall[i]));

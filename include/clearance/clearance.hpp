@@ -8,6 +8,7 @@
 #include <clearance/chunked_query.hpp>
 #include <clearance/collect.hpp>
 #include <clearance/distances.hpp>
+#include <clearance/distances_per_part.hpp>
 #include <clearance/distances_query.hpp>
 #include <clearance/gradient.hpp>
 #include <clearance/in_collision.hpp>

@@ -105,8 +105,8 @@ class launcher {
   template <class Answer, point_source Source>
   void operator()(const Source& source, scan_arguments<Answer>& a) {
     const std::uint64_t end = std::uint64_t(a.first) + source.size();
-    if (end >= none - block_threads * 8 * processors_)
-      throw std::invalid_argument("clearance: " + std::to_string(end) + " points are too many for one call");
+    if (const std::uint32_t most = none - block_threads * 8 * processors_; end >= most)
+      throw std::invalid_argument("clearance: " + std::to_string(end) + " points are too many for one call; this device takes " + std::to_string(most - 1));
     a.points = std::uint32_t(source.size());
     const device_guard guard(on_.id);
     start(source, a);

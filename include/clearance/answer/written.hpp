@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/concepts.hpp>
+
+namespace clearance::pairwise {
+
+/// An answer: each pair's distance where it belongs, part after part. What is farther than `d_max` is left as it was.
+struct written {
+  real* distance;
+  const std::uint32_t* first_point;  ///< Of each cloud.
+  std::size_t points;                ///< Of all clouds.
+  real d_max;
+
+  CLEARANCE_HD real reach(std::uint32_t) const { return d_max; }
+  CLEARANCE_HD void take(const pair_distance& pair) const { distance[pair.part * points + first_point[pair.cloud] + pair.point] = pair.distance; }
+};
+static_assert(answer<written>);
+
+/// Before: all points of a source are too far, or none.
+template <point_source Source>
+struct nothing_written {
+  Source source;
+  real* distance;  ///< Of its first point to the first part.
+  std::size_t points, parts;
+
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const real none = source[i].valid() ? infinity : not_a_number;
+    for (std::size_t k = 0; k < parts; ++k) distance[k * points + i] = none;
+  }
+};
+
+}  // namespace clearance::pairwise

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every part's distance to every point is that of a plain loop, and the least of them is the point's.
+#include "support/brute_per_part.hpp"
+
+#include <clearance/make_model.hpp>
+#include <clearance/volume/sphere.hpp>
+
+using namespace testing;
+using clearance::host, clearance::distances_per_part;
+
+TEST_CASE("Every part's distance to every point is brute force's, to the bit, and their least that of distances") {
+  verdict v;
+  std::size_t near = 0, far = 0;
+  for (auto s : scenes<inner_sphere>()) {
+    if (s.points.size() > 3) s.points[1].x = clearance::not_a_number, s.points[3].z = clearance::infinity;
+    const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+    const auto two = two_clouds(s);
+    for (const real d_max : {real(0), real(0.2 * s.size), clearance::infinity}) {
+      const std::string what = s.name + ", d_max " + std::to_string(d_max);
+      const auto found = distances_per_part(host{}, model, s.poses, two, d_max);
+      require_same(found, brute_per_part(s, two, d_max, nothing_inside), v, what);
+      const auto least = clearance::distances(host{}, model, s.poses, two, {.d_max = d_max});
+      for (std::size_t i = 0; i < found.points; ++i) {
+        real nearest = found.of(0)[i];
+        for (std::size_t k = 1; k < s.parts.size(); ++k) nearest = found.of(k)[i] < nearest ? found.of(k)[i] : nearest;
+        v.require(nearest != nearest ? least.distance[i] != least.distance[i] : nearest == least.distance[i], what, ": the least of point", i, " is", nearest,
+                  " and not", least.distance[i]);
+        near += nearest <= d_max, far += nearest == clearance::infinity;
+      }
+      v.require(same_bits(found.certain.lower(1), least.certain.lower(1)), what, ": another certainty");
+    }
+  }
+  CHECK((near > 1000 && far > 1000));
+}
+
+TEST_CASE("No point, no part in reach, and d_max that is no number") {
+  const std::vector<std::vector<inner_sphere>> bodies{{{{0, 0, 0}, 1}}, {{{9, 0, 0}, 1}}};
+  const auto model = clearance::make_model<clearance::sphere>(bodies);
+  const std::vector<Eigen::Isometry3d> poses(2, Eigen::Isometry3d::Identity());
+  CHECK(distances_per_part(host{}, model, poses, std::vector<vec3>{}).distance.empty());
+  const auto one = distances_per_part(host{}, model, poses, std::vector<vec3>{{3, 0, 0}}, 2.5f);
+  CHECK((one.of(0)[0] == 2 && one.of(1)[0] == clearance::infinity && one.counts.valid == 1));
+  CHECK_THROWS_AS(distances_per_part(host{}, model, poses, std::vector<vec3>{{3, 0, 0}}, clearance::not_a_number), std::invalid_argument);
+}
