@@ -56,6 +56,13 @@ struct world_transform {
   }
 };
 
+inline Eigen::Isometry3d to_isometry(const world_transform& t) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) pose(r, c) = t.m[r][c];
+  return pose;
+}
+
 /// How far the axes are from orthonormal; NaN or infinite if a number of the pose is.
 CLEARANCE_HD inline double skew(const world_transform& t) {
   double most = 0;
@@ -111,11 +118,7 @@ inline world_transform rigid_transform_of(const Eigen::Isometry3d& pose, const c
   throw std::invalid_argument("clearance: the pose of " + std::string(what) + (number < 0 ? "" : " " + std::to_string(number)) + " is not rigid: " + why);
 }
 inline Eigen::Isometry3d rigid(const Eigen::Isometry3d& pose, const char* what = "pose", std::int64_t number = -1) {
-  const world_transform t = rigid_transform_of(pose, what, number);
-  Eigen::Isometry3d clean = Eigen::Isometry3d::Identity();
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) clean(r, c) = t.m[r][c];
-  return clean;
+  return to_isometry(rigid_transform_of(pose, what, number));
 }
 
 /// The nearest float transform, for the exact path of a query.

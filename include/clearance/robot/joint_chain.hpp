@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// From joint vectors to poses of parts, on any backend, with the same bits: forward kinematics for many configurations.
+
+#include <clearance/backend/host.hpp>
+#include <clearance/ground/pose.hpp>
+#include <clearance/ground/sine.hpp>
+#include <clearance/result.hpp>
+
+#include <span>
+#include <utility>
+
+namespace clearance {
+
+/// How a link hangs on its parent: `origin`, then a turn about `axis` (of length 1), or a shift along it, by `factor` times the joint
+/// vector's number `value` plus `offset`, in radians or metres.
+struct chain_link {
+  world_transform origin;
+  position axis{1, 0, 0};
+  double factor = 0, offset = 0;
+  std::uint32_t value = none;   ///< `none`: it does not move.
+  std::uint32_t parent = none;  ///< `none`: it hangs on the base.
+  bool slides = false;
+};
+
+struct joint_range {
+  double lower = -double(infinity), upper = double(infinity);
+};
+
+/// What a kernel needs of it.
+struct joint_chain_view {
+  const chain_link* links;
+  const std::uint32_t* link_of_part;
+  const joint_range* ranges;  ///< One a value.
+  std::uint32_t parts, values;
+  world_transform base;  ///< World-from-base.
+
+  CLEARANCE_HD bool allows(const double* q) const {
+    for (std::uint32_t i = 0; i < values; ++i)
+      if (!(q[i] >= ranges[i].lower && q[i] <= ranges[i].upper && q[i] - q[i] == 0)) return false;
+    return true;
+  }
+
+  /// World-from-part; of joint vectors that are not allowed all numbers are NaN, which no question takes for a pose.
+  CLEARANCE_HD world_transform pose(const double* q, std::uint32_t part) const {
+    world_transform below;
+    for (std::uint32_t link = link_of_part[part]; link != none; link = links[link].parent) below = from_link(links[link], q) * below;
+    below = base * below;
+    if (!allows(q))
+      for (auto& row : below.m)
+        for (double& x : row) x = double(not_a_number);
+    return below;
+  }
+
+ private:
+  /// Parent-from-link.
+  CLEARANCE_HD static world_transform from_link(const chain_link& link, const double* q) {
+    if (link.value == none) return link.origin;
+    const double by = fma(link.factor, q[link.value], link.offset);
+    const position& a = link.axis;
+    world_transform moved;
+    if (link.slides) {
+      moved.m[0][3] = by * a.x, moved.m[1][3] = by * a.y, moved.m[2][3] = by * a.z;
+    } else {
+      const auto [s, c] = sine_cosine_of(by);
+      const double v = 1 - c, x = v * a.x, y = v * a.y, z = v * a.z, sx = s * a.x, sy = s * a.y, sz = s * a.z;
+      const double turn[3][3] = {{fma(x, a.x, c), fma(x, a.y, -sz), fma(x, a.z, sy)},
+                                 {fma(y, a.x, sz), fma(y, a.y, c), fma(y, a.z, -sx)},
+                                 {fma(z, a.x, -sy), fma(z, a.y, sx), fma(z, a.z, c)}};
+      for (int r = 0; r < 3; ++r)
+        for (int k = 0; k < 3; ++k) moved.m[r][k] = turn[r][k];
+    }
+    return link.origin * moved;
+  }
+};
+
+/// Poses of all parts of many configurations, those of one after another.
+struct place_links {
+  joint_chain_view chain;
+  const double* q;
+  world_transform* poses;
+
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const std::size_t configuration = i / chain.parts;
+    poses[i] = chain.pose(q + configuration * chain.values, std::uint32_t(i - configuration * chain.parts));
+  }
+};
+
+/// What a number of a joint vector is.
+struct joint_value {
+  std::string name;
+  joint_range range;
+};
+
+/// A robot's links, joined: an owner, as `model` is of its trees. `io::joint_chain_of` makes one of a robot description.
+template <class B = host>
+class joint_chain {
+  static_assert(backend<B>);
+
+ public:
+  /// Part k is link `link_of_part[k]`, and `base` is world-from-base. Throws std::invalid_argument if links hang on one another in a ring,
+  /// a number is of nothing, nothing moves, or a pose is not rigid.
+  joint_chain(std::vector<chain_link> links, std::vector<std::uint32_t> link_of_part, std::vector<joint_value> values,
+              const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity(), const B& on = {})
+      : links_(std::move(links)), of_part_(std::move(link_of_part)), values_(std::move(values)), base_(rigid(base, "the base")) {
+    check();
+    std::vector<joint_range> ranges;
+    for (const joint_value& value : values_) ranges.push_back(value.range);
+    links_there_ = on.copy_in(std::span<const chain_link>(links_));
+    of_part_there_ = on.copy_in(std::span<const std::uint32_t>(of_part_));
+    ranges_there_ = on.copy_in(std::span<const joint_range>(ranges));
+  }
+
+  std::size_t parts() const { return of_part_.size(); }
+  const std::vector<joint_value>& values() const { return values_; }
+  joint_chain_view view() const {
+    return {links_there_.data(), of_part_there_.data(), ranges_there_.data(), std::uint32_t(parts()), std::uint32_t(values_.size()), world_transform(base_)};
+  }
+
+  /// A copy where `other` runs.
+  template <backend Other>
+  joint_chain<Other> on(const Other& other) const {
+    return joint_chain<Other>(links_, of_part_, values_, base_, other);
+  }
+
+  /// How many configurations `q` is: one number a value, one configuration after another. Throws std::invalid_argument if they are not
+  /// whole, or a number is not finite, or outside its range.
+  std::size_t count(std::span<const double> q) const {
+    if (q.size() % values_.size() != 0)
+      throw std::invalid_argument("clearance: " + std::to_string(q.size()) + " numbers are no whole joint vectors of " + std::to_string(values_.size()));
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      const auto& [name, range] = values_[i % values_.size()];
+      if (q[i] >= range.lower && q[i] <= range.upper && q[i] - q[i] == 0) continue;
+      throw std::invalid_argument("clearance: configuration " + std::to_string(i / values_.size()) + ": joint \"" + name + "\" at " + std::to_string(q[i]) +
+                                  " is outside " + std::to_string(range.lower) + " to " + std::to_string(range.upper));
+    }
+    return q.size() / values_.size();
+  }
+
+  /// World-from-part, one a part of the first configuration, then those of the next, as min_distances takes them. Throws as `count`.
+  std::vector<Eigen::Isometry3d> poses(std::span<const double> q) const
+    requires std::is_same_v<B, host>
+  {
+    std::vector<world_transform> all(count(q) * parts());
+    host{}.for_each(all.size(), place_links{view(), q.data(), all.data()});
+    std::vector<Eigen::Isometry3d> out;
+    for (const world_transform& t : all) out.push_back(to_isometry(t));
+    return out;
+  }
+
+ private:
+  void check() const {
+    const auto refuse = [](const std::string& why) { throw std::invalid_argument("clearance: a joint chain " + why); };
+    if (values_.empty()) refuse("has no joint that moves");
+    for (const chain_link& link : links_) {
+      rigid_transform_of(to_isometry(link.origin), "a link's origin");
+      if (link.value != none && link.value >= values_.size()) refuse("has a link that moves by number " + std::to_string(link.value) + ", which is none");
+      const double length = std::hypot(link.axis.x, link.axis.y, link.axis.z);
+      if (link.value != none && !(std::abs(length - 1) < 1e-9)) refuse("has an axis of length " + std::to_string(length) + ", which must be 1");
+      std::size_t steps = 0;
+      for (std::uint32_t at = link.parent; at != none; at = links_[at].parent)
+        if (at >= links_.size() || ++steps > links_.size()) refuse("has links that hang on no base");
+    }
+    for (const std::uint32_t link : of_part_)
+      if (link >= links_.size()) refuse("has a part that is link " + std::to_string(link) + ", which is none");
+  }
+
+  std::vector<chain_link> links_;
+  std::vector<std::uint32_t> of_part_;
+  std::vector<joint_value> values_;
+  Eigen::Isometry3d base_;
+  typename B::template buffer<chain_link> links_there_;
+  typename B::template buffer<std::uint32_t> of_part_there_;
+  typename B::template buffer<joint_range> ranges_there_;
+};
+
+}  // namespace clearance

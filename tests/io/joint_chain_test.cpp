@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Joint chains: the poses of link_poses, for many configurations, and refusals that say whose.
+#include "io/random_tree.hpp"
+#include "support/laws.hpp"
+
+#include <clearance/io/joint_chain.hpp>
+
+using namespace testing;
+using namespace clearance::io;
+using clearance::joint_chain, clearance::sine_cosine_of;
+
+TEST_CASE("Sine and cosine are within a unit of rounding, of small and of large angles") {
+  verdict v;
+  dice d(5);
+  for (const double top : {1e-9, 0.1, 0.8, 3.2, 100.0, 1e6, 1e9})
+    for (int k = 0; k < 20000; ++k) {
+      const double x = d.number(-top, top);
+      const auto [s, c] = sine_cosine_of(x);
+      const long double sine = std::sin((long double)x), cosine = std::cos((long double)x);
+      v.require(std::abs(s - sine) <= 2.3e-16 * std::abs(sine) + 1e-18 && std::abs(c - cosine) <= 2.3e-16 * std::abs(cosine) + 1e-18, "at", x, ":", s, c);
+    }
+  const double quarter = std::acos(-1.0) / 2;
+  for (int k = -9; k < 10; ++k)
+    for (const double by : {-1e-12, 0.0, 1e-12}) {
+      const double x = k * quarter + by;
+      v.require(std::abs(sine_cosine_of(x).sine - std::sin((long double)x)) < 2e-16, "about", k, " quarter turns");
+    }
+  v.require(sine_cosine_of(0).sine == 0 && sine_cosine_of(0).cosine == 1, "at 0");
+  for (const double none : {std::nan(""), 1e300, -1.1e9, double(clearance::infinity)}) v.require(std::isnan(sine_cosine_of(none).sine), "of", none);
+}
+
+TEST_CASE("A joint chain puts parts where link_poses puts their links") {
+  verdict v;
+  dice d(77);
+  std::size_t followed = 0, sliding = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    const auto [tree, q] = random_tree(d, 9, 0.3);
+    if (tree.size() == 0) continue;
+    std::vector<std::size_t> links;
+    for (std::size_t k = tree.links().size(); k-- > 0;) links.push_back(k);
+    const Eigen::Isometry3d base = d.pose(2);
+    const auto chain = joint_chain_of(tree, links, {}, base);
+    std::vector<double> many = q, rest = tree.rest();
+    many.insert(many.end(), rest.begin(), rest.end());
+    const auto poses = chain.poses(many);
+    v.require(poses.size() == 2 * links.size(), "how many poses:", poses.size());
+    for (std::size_t c = 0; c < 2; ++c) {
+      const auto expected = tree.link_poses(c == 0 ? q : rest);
+      for (std::size_t k = 0; k < links.size(); ++k)
+        v.require(((base * expected[links[k]]).matrix() - poses[c * links.size() + k].matrix()).cwiseAbs().maxCoeff() < 1e-12, "configuration", c, ", part", k);
+    }
+    for (const auto& j : tree.joints()) followed += j.follows.has_value(), sliding += j.kind == joint_kind::prismatic;
+  }
+  CHECK((followed > 20 && sliding > 20));
+}
+
+TEST_CASE("What is no joint vector is refused, by configuration and joint") {
+  joint shoulder, elbow;
+  shoulder.name = "shoulder", shoulder.parent = "base", shoulder.child = "upper", shoulder.lower = -1, shoulder.upper = 1;
+  elbow.name = "elbow", elbow.parent = "upper", elbow.child = "fore";
+  for (joint* j : {&shoulder, &elbow}) j->kind = joint_kind::revolute;
+  const kinematic_tree tree({"base", "upper", "fore"}, {shoulder, elbow});
+  const std::vector<std::size_t> links{1, 2};
+  const auto chain = joint_chain_of(tree, links);
+  const auto refusal = [](const auto& ask) -> std::string {
+    try {
+      ask();
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "nothing was refused";
+  };
+  const auto of = [&](std::vector<double> q) { return refusal([&] { chain.poses(q); }); };
+  CHECK(of({0, 0, 2, 0}) == "clearance: configuration 1: joint \"shoulder\" at 2.000000 is outside -1.000000 to 1.000000");
+  CHECK(of({0, std::nan("")}).find("joint \"elbow\" at nan") != std::string::npos);
+  CHECK(of({0, double(clearance::infinity)}).find("joint \"elbow\" at inf") != std::string::npos);
+  CHECK(of({0, 0, 0}) == "clearance: 3 numbers are no whole joint vectors of 2");
+  CHECK(chain.poses({}).empty());
+  CHECK(joint_chain_of(tree, links, {.ignore_limits = true}).poses(std::vector<double>{2, 0}).size() == 2);
+  const double out[] = {2, 0};
+  CHECK(std::isnan(chain.view().pose(out, 0).m[0][0]));  // where nobody can throw
+  CHECK(refusal([&] { joint_chain_of(tree, std::vector<std::size_t>{3}); }) == "the robot has 3 links, and none of number 3");
+  clearance::chain_link ring;
+  ring.parent = 0;
+  CHECK(refusal([&] { joint_chain<>({ring}, {0}, {{"a", {}}}); }) == "clearance: a joint chain has links that hang on no base");
+  CHECK(refusal([&] { joint_chain<>({{}}, {1}, {{"a", {}}}); }) == "clearance: a joint chain has a part that is link 1, which is none");
+  CHECK(refusal([&] { joint_chain<>({{}}, {0}, {}); }) == "clearance: a joint chain has no joint that moves");
+  clearance::chain_link thick;
+  thick.value = 0, thick.axis = {2, 0, 0};
+  CHECK(refusal([&] { joint_chain<>({thick}, {0}, {{"a", {}}}); }).find("axis of length 2") != std::string::npos);
+  thick.axis = {1, 0, 0}, thick.value = 1;
+  CHECK(refusal([&] { joint_chain<>({thick}, {0}, {{"a", {}}}); }).find("number 1, which is none") != std::string::npos);
+}
