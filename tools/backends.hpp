@@ -23,9 +23,15 @@ struct zones_options;
 struct zones_result;
 struct point_distances;
 struct min_distances_result;
+struct nearest_k_result;
 struct self_filter_result;
 struct support_options;
 struct supported_distance;
+struct motion_clearance_options;
+struct motion_clearance_result;
+namespace io {
+class joint_motion;
+}
 }  // namespace clearance
 
 enum class model_kind { spheres, triangles };
@@ -78,7 +84,10 @@ class backend_robot {
   /// As much of the least distance as is known so many seconds after it is asked; of single parts nothing.
   virtual reply least_by(poses_of poses, double deadline) = 0;
   virtual clearance::zones_result zones(poses_of poses, const clearance::zones_options& options) = 0;
-  virtual clearance::point_distances distances(poses_of poses, double d_max) = 0;
+  /// `is_signed`: negative inside closed meshes, of triangles alone.
+  virtual clearance::point_distances distances(poses_of poses, double d_max, bool is_signed) = 0;
+  /// The k nearest points of each part.
+  virtual clearance::nearest_k_result nearest(poses_of poses, std::size_t k, double d_max) = 0;
   /// Which points are the robot itself, `padding` metres around it included.
   virtual clearance::self_filter_result own_points(poses_of poses, double padding) = 0;
   virtual clearance::supported_distance supported(poses_of poses, const clearance::support_options& options) = 0;
@@ -86,6 +95,9 @@ class backend_robot {
   virtual std::vector<clearance::part_witness> witnesses(poses_of poses, std::span<const clearance::part_minimum> minima) = 0;
   /// `poses`: those of one configuration after another. It is prepared when it is first asked, and remembers where minima were.
   virtual clearance::min_distances_result plan(poses_of poses, double d_max) = 0;
+  /// How near the robot comes on each way.
+  virtual std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
+                                                               const clearance::motion_clearance_options& options) = 0;
 
   // Seconds: what the last question took, and what trees have taken until now, to be made and to be where the backend reads them.
   double query = 0, build = 0, upload = 0;

@@ -5,6 +5,8 @@
 #include "recording.hpp"
 #include "report.hpp"
 
+#include <clearance/io/joint_motion.hpp>
+
 #include <CLI/CLI.hpp>
 
 #include <iostream>
@@ -12,6 +14,13 @@
 using namespace clearance;
 
 namespace {
+
+/// From each row to the next, every joint at constant speed.
+std::vector<io::joint_motion> ways_between(const query_options& asked, const asked_robot& robot, const std::vector<std::vector<double>>& rows) {
+  std::vector<io::joint_motion> ways;
+  for (std::size_t k = 1; k < rows.size(); ++k) ways.emplace_back(robot.description, rows[k - 1], rows[k], io::joint_options{asked.ignore_limits}, asked.base);
+  return ways;
+}
 
 int run(const query_options& asked) {
   stopwatch clock;
@@ -35,6 +44,13 @@ int run(const query_options& asked) {
   report.upload = there->see(clouds.seen);
   report.found = there->plan(poses, asked.d_max);
   report.query = there->query;
+  if (asked.between) {
+    shown.show("asking about the ways between them");
+    // With a margin no more than what decides; without, to a centimetre.
+    const motion_clearance_options options{.tolerance = asked.margin ? double(infinity) : 0.01, .margin = asked.margin.value_or(0)};
+    report.ways = there->ways(ways_between(asked, robot, rows), options);
+    report.query += there->query;
+  }
   report.build = there->build;
   report.upload += there->upload;
   shown.clear();
@@ -42,6 +58,8 @@ int run(const query_options& asked) {
     const auto first = report.first_below();
     notes.push_back(asked.configurations + (first ? ": row " + std::to_string(*first) + " is the first whose lower end is not above the margin"
                                                   : ": every row's lower end is above the margin"));
+    if (const auto way = report.first_way_below())
+      notes.push_back(asked.configurations + ": on the way from row " + std::to_string(*way) + " to the next the margin may be fallen below");
   }
   say_notes(notes);
   std::cout << (asked.csv ? to_csv(report) : to_json(report));

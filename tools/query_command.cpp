@@ -136,10 +136,11 @@ int run(const query_options& asked, all_ranks* ranks) {
   if (!speaks) return 0;
   report.query = there->query;
   if (!asked.zones.empty()) report.zones = there->zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
+  if (asked.nearest != 0) report.nearest = there->nearest(poses, asked.nearest, asked.d_max);
   if (asked.support) report.support = there->supported(poses, {.min_points = asked.support->min_points, .radius = asked.support->radius});
   if (asked.gradient) report.gradients = gradients(asked, robot, joints, poses, there->witnesses(poses, report.found.parts));
   std::optional<point_distances> distances;
-  if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max);
+  if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max, asked.is_signed);
   report.build = there->build;
   report.upload += there->upload;
   if (report.found.unseen == 0)  // else nobody knows which of them were seen

@@ -24,9 +24,9 @@ using texts = std::vector<std::string>;
 
 struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames, trajectory, unfolded;
-  std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, svg, deadline;
+  std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, svg, deadline, nearest;
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges;
-  bool ignore_limits = false, json = false, no_cache = false, merge = false, csv = false, gradient = false, shard = false;
+  bool ignore_limits = false, json = false, no_cache = false, merge = false, csv = false, gradient = false, shard = false, is_signed = false, between = false;
 };
 
 /// Sets one per-cloud option, as it was given on the command line.
@@ -131,6 +131,7 @@ void check_alone(const std::string& option, const query_options& o) {
                                                  {"--distances", !o.distances.empty()},
                                                  {"--self-filter", o.self_filter.has_value()},
                                                  {"--min-support", o.support.has_value()},
+                                                 {"--nearest", o.nearest != 0},
                                                  {"--gradient", o.gradient}};
   for (const auto& [other, asked] : others)
     if (asked) throw usage_error(option, std::string("is for the least distance alone, and cannot be mixed with ") + other);
@@ -164,11 +165,21 @@ void read_questions(const raw_options& raw, query_options& o) {
   o.distances = raw.distances;
   if (!o.distances.empty() && clearance::io::extension(o.distances) != ".ply")
     throw usage_error("--distances", o.distances + ": its name must end in .ply, which is what is written");
+  o.is_signed = raw.is_signed;
+  if (o.is_signed && o.distances.empty()) throw usage_error("--signed", "is for --distances");
+  if (o.is_signed && o.model != model_kind::triangles)
+    throw usage_error("--signed", "is for --model triangles: distances to spheres are signed already");
+  if (!raw.nearest.empty()) {
+    o.nearest = whole_number("--nearest", raw.nearest);
+    if (o.nearest > (1 << 20)) throw usage_error("--nearest", "must be at most 1048576");
+  }
   if (!raw.self_filter.empty()) o.self_filter = length("--self-filter", raw.self_filter);
   if (!raw.min_support.empty()) o.support = support_of("--min-support", raw.min_support);
   o.gradient = raw.gradient;
   o.configurations = raw.configurations;
   o.csv = raw.csv;
+  o.between = raw.between;
+  if (o.between && !o.attached.empty()) throw usage_error("--between", "cannot be mixed with --attach: how what is held moves is not bounded yet");
   o.recording.plan = raw.plan;
   o.recording.svg = raw.svg;
   if (!raw.svg.empty() && clearance::io::extension(raw.svg) != ".svg")
@@ -177,7 +188,7 @@ void read_questions(const raw_options& raw, query_options& o) {
     o.d_max = number("--d-max", raw.d_max);
     if (!(o.d_max > 0)) throw usage_error("--d-max", "must be above 0 (metres)");
     if (!(o.d_max >= 1e-30 && o.d_max <= 1e30)) throw usage_error("--d-max", "must be from 1e-30 to 1e30 (metres)");
-    if (o.distances.empty() && o.configurations.empty()) throw usage_error("--d-max", "is for --distances");
+    if (o.distances.empty() && o.nearest == 0 && o.configurations.empty()) throw usage_error("--d-max", "is for --distances and --nearest");
     if (!o.configurations.empty() && o.margin && !(o.d_max > *o.margin))
       throw usage_error("--d-max", "must be above the margin of --check, or nothing could pass");
   }
@@ -286,6 +297,9 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
       "for all clouds if given before the first --cloud, else for the --cloud before them.";
   if (planned) {
     one("--d-max", raw->d_max, "Metres: configurations that are farther from every point are only said to be so, which is quicker");
+    app.add_flag("--between", raw->between,
+                 "Judge also the way from each configuration to the next, every joint at constant speed: no point is nearer than its lower end at any time; "
+                 "--check is about the ways, too");
     app.add_flag("--csv", raw->csv, "Print CSV; without it, one JSON object per configuration and a last one about all");
     app.footer(std::string(of_clouds) + "\nThe exit code is 3 without a valid point, also with --check.");
     return [raw, &app] { return read(app, *raw); };
@@ -303,7 +317,9 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   one("--min-points", raw->min_points, "A zone with fewer points counts as empty (default 1)");
   one("--distances", raw->distances,
       "Write every valid point with its distance to this .ply file, in world coordinates; red at 0 m, blue at --d-max (or 1 m) and beyond");
-  one("--d-max", raw->d_max, "Metres: points farther than that are written as inf (default: none are)");
+  app.add_flag("--signed", raw->is_signed, "With --distances and --model triangles: below 0 inside a closed mesh, by how deep; without it 0 there");
+  one("--nearest", raw->nearest, "How many points to list of each link, the nearest first, with what is certain of each");
+  one("--d-max", raw->d_max, "Metres: points farther than that are written as inf by --distances, and not listed by --nearest (default: none)");
   one("--self-filter", raw->self_filter,
       "Metres: hide the points that certainly are within that of the robot, or of what it holds, from all questions, --check among them; says how many "
       "they are; exit code 3 if none is left");

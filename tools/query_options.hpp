@@ -81,6 +81,8 @@ struct query_options {
   std::vector<double> zones;    // --zones: thresholds in metres, ascending; empty: nobody asks
   std::size_t min_points = 1;   // of a zone that counts
   std::string distances;        // --distances: a file; empty: nobody asks
+  bool is_signed = false;       // --signed: of --distances
+  std::size_t nearest = 0;      // --nearest: points to list of each part
   double d_max = clearance::infinity;
   std::optional<double> self_filter;     // --self-filter: metres around the robot that are its own
   std::optional<support_asked> support;  // --min-support
@@ -89,6 +91,7 @@ struct query_options {
   bool shard = false;              // --shard: one of the ranks that mpirun started
   std::string configurations;   // of `clearance plan`
   bool csv = false;             // of `clearance plan`
+  bool between = false;         // of `clearance plan`
   recording_options recording;  // of `clearance run`
 };
 

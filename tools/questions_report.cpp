@@ -31,6 +31,19 @@ json zones_of(const query_report& report, std::size_t part) {
   return all;
 }
 
+json nearest_of(const query_report& report, std::size_t part) {
+  json all = json::array();
+  for (const pair_distance& pair : report.nearest->of(part)) {
+    if (pair.point == none) break;  // there are no more
+    json one = place(report, pair.cloud, pair.point);
+    const auto at = pixel((*report.clouds)[pair.cloud], pair.point);
+    one["pixel"] = at ? json{at->first, at->second} : json(nullptr);
+    one["distance"] = or_null(pair.distance), one["lower"] = report.nearest->certain.lower(pair.distance);
+    one["primitive"] = pair.primitive == none ? json(nullptr) : json(pair.primitive);
+    all.push_back(std::move(one));
+  }
+  return all;
+}
 
 json gradient_of(const query_report& report, std::size_t part) {
   const part_gradient& g = report.gradients[part];
@@ -144,6 +157,24 @@ std::string zones_text(const query_report& report) {
   return out;
 }
 
+std::string nearest_text(const query_report& report) {
+  std::string out = "\nnearest points (of each link up to " + std::to_string(report.asked->nearest);
+  if (std::isfinite(report.asked->d_max)) out += text(", within %g m", report.asked->d_max);
+  out += ")\n";
+  for (std::size_t k = 0; k < report.bodies->size(); ++k) {
+    const std::string name = io::printable((*report.bodies)[k].name);
+    std::size_t listed = 0;
+    for (const pair_distance& pair : report.nearest->of(k)) {
+      if (pair.point == none) break;
+      out += "  " + (listed++ == 0 ? name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') : std::string(28, ' '));
+      out += text("%.6f m, certainly at least %.6f m: point %u", double(pair.distance), double(report.nearest->certain.lower(pair.distance)), pair.point);
+      out += (report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[pair.cloud].from.file) : "") + '\n';
+    }
+    if (listed == 0) out += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') + "none\n";
+  }
+  return out;
+}
+
 std::string gradients_text(const query_report& report) {
   const io::kinematic_tree& tree = report.robot->description.kinematics();
   std::string out = "\ngradients (of each distance, by a twist of its part at its origin, in world axes: m/m and m/rad; and by joints: m/m or m/rad)\n";
@@ -210,6 +241,7 @@ std::string questions_text(const query_report& report) {
 std::string parts_text(const query_report& report) {
   std::string out;
   if (report.zones) out += zones_text(report);
+  if (report.nearest) out += nearest_text(report);
   if (!report.gradients.empty()) out += gradients_text(report);
   return out;
 }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What the questions of `clearance query` beside the least distance have to say: zones, the self filter, support, gradients;
+// What the questions of `clearance query` beside the least distance have to say: zones, nearest points, the self filter, support, gradients;
 // and what a deadline has cost.
 
 #include "report.hpp"
 #include "report_json.hpp"
 
-/// Of a part: its zones, the innermost first, and its gradient.
+/// Of a part: its zones, the innermost first, its nearest points, and its gradient.
 json zones_of(const query_report& report, std::size_t part);
+json nearest_of(const query_report& report, std::size_t part);
 json gradient_of(const query_report& report, std::size_t part);
 
 /// x,y,z,qx,qy,qz,qw.

@@ -44,6 +44,7 @@ std::string to_json(const query_report& report) {
     if (const attached_thing* held = report.robot->held_as(k))
       part["attached"] = {{"link", held->from.link}, {"file", held->from.file}, {"pose", pose_of(held->from.pose)}};
     if (report.zones) part["zones"] = zones_of(report, k);
+    if (report.nearest) part["nearest"] = nearest_of(report, k);
     if (!report.gradients.empty()) part["gradient"] = gradient_of(report, k);
     out["parts"].push_back(std::move(part));
   }
@@ -59,6 +60,7 @@ std::string to_json(const query_report& report) {
                         {"points", report.distances->points},
                         {"left_out", report.distances->left_out},
                         {"beyond", report.distances->beyond},
+                        {"signed", report.asked->is_signed || report.asked->model == model_kind::spheres},
                         {"d_max", or_null(report.asked->d_max)},
                         {"blue_at", report.distances->blue_at}};
   out["clouds"] = json::array();

@@ -10,6 +10,8 @@
 #include <clearance/gradient.hpp>
 #include <clearance/min_distances.hpp>
 #include <clearance/min_support.hpp>
+#include <clearance/motion_clearance.hpp>
+#include <clearance/nearest_k.hpp>
 #include <clearance/self_filter.hpp>
 #include <clearance/zones.hpp>
 
@@ -28,6 +30,7 @@ struct query_report {
   reply found;
   std::optional<clearance::self_filter_result> filter;
   std::optional<clearance::zones_result> zones;
+  std::optional<clearance::nearest_k_result> nearest;
   std::optional<clearance::supported_distance> support;
   std::vector<part_gradient> gradients;  // of all parts; empty: nobody asks
   std::optional<distances_written> distances;
@@ -44,13 +47,16 @@ struct plan_report {
   const std::vector<observation>* clouds = nullptr;
   const std::vector<body>* bodies = nullptr;
   clearance::min_distances_result found = {};
+  std::vector<clearance::motion_clearance_result> ways = {};    // of --between: way k goes from row k to the next
   double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds
 
   /// Of the first configuration whose lower end is not above the margin of --check; without a valid point that is the first of all.
   std::optional<std::size_t> first_below() const;
+  /// Of the first way that may come nearer than that.
+  std::optional<std::size_t> first_way_below() const;
   bool blind() const { return found.of[0].state == clearance::state::no_data; }
   /// 3 without a valid point, 2 if --check fails.
-  int code() const { return blind() ? 3 : asked->margin && first_below() ? 2 : 0; }
+  int code() const { return blind() ? 3 : asked->margin && (first_below() || first_way_below()) ? 2 : 0; }
 };
 
 /// What `clearance run` has to say of a frame.

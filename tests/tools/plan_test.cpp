@@ -236,3 +236,47 @@ TEST_CASE("clearance run --plan says in every frame what clearance plan says of 
   CHECK(plan.at("lower") == nlohmann::json({nullptr, nullptr, nullptr, nullptr}));
   CHECK_FALSE(lines(run_command("run" + p.robot + " --trajectory " + still.path + " --frames " + first.path)).at(0).contains("plan"));
 }
+
+TEST_CASE("--between judges the way from each row to the next, and --check is about it, too") {
+  const path p;
+  const scratch_file rows{".csv", "turn, slide\n0,0\n0,0.3\n0,0.1\n"};
+  // A point 0.1 m beside the way of the upper box.
+  const scratch_file beside{".xyz", "0.2 0 0.65\n5 5 5\n"};
+  const std::string ask = "plan" + p.robot + " --cloud " + beside.path + " --configurations " + rows.path;
+  const auto all = lines(run_command(ask + " --between"));
+  REQUIRE(all.size() == 4);
+  for (int k = 0; k < 2; ++k) {
+    const auto way = all[std::size_t(k)].at("way");
+    INFO(k);
+    CHECK(way.at("lower") <= 0.1);
+    CHECK(way.at("upper") >= 0.1);
+    CHECK(way.at("upper") <= 0.11);
+    CHECK(way.at("lower") >= 0.085);
+    CHECK(way.at("state") == "free");
+    CHECK(way.at("part") == "tool");
+    CHECK(way.at("settled") == true);
+  }
+  CHECK_FALSE(all[2].contains("way"));
+  CHECK(all[3].at("plan").at("ways").at("least_lower") <= 0.1);
+  const scratch_file apart{".csv", "turn, slide\n0,-0.1\n0,0.6\n"};  // the ends are farther than what lies between them
+  const std::string wide = "plan" + p.robot + " --cloud " + beside.path + " --configurations " + apart.path + " --check 0.12";
+  CHECK(run_command(wide).code == 0);
+  const outcome o = run_command(wide + " --between");
+  CHECK(o.code == 2);
+  CHECK(lines(o).back().at("plan").at("ways") == nlohmann::json::parse(R"({"least_lower": )" + lines(o)[0].at("way").at("lower").dump() + R"(, "at": 0, "first_below": 0})"));
+  CHECK(lines(o).back().at("plan").at("first_below").is_null());
+  CHECK(run_command("plan" + p.robot + " --cloud " + beside.path + " --configurations " + apart.path + " --check 0.08 --between").code == 0);
+  const outcome csv = run_command(wide + " --between --csv");
+  CHECK(csv.code == 2);
+  CHECK(csv.out.find(",nearest_z,way_state,way_lower,way_upper,way_time,way_part\n") != csv.out.npos);
+  CHECK(csv.out.ends_with(",,,,,\n"));
+  CHECK(csv.err.find("on the way from row 0 to the next the margin may be fallen below") != csv.err.npos);
+  const scratch_file one{".csv", "turn, slide\n0,0\n"}, blind{".xyz", "nan nan nan\n"};
+  const auto alone = lines(run_command("plan" + p.robot + " --cloud " + beside.path + " --configurations " + one.path + " --between --check 0.1"));
+  CHECK(alone.back().at("plan").at("ways") == nlohmann::json::parse(R"({"least_lower": null, "at": null, "first_below": null})"));
+  const outcome dark = run_command("plan" + p.robot + " --cloud " + blind.path + " --configurations " + rows.path + " --between --check 0.1");
+  CHECK(dark.code == 3);
+  CHECK(lines(dark)[0].at("way").at("state") == "no_data");
+  refuses(ask + " --between --attach tool=" + p.cloud.path, "--between: cannot be mixed with --attach");
+  refuses(ask + " --between --check -0.1", "must be finite and not negative");
+}

@@ -154,7 +154,7 @@ TEST_CASE("--distances writes every valid point where it is in the world, with i
   const scratch_file ply(".ply");
   const auto j = parsed(run_command(q.ask + " --distances " + ply.path));
   CHECK(j.at("distances") ==
-        nlohmann::json({{"file", ply.path}, {"points", 3}, {"left_out", 1}, {"beyond", 0}, {"d_max", nullptr}, {"blue_at", 1.0}}));
+        nlohmann::json({{"file", ply.path}, {"points", 3}, {"left_out", 1}, {"beyond", 0}, {"signed", false}, {"d_max", nullptr}, {"blue_at", 1.0}}));
   auto all = records(ply.path);
   REQUIRE(all.size() == 3);
   CHECK(all[0].x == 5);
@@ -271,7 +271,12 @@ TEST_CASE("what is wrong with zones and distances is one sentence that names the
   refuses(q.ask + " --zones 0.1 --min-points 0", "--min-points: \"0\" is not a whole number from 1");
   refuses(q.ask + " --zones 0.1 --min-points 1.5", "--min-points");
   refuses(q.ask + " --min-points 3", "--min-points: is for --zones");
-  refuses(q.ask + " --d-max 3", "--d-max: is for --distances");
+  refuses(q.ask + " --d-max 3", "--d-max: is for --distances and --nearest");
+  refuses(q.ask + " --signed", "--signed: is for --distances");
+  refuses("query --robot " + q.urdf.path + " --cloud " + q.cloud.path + " --distances x.ply --signed", "--signed: is for --model triangles");
+  refuses(q.ask + " --nearest 0", "--nearest: \"0\" is not a whole number from 1");
+  refuses(q.ask + " --nearest 1048577", "--nearest: must be at most 1048576");
+  refuses(q.ask + " --nearest 3 --deadline 5", "--deadline: is for the least distance alone, and cannot be mixed with --nearest");
   const scratch_file ply(".ply");
   for (const std::string value : {"0", "-1"}) refuses(q.ask + " --distances " + ply.path + " --d-max " + value, "--d-max: must be above 0");
   for (const std::string value : {"nan", "inf", "1,2", "x"}) refuses(q.ask + " --distances " + ply.path + " --d-max " + value, "--d-max");
@@ -614,4 +619,43 @@ TEST_CASE("--shard without mpirun is one rank, or refused where there is no MPI"
   auto one = parsed(o), plain = parsed(run_command(q.ask));
   for (auto* each : {&one, &plain}) each->erase("seconds");
   CHECK(one == plain);
+}
+
+TEST_CASE("--nearest lists the nearest points of every part, with what is certain") {
+  const question q;
+  const auto parts = parsed(run_command(q.ask + " --nearest 2")).at("parts");
+  const auto base = parts.at(0).at("nearest"), tool = parts.at(1).at("nearest");
+  REQUIRE((base.size() == 2 && tool.size() == 2));
+  CHECK(base.at(0).at("point") == 3);
+  CHECK(base.at(0).at("distance") == parts.at(0).at("distance"));
+  CHECK(base.at(0).at("lower") <= base.at(0).at("distance"));
+  CHECK(base.at(0).at("lower") > 0.1999);
+  CHECK(base.at(0).at("pixel").is_null());
+  CHECK(base.at(1).at("point") == 1);
+  CHECK(tool.at(0).at("point") == 1);
+  CHECK(tool.at(1).at("point") == 3);
+  CHECK(tool.at(0).at("cloud") == q.cloud.path);
+  const auto few = parsed(run_command(q.ask + " --nearest 9 --d-max 1")).at("parts");
+  CHECK(few.at(0).at("nearest").size() == 2);  // the third is 8 m away, the fourth no point
+  CHECK(parsed(run_command(q.ask + " --nearest 9")).at("parts").at(0).at("nearest").size() == 3);
+  CHECK_FALSE(parsed(run_command(q.ask)).at("parts").at(0).contains("nearest"));
+  const std::string text = run_command(q.robot + " --nearest 1 --d-max 0.3 --cloud " + q.cloud.path).out;
+  CHECK(text.find("nearest points (of each link up to 1, within 0.3 m)\n  base") != text.npos);
+  CHECK(text.find("point 3\n  tool                        none\n") != text.npos);
+}
+
+TEST_CASE("--signed says how deep points are in a mesh") {
+  const question q;
+  const scratch_file cloud(".xyz", "0.02 0 0\n0.3 0 0\n0.05 0 0.5\n"), ply(".ply");
+  const std::string ask = q.robot + " --json --cloud " + cloud.path + " --distances " + ply.path;
+  const auto j = parsed(run_command(ask + " --signed"));
+  CHECK(j.at("distances").at("signed") == true);
+  const auto deep = records(ply.path);
+  REQUIRE(deep.size() == 3);
+  CHECK(std::abs(deep[0].distance + 0.08f) < 1e-6f);
+  CHECK(std::abs(deep[1].distance - 0.2f) < 1e-6f);
+  CHECK(std::abs(deep[2].distance + 0.05f) < 1e-6f);
+  CHECK(deep[2].part == 1);
+  CHECK(parsed(run_command(ask)).at("distances").at("signed") == false);
+  CHECK(records(ply.path)[0].distance == 0);
 }

@@ -5,11 +5,20 @@
 
 #include <clearance/distances.hpp>
 #include <clearance/part_witnesses.hpp>
+#include <clearance/signed_distances.hpp>
+
+#include <stdexcept>
 
 template <class Backend>
-clearance::point_distances robot_on_backend<Backend>::distances(poses_of poses, double d_max) {
+clearance::point_distances robot_on_backend<Backend>::distances(poses_of poses, double d_max, bool is_signed) {
   const clearance::distances_options options{.d_max = clearance::real(d_max), .which = true};
-  return with_usual_trees([&](const auto& trees) { return clearance::distances(on_, trees, poses, clouds_, options); });
+  return with_usual_trees([&](const auto& trees) {
+    if (!is_signed) return clearance::distances(on_, trees, poses, clouds_, options);
+    if constexpr (clearance::scan::has_interior<typename decltype(clearance::view_of(trees))::part_type>)
+      return clearance::signed_distances(on_, trees, poses, clouds_, options);
+    else
+      throw std::logic_error("distances to spheres are signed already");
+  });
 }
 
 template <class Backend>

@@ -54,9 +54,12 @@ class robot_on_backend final : public backend_robot {
   clearance::zones_result zones(poses_of poses, const clearance::zones_options& options) override;
   clearance::self_filter_result own_points(poses_of poses, double padding) override;
   clearance::supported_distance supported(poses_of poses, const clearance::support_options& options) override;
-  clearance::point_distances distances(poses_of poses, double d_max) override;
+  clearance::point_distances distances(poses_of poses, double d_max, bool is_signed) override;
+  clearance::nearest_k_result nearest(poses_of poses, std::size_t k, double d_max) override;
   std::vector<clearance::part_witness> witnesses(poses_of poses, std::span<const clearance::part_minimum> minima) override;
   clearance::min_distances_result plan(poses_of poses, double d_max) override;
+  std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
+                                                       const clearance::motion_clearance_options& options) override;
 
  private:
   using sphere_trees = clearance::model<clearance::part<clearance::bvh<clearance::sphere, clearance::inner_sphere, Backend>>, Backend>;

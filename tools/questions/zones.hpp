@@ -5,6 +5,7 @@
 #include "robot_on.hpp"
 
 #include <clearance/min_support.hpp>
+#include <clearance/nearest_k.hpp>
 #include <clearance/self_filter.hpp>
 #include <clearance/zones.hpp>
 
@@ -21,4 +22,10 @@ clearance::self_filter_result robot_on_backend<Backend>::own_points(poses_of pos
 template <class Backend>
 clearance::supported_distance robot_on_backend<Backend>::supported(poses_of poses, const clearance::support_options& options) {
   return with_usual_trees([&](const auto& trees) { return clearance::min_distance_supported(on_, trees, poses, clouds_, options); });
+}
+
+template <class Backend>
+clearance::nearest_k_result robot_on_backend<Backend>::nearest(poses_of poses, std::size_t k, double d_max) {
+  return with_usual_trees(
+      [&](const auto& trees) { return clearance::nearest_k(on_, trees, poses, clouds_, k, {.d_max = clearance::real(d_max)}); });
 }

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <clearance/motion_clearance.cuh>
+
+#include "ways.hpp"
+
+template std::vector<clearance::motion_clearance_result> robot_on_backend<clearance::device>::ways(std::span<const clearance::io::joint_motion>,
+                                                                                               const clearance::motion_clearance_options&);
