@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <vector>
 
 using namespace clearance;
 
@@ -29,7 +30,7 @@ std::string escaped(const std::string& words) {
 }
 
 struct axes {
-  double low, high;  // metres
+  double low, high, highest;  // metres; a few frames may be above `high`, up to `highest`
   std::size_t frames;
 
   double x(double frame) const { return frames < 2 ? (left + right) / 2 : left + (right - left) * frame / double(frames - 1); }
@@ -37,18 +38,42 @@ struct axes {
   std::string at(std::size_t frame, double metres) const { return text("%.2f %.2f", x(double(frame)), y(metres)); }
 };
 
-/// All that is drawn is in sight, and 0 too.
+/// How high a frame reaches: the upper end of its bracket, if that is finite.
+double top_of(const min_distance_result& r) {
+  for (const real end : {r.upper, r.distance, r.lower})
+    if (std::isfinite(end)) return end;
+  return 0;
+}
+
+/// 0 and the margin are in sight, and what is nearer; what is far above all others is not, lest it flattens them: more than three times what
+/// nine of ten stay below.
 axes around(std::span<const min_distance_result> frames, std::optional<double> margin) {
-  axes made{0, 0, frames.size()};
+  axes made{0, 0, 0, frames.size()};
   const auto hold = [&](double metres) {
     if (std::isfinite(metres)) made.low = std::min(made.low, metres), made.high = std::max(made.high, metres);
   };
+  std::vector<double> tops;
+  for (const min_distance_result& r : frames) {
+    if (r.state == state::no_data) continue;
+    hold(std::min(0.0, double(r.distance))), hold(std::min(0.0, double(r.lower)));
+    if (const double above = top_of(r); above > 0) tops.push_back(above);
+  }
+  std::sort(tops.begin(), tops.end());
+  const double most = tops.empty() ? 0 : 3 * tops[(tops.size() - 1) * 9 / 10];
+  for (const double above : tops)
+    if (above <= most) hold(above);
   if (margin) hold(*margin);
-  for (const min_distance_result& r : frames)
-    if (r.state != state::no_data)
-      for (const real end : {r.distance, r.lower, r.upper}) hold(end);
+  made.highest = tops.empty() ? made.high : std::max(made.high, tops.back());
   if (!(made.high - made.low > 0)) made.high = made.low + 1;
   return made;
+}
+
+/// Triangles along the upper edge.
+std::string marks(const axes& to, std::span<const min_distance_result> frames) {
+  std::string out;
+  for (std::size_t k = 0; k < frames.size(); ++k)
+    if (frames[k].state != state::no_data && top_of(frames[k]) > to.high) out += text("M %.2f %.2f l -4 7 h 8 Z\n", to.x(double(k)), top);
+  return out;
 }
 
 /// A round number of about a fifth.
@@ -77,6 +102,7 @@ std::string grid(const axes& to) {
 
 std::string clearance_svg(std::span<const min_distance_result> frames, const std::string& name, std::optional<double> margin) {
   const axes to = around(frames, margin);
+  const std::string above = marks(to, frames);
   std::string band, line, alone, blind;
   for (std::size_t begin = 0, end; begin < frames.size(); begin = end) {
     const bool known = frames[begin].state != state::no_data;
@@ -98,12 +124,14 @@ std::string clearance_svg(std::span<const min_distance_result> frames, const std
                          "font-family=\"sans-serif\" font-size=\"12\" fill=\"none\">\n<title>Clearance in ",
                          width, height) + escaped(name) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
   out += "<g fill=\"#333\">\n" + words(left, 20, "start", "Clearance in " + escaped(name)) + grid(to) +
-         words(right, 20, "end", blind.empty() ? "distance, in its bracket" : "distance, in its bracket; red: no data") + "</g>\n";
+         words(right, 20, "end", blind.empty() ? "distance, in its bracket" : "distance, in its bracket; red: no data") +
+         (above.empty() ? "" : words(right, top - 12, "end", text("triangles: above the picture, up to %.3g m", to.highest))) + "</g>\n";
   if (!blind.empty()) out += "<g fill=\"#d33\" fill-opacity=\"0.35\">\n" + blind + "</g>\n";
   if (!line.empty())
     out += "<path id=\"bracket\" fill=\"#48c\" fill-opacity=\"0.35\" stroke=\"#48c\" stroke-opacity=\"0.6\" stroke-width=\"0.5\" d=\"" + band +
            "\"/>\n<path id=\"distance\" stroke=\"#136\" stroke-width=\"1.5\" stroke-linecap=\"round\" stroke-linejoin=\"round\" d=\"" + line + "\"/>\n";
   if (!alone.empty()) out += "<path id=\"alone\" stroke=\"#136\" stroke-width=\"5\" stroke-linecap=\"round\" d=\"" + alone + "\"/>\n";
+  if (!above.empty()) out += "<path id=\"above\" fill=\"#136\" d=\"" + above + "\"/>\n";
   if (margin)
     out += text("<path id=\"margin\" stroke=\"#d33\" stroke-dasharray=\"6 4\" d=\"M %.2f %.2f H %.2f\"/>\n", left, to.y(*margin), right) +
            "<g fill=\"#d33\">\n" + words(right, to.y(*margin) - 4, "end", text("margin %g m", *margin)) + "</g>\n";

@@ -113,10 +113,10 @@ clearance::io::mesh_limits limits_of(const std::vector<std::string>& given) {
   return made;
 }
 
-std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text) {
+std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text, const char* form) {
   const std::size_t equals = text.find('=');
   if (equals == text.npos || equals == 0 || equals + 1 == text.size())
-    throw usage_error(option, clearance::io::quoted(text) + " is not of the form name=value");
+    throw usage_error(option, clearance::io::quoted(text) + " is not of the form " + form);
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 

@@ -27,6 +27,10 @@ struct usage_error : std::invalid_argument {
 /// What the library says; the command begins its own sentences.
 inline std::string without_prefix(std::string why) { return why.starts_with("clearance: ") ? why.substr(11) : why; }
 
+/// What --help says of them.
+inline constexpr const char* exit_codes =
+    "Exit codes: 0 done; 1 an error, wrong usage included; 2 --check fails, or points are in the first of --zones; 3 no valid point.";
+
 /// A subcommand: its options are filled in when `run` is called; what it returns is the exit code.
 using subcommand = std::function<int()>;
 
@@ -57,8 +61,8 @@ std::size_t choice(const std::string& option, const std::string& text, const std
 clearance::io::mesh_limits limits_of(const std::vector<std::string>& given);
 std::string mesh_limit_says();
 
-/// name=value, split at the first '='.
-std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text);
+/// Two words, split at the first '='; a refusal names the form that they should have.
+std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text, const char* form = "name=value");
 
 /// Is it --backend device? Throws if there is none.
 bool is_device(const std::string& backend);

@@ -25,7 +25,7 @@ bool blank(std::string_view text) { return text.find_first_not_of(" \t\r\n\v\f")
 
 /// The words of the command line as CLI11 wants them. It would drop an empty value, take the next option for the value of
 /// "--cache=", and "-.5" for an option: so every option that takes a value is handed to it in one word, "--option=value",
-/// and has one.
+/// and has one. A flag has none; CLI11 would take "--flag=false", or a number, for how often it is given.
 std::vector<std::string> checked_words(int argc, char** argv, const CLI::App& app) {
   std::vector<std::string> words;
   const CLI::App* sub = nullptr;
@@ -35,7 +35,8 @@ std::vector<std::string> checked_words(int argc, char** argv, const CLI::App& ap
     for (const CLI::App* each : app.get_subcommands({}))
       if (!sub && each->check_name(word)) sub = each;
     const std::string name = word.substr(0, word.find('='));
-    const CLI::Option* option = sub && word.starts_with("--") ? sub->get_option_no_throw(name) : nullptr;
+    const CLI::Option* option = word.starts_with("--") ? (sub ? sub : &app)->get_option_no_throw(name) : nullptr;
+    if (option && option->get_expected_max() == 0 && name.size() < word.size()) throw usage_error(name, "takes no value");
     if (option && option->get_expected_max() > 0) {
       if (name.size() == word.size() && i + 1 < argc) {
         const std::string_view next = argv[i + 1];
@@ -95,7 +96,7 @@ int main(int argc, char** argv) {
                               '.' + std::to_string(CLEARANCE_VERSION_PATCH);
   app.set_version_flag("--version", "clearance " + version);
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 done; 1 an error, wrong usage included; 2 --check fails, or points are in the first of --zones; 3 no valid point.");
+  app.footer(exit_codes);
   std::vector<subcommand> run;
   for (const auto add : {add_query, add_run, add_plan, add_pack, add_demo, add_info}) run.push_back(add(app));
   take_one_value_each(app);

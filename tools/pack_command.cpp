@@ -55,7 +55,7 @@ subject load(const pack_settings& asked) {
   io::robot_options options;
   if (!asked.geometry.empty() && choice("--geometry", asked.geometry, {"collision", "visual"}) == 1) options.geometry = io::robot_geometry::visual;
   for (const auto& text : asked.packages) {
-    const auto [name, folder] = assignment("--package", text);
+    const auto [name, folder] = assignment("--package", text, "name=DIR");
     options.packages[name] = folder;
   }
   options.exclude_links = asked.excluded;

@@ -85,7 +85,7 @@ std::vector<attachment_options> attached_of(const CLI::App& app) {
   bool placed = false;
   for (const auto& [name, text] : in_order(app)) {
     if (name == "--attach") {
-      const auto [link, file] = assignment(name, text);
+      const auto [link, file] = assignment(name, text, "LINK=FILE");
       things.push_back({.link = link, .file = file});
       placed = false;
     } else if (name == "--attach-pose") {
@@ -207,7 +207,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   if (!o.joints.empty() && !o.joint.empty()) throw usage_error("--joints", "cannot be mixed with --joint");
   o.ignore_limits = raw.ignore_limits;
   if (!raw.geometry.empty()) o.visual = choice("--geometry", raw.geometry, {"collision", "visual"}) == 1;
-  for (const auto& text : raw.packages) o.packages.push_back(assignment("--package", text));
+  for (const auto& text : raw.packages) o.packages.push_back(assignment("--package", text, "name=DIR"));
   o.limits = limits_of(raw.mesh_limits);
   if (!raw.base.empty()) o.base = pose("--base-pose", raw.base);
   if (!raw.unfolded.empty()) o.recording.camera.limits.unfolded = std::uint64_t(whole_number("--unfold-limit", raw.unfolded)) << 20;
@@ -330,6 +330,6 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   one("--deadline", raw->deadline,
       "Milliseconds for the least distance: what is known by then is the answer, with how many points are unseen, which may be anywhere; parts have none");
   app.add_flag("--shard", raw->shard, "Under mpirun: each rank asks about its share of every cloud, and rank 0 prints the one answer");
-  app.footer(of_clouds);
+  app.footer(std::string(of_clouds) + '\n' + exit_codes);
   return [raw, &app] { return read(app, *raw); };
 }

@@ -211,6 +211,7 @@ TEST_CASE("wrong usage is one sentence and exit code 1") {
   refuses(s.ask + " --use-viewpoint", "has no VIEWPOINT");
   refuses(s.ask + " --model triangles --scene /nonexistent/folder/x.glb", "/nonexistent/folder/x.glb");
   CHECK(run_command("query --help").code == 0);
+  CHECK(run_command("query --help").out.find("Exit codes: 0 done; 1 ") != std::string::npos);
   CHECK(run_command("--version").code == 0);
 }
 

@@ -30,7 +30,7 @@ std::string quoted_shell(const std::string& word) { return '\'' + word + '\''; }
 
 }  // namespace
 
-TEST_CASE("an option without a value is refused by its name, whichever it is and however it is left out") {
+TEST_CASE("an option without a value is refused by its name, whichever it is and however it is left out, and a flag with one") {
   const scratch_file urdf(".urdf", R"(<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
   const scratch_file cloud(".xyz", "0.1 0.1 0.1\n"), obj(".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
   const scratch_file csv(".csv", "\n");
@@ -41,10 +41,15 @@ TEST_CASE("an option without a value is refused by its name, whichever it is and
       {"pack", obj.path + " --spheres 5"},
       {"demo", ""},
       {"info", ""}};
-  std::size_t with_value = 0;
+  std::size_t with_value = 0, flags = 0;
   for (const auto& [subcommand, rest] : asked)
     for (const auto& [name, takes_value] : options_of(subcommand)) {
-      if (!takes_value) continue;
+      if (!takes_value) {
+        ++flags;
+        for (const std::string value : {"", "true", "false", "3", "0.02"})
+          refuses(subcommand + ' ' + rest + ' ' + name + '=' + value, name + ": takes no value");
+        continue;
+      }
       ++with_value;
       for (const std::string& without : {name + " ''", name + "=", name + "=' '", name + " '\t'", name + " --json", name}) {
         const std::string line = subcommand + ' ' + rest + ' ' + without;
@@ -57,6 +62,8 @@ TEST_CASE("an option without a value is refused by its name, whichever it is and
       }
     }
   CHECK(with_value >= 72);
+  CHECK(flags >= 15);
+  refuses("--version=3", "--version: takes no value");
   for (const std::string line : {"info ''", "pack '' --spheres 5", "query ''", "'' query", "pack ' ' --spheres 5"})
     refuses(line, "is empty");
 }

@@ -498,7 +498,8 @@ TEST_CASE("what is wrong with filter, support, gradient and what is held is one 
   refuses(m.ask + " --min-support 3@0.1 --min-support 3@0.1", "--min-support");
 
   const std::string cube = " --attach claw=" + m.cube.path, pose = " --attach-pose 0,0,0,0,0,0,1";
-  for (const std::string& value : {std::string("claw"), std::string("="), std::string("claw="), "=" + m.cube.path}) refuses(m.ask + " --attach " + value, "--attach: ");
+  for (const std::string& value : {std::string("claw"), std::string("="), std::string("claw="), "=" + m.cube.path})
+    refuses(m.ask + " --attach " + value, "is not of the form LINK=FILE");
   refuses(m.ask + " --attach elbow=" + m.cube.path, "--attach: the robot has no link \"elbow\"");
   refuses(m.ask + " --attach claw=nowhere.stl", "nowhere.stl: there is no such file");
   refuses(m.ask + " --attach claw=" + m.cloud.path, m.cloud.path + ": ");

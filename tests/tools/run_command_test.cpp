@@ -315,6 +315,42 @@ TEST_CASE("--svg draws the distance of every frame in the band of its bracket, a
   }
 }
 
+TEST_CASE("a frame that is far above all others is marked in the picture, and does not flatten them") {
+  const recording r;
+  r.put("near.xyz", "0 0 2\n"), r.put("far.xyz", "0 0 500\n");
+  const std::string svg = (r.folder / "out.svg").string();
+  const auto picture = [&](int far) {
+    std::string list;
+    for (int k = 0; k < 20; ++k) list += k < far ? "far.xyz\n" : "near.xyz\n";
+    r.put("list", list);
+    CHECK(run_command("run --backend host --model triangles --robot " + r.urdf.path + " --joint slide=0 --joint turn=0 --frames " +
+                      (r.folder / "list").string() + " --svg " + svg).code == 0);
+    std::ifstream in(svg);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const auto heights = [](const std::string& svg) {  // of the line, from the lower edge
+    std::vector<double> all;
+    std::istringstream in(svg.substr(svg.find("id=\"distance\"")));
+    for (std::string word; all.size() < 20 && in >> word;)
+      if (word.ends_with("M") || word == "L") in >> word >> all.emplace_back();
+    for (double& y : all) y = 350 - y;
+    return all;
+  };
+  const std::string few = picture(2);
+  const auto up = heights(few);
+  REQUIRE(up.size() == 20);
+  CHECK(up[0] == 300);  // the upper edge
+  CHECK(up[2] > 90);
+  CHECK(few.find("above the picture, up to 499 m") != std::string::npos);
+  const std::string marks = few.substr(few.find("id=\"above\""));
+  CHECK(std::count(marks.begin(), marks.begin() + std::ptrdiff_t(marks.find("/>")), 'M') == 2);
+
+  const std::string many = picture(3);  // that is how it is there
+  CHECK(heights(many)[2] == Approx(300).margin(1));
+  CHECK(heights(many)[3] < 5);
+  CHECK(many.find("above") == std::string::npos);
+}
+
 TEST_CASE("a picture is written when all is answered, whole or not at all, and never onto what is read") {
   const recording r;
   const std::string ask = r.run() + " --svg ", svg = (r.folder / "out.svg").string();
