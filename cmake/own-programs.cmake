@@ -173,6 +173,7 @@ function(clearance_needs part sources libraries complete)
   clearance_need("<fcl/" fcl libfcl-dev)
   clearance_need("<embree3/" embree libembree-dev)
   clearance_need("<openvdb/" openvdb libopenvdb-dev libboost-dev)
+  clearance_need("<vamp/" vamp)  # no package
   clearance_need("<nlohmann/" nlohmann_json::nlohmann_json nlohmann-json3-dev)
   clearance_need("CLEARANCE_COMMAND" clearance_command ${command_lacks})
   list(REMOVE_DUPLICATES found)
