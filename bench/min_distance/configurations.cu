@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many configurations against one frame of 307,200 points on a GPU, the points resident there, the tree over them and all witnesses
 // included: at random, whole or as far as 5 cm, and a trajectory of 500 waypoints that is watched from frame to frame. CUDA events,
-// behind other work; *call* is one call as a program makes it, by the host's clock, poses and results copied.
+// behind other work; *states* asks only which are nearer than a margin, *image* has the frame as a depth image; *call* is one call as a
+// program makes it, by the host's clock, poses and results copied.
 #include "configurations.hpp"
 #include "device.cuh"
 
 #include <clearance/backend/own_stream.cuh>
-#include <clearance/min_distances.cuh>
+#include <clearance/in_collisions.cuh>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -47,21 +48,24 @@ class recorded {
   cudaGraphExec_t run_ = nullptr;
 };
 
-/// `frames` are asked about in turn.
-template <class Model>
-void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::Isometry3d>& poses, const std::vector<std::vector<vec3>>& frames, float d_max,
-         bool warm) {
-  const clearance::own_stream stream(0);
-  const device gpu = stream.on();
-  clearance::min_distances_query query(gpu, model);
+void report(benchmark::State& state, const std::vector<clearance::state>& found) {
+  double free = 0, near = 0;
+  for (const auto its : found) free += its == clearance::state::free, near += its == clearance::state::collision;
+  state.counters["free"] = free, state.counters["collision"] = near;
+}
+
+/// `frames` are asked about in turn, by `enqueue(query, cloud)`.
+template <class Query, class Enqueue>
+void ask(benchmark::State& state, const device& gpu, Query& query, const std::vector<Eigen::Isometry3d>& poses, const std::vector<std::vector<vec3>>& frames,
+         bool warm, Enqueue ask_of) {
   query.place(poses);
-  const clearance::min_distance_result* results = nullptr;
+  decltype(ask_of(query, placed{point_span()})) results = nullptr;
   std::vector<clearance::device_buffer<vec3>> there;
   std::vector<recorded> turns;
   for (const auto& frame : frames) {
     there.push_back(gpu.copy_in(std::span<const vec3>(frame)));
     const auto enqueue = [&] {
-      results = query.enqueue(placed{point_span(there.back().data(), there.back().size()), the_scene().world_from_camera}, {d_max});
+      results = ask_of(query, placed{point_span(there.back().data(), there.back().size()), the_scene().world_from_camera});
     };
     enqueue();  // once outside of a graph: it asks for memory
     gpu.wait();
@@ -70,11 +74,21 @@ void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::I
   const device_clock clock(true);
   std::size_t n = 0;
   for (auto _ : state) {
-    if (!warm) query.forget(), gpu.wait();
+    if constexpr (requires { query.forget(); })
+      if (!warm) query.forget(), gpu.wait();
     const recorded& turn = turns[n++ % turns.size()];
     state.SetIterationTime(clock.seconds([&] { turn(); }));
   }
   report(state, gpu.copy_out(results, poses.size() / the_scene().poses.size()));
+}
+
+template <class Model>
+void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::Isometry3d>& poses, const std::vector<std::vector<vec3>>& frames, float d_max,
+         bool warm) {
+  const clearance::own_stream stream(0);
+  const device gpu = stream.on();
+  clearance::min_distances_query query(gpu, model);
+  ask(state, gpu, query, poses, frames, warm, [d_max](auto& its, const auto& cloud) { return its.enqueue(cloud, {d_max}); });
 }
 
 template <class Make>
@@ -82,6 +96,47 @@ void random(benchmark::State& state, Make make, float d_max) {
   if (no_device(state)) return;
   const scene& s = the_scene();
   ask(state, make(s), random_configurations(std::size_t(state.range(0))), {s.cloud}, d_max, false);
+}
+template <class Make>
+void states(benchmark::State& state, Make make, double margin) {
+  if (no_device(state)) return;
+  const scene& s = the_scene();
+  const clearance::own_stream stream(0);
+  const device gpu = stream.on();
+  const auto model = make(s);
+  clearance::in_collisions_query query(gpu, model);
+  ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
+      [margin](auto& its, const auto& cloud) { return its.enqueue(cloud, margin); });
+}
+/// The frame as a depth image, whose tree needs no sort: nearly the same points. Without `all` only those nearer than 5 cm.
+void image(benchmark::State& state, bool whole) {
+  if (no_device(state)) return;
+  const scene& s = the_scene();
+  const clearance::own_stream stream(0);
+  const device gpu = stream.on();
+  std::vector<float> depths;
+  for (const vec3& p : s.cloud) depths.push_back(p.z);
+  const auto there = gpu.copy_in(std::span<const float>(depths));
+  const clearance::depth_image seen(there.data(), 640, 480, {525, 525, 319.5, 239.5});
+  const auto model = spheres(s);
+  clearance::min_distances_query query(gpu, model);
+  const float d_max = whole ? clearance::infinity : 0.05f;
+  ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
+      [&](auto& its, const auto&) { return its.enqueue(placed{seen, s.world_from_camera}, {d_max}); });
+}
+void image_states(benchmark::State& state, double margin) {
+  if (no_device(state)) return;
+  const scene& s = the_scene();
+  const clearance::own_stream stream(0);
+  const device gpu = stream.on();
+  std::vector<float> depths;
+  for (const vec3& p : s.cloud) depths.push_back(p.z);
+  const auto there = gpu.copy_in(std::span<const float>(depths));
+  const clearance::depth_image seen(there.data(), 640, 480, {525, 525, 319.5, 239.5});
+  const auto model = spheres(s);
+  clearance::in_collisions_query query(gpu, model);
+  ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
+      [&](auto& its, const auto&) { return its.enqueue(placed{seen, s.world_from_camera}, margin); });
 }
 void monitor(benchmark::State& state, float d_max) {
   if (no_device(state)) return;
@@ -108,6 +163,14 @@ BENCHMARK_CAPTURE(random, spheres_within_5cm, spheres, 0.05f) TIMES(4096);
 BENCHMARK_CAPTURE(random, triangles, triangles, all) TIMES(4096);
 BENCHMARK_CAPTURE(random, triangles_within_5cm, triangles, 0.05f) TIMES(4096);
 BENCHMARK_CAPTURE(random, tree_alone, spheres, -1.0f) TIMES(1);
+BENCHMARK_CAPTURE(states, spheres, spheres, 0) TIMES(4096);
+BENCHMARK_CAPTURE(states, spheres_5cm, spheres, 0.05) TIMES(4096);
+BENCHMARK_CAPTURE(states, triangles, triangles, 0) TIMES(4096);
+BENCHMARK_CAPTURE(image, spheres, true) TIMES(4096);
+BENCHMARK_CAPTURE(image, spheres_within_5cm, false) TIMES(4096);
+BENCHMARK_CAPTURE(image, tree_alone, false) TIMES(1);
+BENCHMARK_CAPTURE(image_states, spheres, 0) TIMES(4096);
+BENCHMARK_CAPTURE(image_states, tree_alone, -1) TIMES(1);
 BENCHMARK_CAPTURE(monitor, untruncated, all) TIMES(500);
 BENCHMARK_CAPTURE(monitor, within_20cm, 0.2f) TIMES(500);
 BENCHMARK(call)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(10);

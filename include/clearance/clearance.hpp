@@ -12,6 +12,7 @@
 #include <clearance/distances_query.hpp>
 #include <clearance/gradient.hpp>
 #include <clearance/in_collision.hpp>
+#include <clearance/in_collisions.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/min_distance_by.hpp>

@@ -44,14 +44,12 @@ void enqueue_collision(const On& on, const Robot& robot, std::span<const Eigen::
   static_assert(explain_clouds<Clouds>());
   using answer = pairwise::first_within;
   const auto model = view_of(robot);
-  if (margins.size() != 1 && margins.size() != model.size())
-    throw std::invalid_argument("clearance: there are " + std::to_string(model.size()) + " parts, but " + std::to_string(margins.size()) + " margins");
+  pairwise::check_margins(margins, model.size());
   std::vector<std::uint32_t> first;
   const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
   std::vector<real> reaches(2 * model.size());
   for (std::size_t k = 0; k < model.size(); ++k) {
     const double margin = margins[margins.size() == 1 ? 0 : k];
-    if (!(margin == margin)) throw std::invalid_argument("clearance: the margin of part " + std::to_string(k) + " is not a number");
     reaches[k] = pairwise::may_be_within(margin, model.facts[k], error);
     reaches[model.size() + k] = pairwise::is_within(margin, model.facts[k], error);
   }

@@ -61,10 +61,10 @@ class min_distances_query<device, PartView> {
     static_assert(explain_clouds<Clouds>());
     if (search_.size() * search_.parts() != poses_.size()) throw std::logic_error("clearance: the last configurations could not be placed");
     detail::check(options);
-    search_.enqueue(clouds, options.d_max, [&](const auto& source, std::uint32_t cloud) { return here(source, cloud); });
+    search_.enqueue(clouds, minimum::least_question{options.d_max}, [&](const auto& source, std::uint32_t cloud) { return here(source, cloud); });
   }
 
-  minimum::device_batch<PartView> search_;
+  minimum::device_batch<PartView, minimum::least_question> search_;
   minimum::kept_copies copies_;
   std::vector<Eigen::Isometry3d> poses_;
   min_distances_result result_;

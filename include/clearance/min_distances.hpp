@@ -108,7 +108,7 @@ class min_distances_query<host, PartView> {
     static_assert(explain_clouds<Clouds>());
     detail::check(options);
     result_.of.resize(detail::count_configurations(search_.parts(), poses.size()));
-    detail::named(search_.parts(), poses, [&] { search_(poses, clouds, options.d_max, result_.of); });
+    detail::named(search_.parts(), poses, [&] { search_(poses, clouds, {options.d_max}, result_.of); });
     return result_;
   }
 
@@ -116,7 +116,7 @@ class min_distances_query<host, PartView> {
   void forget() { search_.forget(); }
 
  private:
-  minimum::host_batch<PartView> search_;
+  minimum::host_batch<PartView, minimum::least_question> search_;
   min_distances_result result_;
 };
 

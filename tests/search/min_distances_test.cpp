@@ -7,6 +7,7 @@
 #include "support/volumes.hpp"
 #include "support/wide_tree.hpp"
 
+#include <clearance/in_collisions.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
@@ -46,6 +47,45 @@ void all_scenes() {
   }
 }
 
+/// Which are in collision: in_collision's states, for a few margins; one a part too, of which one is another.
+template <class Model, class Clouds>
+void check_states(const Model& model, std::size_t parts, const configurations& poses, const Clouds& clouds, double size, verdict& v, const std::string& what,
+                  std::size_t (&states)[4]) {
+  clearance::in_collisions_query query(host{}, model);
+  for (const double margin : {-0.1, -0.01, 0.0, 1e-7, 0.02, 0.3, double(infinity)})
+    for (const bool own : {false, true}) {
+      std::vector<double> margins(own ? parts : 1, margin * size);
+      if (own) margins[0] *= 3;
+      const auto found = clearance::in_collisions(host{1}, model, poses, clouds, margins);
+      v.require(found.of.size() * parts == poses.size() && query(poses, clouds, margins).of == found.of, what, ": another number, or other states if prepared");
+      for (std::size_t c = 0; c < found.of.size(); ++c) {
+        const auto one = clearance::in_collision(host{1}, model, std::span(poses).subspan(c * parts, parts), clouds, margins);
+        v.require(found.of[c] == one.state, what, ", margin", margins[0], ", configuration", c, ": ", to_string(found.of[c]), " and not ",
+                  to_string(one.state));
+        v.require(found.counts.seen == one.counts.seen && found.counts.valid == one.counts.valid, what, ": other counts");
+        ++states[int(one.state)];
+      }
+    }
+}
+template <class V, class P>
+void all_states() {
+  verdict v;
+  dice d(421);
+  std::size_t states[4] = {};
+  for (const auto& s : scenes<P>()) {
+    const sources<P> all(s);
+    const auto poses = configurations_of(s, d);
+    const auto model = make_model<V>(s, {}, clearance::wrapped{});
+    check_states(model, s.parts.size(), poses, placed{all.span, s.cloud_pose}, s.size, v, s.name, states);
+    const auto several = std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, shifted(1000, 0, 0) * s.cloud_pose}));
+    check_states(model, s.parts.size(), poses, several, s.size, v, s.name + ", several clouds", states);
+  }
+  CHECK((states[int(state::free)] > 20 && states[int(state::collision)] > 20));
+}
+
+/// A backend of somebody else's, without a search of its own.
+struct own_backend : host {};
+
 /// No ball, though it shows a middle, a radius, and one ball around it.
 struct padded {
   vec3 center;
@@ -71,12 +111,18 @@ TEST_CASE("Least distances of many configurations of triangles are those of each
   all_scenes<clearance::aabb, triangle>();
 }
 
+TEST_CASE("Which of many configurations of inner spheres are in collision is what each says") { all_states<clearance::sphere, inner_sphere>(); }
+TEST_CASE("Which of many configurations of triangles are in collision is what each says") { all_states<clearance::aabb, triangle>(); }
+
 TEST_CASE("So they are of robots and clouds of extreme numbers") {
   verdict v;
+  std::size_t states[4] = {};
   dice d(412);
   for (const auto& s : edge_scenes()) {
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
-    check(model, s.parts.size(), configurations_of(s, d, 4), placed{point_span(s.points), s.cloud_pose}, s.size, v, s.name);
+    const auto poses = configurations_of(s, d, 4);
+    check(model, s.parts.size(), poses, placed{point_span(s.points), s.cloud_pose}, s.size, v, s.name);
+    check_states(model, s.parts.size(), poses, placed{point_span(s.points), s.cloud_pose}, s.size, v, s.name, states);
   }
 }
 
@@ -86,7 +132,7 @@ TEST_CASE("Points inside solids are 0 away of every configuration, certainly or 
   m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   verdict v;
   dice d(413);
-  std::size_t inside = 0, uncertain = 0;
+  std::size_t inside = 0, uncertain = 0, states[4] = {};
   for (const double tolerance : {0.0, 0.3, 2.0}) {
     const auto model = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(m)), clearance::part_options{.tolerance = tolerance});
     configurations poses;
@@ -95,11 +141,13 @@ TEST_CASE("Points inside solids are 0 away of every configuration, certainly or 
     for (const std::size_t points : {3u, 40u, 3000u}) {
       const auto cloud = d.points(points, 3);
       check(model, 2, poses, placed{point_span(cloud), d.pose(0.1)}, 1, v, std::to_string(points) + " points");
+      check_states(model, 2, poses, point_span(cloud), 1, v, std::to_string(points) + " points", states);
       for (const auto& r : min_distances(host{}, model, poses, cloud).of) inside += r.distance == 0, uncertain += r.distance == 0 && r.state == state::possible;
     }
   }
   CHECK(inside > 100);
   CHECK(uncertain > 50);
+  CHECK((states[int(state::free)] > 50 && states[int(state::possible)] > 50 && states[int(state::collision)] > 50));
 }
 
 TEST_CASE("A tree of somebody else's, however deep or wide, is a robot's") {
@@ -195,6 +243,28 @@ TEST_CASE("What is no batch is refused, and an empty one is one") {
   poses[4].linear() *= 1.5;
   CHECK_THROWS_WITH(min_distances(host{}, model, poses, cloud),
                     Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
+}
+
+TEST_CASE("Which configurations are in collision: what gap and tolerance leave open, what is too close, and what is refused") {
+  const auto part = clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 0.5f}}), 0.01, 0.02);
+  const clearance::model model{std::vector{part}};
+  configurations poses;
+  for (const double x : {0.0, 2.0, 2.475, 2.485, 2.5, 2.6, 3.0}) poses.push_back(shifted(x, 0, 0));
+  const std::vector<vec3> wall{{3, 0, 0}};
+  const auto found = clearance::in_collisions(host{}, model, poses, wall, 0.005);
+  CHECK((found.of == std::vector{state::free, state::free, state::possible, state::possible, state::possible, state::collision, state::collision}));
+  CHECK((found.first_not_free() == 2 && found.counts.valid == 1));
+  CHECK(clearance::in_collisions(host{}, model, poses, std::vector<vec3>{}).of == std::vector(7, state::no_data));
+  const float pixels[] = {3, -infinity};
+  const clearance::depth_image image(pixels, 2, 1, {1, 1, 0, 0});
+  CHECK(clearance::in_collisions(host{}, model, poses, image).of == std::vector(7, state::possible));
+  CHECK(clearance::in_collisions(own_backend{}, model, poses, wall, 0.005).of == found.of);
+  CHECK(clearance::in_collisions(host{}, model, configurations{}, wall).of.empty());
+  CHECK_THROWS_WITH(clearance::in_collisions(host{}, model, poses, wall, clearance::not_a_number), "clearance: the margin of part 0 is not a number");
+  CHECK_THROWS_WITH(clearance::in_collisions(host{}, model, poses, wall, std::vector{0.1, 0.2}), "clearance: there are 1 parts, but 2 margins");
+  poses[4].linear() *= 1.5;
+  CHECK_THROWS_WITH(clearance::in_collisions(host{}, model, poses, wall),
+                    Catch::Matchers::StartsWith("clearance: the pose of configuration 4's part 0 is not rigid: its axes"));
 }
 
 TEST_CASE("With a traversal of one's choice each configuration is asked for by itself") {

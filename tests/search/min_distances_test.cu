@@ -4,6 +4,7 @@
 #include "support/brute_pairs.hpp"
 #include "support/configurations.hpp"
 
+#include <clearance/in_collisions.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/min_distances.cuh>
 #include <clearance/volume/aabb.hpp>
@@ -34,6 +35,17 @@ void check(const Model& model, const configurations& poses, const Clouds& clouds
     const auto expected = min_distances(host{}, model, poses, clouds, options);
     require_results(query(clouds, options).of, expected.of, v, what + ", prepared, d_max " + std::to_string(options.d_max));
     if (d_max > 0) require_results(min_distances(gpu, there, poses, clouds, options).of, expected.of, v, what + ", d_max " + std::to_string(options.d_max));
+  }
+  clearance::in_collisions_query states(gpu, there);
+  states.place(poses);
+  for (const double margin : {-0.05, 0.0, 0.02, 0.3}) {
+    std::vector<double> margins(view_of(model).size(), margin * size);
+    margins[0] *= 3;
+    const auto expected = clearance::in_collisions(host{}, model, poses, clouds, margins);
+    const auto& found = states(clouds, margins);
+    v.require(found.of == expected.of, what, ", margin", margin, ": other states");
+    v.require(found.counts.valid == expected.counts.valid && found.counts.seen == expected.counts.seen, what, ": other counts");
+    if (margin > 0.1) v.require(clearance::in_collisions(gpu, there, poses, clouds, margins).of == expected.of, what, ", in one call: other states");
   }
 }
 
@@ -87,6 +99,36 @@ TEST_CASE("A trajectory among a crowd is watched on a device, from frame to fram
   }
 }
 
+TEST_CASE("An image's tree is made of its pixels, whatever its size, and asked the same") {
+  verdict v;
+  auto s = crowd(516);
+  dice d(517);
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const auto poses = configurations_of(s, d, 12);
+  for (const std::uint32_t width : {1u, 3u, 64u, 65u, 320u})
+    for (const std::uint32_t height : {1u, 63u, 130u}) {
+      std::vector<std::uint16_t> pixels(width * height);
+      for (std::size_t i = 0; i < pixels.size(); ++i)
+        pixels[i] = i % 13 == 5 ? 0 : std::uint16_t(900 + 300 * std::sin(double(i % width) / 40) + d.number(0, 3));
+      const clearance::depth_image image(pixels.data(), width, height, {260, 260, 0.5 * width, 0.5 * height});
+      const std::string what = std::to_string(width) + " x " + std::to_string(height);
+      check(model, poses, placed{image, shifted(0, 0, -1.5)}, 1, v, what);
+      if (width == 65) check(model, poses, std::tuple(placed{image, shifted(0, 0, -1.5)}, point_span(s.points)), 1, v, what + " and points");
+    }
+}
+
+TEST_CASE("A tree of a few hundred thousand points has all its levels") {
+  verdict v;
+  auto s = crowd(518);
+  dice d(519);
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const auto poses = configurations_of(s, d, 6);
+  s.points = d.points(200000, 2);
+  const device gpu;
+  const point_span cloud(s.points);
+  require_results(min_distances(gpu, model.on(gpu), poses, cloud).of, min_distances(host{}, model, poses, cloud).of, v, "many points");
+}
+
 TEST_CASE("Points inside solids are 0 away of every configuration, on a device") {
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
@@ -121,4 +163,11 @@ TEST_CASE("What is no batch is refused on a device, and a pose that is not rigid
   const auto r = gpu.copy_out(query.enqueue(point_span(points.data(), points.size()), {0.1f}), 2);
   CHECK((r[1].state == state::possible && r[1].distance != r[1].distance && r[1].lower == 0));
   CHECK((r[0].state != state::no_data && (r[0].distance == infinity || r[0].part != clearance::none)));
+  CHECK_THROWS_WITH(clearance::in_collisions(gpu, model, poses, cloud, 0.1),
+                    Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
+  clearance::in_collisions_query ask(gpu, model);
+  ask.place(poses);
+  CHECK((gpu.copy_out(ask.enqueue(point_span(points.data(), points.size()), 1e9), 2) == std::vector{state::collision, state::possible}));
+  CHECK_THROWS_AS(ask(cloud, clearance::not_a_number), std::invalid_argument);
+  CHECK(clearance::in_collisions(gpu, model, configurations{}, cloud).of.empty());
 }

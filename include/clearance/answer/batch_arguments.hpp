@@ -23,10 +23,12 @@ struct last_place {
 };
 
 /// Many configurations and one cloud; arrays are one a configuration, or one a part of each.
-template <class PartView>
+template <class PartView, class Question>
 struct batch_arguments {
   using part_type = PartView;
-  using body_type = scan::scan_body<PartView, point_span, any_depth, shared_bounds>;
+  using question_type = Question;
+  using memory_type = typename Question::memory_type;
+  using body_type = scan::scan_body<PartView, point_span, any_depth, typename Question::answer_type>;
 
   const PartView* parts;
   std::uint32_t part_count, configurations;
@@ -34,22 +36,26 @@ struct batch_arguments {
   frames::turn now;
   world_transform world_from_cloud;
   position_error off;
-  real d_max;
+  Question question;
+  bool foreseen;        ///< What is certain about all clouds has been put together before.
   std::uint64_t seen;  ///< Points of all clouds.
   frames::placement* places;
   ball_bounds* bounds;
   configuration_facts* facts;
-  totals* all;
+  memory_type* all;
+  margin_reach* near;   ///< Of a question by margins.
   last_place* last;
   cloud_tree::numbered_point* seeds;
-  min_distance_result* results;
+  typename Question::result_type* results;
   scan::drop_counts* dropped;
   std::uint32_t* lost;  ///< Becomes 1 if a pose is not rigid.
+  std::uint32_t depth = 0;  ///< Of a block's stack, in pairs.
 
   CLEARANCE_HD frames::placement* its_places(std::uint32_t c) const { return places + std::size_t(c) * part_count; }
   /// A configuration's points against its parts, one at a time, whatever source they are of.
-  CLEARANCE_HD body_type body(std::uint32_t c, totals* best) const {
-    return {parts, its_places(c), part_count, {}, facts[c].origin, now.first, nullptr, {best, nullptr}, {}};
+  CLEARANCE_HD body_type body(std::uint32_t c, memory_type* best) const {
+    const std::size_t first = std::size_t(c) * part_count;
+    return {parts, places + first, part_count, {}, facts[c].origin, now.first, nullptr, Question::answer(best, near + first), {}};
   }
 };
 

@@ -7,8 +7,9 @@
 namespace clearance::minimum {
 
 /// What a host does with poses before a search, a warp a configuration; and where its search begins.
-template <class PartView, class Source>
-__global__ void __launch_bounds__(128) place_configurations(const __grid_constant__ batch_arguments<PartView> a, const __grid_constant__ Source source) {
+template <class PartView, class Question, class Source>
+__global__ void __launch_bounds__(128) place_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
+                                                            const __grid_constant__ Source source) {
   const std::uint32_t c = (blockIdx.x * 128 + threadIdx.x) / 32, lane = threadIdx.x % 32;
   if (c >= a.configurations) return;
   frames::placement* const places = a.its_places(c);
@@ -36,20 +37,22 @@ __global__ void __launch_bounds__(128) place_configurations(const __grid_constan
     a.bounds[std::size_t(c) * a.part_count + k] = ball_bounds(a.parts[k].facts, here.part_from_cloud);
   }
   __syncwarp();
-  if (lane != 0) return;
   for (std::uint32_t k = 0; k < a.part_count; ++k) facts.add(a.parts[k].facts, places[k].error);
   facts.rigid = rigid;
-  if (a.now.cloud == 0) {
-    a.all[c] = {make_key(rigid ? a.d_max : -infinity, none)};
-    a.results[c] = {};
-  } else {
-    facts.error.widen(a.facts[c].error);  // a bracket is over all clouds
-  }
+  if (a.now.cloud != 0 || a.foreseen) facts.error.widen(a.facts[c].error);  // a bracket is over all clouds
+  if constexpr (Question::by_margin)
+    for (std::uint32_t k = lane; k < a.part_count; k += 32) a.near[std::size_t(c) * a.part_count + k] = a.question.near(k, a.parts[k].facts, facts.error);
+  __syncwarp();
+  if (lane != 0) return;
+  if (a.now.cloud == 0) a.all[c] = a.question.start(rigid);
   a.facts[c] = facts;
-  cloud_tree::numbered_point seed{{0, 0, 0}, none};
-  if (const last_place last = a.last[c]; last.cloud == a.now.cloud && last.point < source.size())
-    if (const sample s = source[last.point]; s.valid()) seed = {s.position, last.point};
-  a.seeds[c] = seed;
+  if constexpr (!Question::by_margin) {
+    if (a.now.cloud == 0) a.results[c] = {};
+    cloud_tree::numbered_point seed{{0, 0, 0}, none};
+    if (const last_place last = a.last[c]; last.cloud == a.now.cloud && last.point < source.size())
+      if (const sample s = source[last.point]; s.valid()) seed = {s.position, last.point};
+    a.seeds[c] = seed;
+  }
 }
 
 }  // namespace clearance::minimum

@@ -9,33 +9,45 @@
 #include <clearance/frame/clouds.hpp>
 #include <clearance/robot/model.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <memory>
 #include <utility>
 
 namespace clearance::minimum {
 
-/// The least distances of many configurations on a device, frame after frame: a tree over each cloud, and a block a configuration
+/// A question about many configurations on a device, frame after frame: a tree over each cloud, and a block a configuration
 /// down it. Nothing is waited for, and once there was a frame of a size nothing is allocated.
-template <class PartView>
+template <class PartView, class Question>
 class device_batch {
  public:
+  using result_type = typename Question::result_type;
+
   /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
   device_batch(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
       : on_(on), model_(model), facts_(model.facts.begin(), model.facts.end()), memory_(memory), counts_(1, on.id, memory) {
     check_stack<near_first>(model.depth, model.width);
     model_.facts = facts_;
     anywhere_.assign(facts_.size(), Eigen::Isometry3d::Identity());
-    check_cuda(cudaDeviceGetAttribute(&processors_, cudaDevAttrMultiProcessorCount, on.id), "cudaDeviceGetAttribute");
+    const auto ask_device = [&on](cudaDeviceAttr what) {
+      int value = 0;
+      check_cuda(cudaDeviceGetAttribute(&value, what, on.id), "cudaDeviceGetAttribute");
+      return value;
+    };
+    processors_ = ask_device(cudaDevAttrMultiProcessorCount);
+    of_processor_ = std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerMultiprocessor));
+    of_block_ = std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerBlockOptin)) - 1024;  // less what the kernel has besides
+    const device_guard guard(on.id);
+    check_cuda(cudaFuncSetAttribute(batch_kernel<arguments, tree_type>, cudaFuncAttributeMaxDynamicSharedMemorySize, int(of_block_)), "cudaFuncSetAttribute");
   }
   device_batch(const device_batch&) = delete;
 
   std::size_t parts() const { return facts_.size(); }
   std::uint32_t size() const { return configurations_; }
-  const min_distance_result* results() const { return results_.data(); }
+  const result_type* results() const { return results_.data(); }
 
-  /// Results, and whether all poses were rigid; waits.
-  bool copy_out(std::span<min_distance_result> to) const {
+  /// Results, what points there were, and whether all poses were rigid; waits. Of nothing there is nothing to say.
+  bool copy_out(std::span<result_type> to, point_counts* points = nullptr) const {
     if (to.empty()) return true;
     const device_guard guard(on_.id);
     counts found;
@@ -45,6 +57,7 @@ class device_batch {
     copy(to.data(), results_.data(), to.size_bytes());
     copy(&found, counts_.data(), sizeof found);
     on_.wait();
+    if (points != nullptr) scan::count(*points, found.dropped.dropped, seen_);
     return found.lost == 0;
   }
 
@@ -56,51 +69,78 @@ class device_batch {
     const std::size_t n = staged_.size();
     const std::uint32_t before = std::exchange(configurations_, 0);  // so that nothing is asked of poses that were not placed
     grow(poses_, n), grow(places_, n), grow(bounds_, n);
-    grow(of_all_, count), grow(all_, count), grow(seeds_, count), grow(results_, count), grow(last_, count);
+    grow(of_all_, count), grow(all_, count), grow(results_, count);
+    if constexpr (Question::by_margin)
+      grow(near_, n);
+    else
+      grow(seeds_, count), grow(last_, count);
     if (n == 0) return;
     const device_guard guard(on_.id);
     check_cuda(cudaMemcpyAsync(poses_.data(), staged_.data(), n * sizeof staged_[0], cudaMemcpyHostToDevice, on_.stream), "cudaMemcpyAsync");
-    if (count != before) clear(last_.data(), 0xff, count);  // no cloud's
     configurations_ = count;
+    if (count != before) forget();
   }
 
   /// Enqueues a frame. `here(source, cloud)` is what the device can read of a cloud.
   template <class Clouds, class Here>
-  void enqueue(const Clouds& clouds, real d_max, const Here& here) {
+  void enqueue(const Clouds& clouds, const Question& question, const Here& here) {
     if (configurations_ == 0) return;
     clear(counts_.data(), 0, 1);
-    frames::for_each_turn(frame_, facts_, anywhere_, clouds, [&](const auto& given, const frames::turn& now) {
+    const bool foreseen = Question::by_margin && count_clouds(clouds) > 1;  // margins are for what is certain about all clouds
+    if (foreseen)
+      frames::for_each_turn(frame_, facts_, anywhere_, clouds, [&](const auto& given, const frames::turn& now) {
+        place_in(point_span{}, told(given, now, question, false));
+      });
+    seen_ = frames::for_each_turn(frame_, facts_, anywhere_, clouds, [&](const auto& given, const frames::turn& now) {
       const auto source = here(given, now.cloud);
       while (trees_.size() <= now.cloud) trees_.push_back(std::make_unique<cloud_tree::device_tree>(on_, memory_));
       trees_[now.cloud]->build(source, &counts_.data()->dropped);
-      ask(source, trees_[now.cloud]->view(), now, d_max);
+      ask(source, trees_[now.cloud]->view(), told(source, now, question, foreseen));
     });
   }
 
   void forget() {
-    if (configurations_ != 0) clear(last_.data(), 0xff, configurations_);  // no cloud's
+    if constexpr (!Question::by_margin)
+      if (configurations_ != 0) clear(last_.data(), 0xff, configurations_);  // no cloud's
   }
 
  private:
-  using arguments = batch_arguments<PartView>;
+  using arguments = batch_arguments<PartView, Question>;
+  using tree_type = cloud_tree::device_tree::view_type;
+  using room = batch_room<node_pair<typename PartView::hierarchy_type::node_type>, pair_order<PartView>>;
+  static constexpr unsigned resident_threads = 1024;  ///< Of a processor, that the kernel's registers leave room for.
   struct counts {
     scan::drop_counts dropped;
     std::uint32_t lost = 0;
   };
 
   template <point_source S>
-  void ask(const S& source, const cloud_tree::device_tree::view_type& tree, const frames::turn& now, real d_max) {
-    const arguments a{model_.parts,   std::uint32_t(facts_.size()), configurations_,     poses_.data(),  now,            frame_.world_from_cloud,
-                      rounding_of(source), d_max,                   now.first + source.size(), places_.data(), bounds_.data(), of_all_.data(),
-                      all_.data(),    last_.data(),                 seeds_.data(),       results_.data(), &counts_.data()->dropped, &counts_.data()->lost};
-    const unsigned blocks = (configurations_ + 3) / 4;
-    on_.launch(place_configurations<PartView, S>, blocks, 128, 0, a, source);
-    // As many threads as a device has room for: of few configurations each gets more.
+  arguments told(const S& source, const frames::turn& now, const Question& question, bool foreseen) const {
+    return {model_.parts, std::uint32_t(facts_.size()), configurations_, poses_.data(), now, frame_.world_from_cloud, rounding_of(source), question, foreseen,
+            now.first + source.size(), places_.data(), bounds_.data(), of_all_.data(), all_.data(), near_.data(), last_.data(), seeds_.data(),
+            results_.data(), &counts_.data()->dropped, &counts_.data()->lost};
+  }
+  template <point_source S>
+  void place_in(const S& source, const arguments& a) const {
+    on_.launch(place_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
+  }
+  template <point_source S>
+  void ask(const S& source, const tree_type& tree, const arguments& a) const {
+    if constexpr (Question::by_margin)
+      place_in(point_span{}, a);
+    else
+      place_in(source, a);
+    // As many threads as a device has room for: of few configurations each gets more. And stacks as deep as room is left for: the fewer
+    // pairs a round may take, the more rounds.
     unsigned threads = std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 512u);
-    using room = batch_room<node_pair<typename PartView::hierarchy_type::node_type>>;
-    while (room::bytes(threads) > 48 * 1024) threads /= 2;  // as much as a block always has
-    on_.launch(batch_kernel<PartView, cloud_tree::device_tree::view_type>, configurations_, threads, room::bytes(threads), a, tree);
-    on_.launch(finish_configurations<PartView, S>, blocks, 128, 0, a, source);
+    while (room::bytes(threads, room::least_depth(threads)) > 48 * 1024) threads /= 2;  // as much as a block always has
+    arguments with_stack = a;
+    with_stack.depth = room::depth(threads, std::min(of_block_, of_processor_ / (resident_threads / threads) - 2048));
+    on_.launch(batch_kernel<arguments, tree_type>, configurations_, threads, room::bytes(threads, with_stack.depth), with_stack, tree);
+    if constexpr (!Question::by_margin)
+      on_.launch(finish_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
+    else if (a.now.last)
+      on_.launch(tell_configurations<PartView, Question>, (configurations_ + 127) / 128, 128, 0, a);
   }
 
   template <class T>
@@ -118,7 +158,9 @@ class device_batch {
   std::vector<part_facts> facts_;
   std::pmr::memory_resource* memory_;
   int processors_ = 0;
+  std::size_t of_processor_ = 0, of_block_ = 0;  ///< Bytes of shared memory.
   std::uint32_t configurations_ = 0;
+  std::uint64_t seen_ = 0;
   std::vector<world_transform> staged_;
   std::vector<Eigen::Isometry3d> anywhere_;  ///< Poses, so that clouds are placed on the host: what is made of them is not used.
   frames::cloud_frame frame_;
@@ -127,10 +169,11 @@ class device_batch {
   device_buffer<frames::placement> places_;
   device_buffer<ball_bounds> bounds_;
   device_buffer<configuration_facts> of_all_;
-  device_buffer<totals> all_;
+  device_buffer<typename Question::memory_type> all_;
+  device_buffer<margin_reach> near_;
   device_buffer<last_place> last_;
   device_buffer<cloud_tree::numbered_point> seeds_;
-  device_buffer<min_distance_result> results_;
+  device_buffer<result_type> results_;
   device_buffer<counts> counts_;
 };
 

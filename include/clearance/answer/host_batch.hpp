@@ -11,18 +11,20 @@
 
 namespace clearance::minimum {
 
-/// The least distances of many configurations on the CPU, frame after frame: a tree over each cloud, and each configuration down
-/// all of them. Memory is kept, and where a configuration's last minimum was: its next search begins there, or where that of the
-/// configuration before it ended, which changes how long it takes, and nothing else.
-template <class PartView>
+/// A question about many configurations on the CPU, frame after frame: a tree over each cloud, and each configuration down all of them.
+/// Memory is kept, and where a configuration's last minimum was: its next search begins there, or where that of the configuration
+/// before it ended, which changes how long it takes, and nothing else.
+template <class PartView, class Question>
 class host_batch {
  public:
   host_batch(const host& on, const model_view<PartView>& model) : workers_(on), model_(model), walk_{stack_need(model.depth, model.width)} {}
 
-  /// `poses` are rigid, those of a configuration after another; `results` are as many as configurations.
+  using result_type = typename Question::result_type;
+
+  /// `poses` are rigid, those of a configuration after another; `results` are as many as configurations. What points there were.
   template <class Clouds>
-  void operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real d_max, std::span<min_distance_result> results) {
-    if (results.empty()) return;
+  point_counts operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Question& question, std::span<result_type> results) {
+    if (results.empty()) return {};
     const std::size_t parts = model_.size(), count = results.size();
     dropped_ = {};
     frames::cloud_frame first;
@@ -35,10 +37,13 @@ class host_batch {
     workers_.for_pieces(count, neighbours, [&](std::size_t begin, std::size_t end) {
       for (std::size_t c = begin; c < end; ++c) {
         const place starts[] = {last_[c], c > begin ? last_[c - 1] : place{}};
-        ask(poses.subspan(c * parts, parts), clouds, d_max, starts, rooms_[begin / neighbours], results[c]);
-        last_[c] = {results[c].cloud, results[c].point};
+        ask(poses.subspan(c * parts, parts), clouds, question, starts, rooms_[begin / neighbours], results[c]);
+        if constexpr (!Question::by_margin) last_[c] = {results[c].cloud, results[c].point};
       }
     });
+    point_counts counts;
+    scan::count(counts, dropped_.dropped, seen_);
+    return counts;
   }
 
   void forget() { last_.clear(); }
@@ -53,20 +58,31 @@ class host_batch {
   struct room {
     frames::cloud_frame frame;
     std::vector<ball_bounds> bounds;
-    std::vector<pending_pair<node_pair<typename PartView::hierarchy_type::node_type>>> pending;
+    std::vector<margin_reach> near;
+    std::vector<pending_pair<node_pair<typename PartView::hierarchy_type::node_type>, pair_order<PartView>>> pending;
   };
 
   template <class Clouds>
-  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real d_max, std::span<const place> starts, room& own,
-           min_distance_result& result) const {
+  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Question& question, std::span<const place> starts, room& own,
+           result_type& result) const {
     const auto parts = std::uint32_t(model_.size());
+    typename Question::memory_type all = question.start();
     result = {};
-    totals all{make_key(d_max, none)};
-    const shared_bounds bounds{&all, nullptr};
+    frames::float_error before;  // a margin is for what is certain about all clouds
+    if (Question::by_margin && trees_.size() > 1) {
+      frames::for_each_turn(own.frame, model_.facts, poses, clouds, [](const auto&, const frames::turn&) {});
+      before = own.frame.error;
+    }
     frames::for_each_turn(own.frame, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
       const auto& places = own.frame.places;
-      const scan::scan_body<PartView, S, any_depth, shared_bounds> body{model_.parts, places.data(), parts,  source, own.frame.origin,
-                                                                        now.first,    nullptr,       bounds, walk_};
+      if constexpr (Question::by_margin) {
+        before.widen(own.frame.error);
+        own.near.clear();
+        for (std::uint32_t k = 0; k < parts; ++k) own.near.push_back(question.near(k, model_.facts[k], before));
+      }
+      const auto answer = question.answer(&all, own.near.data());
+      const scan::scan_body<PartView, S, any_depth, typename Question::answer_type> body{model_.parts, places.data(), parts,  source, own.frame.origin,
+                                                                                         now.first,    nullptr,       answer, walk_};
       for (const place& p : starts)
         if (p.cloud == now.cloud && p.point < source.size())
           if (const sample s = source[p.point]; s.valid()) body.visit(s.position - own.frame.origin, p.point);
@@ -75,11 +91,18 @@ class host_batch {
       const auto& tree = trees_[now.cloud].view();
       const tree_search<std::remove_const_t<decltype(body)>, cloud_tree::host_tree::view_type> search{body, tree, own.bounds.data()};
       with_vectors([&] { walk_trees(search, own.pending); });
-      resolve_body<PartView, S, any_depth>{model_.parts, places.data(), parts, source, own.frame.origin, own.frame.world_from_cloud, now.first,
-                                           now.cloud,    bounds,        walk_, &result, nullptr}(parts);
+      if constexpr (!Question::by_margin)
+        resolve_body<PartView, S, any_depth>{model_.parts, places.data(), parts, source, own.frame.origin, own.frame.world_from_cloud, now.first,
+                                             now.cloud,    answer,        walk_, &result, nullptr}(parts);
     });
-    conclude_body<PartView>{model_.parts, parts, &dropped_, bounds, own.frame.error, own.frame.slop, seen_, &result}(0);
-    if (parts != 0) beyond(result, d_max, own.frame.slop, own.frame.error);
+    if constexpr (Question::by_margin) {
+      point_counts counts;
+      scan::count(counts, dropped_.dropped, seen_);
+      result = question.told(all, counts.valid, counts.dropped[int(drop_reason::too_close)] != 0);
+    } else {
+      conclude_body<PartView>{model_.parts, parts, &dropped_, {&all, nullptr}, own.frame.error, own.frame.slop, seen_, &result}(0);
+      if (parts != 0) beyond(result, question.d_max, own.frame.slop, own.frame.error);
+    }
   }
 
   host_workers workers_;

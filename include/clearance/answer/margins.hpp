@@ -7,14 +7,22 @@
 namespace clearance::pairwise {
 
 /// A point may be nearer than `margin` if its computed distance is at most this: gap, tolerance and rounding on the safe side.
-inline real may_be_within(double margin, const part_facts& facts, const frames::float_error& error) {
+CLEARANCE_HD inline real may_be_within(double margin, const part_facts& facts, const frames::float_error& error) {
   const double most = margin + frames::slop(facts) + error.here;
   return rounded_up(most / (most < 0 ? 1 + error.per_metre : 1 - error.per_metre));
 }
 /// And is certainly, if at most this.
-inline real is_within(double margin, const part_facts& facts, const frames::float_error& error) {
+CLEARANCE_HD inline real is_within(double margin, const part_facts& facts, const frames::float_error& error) {
   const double left = margin - double(facts.tolerance) - error.here;
   return rounded_down(left / (left < 0 ? 1 - error.per_metre : 1 + error.per_metre));
+}
+
+/// Throws std::invalid_argument if there is neither one margin nor one a part, or one is NaN.
+inline void check_margins(std::span<const double> margins, std::size_t parts) {
+  if (margins.size() != 1 && margins.size() != parts)
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " + std::to_string(margins.size()) + " margins");
+  for (std::size_t k = 0; k < margins.size(); ++k)
+    if (!(margins[k] == margins[k])) throw std::invalid_argument("clearance: the margin of part " + std::to_string(k) + " is not a number");
 }
 
 /// What is certain about a frame, and the number of each cloud's first point, before anything is asked.

@@ -44,6 +44,8 @@ struct shared_bounds {
   CLEARANCE_HD bool settled(std::uint32_t index, std::uint32_t k) const {
     return load_relaxed(bound_of(k)) <= make_key(0, index) && load_relaxed(&all->certain) != 0;
   }
+  /// Where nothing can be nearer than 0 and something is, lower numbers matter before distances.
+  CLEARANCE_HD bool lowest_first(std::uint32_t k) const { return reach(k) <= 0; }
   /// True: it is still to be learned whether a point is certainly inside.
   CLEARANCE_HD bool take_inside(std::uint32_t index, std::uint32_t k) const {
     lower_to(bound_of(k), make_key(0, index));

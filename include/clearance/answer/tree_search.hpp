@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The least distance of one configuration by branch and bound down two trees at once: that over the points, and a part's own.
+// One configuration by branch and bound down two trees at once: that over the points, and a part's own.
 
-#include <clearance/answer/shared_bounds.hpp>
+#include <clearance/answer/batch_question.hpp>
 #include <clearance/cloud_tree/tree_view.hpp>
 #include <clearance/result.hpp>
 #include <clearance/scan/scan_body.hpp>
@@ -29,6 +29,10 @@ struct ball_bounds {
   CLEARANCE_HD real lower(real distance, real radius) const { return distance - radius - off(distance, radius); }
   CLEARANCE_HD real upper(real distance, real radius) const { return distance + radius + off(distance, radius); }
 };
+
+/// What pairs are ordered by: where a part knows its inside, lower numbers may have to go first.
+template <class PartView>
+using pair_order = std::conditional_t<scan::has_interior<PartView>, distance_key, std::uint32_t>;
 
 /// What is below a node of the tree over the points, or one of its points, and what is below a node of a part's tree.
 template <class Node>
@@ -57,8 +61,8 @@ struct tree_search {
   const Tree& tree;
   const ball_bounds* bounds;  ///< One a part.
 
-  /// How near the robot must be.
-  CLEARANCE_HD real reach() const { return body.answer.reach(0); }
+  /// How near a part must be.
+  CLEARANCE_HD real reach(std::uint32_t k) const { return body.answer.reach(k); }
 
   /// Pairs to begin with: each node of the top with each part.
   CLEARANCE_HD std::uint32_t starts() const { return tree.levels == 0 ? 0 : tree.size(tree.levels - 1) * body.part_count; }
@@ -82,12 +86,18 @@ struct tree_search {
 
   /// Is there nothing left to learn from it?
   CLEARANCE_HD bool settled(const pair& p) const {
-    if (!(p.bound <= reach())) return true;
+    if (!(p.bound <= reach(p.part))) return true;
     if constexpr (solid) return body.answer.settled(body.first + least(p), 0);
     return false;
   }
   /// Of two pairs the nearer goes first. A part with an interior has nothing nearer than 0: once that is found, the lowest number does.
-  CLEARANCE_HD distance_key order(const pair& p) const { return solid && reach() <= 0 ? make_key(0, least(p)) : make_key(p.bound, 0); }
+  using order_type = pair_order<part_view>;
+  CLEARANCE_HD order_type order(const pair& p) const {
+    if constexpr (solid)
+      return body.answer.lowest_first(p.part) ? make_key(0, least(p)) : make_key(p.bound, 0);
+    else
+      return ordered(p.bound);
+  }
 
   CLEARANCE_HD void visit(const cloud_tree::numbered_point& p, std::uint32_t k) const { body.visit(p.at - body.origin, body.first + p.number, k); }
 
@@ -122,7 +132,7 @@ struct tree_search {
       p.bound = max(p.bound, bound);
       p.by_points = 10 * b.radius > 7 * size || part.tree.is_leaf(p.node);
     }
-    return p.bound <= reach();
+    return p.bound <= reach(p.part);
   }
 
   /// How far a position in a part is from a node's points at least: from their box, and from their ball. What is computed is off by no
@@ -143,9 +153,9 @@ struct tree_search {
     const auto& its = body.parts[p.part].tree;
     const vec3 q = body.places[p.part].part_from_cloud(here.at - body.origin);
     const real bound = traits::lower_bound(its.volume(p.node), q);
-    if (!(bound <= reach())) return false;
+    if (!(bound <= reach(p.part))) return false;
     if (!its.is_leaf(p.node)) return p.bound = max(p.bound, bound), p.by_points = false, true;
-    shared_nearest ask = body.answer.visitor(body.first + here.number, p.part);
+    auto ask = body.answer.visitor(body.first + here.number, p.part);
     offer_leaf(its, p.node, q, ask);
     body.answer.take(body.first + here.number, p.part, ask);
     return false;
@@ -157,15 +167,15 @@ struct tree_search {
     const frames::placement& place = body.places[p.part];
     const part_view& part = body.parts[p.part];
     if (!frames::may_reach({place.around.center, place.around.radius + b.radius}, 0, x)) return p.whole = false, true;
-    if (!(reach() >= 0)) return false;
+    if (!(reach(p.part) >= 0)) return false;
     p.bound = max(p.bound, lowered(length(x - place.around.center) - place.around.radius - b.radius, place.around.radius + b.radius));
     if (!(b.radius < part.facts.radius)) return true;
     const vec3 q = place.part_from_cloud(x);
     if (inside(part, q)) return true;
-    nearest near{bounds[p.part].within(reach(), b.radius)};
+    nearest near{bounds[p.part].within(reach(p.part), b.radius)};
     body.walk(part.tree, q, near);
     if (near.best == nearest::none) return false;
-    if (const real most = bounds[p.part].upper(near.within, b.radius); most < reach()) body.answer.lower(none, p.part, most);
+    if (const real most = bounds[p.part].upper(near.within, b.radius); most < reach(p.part)) body.answer.lower(none, p.part, most);
     p.bound = max(p.bound, bounds[p.part].lower(near.within, b.radius));
     p.whole = !(p.bound > 0);
     return true;

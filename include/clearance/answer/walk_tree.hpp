@@ -10,9 +10,9 @@
 namespace clearance::minimum {
 
 /// A pair that is still to be opened. It goes before all that are not nearer.
-template <class Pair>
+template <class Pair, class Order>
 struct pending_pair {
-  distance_key order;
+  Order order;
   Pair pair;
 
   friend bool operator<(const pending_pair& a, const pending_pair& b) { return a.order > b.order; }
@@ -20,7 +20,7 @@ struct pending_pair {
 
 /// One configuration against one cloud. `pending` is memory to work with.
 template <class Search>
-void walk_trees(const Search& search, std::vector<pending_pair<typename Search::pair>>& pending) {
+void walk_trees(const Search& search, std::vector<pending_pair<typename Search::pair, typename Search::order_type>>& pending) {
   const auto push = [&](const typename Search::pair& p) {
     pending.push_back({search.order(p), p});
     std::push_heap(pending.begin(), pending.end());

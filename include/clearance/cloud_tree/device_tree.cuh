@@ -4,6 +4,7 @@
 
 #include <clearance/backend/device.cuh>
 #include <clearance/cloud_tree/morton.hpp>
+#include <clearance/cloud_tree/pixel_order.hpp>
 #include <clearance/cloud_tree/tree_view.hpp>
 #include <clearance/scan/tally.hpp>
 #include <clearance/scan/threads.cuh>
@@ -14,26 +15,28 @@ namespace clearance::cloud_tree {
 
 namespace detail {
 
-/// The grid from some of the points, by one block: each finds its own rank.
+inline constexpr std::uint32_t grid_threads = 3 * morton_grid::samples;
+
+/// The grid from some of the points, by one block: each thread finds the rank of one along one axis.
 template <class Source>
-__global__ void __launch_bounds__(morton_grid::samples) grid_kernel(const __grid_constant__ Source source, morton_grid* grid) {
+__global__ void __launch_bounds__(grid_threads) grid_kernel(const __grid_constant__ Source source, morton_grid* grid) {
   __shared__ real along[3][morton_grid::samples];
   __shared__ vec3 ends[2];
-  const std::uint32_t t = threadIdx.x;
+  const std::uint32_t t = threadIdx.x % morton_grid::samples, axis = threadIdx.x / morton_grid::samples;
   const std::size_t size = source.size(), stride = size < morton_grid::samples ? 1 : size / morton_grid::samples;
   sample s{{not_a_number, not_a_number, not_a_number}, drop_reason::missing};
   if (t * stride < size) s = source[t * stride];
-  const real mine[3] = {s.position.x, s.position.y, s.position.z};
-  for (int axis = 0; axis < 3; ++axis) along[axis][t] = s.valid() ? mine[axis] : not_a_number;
-  const auto count = std::uint32_t(__syncthreads_count(s.valid()));
-  for (int axis = 0; axis < 3 && s.valid(); ++axis) {
+  const real mine = s.valid() ? (&s.position.x)[axis] : not_a_number;
+  along[axis][t] = mine;
+  const std::uint32_t count = std::uint32_t(__syncthreads_count(s.valid())) / 3;
+  if (s.valid()) {
     std::uint32_t rank = 0;
-    for (std::uint32_t j = 0; j < morton_grid::samples; ++j) rank += along[axis][j] < mine[axis] || (along[axis][j] == mine[axis] && j < t);
-    if (rank == morton_grid::low_rank(count)) (&ends[0].x)[axis] = mine[axis];
-    if (rank == morton_grid::high_rank(count)) (&ends[1].x)[axis] = mine[axis];
+    for (std::uint32_t j = 0; j < morton_grid::samples; ++j) rank += along[axis][j] < mine || (along[axis][j] == mine && j < t);
+    if (rank == morton_grid::low_rank(count)) (&ends[0].x)[axis] = mine;
+    if (rank == morton_grid::high_rank(count)) (&ends[1].x)[axis] = mine;
   }
   __syncthreads();
-  if (t == 0) *grid = count == 0 ? morton_grid() : morton_grid(ends[0], ends[1]);
+  if (threadIdx.x == 0) *grid = count == 0 ? morton_grid() : morton_grid(ends[0], ends[1]);
 }
 
 /// Where points are on the curve; those that do not count are counted, and stay.
@@ -88,36 +91,73 @@ __device__ void put_node(const tree_room& to, std::uint32_t node, const extent& 
   to.boxes[node] = box, to.balls[node] = {center, nothing ? -infinity : min(radius, farthest(box, center))}, to.least[node] = least;
 }
 
-template <class Source, class Tree>
-__global__ void __launch_bounds__(256) tile_kernel(const __grid_constant__ Source source, const __grid_constant__ Tree tree, const std::uint32_t* numbers,
-                                                   const tree_room to) {
-  static_assert(Tree::tile == siblings);
-  const std::uint32_t i = blockIdx.x * 256 + threadIdx.x, tile = i / siblings;
-  numbered_point p{{not_a_number, not_a_number, not_a_number}, ~0u};
-  extent box;
-  if (i < tree.count) {
-    const std::uint32_t number = numbers[i];
-    if (const sample s = source[number]; s.valid()) p = {s.position, number}, box.add(s.position);
-    to.points[i] = p;
-  }
-  put_node(to, tile < tree.size(0) ? tile : none, box, p.number, [&](vec3 center) { return rough_length_up(p.at - center); });
-}
-
+/// A node of a level above tiles around its children. `child`: a node of the level below, or none. All of a warp's lanes call it.
 template <class Tree>
-__global__ void __launch_bounds__(256) node_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
+__device__ void put_parent(const Tree& tree, std::uint32_t level, std::uint32_t child, const tree_room& to) {
   static_assert(Tree::fan == siblings);
-  const std::uint32_t child = blockIdx.x * 256 + threadIdx.x, node = child / siblings, at = tree.begin[level - 1] + child;
   extent box;
   ball b{{0, 0, 0}, -infinity};
   std::uint32_t least = ~0u;
-  if (child < tree.size(level - 1)) box = to.boxes[at], b = to.balls[at], least = to.least[at];
-  put_node(to, node < tree.size(level) ? tree.begin[level] + node : none, box, least, [&](vec3 center) { return (rough_length_up(b.center - center) + b.radius) * (1 + slack); });
+  if (child < tree.size(level - 1)) {
+    const std::uint32_t at = tree.begin[level - 1] + child;
+    box = to.boxes[at], b = to.balls[at], least = to.least[at];
+  }
+  const std::uint32_t node = child == none ? none : child / siblings;
+  put_node(to, node < tree.size(level) ? tree.begin[level] + node : none, box, least,
+           [&](vec3 center) { return (rough_length_up(b.center - center) + b.radius) * (1 + slack); });
 }
+
+inline constexpr std::uint32_t tile_threads = siblings * siblings * siblings;  ///< Points of a block, which makes the first three levels.
+
+/// `number_of(i)` is the number of the point that comes at position i, or none.
+template <class Source, class Tree, class Order>
+__global__ void __launch_bounds__(tile_threads) tile_kernel(const __grid_constant__ Source source, const __grid_constant__ Tree tree,
+                                                            const __grid_constant__ Order number_of, const tree_room to, scan::drop_counts* dropped) {
+  static_assert(Tree::tile == siblings);
+  const std::uint32_t t = threadIdx.x, i = blockIdx.x * tile_threads + t, tile = i / siblings;
+  numbered_point p{{not_a_number, not_a_number, not_a_number}, ~0u};
+  extent box;
+  scan::tally mine;
+  if (i < tree.count) {
+    if (const std::uint32_t number = number_of(i); number != none) {
+      const sample s = source[number];
+      if (Order::counts ? mine.counts(s) : s.valid()) p = {s.position, number}, box.add(s.position);
+    }
+    to.points[i] = p;
+  }
+  if constexpr (Order::counts) mine.add_to(*dropped);
+  __syncwarp();
+  put_node(to, tile < tree.size(0) ? tile : none, box, p.number, [&](vec3 center) { return rough_length_up(p.at - center); });
+  for (std::uint32_t level = 1, children = tile_threads / siblings; level < 3 && level < tree.levels; ++level, children /= siblings) {
+    __syncthreads();
+    if (t < children || t < 32) put_parent(tree, level, t < children ? blockIdx.x * children + t : none, to);
+  }
+}
+
+/// A level by itself.
+template <class Tree>
+__global__ void __launch_bounds__(256) node_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
+  put_parent(tree, level, blockIdx.x * 256 + threadIdx.x, to);
+}
+/// All levels from one on, by one block.
+template <class Tree>
+__global__ void __launch_bounds__(1024) top_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
+  for (; level < tree.levels; ++level, __syncthreads())
+    for (std::uint32_t first = 0, size = tree.size(level - 1); first < size; first += 1024) put_parent(tree, level, first + threadIdx.x, to);
+}
+
+/// Points in the order that they were sorted to.
+struct sorted_order {
+  static constexpr bool counts = false;  ///< That was done when they were encoded.
+  const std::uint32_t* numbers;
+
+  __device__ std::uint32_t operator()(std::uint32_t i) const { return numbers[i]; }
+};
 
 }  // namespace detail
 
 /// Owns a tree; built anew for every frame, in memory that is kept. Points that do not count stay among the others, as NaN: so its
-/// shape is known before they are read, and nobody waits.
+/// shape is known before they are read, and nobody waits. An image's tiles are its pixels' (a pyramid); other points are sorted.
 class device_tree {
  public:
   using view_type = tree_view<8, 8>;
@@ -127,26 +167,39 @@ class device_tree {
   /// Enqueues it; what does not count is added to `dropped`. The device reads the source as it is.
   template <point_source S>
   void build(const S& source, scan::drop_counts* dropped) {
-    view_ = view_type(std::uint32_t(source.size()));
-    const std::size_t n = view_.count;
-    if (n == 0) return;
-    grow(codes_, n), grow(sorted_codes_, n), grow(numbers_, n), grow(sorted_, n), grow(points_, n);
-    grow(balls_, view_.nodes()), grow(least_, view_.nodes()), grow(boxes_, view_.nodes());
-    view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(), view_.least = least_.data();
-    on_.launch(detail::grid_kernel<S>, 1, morton_grid::samples, 0, source, grid_.data());
+    const std::size_t n = source.size();
+    if constexpr (image_source<S>) {
+      const pixel_order pixels(std::uint32_t(n), n == 0 ? 0 : source.columns());
+      if (pixels.positions() != 0) return put_up(source, view_type(pixels.positions()), pixels, dropped);
+    }
+    const view_type shape(static_cast<std::uint32_t>(n));
+    if (n == 0) return void(view_ = shape);
+    grow(codes_, n), grow(sorted_codes_, n), grow(numbers_, n), grow(sorted_, n);
+    on_.launch(detail::grid_kernel<S>, 1, detail::grid_threads, 0, source, grid_.data());
     on_.for_ranges(n, detail::encode_body<S>{source, grid_.data(), codes_.data(), numbers_.data(), dropped});
     sort(n);
-    const detail::tree_room to{points_.data(), balls_.data(), least_.data(), boxes_.data()};
-    const auto blocks = [](std::uint32_t nodes) { return (nodes + 31) / 32; };
-    on_.launch(detail::tile_kernel<S, view_type>, blocks(view_.size(0)), 256, 0, source, view_, sorted_.data(), to);
-    for (std::uint32_t level = 1; level < view_.levels; ++level)
-      on_.launch(detail::node_kernel<view_type>, blocks(view_.size(level)), 256, 0, view_, level, to);
+    put_up(source, shape, detail::sorted_order{sorted_.data()}, dropped);
   }
   const view_type& view() const { return view_; }
 
  private:
   /// A pass of the sort takes eight bits. Three of them make cells as fine as tiles are.
   static constexpr int first_bit = 3 * morton_grid::bits - 24, last_bit = 3 * morton_grid::bits;
+
+  /// Tiles and nodes of a tree of that shape over points in that order.
+  template <class S, class Order>
+  void put_up(const S& source, const view_type& shape, const Order& order, scan::drop_counts* dropped) {
+    view_ = shape;
+    grow(points_, view_.count), grow(balls_, view_.nodes()), grow(least_, view_.nodes()), grow(boxes_, view_.nodes());
+    view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(), view_.least = least_.data();
+    const detail::tree_room to{points_.data(), balls_.data(), least_.data(), boxes_.data()};
+    const unsigned blocks = (view_.count - 1) / detail::tile_threads + 1;
+    on_.launch(detail::tile_kernel<S, view_type, Order>, blocks, detail::tile_threads, 0, source, view_, order, to, dropped);
+    std::uint32_t level = 3;
+    for (; level < view_.levels && view_.size(level - 1) > 16384; ++level)
+      on_.launch(detail::node_kernel<view_type>, (view_.size(level - 1) - 1) / 256 + 1, 256, 0, view_, level, to);
+    if (level < view_.levels) on_.launch(detail::top_kernel<view_type>, 1, 1024, 0, view_, level, to);
+  }
 
   void sort(std::size_t n) {
     const device_guard guard(on_.id);

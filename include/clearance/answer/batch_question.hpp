@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What can be asked of many configurations down a tree over points: an answer of `scan_body` for each, and what it begins with.
+
+#include <clearance/answer/margins.hpp>
+#include <clearance/answer/shared_bounds.hpp>
+#include <clearance/answer/within_margins.hpp>
+#include <clearance/result.hpp>
+
+namespace clearance::minimum {
+
+/// Its least distance, as far as `d_max`, and the witness.
+struct least_question {
+  using answer_type = shared_bounds;
+  using memory_type = totals;
+  using result_type = min_distance_result;
+  static constexpr bool by_margin = false;
+
+  real d_max;
+
+  CLEARANCE_HD totals start(bool rigid = true) const { return {make_key(rigid ? d_max : -infinity, none)}; }
+  CLEARANCE_HD static answer_type answer(totals* all, const margin_reach*) { return {all, nullptr}; }
+};
+
+/// Is anything nearer than margins, one for all parts or one a part?
+struct margin_question {
+  using answer_type = within_margins;
+  using memory_type = margin_word;
+  using result_type = state;
+  static constexpr bool by_margin = true;
+
+  const double* margins;
+  std::uint32_t count;
+
+  CLEARANCE_HD margin_word start(bool = true) const { return {}; }
+  CLEARANCE_HD static answer_type answer(margin_word* word, const margin_reach* near) { return {word, near}; }
+  CLEARANCE_HD margin_reach near(std::uint32_t k, const part_facts& facts, const frames::float_error& error) const {
+    const double margin = margins[count == 1 ? 0 : k];
+    return {pairwise::may_be_within(margin, facts, error), pairwise::is_within(margin, facts, error)};
+  }
+  /// What in_collision says of that.
+  CLEARANCE_HD static state told(const margin_word& word, std::uint64_t valid, bool too_close) {
+    if (valid == 0) return state::no_data;
+    return word.found == margin_word::certain ? state::collision : word.found == margin_word::possible || too_close ? state::possible : state::free;
+  }
+};
+
+}  // namespace clearance::minimum

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Which of many configurations are nearer than a margin, on the host or on a device.
+
+#include <clearance/in_collision.cuh>
+#include <clearance/in_collisions.hpp>
+#include <clearance/min_distances.cuh>
+
+namespace clearance {
+
+/// On a device. Memory for its own use comes from `memory`, a resource that hands out device memory, if one is given.
+template <class PartView>
+class in_collisions_query<device, PartView> {
+ public:
+  /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
+  template <robot Robot>
+  in_collisions_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr)
+      : on_(on), search_(on, view_of(robot), memory), copies_(on, memory), margins_(search_.parts(), on.id, memory) {}
+
+  /// As in_collisions. What is returned stays until the next call. Points in host memory are copied into buffers that are kept.
+  template <class Clouds>
+  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins) {
+    place(poses);
+    return (*this)(clouds, margins);
+  }
+  template <class Clouds>
+  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin = 0) {
+    return (*this)(poses, clouds, std::span<const double>(&margin, 1));
+  }
+
+  /// Keeps poses, on the device too, for frames to come. Enqueued; throws std::invalid_argument if they are no whole configurations.
+  void place(std::span<const Eigen::Isometry3d> poses) {
+    detail::count_configurations(search_.parts(), poses.size());
+    search_.place(poses);
+    poses_.assign(poses.begin(), poses.end());
+  }
+  /// The configurations that were placed, against a new frame.
+  template <class Clouds>
+  const in_collisions_result& operator()(const Clouds& clouds, std::span<const double> margins) {
+    detail::named(search_.parts(), poses_, [&] {
+      ask(clouds, margins, copies_);
+      result_.of.resize(search_.size());
+      result_.counts = {};
+      if (!search_.copy_out(result_.of, &result_.counts)) throw std::invalid_argument("clearance: a pose is not rigid");
+    });
+    return result_;
+  }
+  template <class Clouds>
+  const in_collisions_result& operator()(const Clouds& clouds, double margin = 0) {
+    return (*this)(clouds, std::span<const double>(&margin, 1));
+  }
+  /// Enqueues it: what is returned is memory of the device, one state a configuration, for what follows in its stream. Clouds must be
+  /// readable there. If a pose is not rigid, which cannot be thrown there, the state is `possible`. A graph that captures this keeps the
+  /// margins of now, and is void once more configurations are placed, or a larger cloud is asked.
+  template <class Clouds>
+  const state* enqueue(const Clouds& clouds, std::span<const double> margins) {
+    ask(clouds, margins, minimum::as_it_is{});
+    return search_.results();
+  }
+  template <class Clouds>
+  const state* enqueue(const Clouds& clouds, double margin = 0) {
+    return enqueue(clouds, std::span<const double>(&margin, 1));
+  }
+
+ private:
+  template <class Clouds, class Here>
+  void ask(const Clouds& clouds, std::span<const double> margins, Here&& here) {
+    static_assert(explain_clouds<Clouds>());
+    if (search_.size() * search_.parts() != poses_.size()) throw std::logic_error("clearance: the last configurations could not be placed");
+    pairwise::check_margins(margins, search_.parts());
+    on_.stage(margins, margins_.data());
+    search_.enqueue(clouds, minimum::margin_question{margins_.data(), std::uint32_t(margins.size())},
+                    [&](const auto& source, std::uint32_t cloud) { return here(source, cloud); });
+  }
+
+  device on_;
+  minimum::device_batch<PartView, minimum::margin_question> search_;
+  minimum::kept_copies copies_;
+  device_buffer<double> margins_;
+  std::vector<Eigen::Isometry3d> poses_;
+  in_collisions_result result_;
+};
+
+template <robot Robot>
+in_collisions_query(const device&, const Robot&, std::pmr::memory_resource*)
+    -> in_collisions_query<device, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+
+namespace detail {
+
+/// Memory for one call comes in the order of its stream.
+template <>
+struct states_once<device> {
+  template <class Robot, class Clouds>
+  static in_collisions_result of(const device& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                 std::span<const double> margins) {
+    stream_resource memory(on.id, on.stream);
+    in_collisions_query query(on, robot, &memory);
+    return query(poses, clouds, margins);
+  }
+};
+
+}  // namespace detail
+
+}  // namespace clearance

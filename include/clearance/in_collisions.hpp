@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Which of many configurations of one robot are nearer than a margin to anything that its sensors see? On the host; in_collisions.cuh
+// has a device, too.
+
+#include <clearance/in_collision.hpp>
+#include <clearance/min_distances.hpp>
+
+namespace clearance {
+
+/// One state a configuration: in_collision's of its poses. That tells no witness, because which one is found first is chance;
+/// min_distances does.
+struct in_collisions_result {
+  std::vector<state> of;
+  point_counts counts;  ///< Nothing, if there was no configuration.
+
+  /// The first configuration that is not certain to be farther away than its margins; or of.size().
+  std::size_t first_not_free() const {
+    return std::size_t(std::find_if(of.begin(), of.end(), [](state s) { return s != state::free; }) - of.begin());
+  }
+};
+
+/// The prepared question, asked for frame after frame: it keeps its memory. One object is for one thread and one stream. A device's is in
+/// in_collisions.cuh. A backend of one's own asks for each configuration by itself.
+template <class On, class PartView>
+class in_collisions_query {
+  static_assert(!requires { typename On::own_scan; }, "a device has a search of its own: include <clearance/in_collisions.cuh>, not the .hpp");
+
+ public:
+  template <robot Robot>
+  in_collisions_query(const On& on, const Robot& robot) : on_(on), model_(view_of(robot)) {}
+
+  /// As in_collisions. What is returned stays until the next call.
+  template <class Clouds>
+  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins) {
+    static_assert(explain_clouds<Clouds>());
+    pairwise::check_margins(margins, model_.size());
+    result_.of.resize(detail::count_configurations(model_.size(), poses.size()));
+    result_.counts = {};
+    detail::named(model_.size(), poses, [&] {
+      for (std::size_t c = 0; c < result_.of.size(); ++c) {
+        const collision_result one = in_collision(on_, model_, poses.subspan(c * model_.size(), model_.size()), clouds, margins);
+        result_.of[c] = one.state, result_.counts = one.counts;
+      }
+    });
+    return result_;
+  }
+  template <class Clouds>
+  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin = 0) {
+    return (*this)(poses, clouds, std::span<const double>(&margin, 1));
+  }
+
+ private:
+  On on_;
+  model_view<PartView> model_;
+  in_collisions_result result_;
+};
+
+/// On the CPU. The robot's memory must stay.
+template <class PartView>
+class in_collisions_query<host, PartView> {
+ public:
+  template <robot Robot>
+  in_collisions_query(const host& on, const Robot& robot) : search_(on, view_of(robot)) {}
+
+  /// As in_collisions. What is returned stays until the next call.
+  template <class Clouds>
+  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins) {
+    static_assert(explain_clouds<Clouds>());
+    pairwise::check_margins(margins, search_.parts());
+    result_.of.resize(detail::count_configurations(search_.parts(), poses.size()));
+    const minimum::margin_question question{margins.data(), std::uint32_t(margins.size())};
+    detail::named(search_.parts(), poses, [&] { result_.counts = search_(poses, clouds, question, result_.of); });
+    return result_;
+  }
+  template <class Clouds>
+  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin = 0) {
+    return (*this)(poses, clouds, std::span<const double>(&margin, 1));
+  }
+
+ private:
+  minimum::host_batch<PartView, minimum::margin_question> search_;
+  in_collisions_result result_;
+};
+
+template <class On, robot Robot>
+in_collisions_query(const On&, const Robot&) -> in_collisions_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+
+namespace detail {
+
+template <class On>
+struct states_once {
+  template <class Robot, class Clouds>
+  static in_collisions_result of(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                 std::span<const double> margins) {
+    in_collisions_query query(on, robot);
+    return query(poses, clouds, margins);
+  }
+};
+
+}  // namespace detail
+
+/// Is any point closer to a configuration than `margins`, in metres: one for all parts, or one a part? `poses` as for min_distances.
+/// Throws std::invalid_argument as that does, if there are other than one or as many margins, or one is NaN.
+template <class On, robot Robot, class Clouds>
+in_collisions_result in_collisions(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                   std::span<const double> margins) {
+  static_assert(explain_clouds<Clouds>());
+  return detail::states_once<On>::of(on, robot, poses, clouds, margins);
+}
+/// The same with one margin for all parts.
+template <class On, robot Robot, class Clouds>
+in_collisions_result in_collisions(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin = 0) {
+  return in_collisions(on, robot, poses, clouds, std::span<const double>(&margin, 1));
+}
+
+}  // namespace clearance
