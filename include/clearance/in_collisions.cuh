@@ -10,38 +10,39 @@ namespace clearance {
 
 /// On a device. Memory for its own use comes from `memory`, a resource that hands out device memory, if one is given.
 template <class PartView>
-class in_collisions_query<device, PartView> {
+class in_collisions_query<device, PartView> : public minimum::placed_batch<PartView, minimum::margin_question> {
+  using placed = minimum::placed_batch<PartView, minimum::margin_question>;
+
  public:
   /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
   template <robot Robot>
   in_collisions_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr)
-      : on_(on), search_(on, view_of(robot), memory), copies_(on, memory), margins_(search_.parts(), on.id, memory) {}
+      : placed(on, view_of(robot), memory), margins_(search_.parts(), on.id, memory) {}
 
   /// As in_collisions. What is returned stays until the next call. Points in host memory are copied into buffers that are kept.
   template <class Clouds>
   const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins) {
-    place(poses);
+    placed::place(poses);
     return (*this)(clouds, margins);
+  }
+  /// The same of joint vectors, one after another, whose poses the device computes.
+  template <class Clouds>
+  const in_collisions_result& operator()(const joint_chain<device>& chain, std::span<const double> q, const Clouds& clouds, double margin = 0) {
+    placed::place(chain, q);
+    return (*this)(clouds, margin);
   }
   template <class Clouds>
   const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin = 0) {
     return (*this)(poses, clouds, std::span<const double>(&margin, 1));
   }
 
-  /// Keeps poses, on the device too, for frames to come. Enqueued; throws std::invalid_argument if they are no whole configurations.
-  void place(std::span<const Eigen::Isometry3d> poses) {
-    detail::count_configurations(search_.parts(), poses.size());
-    search_.place(poses);
-    poses_.assign(poses.begin(), poses.end());
-  }
   /// The configurations that were placed, against a new frame.
   template <class Clouds>
   const in_collisions_result& operator()(const Clouds& clouds, std::span<const double> margins) {
-    detail::named(search_.parts(), poses_, [&] {
+    placed::named([&] {
       ask(clouds, margins, copies_);
-      result_.of.resize(search_.size());
       result_.counts = {};
-      if (!search_.copy_out(result_.of, &result_.counts)) throw std::invalid_argument("clearance: a pose is not rigid");
+      placed::copy_out(result_.of, &result_.counts);
     });
     return result_;
   }
@@ -66,18 +67,15 @@ class in_collisions_query<device, PartView> {
   template <class Clouds, class Here>
   void ask(const Clouds& clouds, std::span<const double> margins, Here&& here) {
     static_assert(explain_clouds<Clouds>());
-    if (search_.size() * search_.parts() != poses_.size()) throw std::logic_error("clearance: the last configurations could not be placed");
+    placed::check_placed();
     pairwise::check_margins(margins, search_.parts());
     on_.stage(margins, margins_.data());
     search_.enqueue(clouds, minimum::margin_question{margins_.data(), std::uint32_t(margins.size())},
                     [&](const auto& source, std::uint32_t cloud) { return here(source, cloud); });
   }
 
-  device on_;
-  minimum::device_batch<PartView, minimum::margin_question> search_;
-  minimum::kept_copies copies_;
+  using placed::on_, placed::search_, placed::copies_;
   device_buffer<double> margins_;
-  std::vector<Eigen::Isometry3d> poses_;
   in_collisions_result result_;
 };
 

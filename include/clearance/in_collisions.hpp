@@ -63,6 +63,12 @@ class in_collisions_query<host, PartView> {
   template <robot Robot>
   in_collisions_query(const host& on, const Robot& robot) : search_(on, view_of(robot)) {}
 
+  /// The same of joint vectors, one after another. Throws std::invalid_argument as joint_chain::count, too.
+  template <class Clouds>
+  const in_collisions_result& operator()(const joint_chain<host>& chain, std::span<const double> q, const Clouds& clouds, double margin = 0) {
+    detail::check_chain(search_.parts(), chain.parts());
+    return (*this)(chain.poses(q), clouds, margin);
+  }
   /// As in_collisions. What is returned stays until the next call.
   template <class Clouds>
   const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins) {

@@ -2,8 +2,7 @@
 #pragma once
 // The least distances of many configurations, on the host or on a device.
 
-#include <clearance/answer/device_batch.cuh>
-#include <clearance/answer/kept_copies.cuh>
+#include <clearance/answer/placed_batch.cuh>
 #include <clearance/backend/stream_resource.cuh>
 #include <clearance/min_distance.cuh>
 #include <clearance/min_distances.hpp>
@@ -12,34 +11,35 @@ namespace clearance {
 
 /// On a device. Memory for its own use comes from `memory`, a resource that hands out device memory, if one is given.
 template <class PartView>
-class min_distances_query<device, PartView> {
+class min_distances_query<device, PartView> : public minimum::placed_batch<PartView, minimum::least_question> {
+  using placed = minimum::placed_batch<PartView, minimum::least_question>;
+
  public:
   /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
   template <robot Robot>
   min_distances_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr)
-      : search_(on, view_of(robot), memory), copies_(on, memory) {}
+      : placed(on, view_of(robot), memory) {}
 
   /// As min_distances. What is returned stays until the next call. Points in host memory are copied into buffers that are kept.
   template <class Clouds>
   const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const min_distances_options& options = {}) {
-    place(poses);
+    placed::place(poses);
+    return (*this)(clouds, options);
+  }
+  /// The same of joint vectors, one after another, whose poses the device computes.
+  template <class Clouds>
+  const min_distances_result& operator()(const joint_chain<device>& chain, std::span<const double> q, const Clouds& clouds,
+                                         const min_distances_options& options = {}) {
+    placed::place(chain, q);
     return (*this)(clouds, options);
   }
 
-  /// Keeps poses, on the device too, for frames to come: a trajectory that is watched is copied once. Enqueued; throws
-  /// std::invalid_argument if they are no whole configurations.
-  void place(std::span<const Eigen::Isometry3d> poses) {
-    detail::count_configurations(search_.parts(), poses.size());
-    search_.place(poses);
-    poses_.assign(poses.begin(), poses.end());
-  }
   /// The configurations that were placed, against a new frame.
   template <class Clouds>
   const min_distances_result& operator()(const Clouds& clouds, const min_distances_options& options = {}) {
-    detail::named(search_.parts(), poses_, [&] {
+    placed::named([&] {
       ask(clouds, options, copies_);
-      result_.of.resize(search_.size());
-      if (!search_.copy_out(result_.of)) throw std::invalid_argument("clearance: a pose is not rigid");
+      placed::copy_out(result_.of);
     });
     return result_;
   }
@@ -59,14 +59,12 @@ class min_distances_query<device, PartView> {
   template <class Clouds, class Here>
   void ask(const Clouds& clouds, const min_distances_options& options, Here&& here) {
     static_assert(explain_clouds<Clouds>());
-    if (search_.size() * search_.parts() != poses_.size()) throw std::logic_error("clearance: the last configurations could not be placed");
+    placed::check_placed();
     detail::check(options);
     search_.enqueue(clouds, minimum::least_question{options.d_max}, [&](const auto& source, std::uint32_t cloud) { return here(source, cloud); });
   }
 
-  minimum::device_batch<PartView, minimum::least_question> search_;
-  minimum::kept_copies copies_;
-  std::vector<Eigen::Isometry3d> poses_;
+  using placed::search_, placed::copies_;
   min_distances_result result_;
 };
 

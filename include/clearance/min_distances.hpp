@@ -3,6 +3,7 @@
 // How far are many configurations of one robot, such as the waypoints of a trajectory, from everything that its sensors see? On the
 // host; min_distances.cuh has a device, too.
 
+#include <clearance/answer/configurations.hpp>
 #include <clearance/answer/host_batch.hpp>
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/search_on.hpp>
@@ -28,23 +29,6 @@ struct min_distances_result {
 
 namespace detail {
 
-/// How many configurations that are. Throws std::invalid_argument if some are not whole.
-inline std::size_t count_configurations(std::size_t parts, std::size_t poses) {
-  if (parts == 0 ? poses != 0 : poses % parts != 0)
-    throw std::invalid_argument("clearance: " + std::to_string(poses) + " poses are no whole configurations of " + std::to_string(parts) + " parts");
-  return parts == 0 ? 0 : poses / parts;
-}
-/// Calls `f`; of what it throws because a pose is not rigid the sentence says which configuration's.
-template <class F>
-void named(std::size_t parts, std::span<const Eigen::Isometry3d> poses, const F& f) {
-  try {
-    f();
-  } catch (const std::invalid_argument&) {
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      rigid_transform_of(poses[i], ("configuration " + std::to_string(i / parts) + "'s part").c_str(), std::int64_t(i % parts));
-    throw;
-  }
-}
 inline void check(const min_distances_options& options) {
   if (!(options.d_max == options.d_max)) throw std::invalid_argument("clearance: d_max is not a number");
 }
@@ -102,6 +86,13 @@ class min_distances_query<host, PartView> {
   template <robot Robot>
   min_distances_query(const host& on, const Robot& robot) : search_(on, view_of(robot)) {}
 
+  /// The same of joint vectors, one after another. Throws std::invalid_argument as joint_chain::count, too.
+  template <class Clouds>
+  const min_distances_result& operator()(const joint_chain<host>& chain, std::span<const double> q, const Clouds& clouds,
+                                         const min_distances_options& options = {}) {
+    detail::check_chain(search_.parts(), chain.parts());
+    return (*this)(chain.poses(q), clouds, options);
+  }
   /// As min_distances. What is returned stays until the next call.
   template <class Clouds>
   const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const min_distances_options& options = {}) {

@@ -63,10 +63,17 @@ class device_batch {
 
   /// Enqueues a copy of poses, those of a configuration after another, for all frames to come.
   void place(std::span<const Eigen::Isometry3d> poses) {
-    const auto count = std::uint32_t(poses.empty() ? 0 : poses.size() / facts_.size());
     staged_.clear();
     for (const Eigen::Isometry3d& pose : poses) staged_.emplace_back(pose);
-    const std::size_t n = staged_.size();
+    place(std::uint32_t(poses.size() / facts_.size()), [&](world_transform* there) {
+      const device_guard guard(on_.id);
+      check_cuda(cudaMemcpyAsync(there, staged_.data(), staged_.size() * sizeof staged_[0], cudaMemcpyHostToDevice, on_.stream), "cudaMemcpyAsync");
+    });
+  }
+  /// The same of poses that `fill(there)` enqueues.
+  template <class Fill>
+  void place(std::uint32_t count, const Fill& fill) {
+    const std::size_t n = count * facts_.size();
     const std::uint32_t before = std::exchange(configurations_, 0);  // so that nothing is asked of poses that were not placed
     grow(poses_, n), grow(places_, n), grow(bounds_, n);
     grow(of_all_, count), grow(all_, count), grow(results_, count);
@@ -75,8 +82,7 @@ class device_batch {
     else
       grow(seeds_, count), grow(last_, count);
     if (n == 0) return;
-    const device_guard guard(on_.id);
-    check_cuda(cudaMemcpyAsync(poses_.data(), staged_.data(), n * sizeof staged_[0], cudaMemcpyHostToDevice, on_.stream), "cudaMemcpyAsync");
+    fill(poses_.data());
     configurations_ = count;
     if (count != before) forget();
   }

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/answer/configurations.hpp>
+#include <clearance/answer/device_batch.cuh>
+#include <clearance/answer/kept_copies.cuh>
+
+namespace clearance::minimum {
+
+/// A question about many configurations on a device, and where those come from: for the prepared questions to inherit.
+template <class PartView, class Question>
+class placed_batch {
+ public:
+  /// Keeps poses, on the device too, for frames to come: a trajectory that is watched is copied once. Enqueued; throws
+  /// std::invalid_argument if they are no whole configurations.
+  void place(std::span<const Eigen::Isometry3d> poses) {
+    detail::count_configurations(search_.parts(), poses.size());
+    asked_ = poses.size() / search_.parts();
+    search_.place(poses);
+    poses_.assign(poses.begin(), poses.end());
+  }
+  /// Keeps the poses of joint vectors, one after another, which the device computes. Throws std::invalid_argument as
+  /// joint_chain::count, and if the chain is of another robot.
+  void place(const joint_chain<device>& chain, std::span<const double> q) {
+    const std::size_t count = chain.count(q);
+    if (q_.size() < q.size()) q_ = device_buffer<double>(q.size(), on_.id, memory_);
+    on_.stage(q, q_.data());
+    place(chain, q_.data(), count);
+  }
+  /// The same of joint vectors in the device's memory. One that is not finite or beyond its limits makes poses that are not rigid.
+  void place(const joint_chain<device>& chain, const double* q, std::size_t configurations) {
+    detail::check_chain(search_.parts(), chain.parts());
+    poses_.clear();
+    asked_ = configurations;
+    search_.place(std::uint32_t(configurations),
+                  [&](world_transform* there) { on_.for_each(configurations * chain.parts(), place_links{chain.view(), q, there}); });
+  }
+
+ protected:
+  placed_batch(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory)
+      : on_(on), memory_(memory), search_(on, model, memory), copies_(on, memory), q_(0, on.id, memory) {}
+
+  /// Throws std::logic_error if what was placed last could not be.
+  void check_placed() const {
+    if (search_.size() != asked_) throw std::logic_error("clearance: the last configurations could not be placed");
+  }
+  /// Results to `to`, once they are there. Throws std::invalid_argument if a pose is not rigid.
+  void copy_out(std::vector<typename Question::result_type>& to, point_counts* counts = nullptr) const {
+    to.resize(search_.size());
+    if (search_.copy_out(to, counts)) return;
+    throw std::invalid_argument(poses_.empty() ? "clearance: a joint vector is not finite or beyond its joint's limits, or moves a part out of the world"
+                                               : "clearance: a pose is not rigid");
+  }
+  template <class F>
+  void named(const F& f) const {
+    detail::named(search_.parts(), poses_, f);
+  }
+
+  device on_;
+  std::pmr::memory_resource* memory_;
+  device_batch<PartView, Question> search_;
+  kept_copies copies_;
+
+ private:
+  std::vector<Eigen::Isometry3d> poses_;  ///< Of the host, for sentences.
+  std::size_t asked_ = 0;
+  device_buffer<double> q_;
+};
+
+}  // namespace clearance::minimum
