@@ -41,5 +41,16 @@ int example(const Backend& on) {
     // [plan]
     if (frame.size() > 1 && stops != 73) return 1;
   }
-  return stops == 100 ? 0 : 1;
+
+  // [joints]
+  clearance::chain_link shoulder, slide;  // io::joint_chain_of makes such links of a robot description's
+  slide.origin.m[0][3] = 0.3, slide.value = 0, slide.factor = 1, slide.slides = true;
+  const auto chain = clearance::joint_chain<>({shoulder, slide}, {0, 1}, {{"reach", {0, 1}}}).on(on);
+  std::vector<double> q;  // two trajectories, one number a waypoint
+  for (int waypoint = 0; waypoint < 200; ++waypoint) q.push_back(waypoint < 100 ? 0.01 * waypoint : 0.001 * (waypoint - 100));
+  const auto of_joints = ask(chain, q, wall, {.d_max = 0.2f});
+  const auto first = of_joints.first_below(0.05, 100);
+  std::printf("the first trajectory stops at waypoint %zu of 100, the second at %zu\n", first[0], first[1]);
+  // [joints]
+  return stops == 100 && first[0] == 73 && first[1] == 100 ? 0 : 1;
 }

@@ -278,3 +278,17 @@ TEST_CASE("With a traversal of one's choice each configuration is asked for by i
     require_same(min_distances(clearance::plain{host{}, clearance::stack{}}, model, poses, cloud, {d_max}), poses, s.parts.size(), d_max,
                  [&](auto own) { return min_distance(host{}, model, own, cloud); }, v, "plain");
 }
+
+TEST_CASE("Results of several trajectories are taken apart by their horizon") {
+  const auto model = clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{{{{0, 0, 0}, 0.1f}}});
+  std::vector<Eigen::Isometry3d> poses;
+  for (const double x : {0.0, 1.0, 1.85, 1.9, 0.0, 0.0}) poses.push_back(shifted(x, 0, 0));
+  const auto found = min_distances(host{}, model, poses, std::vector<vec3>{{2, 0, 0}});
+  CHECK(found.first_below(0.08) == 2);
+  CHECK(found.first_below(0.08, 3) == std::vector<std::size_t>{2, 0});
+  CHECK(found.first_below(0.08, 2) == std::vector<std::size_t>{2, 0, 2});
+  CHECK(found.trajectory(1, 2)[1].distance == found.of[3].distance);
+  CHECK_THROWS_AS(found.first_below(0.08, 4), std::invalid_argument);
+  CHECK_THROWS_AS(found.first_below(0.08, 0), std::invalid_argument);
+  CHECK_THROWS_AS(found.trajectory(3, 2), std::invalid_argument);
+}
