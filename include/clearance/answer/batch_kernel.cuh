@@ -37,7 +37,7 @@ struct batch_room {
 /// A block is a configuration, whose parts share its bound. In every round it opens the nearest pairs of its stack, each by eight lanes, and
 /// puts what they made back in order: many at once, because what is found first decides how much the others are worth.
 template <class Arguments, class Tree>
-__global__ void __launch_bounds__(512, 2) batch_kernel(const __grid_constant__ Arguments a, const __grid_constant__ Tree tree) {
+__global__ void __launch_bounds__(256, 4) batch_kernel(const __grid_constant__ Arguments a, const __grid_constant__ Tree tree) {
   using body_type = typename Arguments::body_type;
   using memory_type = typename Arguments::memory_type;
   using search_type = tree_search<body_type, Tree>;

@@ -18,6 +18,7 @@ struct least_question {
 
   real d_max;
 
+  bool limited() const { return d_max < infinity; }
   CLEARANCE_HD totals start(bool rigid = true) const { return {make_key(rigid ? d_max : -infinity, none)}; }
   CLEARANCE_HD static answer_type answer(totals* all, const margin_reach*) { return {all, nullptr}; }
 };
@@ -32,6 +33,7 @@ struct margin_question {
   const double* margins;
   std::uint32_t count;
 
+  bool limited() const { return true; }
   CLEARANCE_HD margin_word start(bool = true) const { return {}; }
   CLEARANCE_HD static answer_type answer(margin_word* word, const margin_reach* near) { return {word, near}; }
   CLEARANCE_HD margin_reach near(std::uint32_t k, const part_facts& facts, const frames::float_error& error) const {

@@ -136,9 +136,10 @@ class device_batch {
       place_in(point_span{}, a);
     else
       place_in(source, a);
-    // As many threads as a device has room for: of few configurations each gets more. And stacks as deep as room is left for: the fewer
-    // pairs a round may take, the more rounds.
-    unsigned threads = std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 512u);
+    // As many threads as a device has room for: of few configurations each gets more; and where most of them end at once, or a look takes
+    // long, all do. And stacks as deep as room is left for: the fewer pairs a round may take, the more rounds.
+    const bool uneven = a.question.limited() || scan::has_interior<PartView>;
+    unsigned threads = uneven ? 256 : std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 256u);
     while (room::bytes(threads, room::least_depth(threads)) > 48 * 1024) threads /= 2;  // as much as a block always has
     arguments with_stack = a;
     with_stack.depth = room::depth(threads, std::min(of_block_, of_processor_ / (resident_threads / threads) - 2048));
