@@ -10,6 +10,10 @@ namespace clearance::pairwise {
 
 template <>
 struct pairs_on<device> {
+  static constexpr bool meets_points = true;
+  template <class PartView>
+  using kept = device_pairs<PartView>;
+
   template <class PartView, class Clouds, answer Answer, class Here>
   static void once(const device& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                    const Answer& answer, point_counts* counts, const Here& here) {

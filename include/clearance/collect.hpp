@@ -15,6 +15,7 @@ namespace pairwise {
 template <class On>
 struct pairs_on {
   static_assert(!requires { typename On::own_scan; }, "a device has a scan of its own: include <clearance/collect.cuh>, not the .hpp");
+  static constexpr bool meets_points = false;  ///< A scan that does tells a `labelling_answer` of each.
 
   template <class PartView, class Clouds, answer Answer, class Here>
   static void once(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
@@ -23,6 +24,18 @@ struct pairs_on {
     const auto of_cloud = [&](const auto&, const frames::turn& now) { return each_pair<Answer>{answer, now.cloud, now.first, least.data()}; };
     scan::plain_pass(on, model, poses, clouds, of_cloud, counts, here);
   }
+
+  /// For one robot, frame after frame.
+  template <class PartView>
+  struct kept {
+    On on;
+    model_view<PartView> model;
+
+    template <class Clouds, answer Answer, class Here>
+    void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer, point_counts* counts, const Here& here) {
+      once(on, model, poses, clouds, answer, counts, here);
+    }
+  };
 };
 
 }  // namespace pairwise

@@ -44,15 +44,15 @@ std::size_t count_points(const Clouds& clouds) {
   return points;
 }
 
-/// Enqueues it.
-template <class On, class PartView, class Clouds, class Here>
-void label_own(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-               const self_filter_options& options, point_label* labels, self_filter_counts* counts, const Here& here) {
-  const std::size_t given = options.padding.size(), parts = model.size();
+/// Enqueues it: `ask(answer, counts)` gives that answer every pair.
+template <class On, class Clouds, class Here, class Ask>
+void label_own(const On& on, std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+               const self_filter_options& options, point_label* labels, self_filter_counts* counts, const Here& here, const Ask& ask) {
+  const std::size_t given = options.padding.size(), parts = facts.size();
   if (given != 1 && given != parts)
     throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " + std::to_string(given) + " paddings");
   std::vector<std::uint32_t> first;
-  const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
+  const frames::float_error error = pairwise::look_ahead(facts, poses, clouds, first);
   std::vector<real> reaches(2 * parts);
   bool all_uncertain = false;
   for (std::size_t k = 0; k < parts; ++k) {
@@ -60,22 +60,32 @@ void label_own(const On& on, const model_view<PartView>& model, std::span<const 
     if (!(padding >= 0 && padding < double(infinity)))
       throw std::invalid_argument("clearance: the padding of part " + std::to_string(k) + " is " + std::to_string(padding) +
                                   " m; it must be finite, and not negative");
-    reaches[parts + k] = pairwise::is_within(padding, model.facts[k], error);
-    reaches[k] = pairwise::may_be_within(padding, model.facts[k], error);
+    reaches[parts + k] = pairwise::is_within(padding, facts[k], error);
+    reaches[k] = pairwise::may_be_within(padding, facts[k], error);
     if (!(reaches[k] < infinity)) all_uncertain = true, reaches[k] = reaches[parts + k];  // nobody need ask of which point
   }
-  const std::size_t words = count_points(clouds) / 32 + 1;
-  auto bits = on.template make_scratch<std::uint32_t>(2 * words);
-  auto near = staged(on, reaches);
-  auto start = staged(on, first);
-  std::uint32_t *own = bits.data(), *perhaps = own + words;
-  on.for_each(2 * words, pairwise::clear_own_points{own, counts});
-  pairwise::pairs_on<On>::once(on, model, poses, clouds, pairwise::own_points{own, perhaps, near.data(), near.data() + parts, start.data()},
-                               &counts->points, here);
-  std::uint32_t cloud = 0;
-  for_each_cloud(clouds, [&]<point_source S>(const S& anywhere, const Eigen::Isometry3d&) {
-    on.for_each(anywhere.size(), pairwise::label_points<S>{here(anywhere, cloud), first[cloud], own, perhaps, all_uncertain, labels, counts});
-    ++cloud;
+  using answer = pairwise::own_points;
+  const pairwise::held_values<On, real, 2 * pairwise::paddings::few> near(on, reaches);
+  const pairwise::held_values<On, std::uint32_t, answer::few_clouds> start(on, first);
+  const answer own{labels, counts, {near.view(), std::uint32_t(parts)}, start.view(), all_uncertain};
+  constexpr bool alone = !pairwise::pairs_on<On>::meets_points;
+  if constexpr (alone) {
+    on.for_each(1, pairwise::forget_labels{counts});
+    std::uint32_t cloud = 0;
+    for_each_cloud(clouds, [&]<point_source S>(const S& anywhere, const Eigen::Isometry3d&) {
+      on.for_each(anywhere.size(), pairwise::label_alone<S>{own, here(anywhere, cloud), cloud});
+      ++cloud;
+    });
+  }
+  ask(own, &counts->points);
+  if constexpr (alone) on.for_each(count_points(clouds), pairwise::count_labels{own});
+}
+
+template <class On, class PartView, class Clouds, class Here>
+void label_own_once(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                    const self_filter_options& options, point_label* labels, self_filter_counts* counts, const Here& here) {
+  label_own(on, model.facts, poses, clouds, options, labels, counts, here, [&](const pairwise::own_points& own, point_counts* points) {
+    pairwise::pairs_on<On>::once(on, model, poses, clouds, own, points, here);
   });
 }
 
@@ -104,7 +114,7 @@ self_filter_result self_filter(const On& on, const Robot& robot, std::span<const
   auto labels = on.template make_scratch<point_label>(detail::count_points(clouds));
   auto counts = on.template make_scratch<self_filter_counts>(1);
   minimum::cloud_copies<On> copies;
-  detail::label_own(on, view_of(robot), poses, clouds, options, labels.data(), counts.data(), minimum::readable_on<On>{on, copies});
+  detail::label_own_once(on, view_of(robot), poses, clouds, options, labels.data(), counts.data(), minimum::readable_on<On>{on, copies});
   return detail::labelled(on, clouds, labels.data(), counts.data());
 }
 
@@ -121,7 +131,7 @@ filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::s
   auto result = there.template make_scratch<min_distance_result>(1);
   minimum::cloud_copies<backend> copies;
   const minimum::readable_on<backend> here{there, copies};
-  detail::label_own(there, view_of(own), own_poses, clouds, options, labels.data(), counts.data(), here);
+  detail::label_own_once(there, view_of(own), own_poses, clouds, options, labels.data(), counts.data(), here);
   const auto rest = masked_clouds(clouds, labels.data());
   minimum::search_on<On>::template once<false>(on, view_of(robot), poses, rest, result.data(), nullptr, here);
   return {detail::labelled(there, clouds, labels.data(), counts.data()), there.copy_out(result.data(), 1)[0]};
@@ -139,7 +149,35 @@ template <class On, robot Robot, class Clouds>
 void self_filter_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                        const self_filter_options& options, point_label* labels, self_filter_counts* counts) {
   static_assert(explain_clouds<Clouds>());
-  detail::label_own(on, view_of(robot), poses, clouds, options, labels, counts, minimum::as_it_is{});
+  detail::label_own_once(on, view_of(robot), poses, clouds, options, labels, counts, minimum::as_it_is{});
 }
+
+/// The same of one robot, frame after frame: on a device one kernel a cloud, and nothing is copied, allocated (but for more than 12 parts
+/// or four clouds) or waited for. One object is for one thread and one stream; the robot must stay.
+template <class On, class PartView>
+class self_filter_query {
+ public:
+  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  template <robot Robot, class... Memory>
+  self_filter_query(const On& on, const Robot& robot, Memory... memory) : on_(on), facts_(view_of(robot).facts), pairs_{on, view_of(robot), memory...} {}
+
+  /// As self_filter_async. A graph that captures this keeps the poses of now.
+  template <class Clouds>
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const self_filter_options& options, point_label* labels,
+               self_filter_counts* counts) {
+    static_assert(explain_clouds<Clouds>());
+    const minimum::as_it_is here;
+    detail::label_own(on_, facts_, poses, clouds, options, labels, counts, here, [&](const pairwise::own_points& own, point_counts* points) {
+      pairs_.enqueue(poses, clouds, own, points, here);
+    });
+  }
+
+ private:
+  On on_;
+  std::span<const part_facts> facts_;
+  typename pairwise::pairs_on<On>::template kept<PartView> pairs_;
+};
+template <class On, robot Robot, class... Memory>
+self_filter_query(const On&, const Robot&, Memory...) -> self_filter_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
 }  // namespace clearance

@@ -88,3 +88,46 @@ TEST_CASE("A crowd around three parts, one of them held by the others: filter an
   check(cudaGraphExecDestroy(ready));
   check(cudaGraphDestroy(graph));
 }
+
+TEST_CASE("A prepared filter of more parts than a kernel takes and of many clouds says in every frame what one call says") {
+  verdict v;
+  const device gpu;
+  dice d(103);
+  scene<inner_sphere> s;
+  for (int part = 0; part < 200; ++part) {
+    s.parts.emplace_back();
+    for (int k = 0; k < 10; ++k) s.parts.back().push_back({d.point(0.1f), d.number(0.005, 0.02)});
+    s.poses.push_back(d.pose(1));
+  }
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const auto there = model.on(gpu);
+  clearance::self_filter_query filter(gpu, there);
+  clearance::self_filter_query here(host{}, model);
+  const clearance::self_filter_options options{.padding = {0.05}};
+  constexpr std::size_t count = 6 * 1001;
+  const auto labels = gpu.copy_in(std::span<const point_label>(std::vector<point_label>(count)));
+  const auto counts = gpu.copy_in(std::span<const clearance::self_filter_counts>(std::vector<clearance::self_filter_counts>(1)));
+  for (int frame = 0; frame < 3; ++frame) {
+    auto points = d.points(count, 1.5);
+    points[17].x = points[2002].y = clearance::not_a_number;
+    const auto points_there = gpu.copy_in(std::span<const vec3>(points));
+    const auto in_six = [](const vec3* from) {
+      std::vector<placed<point_span>> six;
+      for (std::size_t c = 0; c < 6; ++c) six.push_back({point_span(from + c * 1001, 1001), Eigen::Isometry3d::Identity()});
+      return six;
+    };
+    const auto expected = self_filter(host{}, model, s.poses, in_six(points.data()), options);
+    filter.enqueue(s.poses, in_six(points_there.data()), options, labels.data(), counts.data());
+    v.require(gpu.copy_out(labels) == expected.labels, "frame ", frame, ": some label differs");
+    const auto found = gpu.copy_out(counts)[0];
+    v.require(found.own == expected.counts.own && found.uncertain == expected.counts.uncertain && found.points.valid == expected.counts.points.valid &&
+                  found.points.valid == count - 2,
+              "frame ", frame, ": ", found.own, " own, and not ", expected.counts.own);
+    std::vector<point_label> labels_here(count);
+    clearance::self_filter_counts counts_here;
+    here.enqueue(s.poses, in_six(points.data()), options, labels_here.data(), &counts_here);
+    v.require(labels_here == expected.labels && counts_here.own == expected.counts.own, "frame ", frame, ": the host's prepared one differs");
+    v.require(expected.counts.own > 100 && expected.counts.own < count / 2, "frame ", frame, ": ", expected.counts.own, " are the robot's");
+    s.poses[std::size_t(frame)] = d.pose(1);
+  }
+}

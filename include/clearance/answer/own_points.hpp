@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Which points are a robot's own, as an answer that gets pairs, and the labels that come of it.
+// Which points are a robot's own, as an answer that gets pairs.
 
+#include <clearance/answer/few_values.hpp>
 #include <clearance/ground/ordered.hpp>
 #include <clearance/points/masked.hpp>
 #include <clearance/result.hpp>
@@ -16,57 +17,71 @@ struct self_filter_counts {
 
 namespace pairwise {
 
-/// The answer: a bit for each point of all clouds. Once it is certain that a point is the robot's, its other parts are not asked.
-struct own_points {
-  std::uint32_t *own, *perhaps;      ///< All 0 beforehand.
-  const real *may_be, *is;           ///< One of each a part.
-  const std::uint32_t* first_point;  ///< Of each cloud.
+/// How near a point must be to part k to be perhaps the robot's, and to be so certainly.
+struct paddings {
+  static constexpr std::uint32_t few = 12;
+  few_values<real, 2 * few> values;  ///< Those of all parts, then these.
+  std::uint32_t parts;
 
-  CLEARANCE_HD real reach(std::uint32_t part) const { return may_be[part]; }
-  CLEARANCE_HD real reach(std::uint32_t part, real found, real) const { return found <= is[part] ? -infinity : is[part]; }
-  CLEARANCE_HD bool settled(std::uint32_t cloud, std::uint32_t point, std::uint32_t) const {
-    const std::uint32_t number = first_point[cloud] + point;
-    return (load_relaxed(own + number / 32) >> number % 32 & 1) != 0;
-  }
+  CLEARANCE_HD real may_be(std::uint32_t k) const { return values[k]; }
+  CLEARANCE_HD real is(std::uint32_t k) const { return values[parts + k]; }
+};
+
+/// The answer: a label for each point of all clouds. Once it is certain that a point is the robot's, its other parts are not asked.
+struct own_points {
+  static constexpr std::uint32_t few_clouds = 4;
+
+  point_label* labels;  ///< Beforehand what they are if nothing is near them: `whose_alone`.
+  self_filter_counts* counts;
+  paddings near;
+  few_values<std::uint32_t, few_clouds> first_point;  ///< Of each cloud.
+  bool all_uncertain;                        ///< Those that are not certainly the robot's.
+
+  CLEARANCE_HD real reach(std::uint32_t part) const { return near.may_be(part); }
+  CLEARANCE_HD real reach(std::uint32_t part, real found, real) const { return found <= near.is(part) ? -infinity : near.is(part); }
+  CLEARANCE_HD bool settled(std::uint32_t cloud, std::uint32_t point, std::uint32_t) const { return load_relaxed(label_of(cloud, point)) == point_label::own; }
   CLEARANCE_HD void take(const pair_distance& pair) const {
-    const std::uint32_t number = first_point[pair.cloud] + pair.point;
-    set_bits((pair.distance <= is[pair.part] ? own : perhaps) + number / 32, 1u << number % 32);
+    point_label* const label = label_of(pair.cloud, pair.point);
+    if (is_late(pair))
+      *label = point_label::own;
+    else if (load_relaxed(label) != point_label::own)
+      *label = point_label::uncertain;
   }
+
+  /// Whose a point is that is near no part.
+  CLEARANCE_HD point_label whose_alone(bool valid) const {
+    return !valid ? point_label::no_point : all_uncertain ? point_label::uncertain : point_label::rest;
+  }
+  CLEARANCE_HD point_label* label_of(std::uint32_t cloud, std::uint32_t point) const { return labels + first_point[cloud] + point; }
+  /// Comes after all others of its point: what is certain is not overwritten.
+  CLEARANCE_HD bool is_late(const pair_distance& pair) const { return pair.distance <= near.is(pair.part); }
 };
 static_assert(settling_answer<own_points> && coarse_answer<own_points>);
 
-/// Before: nothing is anybody's.
-struct clear_own_points {
-  std::uint32_t* bits;
+/// Before, where a scan does not meet every point: nothing is anybody's,
+struct forget_labels {
   self_filter_counts* counts;
+  CLEARANCE_HD void operator()(std::size_t) const { counts->own = counts->uncertain = 0; }
+};
+/// one cloud's points,
+template <point_source Source>
+struct label_alone {
+  own_points answer;
+  Source source;
+  std::uint32_t cloud;
 
   CLEARANCE_HD void operator()(std::size_t i) const {
-    bits[i] = 0;
-    if (i == 0) counts->own = counts->uncertain = 0;
+    *answer.label_of(cloud, std::uint32_t(i)) = answer.whose_alone(source[i].valid());
   }
 };
 
-/// After: from bits to the labels of one cloud's points.
-template <point_source Source>
-struct label_points {
-  Source source;
-  std::uint32_t first;  ///< The number of its first point.
-  const std::uint32_t *own, *perhaps;
-  bool all_uncertain;  ///< Those that are not certainly the robot's.
-  point_label* labels;
-  self_filter_counts* counts;
+/// and after.
+struct count_labels {
+  own_points answer;
 
   CLEARANCE_HD void operator()(std::size_t i) const {
-    const std::size_t number = first + i;
-    const auto is_set = [number](const std::uint32_t* bits) { return (bits[number / 32] >> number % 32 & 1) != 0; };
-    point_label label = point_label::no_point;
-    if (is_set(own))
-      label = point_label::own;
-    else if (source[i].valid())
-      label = all_uncertain || is_set(perhaps) ? point_label::uncertain : point_label::rest;
-    labels[number] = label;
-    if (label == point_label::own) add_one(&counts->own);
-    if (label == point_label::uncertain) add_one(&counts->uncertain);
+    if (answer.labels[i] == point_label::own) add_one(&answer.counts->own);
+    if (answer.labels[i] == point_label::uncertain) add_one(&answer.counts->uncertain);
   }
 };
 

@@ -3,11 +3,19 @@
 // Answers that want every pair, once, as the blocks of a device give them.
 
 #include <clearance/answer/pairwise.hpp>
+#include <clearance/points/masked.hpp>
 #include <clearance/scan/kernel.cuh>
 #include <clearance/scan/launch.cuh>
 #include <clearance/scan/record.hpp>
 
 namespace clearance::pairwise {
+
+/// An answer that is told of every point, too: it has labels, a byte each, and counts those that are `own` and `uncertain`.
+template <class A>
+concept labelling_answer = answer<A> && requires(const A a, const pair_distance pair, std::uint32_t n) {
+  *a.label_of(n, n) = a.whose_alone(true);
+  a.is_late(pair), a.counts->own, a.counts->uncertain;
+};
 
 template <class PartView, answer Answer>
 struct pairs_of {
@@ -15,22 +23,30 @@ struct pairs_of {
   using hierarchy_type = typename PartView::hierarchy_type;
   using primitive_type = typename hierarchy_type::primitive_type;
   using record = scan::record<typename scan::node_of<hierarchy_type>::place>;
-  using scan_type = scan::by_pairs;
+  using scan_type = std::conditional_t<ending_answer<Answer>, scan::by_pairs, scan::by_many_pairs>;
   using block = scan::pair_memory<pairs_of>;
   static constexpr bool bound_per_part = true;
-  static constexpr bool coarse = coarse_answer<Answer>, goes_ahead = true;
-  static constexpr std::size_t top_bytes = 6400;  ///< Leaves room for two blocks on a processor of an H200.
+  /// So many pairs walk at once, and do not go down to a leaf first: of an answer that ends, few are as near as that.
+  static constexpr std::uint32_t few = ending_answer<Answer> ? 8 * scan::warps : 0;
+  static constexpr bool coarse = coarse_answer<Answer>, labels = labelling_answer<Answer>, goes_ahead = true;
+  static constexpr std::size_t top_bytes = 10000;  ///< Leaves room for two blocks on a processor of an H200, up to 100 parts.
 
   struct arguments {
     Answer answer;
     std::uint32_t first_part;  ///< Number of the kernel's first part.
     point_counts* counts;      ///< Or null.
+    uint2* labelled;           ///< Room for one a block: how many `own` and `uncertain` labels it has given.
+    bool last_group;           ///< Of parts.
   };
   struct memory {
     distance_key best[scan::pair_capacity];              ///< Of each pair that is being looked at: its distance and primitive.
     std::uint32_t least[coarse ? scan::most_parts : 1];  ///< Of each part, `ordered`: the least distance that this block knows of.
+    std::uint32_t own, uncertain;                        ///< Labels.
+    std::uint32_t open_count;                            ///< Pairs that are not known yet,
+    std::uint16_t open[scan::pair_capacity];             ///< and which.
 
     __device__ void clear(std::uint32_t thread) {
+      if (thread == 0) own = uncertain = open_count = 0;
       if (coarse && thread < scan::most_parts) least[thread] = scan::no_bound;
       for (std::uint32_t i = thread; i < scan::pair_capacity; i += scan::block_threads) best[i] = no_key;
     }
@@ -76,14 +92,35 @@ struct pairs_of {
     if constexpr (coarse)
       if (const std::uint32_t distance = ordered(key_distance(found)); distance < scan::fresh(s.answer.least[part])) atomicMin(&s.answer.least[part], distance);
   }
+  static __device__ void leave_open(block& s, std::uint32_t pair) { s.answer.open[atomicAdd(&s.answer.open_count, 1u)] = std::uint16_t(pair); }
+  static __device__ std::uint32_t open_pairs(const block& s) { return s.answer.open_count; }
+  static __device__ std::uint32_t open_pair(const block& s, std::uint32_t i) { return s.answer.open[i]; }
   /// All threads, when the block has nothing left to walk.
   static __device__ void drained(block& s, std::uint32_t count) {
-    for (std::uint32_t i = threadIdx.x; i < count; i += scan::block_threads) {
-      const distance_key best = s.answer.best[i];
-      if (best == no_key) continue;
-      s.answer.best[i] = no_key;
-      s.head.answer.answer.take({s.head.cloud, s.pair_table[i].point - s.head.first, s.head.answer.first_part + s.part_of_pair[i], key_index(best),
-                                 key_distance(best)});
+    if (threadIdx.x == 0) s.answer.open_count = 0;
+    if constexpr (labels) {
+      take_all(s, count, [&s](const pair_distance& pair) { return !s.head.answer.answer.is_late(pair); });
+      __syncthreads();
+    }
+    take_all(s, count, [](const pair_distance&) { return true; });
+  }
+
+  /// Four of a thread's points, before their pairs, and why they do not count.
+  static __device__ void meet(const block& s, unsigned reasons, std::uint32_t first)
+    requires labels
+  {
+    if (s.head.answer.first_part != 0) return;  // another kernel has been told
+    const Answer& answer = s.head.answer.answer;
+    auto* const label = answer.label_of(s.head.cloud, first);
+    const auto alone = answer.whose_alone(true), no_point = answer.whose_alone(false);
+    if (is_aligned(label) && (reasons & 0x80808080u) == 0) {
+      static_assert(sizeof *label == 1 && drop_reasons < 0x80);
+      const unsigned dropped = __vcmpne4(reasons, 0);
+      *reinterpret_cast<std::uint32_t*>(label) = (dropped & std::uint32_t(no_point) * 0x01010101u) | (~dropped & std::uint32_t(alone) * 0x01010101u);
+    } else {
+#pragma unroll
+      for (int j = 0; j < scan::quad; ++j)
+        if (const unsigned reason = reasons >> 8 * j & 0xff; reason != scan::no_point) label[j] = reason == 0 ? alone : no_point;
     }
   }
 
@@ -101,12 +138,68 @@ struct pairs_of {
   static __device__ void seed_cold(const scan::quad_points&) {}
 
   template <class Source>
-  static __device__ void hand_in(const scan::scan_arguments<pairs_of>&, const Source&) {}
+  static __device__ void hand_in(const scan::scan_arguments<pairs_of>& a, const Source&) {
+    if constexpr (labels)
+      if (a.answer.last_group) {
+        count_labels(a);
+        if (const auto& s = memory_here().answer; threadIdx.x == 0) a.answer.labelled[blockIdx.x] = {s.own, s.uncertain};
+      }
+  }
   template <class Source>
   static __device__ void conclude(const scan::scan_arguments<pairs_of>& a, const Source&) {
     scan::write_counts(a, a.answer.counts);
+    if constexpr (labels)
+      if (a.answer.last_group && threadIdx.x < 32) {
+        uint2 all{0, 0};
+        for (std::uint32_t b = threadIdx.x; b < gridDim.x; b += 32) all.x += a.answer.labelled[b].x, all.y += a.answer.labelled[b].y;
+        all = {scan::sum_of(all.x), scan::sum_of(all.y)};
+        auto& counts = *a.answer.answer.counts;
+        if (threadIdx.x == 0) counts.own = (a.cloud == 0 ? 0 : counts.own) + all.x, counts.uncertain = (a.cloud == 0 ? 0 : counts.uncertain) + all.y;
+      }
   }
   static __device__ void reset(const scan::scan_arguments<pairs_of>&) {}
+
+ private:
+  static __device__ bool is_aligned(const point_label* label) { return reinterpret_cast<std::uintptr_t>(label) % scan::quad == 0; }
+  static __device__ block& memory_here() { return scan::memory_of_block<pairs_of>(); }
+
+  /// Gives the answer those pairs that `now` chooses.
+  template <class Now>
+  static __device__ void take_all(block& s, std::uint32_t count, const Now& now) {
+    for (std::uint32_t i = threadIdx.x; i < count; i += scan::block_threads) {
+      const distance_key best = s.answer.best[i];
+      if (best == no_key) continue;
+      const pair_distance pair{s.head.cloud, s.pair_table[i].point - s.head.first, s.head.answer.first_part + s.part_of_pair[i], key_index(best),
+                               key_distance(best)};
+      if (!now(pair)) continue;
+      s.answer.best[i] = no_key;
+      s.head.answer.answer.take(pair);
+    }
+  }
+
+  /// The labels of this block's points, to its own counts.
+  static __device__ void count_labels(const scan::scan_arguments<pairs_of>& a) {
+    auto& s = memory_here();
+    const scan::cards<pairs_of> all;
+    std::uint32_t own = 0, uncertain = 0;
+    __syncthreads();  // all have been given
+    for (std::uint32_t r = 0; r < a.rounds; ++r) {
+      const std::uint32_t first = all.index(r);
+      const point_label* const label = first < a.points ? s.head.answer.answer.label_of(a.cloud, first) : nullptr;
+      std::uint32_t four = 0;  // labels, of which those that are 0 do not count here
+      static_assert(point_label::rest == point_label{});
+      if (label != nullptr && a.points - first >= scan::quad && is_aligned(label))
+        four = *reinterpret_cast<const std::uint32_t*>(label);
+      else if (label != nullptr)
+        for (std::uint32_t j = 0; j < scan::quad && j < a.points - first; ++j) four |= std::uint32_t(label[j]) << 8 * j;
+      own += __popc(__vcmpeq4(four, std::uint32_t(point_label::own) * 0x01010101u)) / 8;
+      uncertain += __popc(__vcmpeq4(four, std::uint32_t(point_label::uncertain) * 0x01010101u)) / 8;
+    }
+    own = scan::sum_of(own), uncertain = scan::sum_of(uncertain);
+    if (threadIdx.x % 32 == 0 && own != 0) atomicAdd(&s.answer.own, own);
+    if (threadIdx.x % 32 == 0 && uncertain != 0) atomicAdd(&s.answer.uncertain, uncertain);
+    __syncthreads();
+  }
 };
 
 /// Every pair on a device, frame after frame, one kernel a cloud: nothing is allocated and nothing waited for.
@@ -114,7 +207,7 @@ template <class PartView>
 class device_pairs {
  public:
   device_pairs(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
-      : facts_(model.facts.begin(), model.facts.end()), launch_(on, model, memory) {}
+      : facts_(model.facts.begin(), model.facts.end()), launch_(on, model, memory), labelled_(launch_.most_blocks(), on.id, memory) {}
 
   /// `counts` in memory that the device can write. `here(source, cloud)` is what the device can read of a cloud.
   template <class Clouds, answer Answer, class Here>
@@ -122,7 +215,8 @@ class device_pairs {
     launch_.template pass<pairs_of<PartView, Answer>>(
         facts_, poses, clouds,
         [&](std::uint32_t group) {
-          return typename pairs_of<PartView, Answer>::arguments{answer, group * scan::most_parts, group == 0 ? counts : nullptr};
+          return typename pairs_of<PartView, Answer>::arguments{answer, group * scan::most_parts, group == 0 ? counts : nullptr, labelled_.data(),
+                                                                group + 1 == launch_.groups()};
         },
         here);
   }
@@ -130,6 +224,7 @@ class device_pairs {
  private:
   std::vector<part_facts> facts_;
   scan::launcher<PartView> launch_;
+  device_buffer<uint2> labelled_;
 };
 
 }  // namespace clearance::pairwise

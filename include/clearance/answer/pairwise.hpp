@@ -13,7 +13,7 @@ template <coarse_answer Answer>
 struct near_enough {
   using result_type = nearest::result_type;
 
-  Answer answer;
+  const Answer* answer;
   std::uint32_t part;
   std::uint32_t* least;  ///< The least distance of any pair of the part that is known of, `ordered`.
   nearest found;
@@ -25,7 +25,7 @@ struct near_enough {
     found.offer(id, distance);
     const std::uint32_t u = ordered(found.within), known = load_relaxed(least);
     if (u < known) lower_word(least, u);
-    within = answer.reach(part, found.within, from_ordered(u < known ? u : known));
+    within = answer->reach(part, found.within, from_ordered(u < known ? u : known));
   }
   CLEARANCE_HD result_type result() const { return found.result(); }
 };
@@ -56,7 +56,7 @@ struct each_pair {
   CLEARANCE_HD void take_certain() const {}
   CLEARANCE_HD auto visitor(std::uint32_t, std::uint32_t k) const {
     if constexpr (coarse_answer<Answer>)
-      return near_enough<Answer>{answer, k, least + k, {answer.reach(k)}};
+      return near_enough<Answer>{&answer, k, least + k, {answer.reach(k)}};
     else
       return nearest{answer.reach(k)};
   }

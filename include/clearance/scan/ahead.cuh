@@ -13,6 +13,18 @@ std::uint32_t rounds_ahead(const Source& source, std::uint32_t points, std::uint
   return 0;
 }
 
+/// Points that are not read ahead, with few wide loads all the same, where there are four.
+template <point_source Source>
+__device__ quad_points look_wide(const Source& source, std::uint32_t points, std::uint32_t first) {
+  if constexpr (fetched_source<Source>)
+    if (source.fetches() && first < points && points - first >= quad) {
+      quad_points p;
+      p.reasons = source.look(source.fetch(source.seek(first)), first, p.at);
+      return p;
+    }
+  return look_closely(source, points, first);
+}
+
 /// The rounds that are read ahead.
 template <class Source, class Answer>
 class point_reader {

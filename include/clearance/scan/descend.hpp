@@ -13,6 +13,7 @@ struct alone {
   CLEARANCE_HD bool any(bool mine) const { return mine; }
   CLEARANCE_HD real least(real mine) const { return mine; }
   CLEARANCE_HD int first(bool mine) const { return mine ? 0 : -1; }
+  CLEARANCE_HD bool is(int) const { return true; }
   template <class T>
   CLEARANCE_HD T from(int, const T& mine) const {
     return mine;
@@ -40,10 +41,24 @@ struct plain_steps {
   CLEARANCE_HD real distance(node_type n, std::uint32_t j, vec3 q) const { return tree.primitive(n, j).distance(q); }
 };
 
+/// Hears how near volumes are that are passed by, and says how far to go.
+struct nobody {
+  CLEARANCE_HD void passed(real) {}
+  CLEARANCE_HD bool wants(real) const { return true; }
+};
+struct nearest_passed {
+  real reach, bound = infinity;
+
+  CLEARANCE_HD void passed(real lower) {
+    if (lower < bound) bound = lower;
+  }
+  CLEARANCE_HD bool wants(real lower) const { return lower <= reach; }
+};
+
 /// From the root always to the child whose volume is nearest: a leaf; `live` becomes false if that leads nowhere. Those that are not
-/// `live` go along.
-template <class Steps, class Team = alone>
-CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, bool& live, const Team& team = {}) {
+/// `live` go along. `others` hears of a team's share of what is left aside.
+template <class Steps, class Team = alone, class Others = nobody>
+CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, bool& live, const Team& team = {}, Others&& others = {}) {
   using traits = bounding_volume_traits<typename Steps::volume_type>;
   typename Steps::node_type n{};
   if (live) n = steps.root();
@@ -55,13 +70,16 @@ CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, 
     CLEARANCE_ROLLED
     for (std::uint32_t j = team.rank(); j < size; j += Team::size) {
       const auto step = steps.child(n, j);
-      if (const real lb = traits::lower_bound(step.volume, q); lb < least) least = lb, best = step.node;
+      const real lb = traits::lower_bound(step.volume, q);
+      others.passed(lb < least ? least : lb);
+      if (lb < least) least = lb, best = step.node;
     }
     const real nearest = team.least(least);
     const int winner = team.first(least < infinity && least == nearest);
+    if (!team.is(winner)) others.passed(least);
     best = team.from(winner, best);
     if (inner) {
-      live = winner >= 0, n = best;
+      live = winner >= 0 && others.wants(nearest), n = best;
       inner = live && !steps.is_leaf(n);
     }
   }

@@ -51,8 +51,14 @@ __global__ void __launch_bounds__(block_threads, 2) scan_kernel(const __grid_con
 #pragma unroll 1
     for (; r < end; ++r) {
       const bool again = left.clusters != 0;
-      quad_points p = r < ahead && !again ? reader.take(r) : look_closely(source, a.points, all.index(r));
+      const auto look = [&] {
+        if constexpr (Answer::goes_ahead) return look_wide(source, a.points, all.index(r));
+        return look_closely(source, a.points, all.index(r));
+      };
+      quad_points p = r < ahead && !again ? reader.take(r) : look();
       if (p.reasons != 0 && !again) dropped.add(p.reasons, s.dropped);
+      if constexpr (requires { Answer::meet(s, p.reasons, r); })
+        if (!again) Answer::meet(s, p.reasons, all.index(r));
       if (shifted) shift<Answer>(p);
       if (!hand_over<Answer>(p, [&] { return all.index(r); }, clusters, left)) break;
     }
@@ -83,6 +89,12 @@ struct by_pairs {
     a.rounds = (a.points + in_block * blocks - 1) / (in_block * blocks);
     a.ahead = rounds_ahead(source, a.points, blocks);
   }
+};
+
+/// The same with fewer points for a block, so that few fill the device, too: for answers that want many pairs, each of which takes longer
+/// than it takes to read its point.
+struct by_many_pairs : by_pairs {
+  static constexpr std::uint32_t in_block = in_block_round / 2;
 };
 
 }  // namespace clearance::scan

@@ -6,8 +6,8 @@
 #include <clearance/ground/ordered.hpp>
 #include <clearance/scan/alone.cuh>
 #include <clearance/scan/interior.hpp>
+#include <clearance/scan/leaf_first.cuh>
 #include <clearance/scan/reader.cuh>
-#include <clearance/scan/team.cuh>
 
 namespace clearance::scan {
 
@@ -46,46 +46,23 @@ struct pair_search : tree_steps<Answer> {
     memory& s = frame::here();
     if (found == 0) return;
     const std::uint32_t count = found < pair_capacity ? found : pair_capacity;
-    if constexpr (Answer::goes_ahead)
-      if (count > few) {
-        go_ahead(count);
-        __syncthreads();
-      }
-    walk(count);
+    if constexpr (Answer::goes_ahead) {
+      leaf_first<Answer>::go(count);
+      walk(Answer::open_pairs(s));
+    } else {
+      walk(count);
+    }
     __syncthreads();
     Answer::drained(s, count);
     if (threadIdx.x == 0) s.pairs = s.given = 0;  // a barrier comes before the next one is kept
   }
 
  private:
-  static constexpr std::uint32_t few = 8 * warps;       ///< Pairs that all are walked with at once.
   static constexpr std::uint32_t mates = 4;             ///< Lanes that share a node: two children each.
   static constexpr std::uint32_t at_once = 32 / mates;  ///< Nodes that a warp looks at together.
 
   static __device__ std::uint32_t lane() { return threadIdx.x % mates; }
   static __device__ std::uint32_t group() { return threadIdx.x % 32 / mates; }
-
-  /// Many pairs go down greedily first, a lane each, to a leaf: the walk then has a bound from its first step on, or need not begin.
-  static __device__ void go_ahead(std::uint32_t count) {
-    memory& s = frame::here();
-#pragma unroll 1
-    for (std::uint32_t i = threadIdx.x; i < count; i += block_threads) {
-      const pair c = s.pair_table[i];
-      const std::uint32_t part = s.part_of_pair[i];
-      bool live = !Answer::skips(s, part, c.point, i, c.x);
-      const vec3 q = frame::place(part).part_from_cloud(c.x);
-      const node_type leaf = nearest_leaf(steps_of_part<Answer>{part}, q, live);
-      const std::uint32_t size = live ? steps::size(part, leaf) : 0;
-      distance_key best = no_key;
-#pragma unroll 1
-      for (std::uint32_t k = 0; k < size; ++k) {
-        const auto place = steps::place_of(leaf, k);
-        const real distance = steps::primitive(part, place).distance(q);
-        if (const distance_key key = make_key(distance, steps::id(part, place)); key < best) best = key;
-      }
-      if (key_distance(best) <= Answer::reach_of_part(s, part, 0)) Answer::hear(s, part, i, best);
-    }
-  }
 
   /// Is the point in the part's solid? Then its distance is 0, and there is nothing to look for in the tree.
   static __device__ bool inside(vec3 q, std::uint32_t point, std::uint32_t k, std::uint32_t pair) {
@@ -143,7 +120,10 @@ struct pair_search : tree_steps<Answer> {
       for (; row * warps < count && top < at_once && (!any_size || below == 0); row += at_once) {
         // A point's pairs follow one another, and so do neighbours': from another warp on in each row.
         const std::uint32_t its = row + group(), i = its * warps + (its + warp) % warps;
-        top = admit(i, i < count, stack, top);
+        if constexpr (Answer::goes_ahead)
+          top = admit(i < count ? Answer::open_pair(s, i) : 0, i < count, stack, top);
+        else
+          top = admit(i, i < count, stack, top);
       }
       if constexpr (any_size)
         if (top == 0 && below != 0) {

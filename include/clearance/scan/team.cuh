@@ -20,6 +20,7 @@ struct eight_lanes {
     const unsigned those = __ballot_sync(all_lanes, mine) >> (threadIdx.x & 24) & 0xff;
     return those != 0 ? int(threadIdx.x & 24) + __ffs(int(those)) - 1 : -1;
   }
+  __device__ bool is(int lane) const { return int(threadIdx.x & 31) == lane; }
   template <class T>
   __device__ T from(int lane, const T& mine) const {
     return from_lane(mine, lane < 0 ? int(threadIdx.x & 31) : lane);
