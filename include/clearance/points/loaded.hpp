@@ -4,11 +4,14 @@
 
 #include <clearance/points/slice.hpp>
 
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace clearance {
 
-/// A cloud that comes in ranges of points. Optional: `static constexpr bool in_place = true`, if nothing has to be brought.
+/// A cloud that comes in ranges of points. Optional: `static constexpr bool in_place = true`, if nothing has to be brought; and `whole()`, a
+/// view of all points, if a host may read in it those that were loaded: then many ranges are searched as one.
 ///
 /// Law: `load(begin, end, room)` gives points `begin` to `end - 1`, from memory of its own or from the `room(end - begin)` bytes that it
 ///      is given (aligned to 64), or throws why it cannot. It is called by one thread at a time, while others read what was loaded before.
@@ -32,11 +35,13 @@ struct in_memory {
 
   std::size_t size() const { return source.size(); }
   std::size_t room(std::size_t) const { return 0; }
+  const S& whole() const { return source; }
   auto load(std::size_t begin, std::size_t end, std::byte*) const { return slice(source, begin, end); }
 };
 
 /// Records that somebody reads: `read(offset, bytes)` fills `bytes` (a span) with those that begin `offset` bytes after the first
-/// record's start, or throws; `view(memory, count)` is a source over that many records in memory.
+/// record's start, or throws; `view(memory, count)` is a source over that many records in memory. Throws std::invalid_argument if a record
+/// has no bytes, or all together more than can be counted.
 template <class Read, class View>
 struct read_records {
   std::size_t count, record_bytes;
@@ -44,7 +49,10 @@ struct read_records {
   View view;
 
   read_records(std::size_t count, std::size_t record_bytes, Read read, View view)
-      : count(count), record_bytes(record_bytes), read(std::move(read)), view(std::move(view)) {}
+      : count(count), record_bytes(record_bytes), read(std::move(read)), view(std::move(view)) {
+    if (record_bytes == 0 || count > ~std::size_t(0) / record_bytes)
+      throw std::invalid_argument("clearance: " + std::to_string(count) + " records of " + std::to_string(record_bytes) + " bytes");
+  }
 
   std::size_t size() const { return count; }
   std::size_t room(std::size_t points) const { return points * record_bytes; }
