@@ -52,9 +52,6 @@ class chunked_search<host, PartView> {
   }
 
  private:
-  template <class C>
-  static constexpr bool in_one_place = requires(const C c) { { c.whole() } -> point_source; };
-
   /// Ranges that are searched as one, its pieces' numbers from `numbers_[piece]` on.
   struct turn {
     std::size_t first, last, piece, points;
@@ -66,7 +63,7 @@ class chunked_search<host, PartView> {
     numbers_.clear();
     for (std::size_t r = 0; r < ranges.size(); ++r) {
       const std::size_t points = ranges[r].end - ranges[r].begin;
-      if (!in_one_place<C> || turns.empty() || turns.back().points + points > most) turns.push_back({r, r, numbers_.size(), 0});
+      if (!addressed_cloud<C> || turns.empty() || turns.back().points + points > most) turns.push_back({r, r, numbers_.size(), 0});
       turns.back().last = r + 1, turns.back().points += points;
       for (std::size_t at = ranges[r].begin; at < ranges[r].end; at += scan::piece_points) numbers_.push_back(std::uint32_t(at / scan::piece_points));
     }
@@ -82,7 +79,7 @@ class chunked_search<host, PartView> {
     for (std::size_t r = its.first; r < its.last; ++r) bytes = std::max(bytes, cloud.room(ranges[r].end - ranges[r].begin));
     room.resize((bytes + sizeof(cache_line) - 1) / sizeof(cache_line));
     std::byte* const memory = room.empty() ? nullptr : room[0].bytes;
-    if constexpr (in_one_place<C>) {
+    if constexpr (addressed_cloud<C>) {
       for (std::size_t r = its.first; r < its.last; ++r) load_range(cloud, ranges[r], memory);
       return scan::listed_pieces<std::remove_cvref_t<decltype(cloud.whole())>>{cloud.whole(), numbers_.data() + its.piece, its.points};
     } else {

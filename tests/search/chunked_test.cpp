@@ -106,6 +106,7 @@ TEST_CASE("What matters in many places is one search on the host, in chunks of p
       return whole().slice(begin, end);
     }
   };
+  STATIC_REQUIRE((clearance::addressed_cloud<counted> && clearance::addressed_cloud<clearance::in_memory<point_span>>));
   const auto model = arm();
   for (const std::size_t chunk : {1, 20000, 1 << 20}) {
     const std::string what = "turns in chunks of " + std::to_string(chunk);

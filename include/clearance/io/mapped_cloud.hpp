@@ -40,6 +40,8 @@ inline mapped_cloud<point_span> map_points(const std::string& file, std::size_t 
   return {mapped, point_span(reinterpret_cast<const vec3*>(mapped->bytes().data() + header), (bytes - header) / sizeof(vec3))};
 }
 
+static_assert(addressed_cloud<mapped_cloud<point_span>>);
+
 namespace detail {
 
 template <class Scalar>

@@ -10,8 +10,7 @@
 
 namespace clearance {
 
-/// A cloud that comes in ranges of points. Optional: `static constexpr bool in_place = true`, if nothing has to be brought; and `whole()`, a
-/// view of all points, if a host may read in it those that were loaded: then many ranges are searched as one.
+/// A cloud that comes in ranges of points. Optional: `static constexpr bool in_place = true`, if nothing has to be brought.
 ///
 /// Law: `load(begin, end, room)` gives points `begin` to `end - 1`, from memory of its own or from the `room(end - begin)` bytes that it
 ///      is given (aligned to 64), or throws why it cannot. It is called by one thread at a time, while others read what was loaded before.
@@ -23,6 +22,11 @@ concept loaded_cloud = requires(const C c, std::size_t i, std::byte* room) {
 };
 template <loaded_cloud C>
 using loaded_source = decltype(std::declval<const C&>().load(0, 0, nullptr));
+
+/// One whose points have a place in the host's memory whether they are there or not: many ranges are then searched as one.
+/// Law: `whole()` is a view of all points, in which those that were loaded may be read.
+template <class C>
+concept addressed_cloud = loaded_cloud<C> && requires(const C c) { requires point_source<std::remove_cvref_t<decltype(c.whole())>>; };
 
 /// A source in memory, of any kind: host memory, pinned or not, or a device's. `chunked` makes it of a source.
 template <point_source S>

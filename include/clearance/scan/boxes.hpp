@@ -75,9 +75,9 @@ struct listed_pieces {
   const std::uint32_t* numbers;
   std::size_t count;  ///< Of points.
 
-  std::size_t size() const { return count; }
-  std::size_t at(std::size_t i) const { return numbers[i / piece_points] * piece_points + i % piece_points; }
-  sample operator[](std::size_t i) const { return whole[at(i)]; }
+  CLEARANCE_HD std::size_t size() const { return count; }
+  CLEARANCE_HD std::size_t at(std::size_t i) const { return numbers[i / piece_points] * piece_points + i % piece_points; }
+  CLEARANCE_HD sample operator[](std::size_t i) const { return whole[at(i)]; }
   position_error rounding() const { return rounding_of(whole); }
   bool unfiltered() const
     requires unfiltered_source<S>
