@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A cloud in a file that may be larger than memory: example_chunked [POINTS] [FOLDER] writes one there (12 bytes a point), asks about it
-// as the arm moves past, and deletes it.
+// as the arm moves past, and deletes it. With `write` or `ask` for a third argument it does only that, and the file stays: what was just
+// written is in memory still.
 #include <clearance/chunked_query.hpp>
 #include <clearance/io/mapped_cloud.hpp>
 #include <clearance/make_model.hpp>
@@ -13,6 +14,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 namespace {
 
@@ -34,10 +36,12 @@ void write_street(const std::string& file, std::size_t points) {
 
 int main(int count, char** arguments) {
   const std::size_t points = count > 1 ? std::strtoull(arguments[1], nullptr, 10) : 1000000;
+  const std::string_view only = count > 3 ? arguments[3] : "";
   const std::string file = std::string(count > 2 ? arguments[2] : std::filesystem::temp_directory_path().string()) + "/clearance_street.raw";
   int wrong = 0;
   try {
-    write_street(file, points);
+    if (only != "ask") write_street(file, points);
+    if (only == "write") return 0;
     std::vector<clearance::inner_sphere> row;
     for (int k = 0; k < 64; ++k) row.push_back({{0.01f * float(k), 0, 1}, 0.05f});
     const auto arm = clearance::make_model<clearance::sphere>(std::vector<std::vector<clearance::inner_sphere>>{row});
@@ -58,6 +62,6 @@ int main(int count, char** arguments) {
     std::fprintf(stderr, "%s\n", e.what());
     wrong = 1;
   }
-  std::filesystem::remove(file);
+  if (only.empty()) std::filesystem::remove(file);
   return wrong;
 }

@@ -9,54 +9,39 @@
 
 #include <optional>
 
-namespace clearance {
+namespace clearance::minimum {
 
-/// On a device: chunks go there through a ring, and a kernel searches one while the next is copied. Its memory is three chunks, and as
-/// much that is pinned where the cloud is not. What is on the device already is read where it is.
+/// On a device: chunks go there through a ring, and a kernel searches one while the next is copied. What is on the device already is read
+/// where it is.
 template <class PartView>
-class chunked_query<device, PartView> {
+class chunked_search<device, PartView> {
  public:
-  /// Throws std::invalid_argument as min_distance_query.
-  template <robot Robot>
-  chunked_query(const device& on, const Robot& robot)
-      : on_(on), facts_(view_of(robot).facts), search_(on, view_of(robot)), ring_(on), answer_(1, on.id), minima_(search_.parts(), on.id) {
+  chunked_search(const device& on, const model_view<PartView>& model)
+      : on_(on), search_(on, model), ring_(on), answer_(1, on.id), minima_(search_.parts(), on.id) {
     on_.wait();
   }
 
-  template <loaded_cloud C>
-  min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
-    return ask(poses, cloud, pose, {});
-  }
-  template <loaded_cloud C>
-  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose, std::span<part_minimum> minima) {
-    frames::check_room(search_.parts(), minima.size());
-    return ask(poses, cloud, pose, minima);
-  }
+  std::size_t parts() const { return search_.parts(); }
 
-  std::uint64_t loaded() const { return loaded_; }
+  template <class C>
+  void operator()(const chunked<C>& chunks, const std::vector<point_range>& ranges, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose,
+                  min_distance_result& result, std::span<part_minimum> minima, std::vector<scan::boxed_piece>* seen) {
+    try {
+      if (minima.empty())
+        search<false>(chunks.cloud(), ranges, poses, pose, seen);
+      else
+        search<true>(chunks.cloud(), ranges, poses, pose, seen);
+      ring_.wait();
+    } catch (...) {
+      finish();
+      throw;
+    }
+    result = *answer_.data();
+    std::copy_n(minima_.data(), minima.size(), minima.begin());
+    number_as_in_cloud(result, minima, [&](std::uint32_t k, std::uint32_t i) { return std::uint32_t(ranges[k].begin) + i; });
+  }
 
  private:
-  template <class C>
-  min_distance_result ask(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose, std::span<part_minimum> minima) {
-    loaded_ = 0;
-    return minimum::ask_chunked(cloud, facts_, poses, pose, minima,
-                                [&](const std::vector<point_range>& ranges, min_distance_result& result, std::span<part_minimum> of_parts,
-                                    std::vector<scan::boxed_piece>* seen) {
-                                  try {
-                                    if (of_parts.empty())
-                                      search<false>(cloud.cloud(), ranges, poses, pose, seen);
-                                    else
-                                      search<true>(cloud.cloud(), ranges, poses, pose, seen);
-                                    ring_.wait();
-                                  } catch (...) {
-                                    finish();
-                                    throw;
-                                  }
-                                  result = *answer_.data();
-                                  std::copy_n(minima_.data(), of_parts.size(), of_parts.begin());
-                                });
-  }
-
   template <bool PerPart, class C>
   void search(const C& cloud, const std::vector<point_range>& ranges, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose,
               std::vector<scan::boxed_piece>* seen) {
@@ -71,10 +56,7 @@ class chunked_query<device, PartView> {
       if (seen != nullptr && there) scan::enqueue_boxes(on_, *there, boxes_.data() + ranges[k].begin / scan::piece_points);
       ring_.read(k);
     };
-    const auto load = [&](std::size_t k) {
-      loaded_ += ranges[k].end - ranges[k].begin;
-      return placed<S>{cloud.load(ranges[k].begin, ranges[k].end, ring_.fill(k)), pose};
-    };
+    const auto load = [&](std::size_t k) { return placed<S>{load_range(cloud, ranges[k], ring_.fill(k)), pose}; };
     const auto here = [&]<class Its>(const Its& source, std::uint32_t k) {
       if constexpr (std::is_same_v<Its, S>) {
         if (k > 0) done(k - 1);
@@ -87,7 +69,7 @@ class chunked_query<device, PartView> {
         return source;  // of no ranges, no points
       }
     };
-    search_.template enqueue<PerPart>(poses, minimum::as_they_come(ranges.size(), load), answer_.data(), minima_.data(), here);
+    search_.template enqueue<PerPart>(poses, as_they_come(ranges.size(), load), answer_.data(), minima_.data(), here);
     if (!ranges.empty()) done(ranges.size() - 1);
     if (seen == nullptr || seen->empty()) return;
     const device_guard guard(on_.id);
@@ -103,13 +85,11 @@ class chunked_query<device, PartView> {
   }
 
   device on_;
-  std::span<const part_facts> facts_;
-  minimum::device_search<PartView> search_;
+  device_search<PartView> search_;
   staging_ring ring_;
   pinned_buffer<min_distance_result> answer_;
   pinned_buffer<part_minimum> minima_;
   device_buffer<scan::boxed_piece> boxes_;
-  std::uint64_t loaded_ = 0;
 };
 
-}  // namespace clearance
+}  // namespace clearance::minimum

@@ -9,19 +9,101 @@
 
 namespace clearance {
 
-/// The question about a `chunked` cloud: min_distance's, with min_distance's answer about all of it in memory, to the bit. While one chunk
-/// is searched the next is loaded. One object is for one thread.
+namespace minimum {
+
+/// Asks about ranges of a chunked cloud on a backend: `(cloud, ranges, poses, pose, result, minima, seen)`, points numbered as in the
+/// cloud; `minima`: one a part, or empty; what is seen of each piece is written to `seen`, if that is not null.
 template <class On, class PartView>
-class chunked_query {
+class chunked_search {
   static_assert(!requires { typename On::own_scan; }, "a device has a ring of its own: include <clearance/chunked_query.cuh>, not the .hpp");
 };
 
-/// On the CPU. The robot's memory must stay.
+/// On the CPU: while some is searched the next is loaded. Ranges of what is in one place are searched as one, all at once or a chunk of
+/// points at a time: to begin costs the host tens of microseconds.
 template <class PartView>
-class chunked_query<host, PartView> {
+class chunked_search<host, PartView> {
  public:
+  chunked_search(const host& on, const model_view<PartView>& model) : search_(on, model) {}
+
+  std::size_t parts() const { return search_.parts(); }
+
+  template <class C>
+  void operator()(const chunked<C>& chunks, const std::vector<point_range>& ranges, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose,
+                  min_distance_result& result, std::span<part_minimum> minima, std::vector<scan::boxed_piece>* seen) {
+    const C& cloud = chunks.cloud();
+    const std::vector<turn> turns = put_together(chunks, ranges);
+    std::future<loaded_part<C>> ahead;
+    const auto load = [&](std::size_t k) { return load_part(cloud, ranges, turns[k], room_[k % 2]); };
+    const auto next = [&](std::size_t k) {
+      const auto make = [&](const loaded_part<C>& source) {
+        const scan::boxing<loaded_part<C>> boxing{source, seen == nullptr || turns[k].points == 0 ? nullptr : seen->data() + numbers_[turns[k].piece]};
+        boxing.add_rest();
+        return placed<scan::boxing<loaded_part<C>>>{boxing, pose};
+      };
+      if constexpr (requires { requires C::in_place; }) return make(load(k));
+      const loaded_part<C> source = k == 0 ? load(0) : ahead.get();
+      if (k + 1 < turns.size()) ahead = std::async(std::launch::async, load, k + 1);
+      return make(source);
+    };
+    search_(poses, as_they_come(turns.size(), next), &result, minima.empty() ? nullptr : minima.data());
+    number_as_in_cloud(result, minima, [&](std::uint32_t k, std::uint32_t i) {
+      return numbers_[turns[k].piece + i / scan::piece_points] * std::uint32_t(scan::piece_points) + i % std::uint32_t(scan::piece_points);
+    });
+  }
+
+ private:
+  /// Ranges that are searched as one, its pieces' numbers from `numbers_[piece]` on.
+  struct turn {
+    std::size_t first, last, piece, points;
+  };
+  template <class C>
+  std::vector<turn> put_together(const chunked<C>& chunks, const std::vector<point_range>& ranges) {
+    const std::size_t most = requires { requires C::in_place; } ? none : chunks.chunk();
+    std::vector<turn> turns;
+    numbers_.clear();
+    for (std::size_t r = 0; r < ranges.size(); ++r) {
+      const std::size_t points = ranges[r].end - ranges[r].begin;
+      if (!addressed_cloud<C> || turns.empty() || turns.back().points + points > most) turns.push_back({r, r, numbers_.size(), 0});
+      turns.back().last = r + 1, turns.back().points += points;
+      for (std::size_t at = ranges[r].begin; at < ranges[r].end; at += scan::piece_points) numbers_.push_back(std::uint32_t(at / scan::piece_points));
+    }
+    return turns;
+  }
+
+  struct alignas(64) cache_line {
+    std::byte bytes[64];
+  };
+  template <class C>
+  auto load_part(const C& cloud, const std::vector<point_range>& ranges, const turn& its, std::vector<cache_line>& room) const {
+    std::size_t bytes = 0;
+    for (std::size_t r = its.first; r < its.last; ++r) bytes = std::max(bytes, cloud.room(ranges[r].end - ranges[r].begin));
+    room.resize((bytes + sizeof(cache_line) - 1) / sizeof(cache_line));
+    std::byte* const memory = room.empty() ? nullptr : room[0].bytes;
+    if constexpr (addressed_cloud<C>) {
+      for (std::size_t r = its.first; r < its.last; ++r) load_range(cloud, ranges[r], memory);
+      return scan::listed_pieces<std::remove_cvref_t<decltype(cloud.whole())>>{cloud.whole(), numbers_.data() + its.piece, its.points};
+    } else {
+      return load_range(cloud, ranges[its.first], memory);
+    }
+  }
+  template <class C>
+  using loaded_part = decltype(std::declval<const chunked_search&>().load_part(std::declval<const C&>(), {}, {}, std::declval<std::vector<cache_line>&>()));
+
+  host_search<PartView> search_;
+  std::vector<std::uint32_t> numbers_;  ///< Of the pieces that are asked about.
+  std::vector<cache_line> room_[2];
+};
+
+}  // namespace minimum
+
+/// The question about a `chunked` cloud: min_distance's, with min_distance's answer about all of it in memory, to the bit. The robot's
+/// memory must stay. One object is for one thread. On a device its memory is three chunks, and as much that is pinned where the cloud is not.
+template <class On, class PartView>
+class chunked_query {
+ public:
+  /// Throws std::invalid_argument as min_distance_query.
   template <robot Robot>
-  chunked_query(const host& on, const Robot& robot) : facts_(view_of(robot).facts), search_(on, view_of(robot)) {}
+  chunked_query(const On& on, const Robot& robot) : facts_(view_of(robot).facts), search_(on, view_of(robot)) {}
 
   /// As min_distance; `pose` is world-from-cloud. Throws what `load` throws; the same object can be asked again then.
   template <loaded_cloud C>
@@ -43,45 +125,14 @@ class chunked_query<host, PartView> {
   min_distance_result ask(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose, std::span<part_minimum> minima) {
     loaded_ = 0;
     return minimum::ask_chunked(cloud, facts_, poses, pose, minima,
-                                [&](const std::vector<point_range>& ranges, min_distance_result& result, std::span<part_minimum> of_parts,
-                                    std::vector<scan::boxed_piece>* seen) {
-                                  search(cloud.cloud(), ranges, poses, pose, result, of_parts.empty() ? nullptr : of_parts.data(), seen);
+                                [&](const std::vector<point_range>& ranges, min_distance_result& result, std::vector<scan::boxed_piece>* seen) {
+                                  search_(cloud, ranges, poses, pose, result, minima, seen);
+                                  for (const point_range& r : ranges) loaded_ += r.end - r.begin;
                                 });
   }
 
-  template <class C>
-  void search(const C& cloud, const std::vector<point_range>& ranges, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose,
-              min_distance_result& result, part_minimum* minima, std::vector<scan::boxed_piece>* seen) {
-    constexpr bool in_place = requires { requires C::in_place; };
-    std::future<loaded_source<C>> ahead;
-    const auto load = [&](std::size_t k) {
-      std::vector<cache_line>& room = room_[k % 2];
-      room.resize((cloud.room(ranges[k].end - ranges[k].begin) + sizeof(cache_line) - 1) / sizeof(cache_line));
-      return cloud.load(ranges[k].begin, ranges[k].end, room.empty() ? nullptr : room[0].bytes);
-    };
-    const auto next = [&](std::size_t k) {
-      const auto make = [&](const loaded_source<C>& source) {
-        const point_range range = ranges[k];
-        loaded_ += range.end - range.begin;
-        const scan::boxing<loaded_source<C>> boxing{source, seen == nullptr ? nullptr : seen->data() + range.begin / scan::piece_points};
-        boxing.add_rest();
-        return placed<scan::boxing<loaded_source<C>>>{boxing, pose};
-      };
-      if constexpr (in_place) return make(load(k));
-      const loaded_source<C> source = k == 0 ? load(0) : ahead.get();
-      if (k + 1 < ranges.size()) ahead = std::async(std::launch::async, load, k + 1);
-      return make(source);
-    };
-    search_(poses, minimum::as_they_come(ranges.size(), next), &result, minima);
-  }
-
-  struct alignas(64) cache_line {
-    std::byte bytes[64];
-  };
-
   std::span<const part_facts> facts_;
-  minimum::host_search<PartView> search_;
-  std::vector<cache_line> room_[2];
+  minimum::chunked_search<On, PartView> search_;
   std::uint64_t loaded_ = 0;
 };
 

@@ -12,6 +12,8 @@
 #include <clearance/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
+#include <sys/resource.h>
+
 using namespace testing;
 using clearance::chunked, clearance::host;
 
@@ -108,6 +110,27 @@ TEST_CASE("What cannot be mapped is refused in a sentence") {
   std::filesystem::create_symlink(knot, knot);
   CHECK(refusal([&] { map_points(knot); }).find("cannot be opened for reading: ") != std::string::npos);
   std::filesystem::remove(knot);
+}
+
+TEST_CASE("No more than the beginning of a large file is looked through for a PCD header") {
+  const auto resident = [] {
+    rusage used{};
+    ::getrusage(RUSAGE_SELF, &used);
+    return used.ru_maxrss / 1024;  // MiB
+  };
+  const scratch_file zeros(".pcd"), comments(".pcd", pcd("x y z i", "4 4 4 4", 1).substr(0, 60) + "#" + std::string((1 << 20) + 10, 'c') + "\nDATA binary\n");
+  std::filesystem::resize_file(zeros.path, std::uintmax_t(1) << 32);  // a hole, which takes no disk
+  const auto before = resident();
+  CHECK(refusal([&] { clearance::io::map_pcd(zeros.path); }).find("is no PCD header entry") != std::string::npos);
+  CHECK(resident() < before + 256);
+  CHECK(refusal([&] { clearance::io::map_pcd(comments.path); }).find("no DATA entry") != std::string::npos);
+  // What ends at the end of the first MiB could go on after it.
+  std::string header = pcd("x y z i", "4 4 4 4", 1);
+  header.insert(header.find("FIELDS"), "#" + std::string((1 << 20) - header.size() - 2, 'c') + "\n");
+  REQUIRE(header.size() == 1 << 20);
+  const scratch_file just(".pcd", header + std::string(16, '\0')), less(".pcd", header.erase(header.find("cc"), 1) + std::string(16, '\0'));
+  CHECK(refusal([&] { clearance::io::map_pcd(just.path); }).find("has a PCD header of 1 MiB or more") != std::string::npos);
+  CHECK(clearance::io::map_pcd(less.path).size() == 1);
 }
 
 TEST_CASE("A PCD file that takes the name of one that is being opened is not taken for it") {

@@ -1,59 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A cloud that is read in chunks has the answer of the cloud in memory, in every bit, whatever it skips.
+#include "support/chunked.hpp"
 #include "support/product.hpp"
-#include "support/same_result.hpp"
 
-#include <clearance/chunked_query.hpp>
-#include <clearance/make_model.hpp>
-#include <clearance/min_distance.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/volume/aabb.hpp>
-#include <clearance/volume/sphere.hpp>
 
 #include <cstring>
 
 using namespace testing;
-using clearance::chunked, clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::part_minimum,
-    clearance::placed, clearance::point_span, clearance::read_records;
-
-namespace {
-
-bool same_minimum(const part_minimum& a, const part_minimum& b) {
-  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
-}
-
-/// Asks all at first, then what was not skipped; from poses near and far. `source` is the same points in memory.
-template <class Model, class C, class S>
-void ask_often(const Model& model, std::vector<Eigen::Isometry3d> poses, chunked<C>& cloud, const S& source, const Eigen::Isometry3d& pose, verdict& v,
-               const std::string& what) {
-  clearance::chunked_query query(host{}, model);
-  std::vector<part_minimum> minima(poses.size());
-  for (int round = 0; round < 4; ++round) {
-    const placed whole{source, pose};
-    v.require(same_result(query(poses, cloud, pose), min_distance(host{}, model, poses, whole)), what, ", round ", round, ": another answer");
-    v.require(round > 0 || query.loaded() == source.size(), what, ": the first question did not read all");
-    const auto [robot, each] = min_distance_per_part(host{}, model, poses, whole);
-    v.require(same_result(query.per_part(poses, cloud, pose, minima), robot), what, ", round ", round, ": another answer by parts");
-    v.require(std::ranges::equal(minima, each, same_minimum), what, ", round ", round, ": some part's minimum differs");
-    poses[0].translation().x() += round == 1 ? 3 : 0.02;
-  }
-}
-
-/// Neighbours in order are neighbours in space, so that there is something to skip.
-std::vector<vec3> wall(std::size_t points) {
-  dice d(5);
-  std::vector<vec3> all;
-  for (std::size_t i = 0; i < points; ++i) all.push_back({real(double(i) * 20 / double(points) - 10), d.number(-1, 1), d.number(1, 2)});
-  for (std::size_t i = 7; i < points; i += 1001) all[i].y = clearance::not_a_number;
-  return all;
-}
-auto arm() {
-  dice d(3);
-  return clearance::make_model<clearance::sphere>(std::vector{random_primitives<inner_sphere>(d, 50, 0.3, 0.1), random_primitives<inner_sphere>(d, 30, 0.2, 0.1)});
-}
-const std::vector<Eigen::Isometry3d> arm_poses = {shifted(0, 0, 0), shifted(0.5, 0, 0)};
-
-}  // namespace
+using clearance::chunked, clearance::host, clearance::min_distance, clearance::point_span, clearance::read_records;
 
 TEST_CASE("A cloud in chunks has the answer of the whole: all scenes, spheres from points and images") {
   verdict v;
@@ -61,9 +17,9 @@ TEST_CASE("A cloud in chunks has the answer of the whole: all scenes, spheres fr
     const sources<inner_sphere> all(s);
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     chunked points(all.span, 1);
-    ask_often(model, s.poses, points, all.span, s.cloud_pose, v, s.name + ", points");
+    ask_often(host{}, model, s.poses, points, all.span, s.cloud_pose, v, s.name + ", points");
     chunked image(all.raw);
-    ask_often(model, s.poses, image, all.raw, all.camera_pose, v, s.name + ", image");
+    ask_often(host{}, model, s.poses, image, all.raw, all.camera_pose, v, s.name + ", image");
   }
 }
 
@@ -81,8 +37,8 @@ TEST_CASE("Chunks that do not divide the cloud are the cloud, before spheres and
     for (const std::size_t chunk : {1, 8192, 1 << 20}) {
       const std::string what = std::to_string(n) + " in chunks of " + std::to_string(chunk);
       chunked first(point_span(cloud), chunk), second = first;
-      ask_often(spheres, arm_poses, first, point_span(cloud), shifted(0.1, 0, 0), v, what);
-      ask_often(solid, arm_poses, second, point_span(cloud), shifted(0.1, 0, 0), v, what + ", solid");
+      ask_often(host{}, spheres, arm_poses, first, point_span(cloud), shifted(0.1, 0, 0), v, what);
+      ask_often(host{}, solid, arm_poses, second, point_span(cloud), shifted(0.1, 0, 0), v, what + ", solid");
     }
   }
 }
@@ -97,11 +53,10 @@ TEST_CASE("Records that are read have the answer of those in memory, and a failu
     most = std::max(most, to.size());
     std::memcpy(to.data(), reinterpret_cast<const std::byte*>(cloud.data()) + offset, to.size());
   };
-  const auto view = [](const std::byte* memory, std::size_t n) { return point_span(reinterpret_cast<const vec3*>(memory), n); };
-  const read_records records(cloud.size(), sizeof(vec3), read, view);
+  const read_records records(cloud.size(), sizeof(vec3), read, points_at);
   const auto model = arm();
   chunked in_chunks(records, 8192);
-  ask_often(model, arm_poses, in_chunks, point_span(cloud), shifted(0, 0, 0), v, "read");
+  ask_often(host{}, model, arm_poses, in_chunks, point_span(cloud), shifted(0, 0, 0), v, "read");
   CHECK(most == 8192 * sizeof(vec3));
 
   const auto expected = min_distance(host{}, model, arm_poses, cloud);
@@ -131,14 +86,78 @@ TEST_CASE("The second question about a cloud reads what can matter") {
   CHECK(query.loaded() == cloud.size());
 }
 
+TEST_CASE("What matters in many places is one search on the host, in chunks of points where they have to be brought") {
+  verdict v;
+  std::vector<vec3> cloud;
+  for (int turn = 0; turn < 30; ++turn) {  // the robot is passed once a turn
+    const auto more = wall(2 * 4096);
+    cloud.insert(cloud.end(), more.begin(), more.end());
+  }
+  cloud.resize(cloud.size() - 1000);
+  std::vector<std::size_t> loads;
+  struct counted {
+    const std::vector<vec3>* points;
+    std::vector<std::size_t>* loads;
+    std::size_t size() const { return points->size(); }
+    std::size_t room(std::size_t) const { return 0; }
+    point_span whole() const { return point_span(*points); }
+    point_span load(std::size_t begin, std::size_t end, std::byte*) const {
+      loads->push_back(end - begin);
+      return whole().slice(begin, end);
+    }
+  };
+  STATIC_REQUIRE((clearance::addressed_cloud<counted> && clearance::addressed_cloud<clearance::in_memory<point_span>>));
+  const auto model = arm();
+  for (const std::size_t chunk : {1, 20000, 1 << 20}) {
+    const std::string what = "turns in chunks of " + std::to_string(chunk);
+    chunked in_chunks(counted{&cloud, &loads}, chunk);
+    chunked in_place(point_span(cloud), chunk);
+    ask_often(host{}, model, arm_poses, in_chunks, point_span(cloud), shifted(0.1, 0, 0), v, what + ", brought");
+    ask_often(host{}, model, arm_poses, in_place, point_span(cloud), shifted(0.1, 0, 0), v, what + ", in place");
+    v.require(std::ranges::max(loads) <= in_chunks.chunk(), what, ": more than a chunk is loaded at a time");
+    loads.clear();
+  }
+}
+
+TEST_CASE("A cloud that loads what was not asked for is refused, and one that grows is as large as it was") {
+  const auto points = wall(20000);
+  struct liar {
+    const std::vector<vec3>* points;
+    std::ptrdiff_t more = 0;
+    std::size_t size() const { return 10000 + std::size_t(more); }
+    std::size_t room(std::size_t) const { return 0; }
+    point_span load(std::size_t begin, std::size_t end, std::byte*) const { return {points->data() + begin, end - begin + std::size_t(more)}; }
+  };
+  const auto model = arm();
+  clearance::chunked_query query(host{}, model);
+  for (const int more : {-1, 1}) {
+    chunked in_chunks(liar{&points, more}, 4096);
+    CHECK_THROWS_WITH(query(arm_poses, in_chunks), "clearance: a cloud was to load 4096 points, and loaded " + std::to_string(4096 + more));
+    CHECK(in_chunks.pieces().empty());
+  }
+  std::size_t there = 10000;
+  struct growing {
+    const std::vector<vec3>* points;
+    const std::size_t* there;
+    std::size_t size() const { return *there; }
+    std::size_t room(std::size_t) const { return 0; }
+    point_span load(std::size_t begin, std::size_t end, std::byte*) const { return {points->data() + begin, end - begin}; }
+  };
+  chunked in_chunks(growing{&points, &there});
+  const auto expected = min_distance(host{}, model, arm_poses, point_span(points.data(), 10000));
+  for (int round = 0; round < 2; ++round, there = 20000) CHECK(same_result(query(arm_poses, in_chunks), expected));
+}
+
 TEST_CASE("More points than numbers are refused, and so are poses that are none") {
   const auto none = [](std::size_t, std::span<std::byte>) {};
-  const auto view = [](const std::byte* memory, std::size_t n) { return point_span(reinterpret_cast<const vec3*>(memory), n); };
-  CHECK_NOTHROW(chunked(read_records((std::size_t(1) << 32) - 2, 12, none, view)));
-  CHECK_THROWS_WITH(chunked(read_records((std::size_t(1) << 32) - 1, 12, none, view)),
+  CHECK_NOTHROW(chunked(read_records((std::size_t(1) << 32) - 2, 12, none, points_at)));
+  CHECK_THROWS_WITH(chunked(read_records((std::size_t(1) << 32) - 1, 12, none, points_at)),
                     "clearance: a cloud of 4294967295 points; one has at most 2^32 - 2");
+  CHECK_THROWS_WITH(read_records(9, 0, none, points_at), "clearance: 9 records of 0 bytes");
+  CHECK_THROWS_WITH(read_records(9, ~std::size_t(0) / 8, none, points_at), "clearance: 9 records of 2305843009213693951 bytes");
   const auto cloud = wall(9000);
   const auto model = arm();
+  for (const std::size_t least : {0, 1}) CHECK(chunked(point_span(cloud), least).all().size() == 3);
   for (const std::size_t all_at_once : {~std::size_t(0), ~std::size_t(0) - 4096}) CHECK(chunked(point_span(cloud), all_at_once).all().size() == 1);
   chunked in_chunks{point_span(cloud)};
   clearance::chunked_query query(host{}, model);

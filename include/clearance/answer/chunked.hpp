@@ -24,13 +24,14 @@ class chunked {
   /// `chunk`: points at a time, rounded up to what a box is around (4096). Throws std::invalid_argument if there are more points than
   /// answers have numbers for.
   explicit chunked(C cloud, std::size_t chunk = usual_chunk)
-      : cloud_(std::move(cloud)), chunk_((std::clamp<std::size_t>(chunk, 1, none) + scan::piece_points - 1) / scan::piece_points * scan::piece_points) {
-    if (cloud_.size() >= none)
-      throw std::invalid_argument("clearance: a cloud of " + std::to_string(cloud_.size()) + " points; one has at most 2^32 - 2");
+      : cloud_(std::move(cloud)), size_(cloud_.size()),
+        chunk_((std::clamp<std::size_t>(chunk, 1, none) + scan::piece_points - 1) / scan::piece_points * scan::piece_points) {
+    if (size_ >= none) throw std::invalid_argument("clearance: a cloud of " + std::to_string(size_) + " points; one has at most 2^32 - 2");
   }
 
   const C& cloud() const { return cloud_; }
-  std::size_t size() const { return cloud_.size(); }
+  /// As it was at first: a file that grows is another cloud.
+  std::size_t size() const { return size_; }
   std::size_t chunk() const { return chunk_; }
   /// What was seen, in order; empty before all of it was.
   const std::vector<scan::boxed_piece>& pieces() const { return pieces_; }
@@ -62,7 +63,7 @@ class chunked {
 
  private:
   C cloud_;
-  std::size_t chunk_;
+  std::size_t size_, chunk_;
   std::vector<scan::boxed_piece> pieces_;
 };
 template <point_source S>
@@ -94,8 +95,27 @@ class as_they_come {
   const Load* load_;
 };
 
-/// What a question about a chunked cloud does, on any backend. `search(ranges, result, minima, pieces)` asks about some of it, and writes
-/// down to `pieces`, if that is not null, what it sees. `minima`: one a part, or empty.
+/// `load` of a range. Throws std::runtime_error if it gives another number of points: what is known of pieces has room for no others.
+template <loaded_cloud C>
+loaded_source<C> load_range(const C& cloud, const point_range& range, std::byte* room) {
+  const loaded_source<C> source = cloud.load(range.begin, range.end, room);
+  if (source.size() != range.end - range.begin)
+    throw std::runtime_error("clearance: a cloud was to load " + std::to_string(range.end - range.begin) + " points, and loaded " + std::to_string(source.size()));
+  return source;
+}
+
+/// Gives what was found in range k as its point i the number that it has in the cloud, `number(k, i)`.
+template <class Number>
+void number_as_in_cloud(min_distance_result& result, std::span<part_minimum> minima, const Number& number) {
+  const auto put = [&](auto& r) {
+    if (r.cloud != none) r.point = number(r.cloud, r.point), r.cloud = 0;
+  };
+  put(result);
+  for (part_minimum& m : minima) put(m);
+}
+
+/// What a question about a chunked cloud does, on any backend. `search(ranges, result, pieces)` asks about some of it, writes to `minima`, if
+/// these are not empty, and to `pieces`, if that is not null, what it sees.
 ///
 /// What was seen decides in two steps: of the boxes that are nearest to the parts a first answer, which bounds the last one; then what is
 /// in boxes that are within that bound.
@@ -104,17 +124,9 @@ min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> f
                                 std::span<part_minimum> minima, const Search& search) {
   const std::size_t pieces = (cloud.size() + scan::piece_points - 1) / scan::piece_points;
   min_distance_result result;
-  const auto ask = [&](const std::vector<point_range>& ranges, std::vector<scan::boxed_piece>* seen) {
-    search(ranges, result, minima, seen);
-    const auto renumber = [&](auto& r) {
-      if (r.cloud != none) r.point += std::uint32_t(ranges[r.cloud].begin), r.cloud = 0;
-    };
-    renumber(result);
-    for (part_minimum& m : minima) renumber(m);
-  };
   if (cloud.pieces().empty()) {
     std::vector<scan::boxed_piece> seen(pieces);
-    ask(cloud.all(), &seen);
+    search(cloud.all(), result, &seen);
     cloud.keep(std::move(seen));
     return result;
   }
@@ -136,16 +148,16 @@ min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> f
   std::vector<point_range> first;
   for (const std::size_t k : nearest)
     if (k != pieces) first.push_back(cloud.piece(k));
-  ask(first, nullptr);
+  search(first, result, nullptr);
   std::vector<real> reach(facts.size(), result.part == none ? infinity : result.distance);
   for (std::size_t part = 0; part < minima.size(); ++part) reach[part] = minima[part].distance;
-  ask(cloud.where([&](const extent& seen) {
-        const extent box = box_of(seen);
-        for (std::size_t part = 0; part < facts.size(); ++part)
-          if (scan::may_reach(frame.places[part].around, reach[part], box)) return true;
-        return false;
-      }),
-      nullptr);
+  const auto matters = [&](const extent& seen) {
+    const extent box = box_of(seen);
+    for (std::size_t part = 0; part < facts.size(); ++part)
+      if (scan::may_reach(frame.places[part].around, reach[part], box)) return true;
+    return false;
+  };
+  search(cloud.where(matters), result, nullptr);
   // Counts are those of the whole cloud.
   result.seen = result.valid = cloud.size();
   std::ranges::fill(result.dropped, 0);

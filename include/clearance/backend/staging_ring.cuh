@@ -48,11 +48,11 @@ class staging_ring {
     const device_guard guard(on_.id);
     const std::byte* from = bytes.data();
     if (!within(r.pinned, from) && !is_pinned(from)) {
-      constexpr std::size_t grain = std::size_t(1) << 20;  // one thread is slower than the link
+      constexpr std::size_t grain = std::size_t(1) << 16;  // one thread is slower than the link, and short chunks are for all, too
       need_within(bytes.size(), r);
       tbb::parallel_for(std::size_t(0), (bytes.size() + grain - 1) / grain, [&](std::size_t i) {
         std::memcpy(r.pinned.data() + i * grain, from + i * grain, std::min(grain, bytes.size() - i * grain));
-      });
+      }, tbb::simple_partitioner{});
       from = r.pinned.data();
     }
     const cudaStream_t stream = copies_.on().stream;

@@ -21,6 +21,7 @@ struct mapped_cloud {
 
   std::size_t size() const { return source.size(); }
   std::size_t room(std::size_t) const { return 0; }
+  const S& whole() const { return source; }
   auto load(std::size_t begin, std::size_t end, std::byte*) const {
     const auto some = slice(source, begin, end);
     file->bring(some.bytes());
@@ -38,6 +39,8 @@ inline mapped_cloud<point_span> map_points(const std::string& file, std::size_t 
   if (header % alignof(vec3) != 0) refuse(file, "a header of " + std::to_string(header) + " bytes, which is no multiple of 4 (map_records takes it)");
   return {mapped, point_span(reinterpret_cast<const vec3*>(mapped->bytes().data() + header), (bytes - header) / sizeof(vec3))};
 }
+
+static_assert(addressed_cloud<mapped_cloud<point_span>>);
 
 namespace detail {
 
@@ -73,10 +76,13 @@ mapped_cloud<strided_points<Scalar>> map_pcd(const std::string& file) {
   // Opened once: by the time that its header is read there may be another file of that name.
   const auto mapped = std::make_shared<const mapped_file>(file);
   const std::span<const std::byte> all = mapped->bytes();
-  mapped->bring(all.first(std::min<std::size_t>(all.size(), 1 << 16)));
-  std::string_view rest(reinterpret_cast<const char*>(all.data()), all.size());
+  const std::span<const std::byte> start = all.first(std::min<std::size_t>(all.size(), 1 << 20));  // no more is looked through for a header
+  mapped->bring(start);
+  std::string_view rest(reinterpret_cast<const char*>(start.data()), start.size());
   const pcd_header header = take_pcd_header(rest, file);
-  const std::size_t before = all.size() - rest.size();
+  const std::size_t before = start.size() - rest.size();
+  if (rest.empty() && start.size() < all.size()) refuse(file, "has a PCD header of 1 MiB or more");
+  rest = std::string_view(reinterpret_cast<const char*>(all.data()), all.size()).substr(before);
   if (header.data != pcd_header::encoding::binary) refuse(file, "is a PCD file whose DATA is not binary, which alone can be mapped (load_pcd reads it)");
   if (header.points > rest.size() / header.record_bytes)
     refuse(file, "POINTS says " + std::to_string(header.points) + " records of " + std::to_string(header.record_bytes) + " bytes, but the file ends " +

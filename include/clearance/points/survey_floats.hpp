@@ -37,12 +37,9 @@ inline bool sum_is_finite(const real* f) {
 
 /// Points of which some coordinate is not finite.
 inline std::uint32_t count_not_finite(const real* f) {
-  constexpr std::size_t lanes = 24;
-  alignas(64) std::uint32_t bad[3 * surveyed_points + 2] = {}, sums[lanes] = {}, all = 0;
-  for (std::size_t i = 0; i < 3 * surveyed_points; ++i) bad[i] = !(std::abs(f[i]) <= 1e18f);  // as is_finite
-  for (std::size_t i = 0; i < 3 * surveyed_points; i += lanes)
-    for (std::size_t j = 0; j < lanes; ++j) sums[j] += bad[i + j] | bad[i + j + 1] | bad[i + j + 2];
-  for (std::size_t j = 0; j < lanes; j += 3) all += sums[j];  // the other sums are of neighbours' parts
+  std::uint32_t all = 0;
+  for (std::size_t i = 0; i < 3 * surveyed_points; i += 3)  // as is_finite, without branches
+    all += !(int(std::abs(f[i]) <= 1e18f) & int(std::abs(f[i + 1]) <= 1e18f) & int(std::abs(f[i + 2]) <= 1e18f));
   return all;
 }
 
@@ -50,7 +47,15 @@ struct surveyed {
   extent box;
   std::uint32_t not_finite;
 };
+/// Asks for what will be surveyed soon: the work on one tile would otherwise begin with a wait for memory. To ask for what is not there
+/// does nothing.
+inline void ask_ahead(const real* f) {
+  constexpr std::size_t tile = 3 * surveyed_points * sizeof(real), tiles = 4, line = 64;
+  const auto there = reinterpret_cast<std::uintptr_t>(f) + tiles * tile;
+  for (std::size_t i = 0; i < tile; i += line) __builtin_prefetch(reinterpret_cast<const void*>(there + i));
+}
 inline surveyed survey_here(const real* f) {
+  ask_ahead(f);
   const extent box = box_of(f);
   if (sum_is_finite(f) && is_finite(box.lower) && is_finite(box.upper)) return {box, 0};
   return {box, box.lower.x > box.upper.x ? std::uint32_t(surveyed_points) : count_not_finite(f)};

@@ -8,8 +8,9 @@
 
 namespace clearance::scan {
 
-/// What is known of `piece_points` neighbours: a box around those that count, and how many do not.
-struct boxed_piece {
+/// What is known of `piece_points` neighbours: a box around those that count, and how many do not. A cache line, because several threads
+/// write neighbouring ones.
+struct alignas(64) boxed_piece {
   extent box;
   std::uint32_t dropped[drop_reasons] = {};
 
@@ -63,6 +64,30 @@ struct boxing {
   }
   void add_rest() const {
     for (std::size_t i = size() / tile_points * tile_points; pieces != nullptr && i < size(); ++i) pieces[i / piece_points].add(source[i]);
+  }
+};
+
+/// Some of a source's pieces as one source: piece k of it is piece `numbers[k]` of the whole. Only the last may be the whole's last, which
+/// may be shorter.
+template <point_source S>
+struct listed_pieces {
+  S whole;
+  const std::uint32_t* numbers;
+  std::size_t count;  ///< Of points.
+
+  CLEARANCE_HD std::size_t size() const { return count; }
+  CLEARANCE_HD std::size_t at(std::size_t i) const { return numbers[i / piece_points] * piece_points + i % piece_points; }
+  CLEARANCE_HD sample operator[](std::size_t i) const { return whole[at(i)]; }
+  position_error rounding() const { return rounding_of(whole); }
+  bool unfiltered() const
+    requires unfiltered_source<S>
+  {
+    return whole.unfiltered();
+  }
+  bool survey(std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) const
+    requires surveyed_source<S>
+  {
+    return whole.survey(at(begin), box, dropped);
   }
 };
 

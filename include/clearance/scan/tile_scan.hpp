@@ -65,6 +65,27 @@ inline bool may_reach(const ball& around, real reach, const extent& box) {
   return limit >= 0 && dx * dx + dy * dy + dz * dz <= limit * limit;
 }
 
+/// A box around all that is within reach of some part now, and so later on: no box that `may_reach` says yes to is beside it. (Slack enough
+/// for what that rounds, and for the sums here; and squares may vanish.)
+template <class Body>
+extent within_reach(const Body& body) {
+  extent all;
+  for (std::uint32_t k = 0; k < body.part_count; ++k) {
+    const ball& around = body.places[k].around;
+    const real most = frames::limit(around, body.answer.reach(k));
+    if (!(most >= 0)) continue;
+    const auto beyond = [most](real c) { return (most + 0x1p-72f) * (1 + 8 * slack) + absolute(c) * slack; };
+    const vec3 c = around.center, r{beyond(c.x), beyond(c.y), beyond(c.z)};
+    all.add(c - r), all.add(c + r);
+  }
+  return all;
+}
+inline bool beside(const extent& a, const extent& b) {
+  const bool together = int(a.lower.x <= b.upper.x) & int(b.lower.x <= a.upper.x) & int(a.lower.y <= b.upper.y) & int(b.lower.y <= a.upper.y) &
+                        int(a.lower.z <= b.upper.z) & int(b.lower.z <= a.upper.z);
+  return !together;
+}
+
 /// Counts what a whole tile drops and says where the rest is, without loading it; false: this source cannot.
 template <point_source S>
 bool survey(const S& source, std::size_t begin, extent& box, tally& mine) {
@@ -76,6 +97,7 @@ bool survey(const S& source, std::size_t begin, extent& box, tally& mine) {
 template <class Body>
 void scan_tiles(const Body& body, std::size_t begin, std::size_t end, tally& mine) {
   const auto reach = [&](std::uint32_t k) { return body.answer.reach(k); };
+  const extent near_robot = within_reach(body);  // nearly all boxes are beside it, and are not compared with every part
   for (std::size_t i = begin; i < end; i += tile_points) {
     const std::size_t count = std::min(tile_points, end - i);
     tile t;
@@ -91,6 +113,7 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, tally& min
     }
     if constexpr (requires { body.answer.ended(body.first); })
       if (body.answer.ended(body.first + std::uint32_t(i))) continue;
+    if (beside(box, near_robot)) continue;
     std::uint32_t k = 0;
     while (k < body.part_count && !may_reach(body.places[k].around, reach(k), box)) ++k;
     if (k == body.part_count) continue;
