@@ -47,7 +47,7 @@ struct node_pair {
   bool whole;               ///< Points may be inside the part's solid: `node` stays the root.
 };
 
-/// One configuration's parts in one cloud, and a tree over its points. `Body` is a scan_body, whose answer is `shared_bounds`.
+/// One configuration's parts in one cloud, and a tree over its points. `Body` is a scan_body, whose answer says how near a part must be.
 template <class Body, class Tree>
 struct tree_search {
   using part_view = std::remove_cvref_t<decltype(*std::declval<Body>().parts)>;
