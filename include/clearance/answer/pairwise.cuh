@@ -29,7 +29,8 @@ struct pairs_of {
   /// So many pairs walk at once, and do not go down to a leaf first: of an answer that ends, few are as near as that.
   static constexpr std::uint32_t few = ending_answer<Answer> ? 8 * scan::warps : 0;
   static constexpr bool coarse = coarse_answer<Answer>, labels = labelling_answer<Answer>, goes_ahead = true;
-  static constexpr std::size_t top_bytes = 10000;  ///< Leaves room for two blocks on a processor of an H200, up to 100 parts.
+  /// Leaves room for two blocks on a processor of an H200; and up to 20 parts for as much cache as points that are read ahead need there.
+  static constexpr std::size_t top_bytes = 6400;
 
   struct arguments {
     Answer answer;

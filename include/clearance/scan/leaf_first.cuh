@@ -2,6 +2,7 @@
 #pragma once
 // Many pairs of a point and a part, a thread each: down to one leaf, which nearly always says enough.
 
+#include <clearance/ground/ordered.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/team.cuh>
 
