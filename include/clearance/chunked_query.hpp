@@ -32,16 +32,17 @@ class chunked_search<host, PartView> {
                   min_distance_result& result, std::span<part_minimum> minima, std::vector<scan::boxed_piece>* seen) {
     const C& cloud = chunks.cloud();
     const std::vector<turn> turns = put_together(chunks, ranges);
-    std::future<loaded_part<C>> ahead;
     const auto load = [&](std::size_t k) { return load_part(cloud, ranges, turns[k], room_[k % 2]); };
+    using part = decltype(load(0));
+    std::future<part> ahead;
     const auto next = [&](std::size_t k) {
-      const auto make = [&](const loaded_part<C>& source) {
-        const scan::boxing<loaded_part<C>> boxing{source, seen == nullptr || turns[k].points == 0 ? nullptr : seen->data() + numbers_[turns[k].piece]};
+      const auto make = [&](const part& source) {
+        const scan::boxing<part> boxing{source, seen == nullptr || turns[k].points == 0 ? nullptr : seen->data() + numbers_[turns[k].piece]};
         boxing.add_rest();
-        return placed<scan::boxing<loaded_part<C>>>{boxing, pose};
+        return placed<scan::boxing<part>>{boxing, pose};
       };
       if constexpr (requires { requires C::in_place; }) return make(load(k));
-      const loaded_part<C> source = k == 0 ? load(0) : ahead.get();
+      const part source = k == 0 ? load(0) : ahead.get();
       if (k + 1 < turns.size()) ahead = std::async(std::launch::async, load, k + 1);
       return make(source);
     };
@@ -86,8 +87,6 @@ class chunked_search<host, PartView> {
       return load_range(cloud, ranges[its.first], memory);
     }
   }
-  template <class C>
-  using loaded_part = decltype(std::declval<const chunked_search&>().load_part(std::declval<const C&>(), {}, {}, std::declval<std::vector<cache_line>&>()));
 
   host_search<PartView> search_;
   std::vector<std::uint32_t> numbers_;  ///< Of the pieces that are asked about.
