@@ -37,8 +37,6 @@ class device_batch {
     processors_ = ask_device(cudaDevAttrMultiProcessorCount);
     of_processor_ = std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerMultiprocessor));
     of_block_ = std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerBlockOptin)) - 1024;  // less what the kernel has besides
-    const device_guard guard(on.id);
-    check_cuda(cudaFuncSetAttribute(batch_kernel<arguments, tree_type>, cudaFuncAttributeMaxDynamicSharedMemorySize, int(of_block_)), "cudaFuncSetAttribute");
   }
   device_batch(const device_batch&) = delete;
 
@@ -131,7 +129,7 @@ class device_batch {
     on_.launch(place_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
   }
   template <point_source S>
-  void ask(const S& source, const tree_type& tree, const arguments& a) const {
+  void ask(const S& source, const tree_type& tree, const arguments& a) {
     if constexpr (Question::by_margin)
       place_in(point_span{}, a);
     else
@@ -143,6 +141,11 @@ class device_batch {
     while (room::bytes(threads, room::least_depth(threads)) > 48 * 1024) threads /= 2;  // as much as a block always has
     arguments with_stack = a;
     with_stack.depth = room::depth(threads, std::min(of_block_, of_processor_ / (resident_threads / threads) - 2048));
+    // Every translation unit has a kernel of its own, and this function may be another's than the constructor.
+    if (const auto address = reinterpret_cast<const void*>(&batch_kernel<arguments, tree_type>); std::exchange(allowed_, address) != address) {
+      const device_guard guard(on_.id);
+      check_cuda(cudaFuncSetAttribute(address, cudaFuncAttributeMaxDynamicSharedMemorySize, int(of_block_)), "cudaFuncSetAttribute");
+    }
     on_.launch(batch_kernel<arguments, tree_type>, configurations_, threads, room::bytes(threads, with_stack.depth), with_stack, tree);
     if constexpr (!Question::by_margin)
       on_.launch(finish_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
@@ -166,6 +169,7 @@ class device_batch {
   std::pmr::memory_resource* memory_;
   int processors_ = 0;
   std::size_t of_processor_ = 0, of_block_ = 0;  ///< Bytes of shared memory.
+  const void* allowed_ = nullptr;  ///< The kernel whose limit of shared memory was raised last.
   std::uint32_t configurations_ = 0;
   std::uint64_t seen_ = 0;
   std::vector<world_transform> staged_;
