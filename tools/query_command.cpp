@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -136,7 +137,11 @@ int run(const query_options& asked, all_ranks* ranks) {
   if (!speaks) return 0;
   report.query = there->query;
   if (!asked.zones.empty()) report.zones = there->zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
-  if (asked.nearest != 0) report.nearest = there->nearest(poses, asked.nearest, asked.d_max);
+  if (asked.nearest != 0) {
+    std::size_t points = 1;  // of more there is no list
+    for (const observation& cloud : clouds.files) points += cloud.size();
+    report.nearest = there->nearest(poses, std::min(asked.nearest, points), asked.d_max);
+  }
   if (asked.support) report.support = there->supported(poses, {.min_points = asked.support->min_points, .radius = asked.support->radius});
   if (asked.gradient) report.gradients = gradients(asked, robot, joints, poses, there->witnesses(poses, report.found.parts));
   std::optional<point_distances> distances;

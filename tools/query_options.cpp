@@ -179,6 +179,7 @@ void read_questions(const raw_options& raw, query_options& o) {
   o.configurations = raw.configurations;
   o.csv = raw.csv;
   o.between = raw.between;
+  if (o.between && o.margin && *o.margin < 0) throw usage_error("--check", "must not be negative with --between (metres)");
   if (o.between && !o.attached.empty()) throw usage_error("--between", "cannot be mixed with --attach: how what is held moves is not bounded yet");
   o.recording.plan = raw.plan;
   o.recording.svg = raw.svg;

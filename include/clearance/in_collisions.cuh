@@ -17,7 +17,7 @@ class in_collisions_query<device, PartView> : public minimum::placed_batch<PartV
   /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
   template <robot Robot>
   in_collisions_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr)
-      : placed(on, view_of(robot), memory), margins_(search_.parts(), on.id, memory) {}
+      : placed(on, view_of(robot), memory), margins_(std::max<std::size_t>(search_.parts(), 1), on.id, memory) {}
 
   /// As in_collisions. What is returned stays until the next call. Points in host memory are copied into buffers that are kept.
   template <class Clouds>

@@ -77,6 +77,7 @@ TEST_CASE("What is no joint vector is refused, by configuration and joint") {
   CHECK(of({0, 0, 0}) == "clearance: 3 numbers are no whole joint vectors of 2");
   CHECK(chain.poses({}).empty());
   CHECK(joint_chain_of(tree, links, {.ignore_limits = true}).poses(std::vector<double>{2, 0}).size() == 2);
+  CHECK(of({0, 2e9}) == "clearance: configuration 0: joint \"elbow\" turns a link by more than 2^30 rad");
   const double out[] = {2, 0};
   CHECK(std::isnan(chain.view().pose(out, 0).m[0][0]));  // where nobody can throw
   CHECK(refusal([&] { joint_chain_of(tree, std::vector<std::size_t>{3}); }) == "the robot has 3 links, and none of number 3");

@@ -171,3 +171,10 @@ TEST_CASE("What is no batch is refused on a device, and a pose that is not rigid
   CHECK_THROWS_AS(ask(cloud, clearance::not_a_number), std::invalid_argument);
   CHECK(clearance::in_collisions(gpu, model, configurations{}, cloud).of.empty());
 }
+
+TEST_CASE("A robot without parts has no configurations, on a device") {
+  using view = clearance::part_view<clearance::bvh_view<clearance::sphere, inner_sphere>>;
+  const clearance::model_view<view> nothing{nullptr, {}, 0, 0};
+  CHECK(min_distances(device{}, nothing, configurations{}, std::vector<vec3>{{1, 2, 3}}).of.empty());
+  CHECK_THROWS_AS(min_distances(device{}, nothing, configurations(2, Eigen::Isometry3d::Identity()), std::vector<vec3>{{1, 2, 3}}), std::invalid_argument);
+}

@@ -278,5 +278,5 @@ TEST_CASE("--between judges the way from each row to the next, and --check is ab
   CHECK(dark.code == 3);
   CHECK(lines(dark)[0].at("way").at("state") == "no_data");
   refuses(ask + " --between --attach tool=" + p.cloud.path, "--between: cannot be mixed with --attach");
-  refuses(ask + " --between --check -0.1", "must be finite and not negative");
+  refuses(ask + " --between --check -0.1", "--check: must not be negative with --between");
 }

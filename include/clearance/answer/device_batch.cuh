@@ -63,7 +63,7 @@ class device_batch {
   void place(std::span<const Eigen::Isometry3d> poses) {
     staged_.clear();
     for (const Eigen::Isometry3d& pose : poses) staged_.emplace_back(pose);
-    place(std::uint32_t(poses.size() / facts_.size()), [&](world_transform* there) {
+    place(std::uint32_t(poses.empty() ? 0 : poses.size() / facts_.size()), [&](world_transform* there) {
       const device_guard guard(on_.id);
       check_cuda(cudaMemcpyAsync(there, staged_.data(), staged_.size() * sizeof staged_[0], cudaMemcpyHostToDevice, on_.stream), "cudaMemcpyAsync");
     });
@@ -138,13 +138,15 @@ class device_batch {
     // long, all do. And stacks as deep as room is left for: the fewer pairs a round may take, the more rounds.
     const bool uneven = a.question.limited() || scan::has_interior<PartView>;
     unsigned threads = uneven ? 256 : std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 256u);
+    static_assert(room::bytes(32, room::least_depth(32)) <= 48 * 1024, "a handle of a node must be smaller");
     while (room::bytes(threads, room::least_depth(threads)) > 48 * 1024) threads /= 2;  // as much as a block always has
     arguments with_stack = a;
     with_stack.depth = room::depth(threads, std::min(of_block_, of_processor_ / (resident_threads / threads) - 2048));
     // Every translation unit has a kernel of its own, and this function may be another's than the constructor.
-    if (const auto address = reinterpret_cast<const void*>(&batch_kernel<arguments, tree_type>); std::exchange(allowed_, address) != address) {
+    if (const auto address = reinterpret_cast<const void*>(&batch_kernel<arguments, tree_type>); allowed_ != address) {
       const device_guard guard(on_.id);
       check_cuda(cudaFuncSetAttribute(address, cudaFuncAttributeMaxDynamicSharedMemorySize, int(of_block_)), "cudaFuncSetAttribute");
+      allowed_ = address;
     }
     on_.launch(batch_kernel<arguments, tree_type>, configurations_, threads, room::bytes(threads, with_stack.depth), with_stack, tree);
     if constexpr (!Question::by_margin)

@@ -14,8 +14,7 @@ class placed_batch {
   /// Keeps poses, on the device too, for frames to come: a trajectory that is watched is copied once. Enqueued; throws
   /// std::invalid_argument if they are no whole configurations.
   void place(std::span<const Eigen::Isometry3d> poses) {
-    detail::count_configurations(search_.parts(), poses.size());
-    asked_ = poses.size() / search_.parts();
+    asked_ = detail::count_configurations(search_.parts(), poses.size());
     search_.place(poses);
     poses_.assign(poses.begin(), poses.end());
   }

@@ -149,6 +149,7 @@ struct tree_search {
 
   CLEARANCE_HD bool look_at_point(pair& p) const {
     const cloud_tree::numbered_point here = tree.points[p.at];
+    if (here.number == none) return false;  // no point, and what a volume says of NaN is its own business
     if (solid && p.whole) return visit(here, p.part), false;
     const auto& its = body.parts[p.part].tree;
     const vec3 q = body.places[p.part].part_from_cloud(here.at - body.origin);

@@ -170,7 +170,8 @@ class device_tree {
     const std::size_t n = source.size();
     if constexpr (image_source<S>) {
       const pixel_order pixels(std::uint32_t(n), n == 0 ? 0 : source.columns());
-      if (pixels.positions() != 0) return put_up(source, view_type(pixels.positions()), pixels, dropped);
+      if (pixels.positions() != 0 && pixels.positions() / 4 <= n)  // a few rows would be mostly what lies beyond them
+        return put_up(source, view_type(pixels.positions()), pixels, dropped);
     }
     const view_type shape(static_cast<std::uint32_t>(n));
     if (n == 0) return void(view_ = shape);

@@ -124,7 +124,7 @@ class joint_chain {
   }
 
   /// How many configurations `q` is: one number a value, one configuration after another. Throws std::invalid_argument if they are not
-  /// whole, or a number is not finite, or outside its range.
+  /// whole, or a number is not finite, or outside its range, or turns a link by more than 2^30 rad.
   std::size_t count(std::span<const double> q) const {
     if (q.size() % values_.size() != 0)
       throw std::invalid_argument("clearance: " + std::to_string(q.size()) + " numbers are no whole joint vectors of " + std::to_string(values_.size()));
@@ -134,6 +134,11 @@ class joint_chain {
       throw std::invalid_argument("clearance: configuration " + std::to_string(i / values_.size()) + ": joint \"" + name + "\" at " + std::to_string(q[i]) +
                                   " is outside " + std::to_string(range.lower) + " to " + std::to_string(range.upper));
     }
+    for (std::size_t first = 0; first < q.size(); first += values_.size())
+      for (const chain_link& link : links_)
+        if (link.value != none && !link.slides && !(std::abs(fma(link.factor, q[first + link.value], link.offset)) <= 0x1p30))
+          throw std::invalid_argument("clearance: configuration " + std::to_string(first / values_.size()) + ": joint \"" + values_[link.value].name +
+                                      "\" turns a link by more than 2^30 rad");
     return q.size() / values_.size();
   }
 
