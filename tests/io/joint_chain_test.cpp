@@ -54,6 +54,22 @@ TEST_CASE("A joint chain puts parts where link_poses puts their links") {
   CHECK((followed > 20 && sliding > 20));
 }
 
+TEST_CASE("A hundred thousand links may hang, and follow, one on another") {
+  std::vector<std::string> links{"0"};
+  std::vector<joint> joints;
+  for (int k = 1; k <= 100'000; ++k) {
+    joint j;
+    j.name = "joint " + std::to_string(k), j.parent = links.back(), j.child = std::to_string(k), j.kind = joint_kind::prismatic;
+    if (k > 1) j.follows = clearance::io::mimic{joints.back().name, k % 2 == 0 ? 1.0 : -1.0, 0.125};
+    links.push_back(j.child), joints.push_back(std::move(j));
+  }
+  const clearance::io::kinematic_tree tree(links, joints);
+  const double q[] = {0.5};
+  const std::size_t last[] = {100'000};
+  const auto poses = joint_chain_of(tree, last, {.ignore_limits = true}).poses(q);
+  CHECK(poses[0].matrix() == tree.link_poses(q)[last[0]].matrix());
+}
+
 TEST_CASE("What is no joint vector is refused, by configuration and joint") {
   joint shoulder, elbow;
   shoulder.name = "shoulder", shoulder.parent = "base", shoulder.child = "upper", shoulder.lower = -1, shoulder.upper = 1;

@@ -4,8 +4,6 @@
 #include <clearance/io/kinematics.hpp>
 #include <clearance/robot/joint_chain.hpp>
 
-#include <functional>
-
 namespace clearance::io {
 
 /// A kinematic tree's links for many configurations at once, on any backend. Part k is link `links[k]`, and the base is at `base`. Poses
@@ -13,11 +11,6 @@ namespace clearance::io {
 /// there is no such link, no joint moves, or `base` is not rigid.
 inline joint_chain<> joint_chain_of(const kinematic_tree& tree, std::span<const std::size_t> links, joint_options options = {},
                                     const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity()) {
-  const std::function<double(const joint&)> constant = [&](const joint& j) -> double {
-    if (!j.follows) return 0;
-    const auto leader = std::ranges::find(tree.joints(), j.follows->joint, &joint::name);
-    return j.follows->multiplier * constant(*leader) + j.follows->offset;
-  };
   std::vector<chain_link> all(tree.links().size());
   for (std::size_t link = 0; link < all.size(); ++link) {
     const std::size_t above = tree.joint_above(link);
@@ -28,7 +21,7 @@ inline joint_chain<> joint_chain_of(const kinematic_tree& tree, std::span<const 
     if (by.kind == joint_kind::fixed) continue;
     const joint_drive& drive = tree.drive(above);
     all[link].axis = {by.axis.x(), by.axis.y(), by.axis.z()};
-    all[link].value = std::uint32_t(drive.value), all[link].factor = drive.factor, all[link].offset = constant(by);
+    all[link].value = std::uint32_t(drive.value), all[link].factor = drive.factor, all[link].offset = drive.offset;
     all[link].slides = by.kind == joint_kind::prismatic;
   }
   std::vector<std::uint32_t> of_part;

@@ -37,11 +37,11 @@ struct joint {
   bool movable() const { return kind != joint_kind::fixed && !follows; }
 };
 
-/// How a joint follows the configuration: through all that it follows, its value is `factor` times value number `value` plus a constant
-/// of at most `offsets`. A fixed joint follows none.
+/// How a joint follows the configuration: through all that it follows, its value is `factor` times value number `value` plus `offset`,
+/// which is a sum of numbers that are at most `offsets` together. A fixed joint follows none.
 struct joint_drive {
   std::size_t value = std::size_t(-1);
-  double factor = 0, offsets = 0;
+  double factor = 0, offset = 0, offsets = 0;
 };
 
 struct joint_options {
@@ -198,7 +198,7 @@ class kinematic_tree {
   /// Leaders before those that follow them.
   void order_values() {
     drives_.resize(joints_.size());
-    for (std::size_t i = 0; i < movable_.size(); ++i) drives_[movable_[i]] = {i, 1, 0};
+    for (std::size_t i = 0; i < movable_.size(); ++i) drives_[movable_[i]] = {i, 1, 0, 0};
     std::vector<bool> done(joints_.size()), entered(joints_.size());
     for (std::size_t j = 0; j < joints_.size(); ++j) {
       std::vector<std::size_t> chain;
@@ -223,7 +223,8 @@ class kinematic_tree {
   void follow(std::size_t j, std::size_t leader) {
     const mimic& by = *joints_[j].follows;
     const joint_drive& above = drives_[leader];
-    drives_[j] = {above.value, by.multiplier * above.factor, std::abs(by.multiplier) * above.offsets + std::abs(by.offset)};
+    drives_[j] = {above.value, by.multiplier * above.factor, by.multiplier * above.offset + by.offset,
+                  std::abs(by.multiplier) * above.offsets + std::abs(by.offset)};
     if (!std::isfinite(drives_[j].factor) || !std::isfinite(drives_[j].offsets))
       throw std::invalid_argument("joint \"" + joints_[j].name + "\" follows \"" + joints_[movable_[above.value]].name + "\" by a factor that is not finite");
   }

@@ -157,14 +157,16 @@ class joint_chain {
   void check() const {
     const auto refuse = [](const std::string& why) { throw std::invalid_argument("clearance: a joint chain " + why); };
     if (values_.empty()) refuse("has no joint that moves");
+    std::vector<bool> hangs(links_.size());  // is known to, on the base
     for (const chain_link& link : links_) {
       rigid_transform_of(to_isometry(link.origin), "a link's origin");
       if (link.value != none && link.value >= values_.size()) refuse("has a link that moves by number " + std::to_string(link.value) + ", which is none");
       const double length = std::hypot(link.axis.x, link.axis.y, link.axis.z);
       if (link.value != none && !(std::abs(length - 1) < 1e-9)) refuse("has an axis of length " + std::to_string(length) + ", which must be 1");
       std::size_t steps = 0;
-      for (std::uint32_t at = link.parent; at != none; at = links_[at].parent)
+      for (std::uint32_t at = link.parent; at != none && (at >= links_.size() || !hangs[at]); at = links_[at].parent)
         if (at >= links_.size() || ++steps > links_.size()) refuse("has links that hang on no base");
+      for (std::uint32_t at = std::uint32_t(&link - links_.data()); at != none && !hangs[at]; at = links_[at].parent) hangs[at] = true;
     }
     for (const std::uint32_t link : of_part_)
       if (link >= links_.size()) refuse("has a part that is link " + std::to_string(link) + ", which is none");
