@@ -3,6 +3,7 @@
 // The memory that the kernels of a prepared scan share, whatever is asked, and their launch.
 
 #include <clearance/backend/device.cuh>
+#include <clearance/backend/raised_limits.cuh>
 #include <clearance/frame/clouds.hpp>
 #include <clearance/result.hpp>
 #include <clearance/robot/model.hpp>
@@ -123,13 +124,9 @@ class launcher {
   void start(const Source& source, scan_arguments<Answer>& a) {
     const std::size_t shared = memory_bytes<Answer>(a.parts);
     a.top_stride = a.parts == 0 ? 0 : std::min(decltype(block_memory<Answer>::tops)::capacity / a.parts, 128u);
-    // Every translation unit has a kernel of its own, so what is allowed is known by its address, and not by its type.
     using how = typename Answer::scan_type;
     const auto kernel = how::template kernel<Answer, Source>();
-    if (const auto address = reinterpret_cast<const void*>(kernel); std::find(allowed_.begin(), allowed_.end(), address) == allowed_.end()) {
-      check_cuda(cudaFuncSetAttribute(address, cudaFuncAttributeMaxDynamicSharedMemorySize, int(most_shared_)), "cudaFuncSetAttribute");
-      allowed_.push_back(address);
-    }
+    limits_.raise(reinterpret_cast<const void*>(kernel), most_shared_);
     const unsigned resident = 2 * (shared + 1024) <= shared_of_processor_ && a.overflow == nullptr ? processors_ * 2 : processors_;
     const unsigned blocks = std::max(1u, std::min(resident, (a.points + how::in_block - 1) / how::in_block));
     how::plan(source, a, blocks);
@@ -145,7 +142,7 @@ class launcher {
   device_buffer<placed_parts> placed_;
   device_buffer<std::byte> overflow_;  ///< Stacks of trees for which shared memory is not enough.
   std::uint32_t overflow_room_ = 0;
-  std::vector<const void*> allowed_;      ///< Kernels whose limit of shared memory has been raised: that takes longer than a launch.
+  raised_limits limits_;
   std::unique_ptr<placed_parts> staged_;  ///< Of many parts, on their way to `placed_`.
 };
 
