@@ -11,7 +11,8 @@ namespace clearance {
 
 /// Whether a point is within a margin (peers: security margin, safety distance), and which: the same one on every run and backend.
 struct collision_result {
-  /// collision: certainly one is; possible: that cannot be excluded; free: certainly none, and nothing was too close to be measured; no_data: there was no valid point.
+  /// collision: certainly one is; possible: that cannot be excluded; free: certainly none, and nothing was too close to be measured;
+  /// no_data: there was no valid point.
   clearance::state state = clearance::state::no_data;
   std::uint32_t cloud = none, point = none, part = none;  ///< The lowest certain one (by cloud, point, part); else the lowest possible one.
   point_counts counts;

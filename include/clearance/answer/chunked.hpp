@@ -100,7 +100,8 @@ template <loaded_cloud C>
 loaded_source<C> load_range(const C& cloud, const point_range& range, std::byte* room) {
   const loaded_source<C> source = cloud.load(range.begin, range.end, room);
   if (source.size() != range.end - range.begin)
-    throw std::runtime_error("clearance: a cloud was to load " + std::to_string(range.end - range.begin) + " points, and loaded " + std::to_string(source.size()));
+    throw std::runtime_error("clearance: a cloud was to load " + std::to_string(range.end - range.begin) + " points, and loaded " +
+                             std::to_string(source.size()));
   return source;
 }
 

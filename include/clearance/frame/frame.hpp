@@ -136,7 +136,8 @@ class cloud_frame : public frame_facts {
     });
   }
 
-  /// The next cloud, number `cloud`, whose errors widen the frame's; `off` is its source's `rounding_of`. Throws std::invalid_argument if its pose is not rigid.
+  /// The next cloud, number `cloud`, whose errors widen the frame's; `off` is its source's `rounding_of`. Throws std::invalid_argument if its
+  /// pose is not rigid.
   void put(std::span<const part_facts> facts, const Eigen::Isometry3d& pose, std::uint32_t cloud, const position_error& off) {
     with_vectors([&] {
       const world_transform world = rigid_transform_of(pose, "cloud", cloud);

@@ -72,7 +72,8 @@ inline float_cloud cloud::relative_to(const Eigen::Vector3d& origin, const Eigen
 
 inline float_cloud cloud::near(std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& world_from_cloud) const {
   const std::vector<world_transform> parts(poses.begin(), poses.end());
-  const auto [x, y, z] = frames::middle_of(rigid_transform_of(world_from_cloud, "cloud"), [&](std::uint32_t k) -> const world_transform& { return parts[k]; }, parts.size());
+  const auto part = [&](std::uint32_t k) -> const world_transform& { return parts[k]; };
+  const auto [x, y, z] = frames::middle_of(rigid_transform_of(world_from_cloud, "cloud"), part, parts.size());
   const Eigen::Vector3d middle(x, y, z);
   if (middle.cwiseAbs().maxCoeff() > 32) return relative_to(middle.array().round(), world_from_cloud);
   return relative_to(Eigen::Vector3d::Zero(), world_from_cloud);

@@ -35,8 +35,9 @@ inline mapped_cloud<point_span> map_points(const std::string& file, std::size_t 
   const auto mapped = std::make_shared<const mapped_file>(file);
   const std::size_t bytes = mapped->bytes().size();
   if (bytes < header || (bytes - header) % sizeof(vec3) != 0)
-    refuse(file, "ends in the middle of a record of 12 bytes: it has " + std::to_string(bytes) + " bytes, " + std::to_string(header) + " of them before the first");
-  if (header % alignof(vec3) != 0) refuse(file, "a header of " + std::to_string(header) + " bytes, which is no multiple of 4 (map_records takes it)");
+    refuse(file, "ends in the middle of a record of 12 bytes: it has " + std::to_string(bytes) + " bytes, " + std::to_string(header) +
+                     " of them before the first");
+  if (header % alignof(vec3) != 0) refuse(file, "has a header of " + std::to_string(header) + " bytes, which is no multiple of 4 (map_records takes it)");
   return {mapped, point_span(reinterpret_cast<const vec3*>(mapped->bytes().data() + header), (bytes - header) / sizeof(vec3))};
 }
 
