@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The valid points of a cloud, and nothing else. On the host; compacted.cuh has a device.
+
+#include <clearance/answer/search_on.hpp>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace clearance {
+
+/// A cloud's valid points in their order, in its frame, and their numbers in the cloud.
+struct compacted_points {
+  std::vector<vec3> points;
+  std::vector<std::uint32_t> numbers;
+};
+
+namespace detail {
+
+template <point_source S>
+struct compact_body {
+  S source;
+  vec3* points;
+  std::uint32_t *numbers, *count;
+
+  CLEARANCE_HD void operator()(std::size_t) const {
+    std::uint32_t n = 0;
+    const std::size_t size = source.size();
+    for (std::size_t i = 0; i < size; ++i)
+      if (const sample s = source[i]; s.valid()) points[n] = s.position, numbers[n++] = std::uint32_t(i);
+    *count = n;
+  }
+};
+
+/// By where it runs. One thread does it as fast as memory does.
+template <class On>
+struct compacts_on {
+  static_assert(!requires { typename On::own_scan; }, "a device does it otherwise: include <clearance/compacted.cuh>, not the .hpp");
+
+  template <point_source S>
+  static void enqueue(const On& on, const S& source, vec3* points, std::uint32_t* numbers, std::uint32_t* count) {
+    on.for_each(1, compact_body<S>{source, points, numbers, count});
+  }
+};
+
+}  // namespace detail
+
+/// Enqueues it, into memory that `on` can write, with room for all points of the source, which `on` must be able to read. Throws
+/// std::invalid_argument if there are 2^31 points or more.
+template <class On, point_source S>
+void compacted_async(const On& on, const S& source, vec3* points, std::uint32_t* numbers, std::uint32_t* count) {
+  if (source.size() >= std::size_t(1) << 31)
+    throw std::invalid_argument("clearance: " + std::to_string(source.size()) + " points are too many for one call; it takes 2^31 - 1");
+  detail::compacts_on<On>::enqueue(on, source, points, numbers, count);
+}
+
+/// For what leaves the library, such as `masked(cloud, labels)` without the robot. To ask about it here, ask about the cloud itself, or
+/// masked_clouds: a source knows how far off its own points can be, and which were too close to be measured; positions do not.
+template <class On, point_source S>
+compacted_points compacted(const On& on, const S& source) {
+  auto points = on.template make_scratch<vec3>(source.size());
+  auto numbers = on.template make_scratch<std::uint32_t>(source.size());
+  auto count = on.template make_scratch<std::uint32_t>(1);
+  minimum::cloud_copies<On> copies;
+  compacted_async(on, minimum::readable_on<On>{on, copies}(source, 0), points.data(), numbers.data(), count.data());
+  const std::size_t n = on.copy_out(count.data(), 1)[0];
+  return {on.copy_out(points.data(), n), on.copy_out(numbers.data(), n)};
+}
+
+}  // namespace clearance

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// On a device what is left of a cloud is the host's, and goes into a graph.
+#include "support/compacts.hpp"
+#include "support/held_stream.cuh"
+#include "support/catch.hpp"
+
+#include <clearance/compacted.cuh>
+
+using namespace testing;
+using clearance::device;
+
+TEST_CASE("On a device, too, what is left of a cloud are its valid points, in their order") {
+  verdict v;
+  const device gpu;
+  for_each_compacted([&](const auto& source, const auto& points, const auto& numbers, const std::string& what) {
+    // Labels have to be where the backend reads them, so what is masked is a copy here.
+    const auto require = [&](const auto& there) {
+      const auto found = clearance::compacted(gpu, there);
+      v.require(found.numbers == numbers, what, ": ", found.numbers.size(), " are left, and not ", numbers.size());
+      v.require(found.points.size() == points.size() && std::ranges::equal(found.points, points, [](vec3 a, vec3 b) { return same_bytes(a, b); }), what,
+                ": some point differs");
+    };
+    if constexpr (requires { source.labels; }) {
+      const auto labels = gpu.copy_in(std::span<const clearance::point_label>(source.labels, source.size()));
+      require(clearance::masked(source.source, labels.data()));
+    } else {
+      require(source);
+    }
+  });
+}
+
+TEST_CASE("A graph leaves out what is invalid when it runs") {
+  const own_stream stream;
+  const device gpu{.stream = stream.handle};
+  dice d(5);
+  std::vector<vec3> points = d.points(5000, 1);
+  const auto there = gpu.copy_in(std::span<const vec3>(points));
+  const clearance::device_buffer<vec3> left(5000, gpu.id);
+  const clearance::device_buffer<std::uint32_t> numbers(5000, gpu.id), count(1, gpu.id);
+  cudaGraph_t graph;
+  cudaGraphExec_t run;
+  check(cudaStreamBeginCapture(stream.handle, cudaStreamCaptureModeThreadLocal));
+  clearance::compacted_async(gpu, clearance::point_span(there.data(), 5000), left.data(), numbers.data(), count.data());
+  check(cudaStreamEndCapture(stream.handle, &graph));
+  check(cudaGraphInstantiate(&run, graph, 0));
+  for (std::uint32_t lost = 0; lost < 3; ++lost) {
+    if (lost > 0) points[lost * 7].x = clearance::not_a_number;
+    check(cudaMemcpy(there.data(), points.data(), points.size() * sizeof(vec3), cudaMemcpyHostToDevice));
+    check(cudaGraphLaunch(run, stream.handle));
+    CHECK(gpu.copy_out(count.data(), 1)[0] == 5000 - lost);
+    const auto found = gpu.copy_out(left.data(), 5000 - lost);
+    CHECK(same_bytes(found.back(), points.back()));
+    CHECK(gpu.copy_out(numbers.data(), 5000 - lost).back() == 4999);
+  }
+  cudaGraphExecDestroy(run);
+  cudaGraphDestroy(graph);
+}
