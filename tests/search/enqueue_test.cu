@@ -138,19 +138,13 @@ TEST_CASE("Every frame that is enqueued by a prepared query can be captured and 
                                    : clearance::min_distance(host{}, g.on_host, g.s.poses, same);
     enqueue();
     g.gpu.wait();
-    cudaGraph_t graph = nullptr;
-    cudaGraphExec_t frame = nullptr;
-    clearance::check_cuda(cudaStreamBeginCapture(g.stream.handle, cudaStreamCaptureModeThreadLocal), "cudaStreamBeginCapture");
-    enqueue();
-    clearance::check_cuda(cudaStreamEndCapture(g.stream.handle, &graph), "cudaStreamEndCapture");
-    clearance::check_cuda(cudaGraphInstantiate(&frame, graph, 0), "cudaGraphInstantiate");
+    const captured_graph graph(g.stream.handle, enqueue);
     for (int launch = 0; launch < 3; ++launch) {
       *g.result.data() = {};
-      clearance::check_cuda(cudaGraphLaunch(frame, g.stream.handle), "cudaGraphLaunch");
+      graph.launch();
       g.gpu.wait();
       v.require(same_result(*g.result.data(), expected), name, ", launch ", launch, ": differs from the host's result");
     }
-    cudaGraphExecDestroy(frame), cudaGraphDestroy(graph);
   });
 }
 
@@ -198,17 +192,11 @@ TEST_CASE("Questions that want memory for a call are enqueued without waiting, a
   g.gpu.wait();
   look("on a stream that was held");
 
-  cudaGraph_t graph = nullptr;
-  cudaGraphExec_t frame = nullptr;
-  clearance::check_cuda(cudaStreamBeginCapture(g.stream.handle, cudaStreamCaptureModeThreadLocal), "cudaStreamBeginCapture");
-  enqueue();
-  clearance::check_cuda(cudaStreamEndCapture(g.stream.handle, &graph), "cudaStreamEndCapture");
-  clearance::check_cuda(cudaGraphInstantiate(&frame, graph, 0), "cudaGraphInstantiate");
+  const captured_graph graph(g.stream.handle, enqueue);
   for (int launch = 0; launch < 3; ++launch) {
     clear();
-    clearance::check_cuda(cudaGraphLaunch(frame, g.stream.handle), "cudaGraphLaunch");
+    graph.launch();
     g.gpu.wait();
     look("launch " + std::to_string(launch) + " of a graph");
   }
-  cudaGraphExecDestroy(frame), cudaGraphDestroy(graph);
 }

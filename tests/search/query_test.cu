@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The prepared query says what the plain one says, in every bit: cold, warm, and after anything has moved.
+#include "support/held_stream.cuh"
 #include "support/product_device.cuh"
 
 #include <clearance/make_model.hpp>
@@ -167,52 +168,41 @@ TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are cou
 TEST_CASE("A frame in the caller's graph reads poses from memory when it runs, and is the frame of those poses in every bit") {
   dice d(10);
   verdict v;
-  cudaStream_t stream = nullptr;
-  clearance::check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreateWithFlags");
-  {
-    const device gpu{.stream = stream};
-    const auto on_host = robot_of<clearance::sphere>(d, 14, 60);
-    const auto model = on_host.on(gpu);
-    clearance::min_distance_query query(gpu, model);
-    const auto points = d.points(30000, 2);
-    const auto there = gpu.copy_in(std::span<const vec3>(points));
-    const clearance::point_span view(there.data(), points.size());
-    const clearance::pinned_buffer<clearance::world_transform> poses(15, gpu.id);
-    const clearance::pinned_buffer<clearance::min_distance_result> result(1, gpu.id);
-    const clearance::pinned_buffer<clearance::part_minimum> minima(14, gpu.id);
-    cudaGraph_t graph = nullptr;
-    cudaGraphExec_t frame = nullptr;
-    clearance::check_cuda(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal), "cudaStreamBeginCapture");
-    query.enqueue_per_part(poses.data(), view, poses.data() + 14, result.data(), minima.data());
-    clearance::check_cuda(cudaStreamEndCapture(stream, &graph), "cudaStreamEndCapture");
-    clearance::check_cuda(cudaGraphInstantiate(&frame, graph, 0), "cudaGraphInstantiate");
-    const auto run = [&] {
-      clearance::check_cuda(cudaGraphLaunch(frame, stream), "cudaGraphLaunch");
-      gpu.wait();
-    };
-    for (int k = 0; k < 10; ++k) {
-      std::vector<Eigen::Isometry3d> at;
-      for (int part = 0; part < 15; ++part) {
-        at.push_back(d.pose(1));
-        if (k > 4) at.back().linear() *= 1 + 1e-6;  // rigid enough; both sides make the same of it
-        poses.data()[part] = clearance::world_transform(at.back());
-      }
-      run();
-      const clearance::placed cloud{clearance::point_span(points), at[14]};
-      const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, std::span(at).first(14), cloud);
-      v.require(same_result(*result.data(), robot), "replay " + std::to_string(k), ": differs from the host's result");
-      v.require(std::ranges::equal(std::span(minima.data(), 14), each, same_minimum), "replay " + std::to_string(k), ": some part's minimum differs");
+  const own_stream stream;
+  const device gpu{.stream = stream.handle};
+  const auto on_host = robot_of<clearance::sphere>(d, 14, 60);
+  const auto model = on_host.on(gpu);
+  clearance::min_distance_query query(gpu, model);
+  const auto points = d.points(30000, 2);
+  const auto there = gpu.copy_in(std::span<const vec3>(points));
+  const clearance::point_span view(there.data(), points.size());
+  const clearance::pinned_buffer<clearance::world_transform> poses(15, gpu.id);
+  const clearance::pinned_buffer<clearance::min_distance_result> result(1, gpu.id);
+  const clearance::pinned_buffer<clearance::part_minimum> minima(14, gpu.id);
+  const captured_graph graph(stream.handle, [&] { query.enqueue_per_part(poses.data(), view, poses.data() + 14, result.data(), minima.data()); });
+  const auto run = [&] {
+    graph.launch();
+    gpu.wait();
+  };
+  for (int k = 0; k < 10; ++k) {
+    std::vector<Eigen::Isometry3d> at;
+    for (int part = 0; part < 15; ++part) {
+      at.push_back(d.pose(1));
+      if (k > 4) at.back().linear() *= 1 + 1e-6;  // rigid enough; both sides make the same of it
+      poses.data()[part] = clearance::world_transform(at.back());
     }
-    poses.data()[3].m[1][1] = 2;
     run();
-    CHECK(result.data()->state == clearance::state::possible);
-    CHECK(std::isnan(result.data()->distance));
-    CHECK(result.data()->lower == 0);
-    CHECK(minima.data()[0].point == clearance::none);
-    clearance::check_cuda(cudaGraphExecDestroy(frame), "cudaGraphExecDestroy");
-    clearance::check_cuda(cudaGraphDestroy(graph), "cudaGraphDestroy");
+    const clearance::placed cloud{clearance::point_span(points), at[14]};
+    const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, std::span(at).first(14), cloud);
+    v.require(same_result(*result.data(), robot), "replay " + std::to_string(k), ": differs from the host's result");
+    v.require(std::ranges::equal(std::span(minima.data(), 14), each, same_minimum), "replay " + std::to_string(k), ": some part's minimum differs");
   }
-  clearance::check_cuda(cudaStreamDestroy(stream), "cudaStreamDestroy");
+  poses.data()[3].m[1][1] = 2;
+  run();
+  CHECK(result.data()->state == clearance::state::possible);
+  CHECK(std::isnan(result.data()->distance));
+  CHECK(result.data()->lower == 0);
+  CHECK(minima.data()[0].point == clearance::none);
 }
 
 namespace {

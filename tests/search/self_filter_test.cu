@@ -71,22 +71,15 @@ TEST_CASE("A crowd around three parts, one of them held by the others: filter an
   };
   enqueue();  // once, as loading a kernel is not for a graph
   gpu.wait();
-  cudaGraph_t graph = nullptr;
-  cudaGraphExec_t ready = nullptr;
-  check(cudaStreamBeginCapture(stream.handle, cudaStreamCaptureModeThreadLocal));
-  enqueue();
-  check(cudaStreamEndCapture(stream.handle, &graph));
-  check(cudaGraphInstantiate(&ready, graph, 0));
+  const captured_graph graph(stream.handle, enqueue);
   for (int frame = 0; frame < 3; ++frame) {
     check(cudaMemsetAsync(labels.data(), 0x55, labels.size(), stream.handle));
     check(cudaMemsetAsync(result.data(), 0x55, sizeof(clearance::min_distance_result), stream.handle));
-    check(cudaGraphLaunch(ready, stream.handle));
+    graph.launch();
     v.require(gpu.copy_out(labels) == expected.filter.labels, "frame ", frame, " of a graph: some label differs");
     v.require(same_result(gpu.copy_out(result)[0], expected.rest), "frame ", frame, " of a graph: the rest differs");
     v.require(gpu.copy_out(counts)[0].own == expected.filter.counts.own, "frame ", frame, " of a graph: counts");
   }
-  check(cudaGraphExecDestroy(ready));
-  check(cudaGraphDestroy(graph));
 }
 
 TEST_CASE("A prepared filter of more parts than a kernel takes and of many clouds says in every frame what one call says") {

@@ -20,6 +20,27 @@ struct own_stream {
   own_stream(const own_stream&) = delete;
 };
 
+/// What `enqueue` puts into a stream, as a graph.
+class captured_graph {
+ public:
+  template <class F>
+  captured_graph(cudaStream_t stream, const F& enqueue) : stream_(stream) {
+    check(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal));
+    enqueue();
+    check(cudaStreamEndCapture(stream, &graph_));
+    check(cudaGraphInstantiate(&ready_, graph_, 0));
+  }
+  ~captured_graph() { cudaGraphExecDestroy(ready_), cudaGraphDestroy(graph_); }
+  captured_graph(const captured_graph&) = delete;
+
+  void launch() const { check(cudaGraphLaunch(ready_, stream_)); }
+
+ private:
+  cudaStream_t stream_;
+  cudaGraph_t graph_ = nullptr;
+  cudaGraphExec_t ready_ = nullptr;
+};
+
 /// Holds a stream until it is released, and releases it in any case. Kernels must have run once before: loading them
 /// may wait for everything.
 class gate {
