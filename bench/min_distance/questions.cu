@@ -139,6 +139,7 @@ BENCHMARK_CAPTURE(zones, of_10_20_40cm, false) TIMES;
 BENCHMARK_CAPTURE(zones, close, true) TIMES;
 BENCHMARK_CAPTURE(within, 10cm, 0.1f, false) TIMES;
 BENCHMARK_CAPTURE(within, 15cm, 0.15f, false) TIMES;
+BENCHMARK_CAPTURE(within, 8.24cm_close, 0.0824f, true) TIMES;  // 20,000 pairs of 307,200 points
 BENCHMARK_CAPTURE(within, 10cm_close, 0.1f, true) TIMES;
 BENCHMARK_CAPTURE(in_collision, within_5cm, 0.05f) TIMES;
 BENCHMARK_CAPTURE(in_collision, within_10cm, 0.1f) TIMES;

@@ -2,20 +2,13 @@
 #pragma once
 // Answers that want every pair, once, as the blocks of a device give them.
 
+#include <clearance/answer/labels.cuh>
 #include <clearance/answer/pairwise.hpp>
-#include <clearance/points/masked.hpp>
 #include <clearance/scan/kernel.cuh>
 #include <clearance/scan/launch.cuh>
 #include <clearance/scan/record.hpp>
 
 namespace clearance::pairwise {
-
-/// An answer that is told of every point, too: it has labels, a byte each, and counts those that are `own` and `uncertain`.
-template <class A>
-concept labelling_answer = answer<A> && requires(const A a, const pair_distance pair, std::uint32_t n) {
-  *a.label_of(n, n) = a.whose_alone(true);
-  a.is_late(pair), a.counts->own, a.counts->uncertain;
-};
 
 template <class PartView, answer Answer>
 struct pairs_of {
@@ -36,7 +29,7 @@ struct pairs_of {
     Answer answer;
     std::uint32_t first_part;  ///< Number of the kernel's first part.
     point_counts* counts;      ///< Or null.
-    uint2* labelled;           ///< Room for one a block: how many `own` and `uncertain` labels it has given.
+    label_counts* labelled;    ///< Room for one a block, if there are labels.
     bool last_group;           ///< Of parts.
   };
   struct memory {
@@ -106,23 +99,10 @@ struct pairs_of {
     take_all(s, count, [](const pair_distance&) { return true; });
   }
 
-  /// Four of a thread's points, before their pairs, and why they do not count.
   static __device__ void meet(const block& s, unsigned reasons, std::uint32_t first)
     requires labels
   {
-    if (s.head.answer.first_part != 0) return;  // another kernel has been told
-    const Answer& answer = s.head.answer.answer;
-    auto* const label = answer.label_of(s.head.cloud, first);
-    const auto alone = answer.whose_alone(true), no_point = answer.whose_alone(false);
-    if (is_aligned(label) && (reasons & 0x80808080u) == 0) {
-      static_assert(sizeof *label == 1 && drop_reasons < 0x80);
-      const unsigned dropped = __vcmpne4(reasons, 0);
-      *reinterpret_cast<std::uint32_t*>(label) = (dropped & std::uint32_t(no_point) * 0x01010101u) | (~dropped & std::uint32_t(alone) * 0x01010101u);
-    } else {
-#pragma unroll
-      for (int j = 0; j < scan::quad; ++j)
-        if (const unsigned reason = reasons >> 8 * j & 0xff; reason != scan::no_point) label[j] = reason == 0 ? alone : no_point;
-    }
+    labels_of<pairs_of>::meet(s, reasons, first);
   }
 
   struct news {
@@ -140,30 +120,16 @@ struct pairs_of {
 
   template <class Source>
   static __device__ void hand_in(const scan::scan_arguments<pairs_of>& a, const Source&) {
-    if constexpr (labels)
-      if (a.answer.last_group) {
-        count_labels(a);
-        if (const auto& s = memory_here().answer; threadIdx.x == 0) a.answer.labelled[blockIdx.x] = {s.own, s.uncertain};
-      }
+    if constexpr (labels) labels_of<pairs_of>::hand_in(a);
   }
   template <class Source>
   static __device__ void conclude(const scan::scan_arguments<pairs_of>& a, const Source&) {
     scan::write_counts(a, a.answer.counts);
-    if constexpr (labels)
-      if (a.answer.last_group && threadIdx.x < 32) {
-        uint2 all{0, 0};
-        for (std::uint32_t b = threadIdx.x; b < gridDim.x; b += 32) all.x += a.answer.labelled[b].x, all.y += a.answer.labelled[b].y;
-        all = {scan::sum_of(all.x), scan::sum_of(all.y)};
-        auto& counts = *a.answer.answer.counts;
-        if (threadIdx.x == 0) counts.own = (a.cloud == 0 ? 0 : counts.own) + all.x, counts.uncertain = (a.cloud == 0 ? 0 : counts.uncertain) + all.y;
-      }
+    if constexpr (labels) labels_of<pairs_of>::conclude(a);
   }
   static __device__ void reset(const scan::scan_arguments<pairs_of>&) {}
 
  private:
-  static __device__ bool is_aligned(const point_label* label) { return reinterpret_cast<std::uintptr_t>(label) % scan::quad == 0; }
-  static __device__ block& memory_here() { return scan::memory_of_block<pairs_of>(); }
-
   /// Gives the answer those pairs that `now` chooses.
   template <class Now>
   static __device__ void take_all(block& s, std::uint32_t count, const Now& now) {
@@ -176,30 +142,6 @@ struct pairs_of {
       s.answer.best[i] = no_key;
       s.head.answer.answer.take(pair);
     }
-  }
-
-  /// The labels of this block's points, to its own counts.
-  static __device__ void count_labels(const scan::scan_arguments<pairs_of>& a) {
-    auto& s = memory_here();
-    const scan::cards<pairs_of> all;
-    std::uint32_t own = 0, uncertain = 0;
-    __syncthreads();  // all have been given
-    for (std::uint32_t r = 0; r < a.rounds; ++r) {
-      const std::uint32_t first = all.index(r);
-      const point_label* const label = first < a.points ? s.head.answer.answer.label_of(a.cloud, first) : nullptr;
-      std::uint32_t four = 0;  // labels, of which those that are 0 do not count here
-      static_assert(point_label::rest == point_label{});
-      if (label != nullptr && a.points - first >= scan::quad && is_aligned(label))
-        four = *reinterpret_cast<const std::uint32_t*>(label);
-      else if (label != nullptr)
-        for (std::uint32_t j = 0; j < scan::quad && j < a.points - first; ++j) four |= std::uint32_t(label[j]) << 8 * j;
-      own += __popc(__vcmpeq4(four, std::uint32_t(point_label::own) * 0x01010101u)) / 8;
-      uncertain += __popc(__vcmpeq4(four, std::uint32_t(point_label::uncertain) * 0x01010101u)) / 8;
-    }
-    own = scan::sum_of(own), uncertain = scan::sum_of(uncertain);
-    if (threadIdx.x % 32 == 0 && own != 0) atomicAdd(&s.answer.own, own);
-    if (threadIdx.x % 32 == 0 && uncertain != 0) atomicAdd(&s.answer.uncertain, uncertain);
-    __syncthreads();
   }
 };
 
@@ -225,7 +167,7 @@ class device_pairs {
  private:
   std::vector<part_facts> facts_;
   scan::launcher<PartView> launch_;
-  device_buffer<uint2> labelled_;
+  device_buffer<label_counts> labelled_;
 };
 
 }  // namespace clearance::pairwise
