@@ -65,7 +65,7 @@ struct labels_of {
   /// The labels of this block's points, to its own counts.
   static __device__ void count(const arguments& a) {
     auto& s = scan::memory_of_block<Pairs>();
-    const scan::cards<Pairs> all;
+    const scan::cards<Pairs> all(a.rounds);
     std::uint32_t own = 0, uncertain = 0;
     __syncthreads();  // all have been given
     for (std::uint32_t r = 0; r < a.rounds; ++r) {

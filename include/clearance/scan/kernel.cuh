@@ -21,7 +21,7 @@ __global__ void __launch_bounds__(block_threads, 2) scan_kernel(const __grid_con
   auto& s = memory_of_block<Answer>();
   const std::uint32_t t = threadIdx.x, rounds = a.rounds, ahead = a.ahead, clusters = (a.parts + cluster - 1) / cluster;
   typename Answer::seeds before(a);
-  const cards<Answer> all;
+  const cards<Answer> all(rounds);
   point_reader<Source, Answer> reader(source, ahead, all);
   pairs::prepare(a, [&] { reader.fetch(0), before.look(a, source); });
   before.seed(a);

@@ -13,22 +13,30 @@ struct leaf_first : tree_steps<Answer> {
   using frame = frame_parts<Answer>;
   using steps = tree_steps<Answer>;
 
-  /// All pairs of the table go down greedily: a lane each, or eight lanes each if there are few, as one lane would take longer than all
-  /// the rest. If whatever they have passed by on their way is too far to matter, they are done; the others are left open, with a bound
-  /// for their walk. The whole block calls it.
+  /// All pairs of the table go down greedily and at once: eight lanes each if they are few, or four, or two, or a lane each. If whatever
+  /// they have passed by on their way is too far to matter, they are done; the others are left open, with a bound for their walk. The
+  /// whole block calls it.
   static __device__ void go(std::uint32_t count) {
-    if (count <= Answer::few)
-      for (std::uint32_t i = threadIdx.x; i < count; i += block_threads) Answer::leave_open(frame::here(), i);
-    else if (count <= few)
-      go_as<eight_lanes>(count);
-    else
-      go_as<alone>(count);
+    auto& s = frame::here();
+    if (count <= Answer::few) {
+      for (std::uint32_t i = threadIdx.x; i < count; i += block_threads) Answer::leave_open(s, i);
+    } else {
+      if (count <= block_threads / 8)
+        go_as<lanes<8>>(count);
+      else if (count <= block_threads / 4)
+        go_as<lanes<4>>(count);
+      else if (count <= block_threads / 2)
+        go_as<lanes<2>>(count);
+      else
+        go_as<alone>(count);
+      __syncthreads();  // only now: what may be the nearest of its part is measured by the least of all
+      for (std::uint32_t i = threadIdx.x; i < count; i += block_threads)
+        if (passed_by(i) <= Answer::reach_of_pair(s, s.part_of_pair[i], i)) Answer::leave_open(s, i);
+    }
     __syncthreads();
   }
 
  private:
-  static constexpr std::uint32_t few = 8 * warps;
-
   template <class Team>
   static __device__ void go_as(std::uint32_t count) {
     auto& s = frame::here();
@@ -55,10 +63,15 @@ struct leaf_first : tree_steps<Answer> {
       }
       if (live && key_distance(best) <= Answer::reach_of_part(s, part, 0)) Answer::hear(s, part, i, best);
       const real passed = team.least(others.bound);
-      __syncwarp();  // all of a team have been heard
-      // A point in a solid has yet to be found there.
-      if (live && team.rank() == 0 && (has_interior<typename Answer::part_type> || passed <= Answer::reach_of_pair(s, part, i))) Answer::leave_open(s, i);
+      if (i < count && team.rank() == 0) passed_by(i) = !live ? not_a_number : has_interior<typename Answer::part_type> ? -infinity : passed;
     }
+  }
+
+  /// How near what pair `i` has passed by may be; of one that may be in a solid all is yet to be found. Kept where nobody has a stack yet.
+  static __device__ real& passed_by(std::uint32_t i) {
+    auto& s = frame::here();
+    static_assert(pair_capacity <= warps * stack_capacity);
+    return s.stack[i / stack_capacity][i % stack_capacity].bound;
   }
 };
 

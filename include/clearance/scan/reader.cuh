@@ -8,9 +8,6 @@ namespace clearance::scan {
 
 inline constexpr int quad = 4;     ///< Points that a thread has in hand, in a row.
 inline constexpr std::uint32_t in_block_round = block_threads * quad;
-/// Points in a row that stay together: few, where each part has a bound and so more points are near.
-template <class Answer>
-inline constexpr std::uint32_t piece = Answer::bound_per_part ? 8 : 16;
 
 /// A thread's points, less the frame's origin; and why they do not count, a byte each: a drop_reason, or `no_point`.
 struct quad_points {
@@ -25,20 +22,33 @@ template <class Answer>
 class cards {
  public:
   /// A row of cards after the other, each dealt from another block on: else a block's cards could all be of one column.
-  __device__ cards() {
-    const std::uint32_t row = threadIdx.x / lanes_of_piece;
+  explicit __device__ cards(std::uint32_t rounds) : once_(rounds == 1) {
+    const std::uint32_t row = threadIdx.x / threads();
     std::uint32_t column = blockIdx.x + __umulhi(row * 0x9e3779b9u, gridDim.x);
     if (column >= gridDim.x) column -= gridDim.x;
     card_ = row * gridDim.x + column;
   }
   /// Of this thread's first point in a round; the others follow it.
   __device__ std::uint32_t index(std::uint32_t round) const {
-    return card_ * piece<Answer> + threadIdx.x % lanes_of_piece * quad + round * in_block_round * gridDim.x;
+    return card_ * (threads() * quad) + threadIdx.x % threads() * quad + round * in_block_round * gridDim.x;
   }
 
  private:
-  static constexpr std::uint32_t lanes_of_piece = piece<Answer> / quad;
+  /// Whose points in a row stay together: few, where each part has a bound and so more points are near; and one, where pairs take long and
+  /// nothing evens out what a block is dealt in its only round.
+  __device__ std::uint32_t threads() const {
+    if constexpr (!Answer::bound_per_part)
+      return 4;
+    else if constexpr (!Answer::goes_ahead)
+      return 2;
+    else if constexpr (Answer::few != 0)  // its first points may be the last that matter
+      return 2;
+    else
+      return once_ ? 1 : 2;
+  }
+
   std::uint32_t card_;
+  [[maybe_unused]] bool once_;
 };
 
 /// Counts of a thread's points that do not count, a byte for each of the first reasons; the others go to the block's at once, because

@@ -92,23 +92,51 @@ struct steps_down<Answer, H> : frame_parts<Answer> {
   /// Node n of part k, and its volume: from shared memory, if it is one of the first.
   static __device__ bvh_node node(std::uint32_t k, std::uint32_t n) {
     if constexpr (Answer::top_bytes > 0)
-      if (const std::uint32_t stride = parts::here().head.top_stride; n < stride) return parts::here().tops.nodes[k * stride + n];
-    return read_only(tree(k).nodes + n);
+      if (const std::uint32_t stride = parts::here().head.top_stride; n < stride) return near(parts::here().tops.nodes + k * stride + n);
+    return far(tree(k).nodes + n);
   }
   static __device__ volume_type volume(std::uint32_t k, std::uint32_t n) {
     if constexpr (Answer::top_bytes > 0)
-      if (const std::uint32_t stride = parts::here().head.top_stride; n < stride) return parts::here().tops.volumes[k * stride + n];
-    return read_only(tree(k).volumes + n);
+      if (const std::uint32_t stride = parts::here().head.top_stride; n < stride) return near(parts::here().tops.volumes + k * stride + n);
+    return far(tree(k).volumes + n);
+  }
+  /// In as few pieces as its size allows, whatever its members ask for: these arrays begin where the largest may. A minimum's walks wait
+  /// for one another and not for that.
+  template <class T>
+  static constexpr std::size_t piece = sizeof(T) % 16 == 0 ? 16 : sizeof(T) % 8 == 0 ? 8 : 4;
+  template <class T>
+  static constexpr bool has_pieces = sizeof(T) % piece<T> == 0 && alignof(T) >= 4;
+  template <class T, class Read>
+  static __device__ T in_pieces(const T* from, const Read& read) {
+    using word = std::conditional_t<piece<T> == 16, uint4, std::conditional_t<piece<T> == 8, uint2, std::uint32_t>>;
+    union copy {
+      __device__ copy() {}
+      __device__ ~copy() {}
+      T value;
+      word words[sizeof(T) / sizeof(word)];
+    } c;
+#pragma unroll
+    for (std::size_t i = 0; i < sizeof(T) / sizeof(word); ++i) c.words[i] = read(reinterpret_cast<const word*>(from) + i);
+    return c.value;
+  }
+  template <class T>
+  static __device__ T near(const T* from) {
+    if constexpr (Answer::goes_ahead && has_pieces<T>) return in_pieces(from, [](const auto* word) { return *word; });
+    return *from;
+  }
+  template <class T>
+  static __device__ T far(const T* from) {
+    if constexpr (Answer::goes_ahead && has_pieces<T>) return in_pieces(from, [](const auto* word) { return __ldg(word); });
+    return read_only(from);
   }
   template <class T>
   static __device__ void fetch(T& to, const T& from) {
-    constexpr std::size_t step = sizeof(T) % 16 == 0 ? 16 : sizeof(T) % 8 == 0 ? 8 : 4;
-    if constexpr (sizeof(T) % step != 0 || alignof(T) < 4) {
+    if constexpr (!has_pieces<T>) {
       to = from;
     } else {
 #pragma unroll
-      for (std::size_t b = 0; b < sizeof(T); b += step)
-        __pipeline_memcpy_async(reinterpret_cast<char*>(&to) + b, reinterpret_cast<const char*>(&from) + b, step);
+      for (std::size_t b = 0; b < sizeof(T); b += piece<T>)
+        __pipeline_memcpy_async(reinterpret_cast<char*>(&to) + b, reinterpret_cast<const char*>(&from) + b, piece<T>);
     }
   }
 };

@@ -7,9 +7,10 @@
 
 namespace clearance::scan {
 
-/// Eight lanes of a warp, which stays together all the way down: groups that part ways wait for one another at every step.
-struct eight_lanes {
-  static constexpr std::uint32_t size = 8;
+/// Some lanes of a warp, which stays together all the way down: groups that part ways wait for one another at every step.
+template <std::uint32_t Size>
+struct lanes {
+  static constexpr std::uint32_t size = Size;
   __device__ std::uint32_t rank() const { return threadIdx.x % size; }
   __device__ bool any(bool mine) const { return __any_sync(all_lanes, mine); }
   __device__ real least(real mine) const {
@@ -17,8 +18,9 @@ struct eight_lanes {
     return mine;
   }
   __device__ int first(bool mine) const {
-    const unsigned those = __ballot_sync(all_lanes, mine) >> (threadIdx.x & 24) & 0xff;
-    return those != 0 ? int(threadIdx.x & 24) + __ffs(int(those)) - 1 : -1;
+    const std::uint32_t first_lane = threadIdx.x & (32 - size);
+    const unsigned those = __ballot_sync(all_lanes, mine) >> first_lane & ((1u << size) - 1);
+    return those != 0 ? int(first_lane) + __ffs(int(those)) - 1 : -1;
   }
   __device__ bool is(int lane) const { return int(threadIdx.x & 31) == lane; }
   template <class T>
@@ -26,6 +28,7 @@ struct eight_lanes {
     return from_lane(mine, lane < 0 ? int(threadIdx.x & 31) : lane);
   }
 };
+using eight_lanes = lanes<8>;
 
 /// A part's tree as `descend` takes it.
 template <class Answer>
