@@ -77,13 +77,14 @@ std::vector<std::uint32_t> count_around(Question& question, std::span<const Eige
 
 /// Clouds have to be readable where the question runs.
 template <class Question, class Clouds>
-supported_distance least_supported(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const support_options& options) {
+supported_distance least_supported(Question& question, known_nearest& known, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                   const support_options& options) {
   if (options.min_points == 0 || !(options.radius >= 0 && options.radius < infinity))
     throw std::invalid_argument("clearance: a point cannot be confirmed by " + std::to_string(options.min_points) + " points within " +
                                 std::to_string(options.radius) + " m");
   supported_distance r;
   for (std::size_t k = std::min<std::size_t>(16, options.most), asked = 0;; k = std::min(4 * k, options.most)) {
-    const nearest_k_result near = list_nearest(question, poses, clouds, k, infinity);
+    const nearest_k_result near = list_nearest(question, known, poses, clouds, k, infinity);
     const auto [points, all] = nearest_points(near);
     const auto support = count_around(question, poses, clouds, std::span(points).subspan(asked), options);
     const auto its = std::size_t(std::find_if(support.begin(), support.end(), [&](std::uint32_t n) { return n >= options.min_points; }) - support.begin());
@@ -111,8 +112,9 @@ supported_distance least_supported(Question& question, std::span<const Eigen::Is
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and options. It cannot be enqueued: how many points
-/// have to be asked is known when some have been. One object is for one thread and one stream; the robot must stay.
+/// The prepared question: made once for a robot, asked every frame with new poses, points and options. It remembers how near the nearest
+/// were, which only ever makes it faster. It cannot be enqueued: how many points have to be asked is known when some have been. One object
+/// is for one thread and one stream; the robot must stay.
 template <class On, class PartView>
 class min_distance_supported_query {
  public:
@@ -124,11 +126,15 @@ class min_distance_supported_query {
   template <class Clouds>
   supported_distance operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const support_options& options = {}) {
     static_assert(explain_clouds<Clouds>());
-    return detail::least_supported(question_, poses, question_.memory.readable(clouds), options);
+    return detail::least_supported(question_, known_, poses, question_.memory.readable(clouds), options);
   }
+
+  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  void forget() { known_ = {}; }
 
  private:
   pairwise::pair_question<On, PartView> question_;
+  detail::known_nearest known_;
 };
 template <class On, robot Robot, class... Memory>
 min_distance_supported_query(const On&, const Robot&, Memory...)

@@ -67,8 +67,17 @@ TEST_CASE("Prepared, the nearest are in every frame what one call says, and afte
   const auto model = f.model();
   clearance::nearest_k_query query(host{}, model);
   for (; f.there(); f.next()) {
-    const std::size_t k = f.number % 2 ? 3 : 500;
+    const std::size_t k = f.number < 4 ? 500 : 3;  // what is known of a frame is of use in some, and in some not
     require_same(query(f.s.poses, f.here(), k), nearest_k(host{}, model, f.s.poses, f.here(), k), v, "frame " + std::to_string(f.number));
     CHECK_THROWS_AS(query(f.s.poses, f.here(), 0), std::invalid_argument);
+  }
+  for (const double away : {0.0, 0.0, 0.01, 0.5, 0.0, 3.0}) {  // the same points again, a little farther, far behind what is known, and near again
+    for (auto& pose : f.s.poses) pose.translation().x() += away;
+    f.see(3000);
+    for (const std::size_t k : {40, 7, 100}) {
+      const std::string what = std::to_string(k) + " after " + std::to_string(away) + " m";
+      for (const real d_max : {clearance::infinity, 0.5f})
+        require_same(query(f.s.poses, f.here(), k, {d_max}), nearest_k(host{}, model, f.s.poses, f.here(), k, {d_max}), v, what);
+    }
   }
 }

@@ -58,7 +58,7 @@ TEST_CASE("Prepared, the nearest are on a device in every frame the host's") {
     const auto there = model.on(gpu);
     clearance::nearest_k_query query(gpu, there);
     for (; f.there(); f.next()) {
-      const std::size_t k = f.number % 2 ? 3 : 500;
+      const std::size_t k = f.number < 4 ? 500 : 3;  // what is known of a frame is of use in some, and in some not
       require_same(query(f.s.poses, f.here(), k), nearest_k(host{}, model, f.s.poses, f.here(), k), v,
                    std::to_string(parts) + " parts, frame " + std::to_string(f.number));
       CHECK_THROWS_AS(query(f.s.poses, f.here(), 0), std::invalid_argument);
