@@ -30,20 +30,24 @@ namespace detail {
 /// so near, all is asked again.
 struct known_nearest {
   std::size_t k = 0;
-  std::vector<real> radii;  ///< One a part.
+  std::vector<real> last, radii;  ///< One a part: how near the last of k was, and a bound for the next frame's.
 
   std::vector<real> first_bounds(std::size_t parts, std::size_t wanted, real d_max) const {
     std::vector<real> first(parts, d_max);
     for (std::size_t p = 0; p < parts && wanted <= k; ++p) first[p] = std::min(d_max, radii[p]);
     return first;
   }
+  /// The next frame's may be farther by twice as much as they have moved, and 5 mm; at first by a tenth, and 2 cm.
   void learn(const nearest_k_result& found) {
-    constexpr real share = 0.1f, moved = 0.02f;  // as much farther the next frame's may be; metres
+    const bool again = k == found.per_part;
     k = found.per_part, radii.clear();
+    std::vector<real> now;
     for (std::size_t p = 0; p * k < found.pairs.size(); ++p) {
-      const real last = found.of(p).back().distance;
-      radii.push_back(last + share * std::abs(last) + moved);
+      now.push_back(found.of(p).back().distance);
+      const bool moved = again && now[p] < infinity && last[p] < infinity;
+      radii.push_back(now[p] + (moved ? 2 * std::abs(now[p] - last[p]) + 0.005f : std::abs(now[p]) / 10 + 0.02f));
     }
+    last = std::move(now);
   }
 };
 
