@@ -29,6 +29,9 @@ int example(const Backend& on) {
   const auto near = clearance::within(on, robot, poses, shelf, 0.12f);
   for (std::size_t k = 0; k < links.size(); ++k)
     std::printf("link %zu: %zu points within 12 cm\n", k, near.offsets[k + 1] - near.offsets[k]);
+
+  clearance::in_collision_query ask(on, robot);  // in every frame: it keeps its memory; within_query likewise
+  const auto again = ask(poses, shelf, 0.12);
   // [near]
 
   std::size_t expected = 0, first = shelf.size();
@@ -40,5 +43,6 @@ int example(const Backend& on) {
       ++expected;
       first = std::min(first, i);
     }
-  return near.pairs.size() == expected && expected > 0 && touched.state == clearance::state::collision && touched.point == first ? 0 : 1;
+  const bool same = touched.state == clearance::state::collision && touched.point == first && again.point == first;
+  return near.pairs.size() == expected && expected > 0 && same ? 0 : 1;
 }

@@ -7,6 +7,7 @@
 #include <clearance/bvh/flat_list.hpp>
 #include <clearance/chunked_query.hpp>
 #include <clearance/collect.hpp>
+#include <clearance/collect_query.hpp>
 #include <clearance/compacted.hpp>
 #include <clearance/distances.hpp>
 #include <clearance/distances_per_part.hpp>

@@ -2,5 +2,5 @@
 #pragma once
 // Every point's distance to every part, on the host or on a device.
 
-#include <clearance/collect.cuh>
+#include <clearance/collect_query.cuh>
 #include <clearance/distances_per_part.hpp>

@@ -4,7 +4,7 @@
 
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/written.hpp>
-#include <clearance/collect.hpp>
+#include <clearance/collect_query.hpp>
 #include <clearance/distances.hpp>
 
 namespace clearance {
@@ -19,43 +19,75 @@ struct part_distances {
   std::span<const real> of(std::size_t part) const { return std::span(distance).subspan(part * points, points); }
 };
 
-namespace pairwise {
+/// The prepared question: made once for a robot, asked every frame with new poses and points. One object is for one thread and one stream;
+/// the robot must stay.
+template <class On, class PartView>
+class distances_per_part_query {
+ public:
+  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  template <robot Robot, class... Memory>
+  distances_per_part_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
 
-template <class On, class PartView, class Clouds, class Here>
-distance_certainty enqueue_per_part(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                    std::size_t points, real* distance, real d_max, point_counts* counts, const Here& here) {
-  pointwise::check({d_max});
-  std::vector<std::uint32_t> first;
-  distance_certainty certain;
-  frames::cloud_frame frame;
-  frames::for_each_turn(frame, model.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
-    first.push_back(now.first);
-    on.for_each(anywhere.size(), nothing_written<S>{here(anywhere, now.cloud), distance + now.first, points, model.size()});
-  });
-  certain = certainty_of(frame);
-  const auto start = staged(on, first);
-  pairs_on<On>::once(on, model, poses, clouds, written{distance, start.data(), points, d_max}, counts, here);
-  return certain;
-}
+  /// As `distances_per_part`. Points that a device cannot read are copied into buffers that are kept.
+  template <class Clouds>
+  part_distances operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real d_max = infinity) {
+    static_assert(explain_clouds<Clouds>());
+    auto& memory = question_.memory;
+    memory.begin();
+    part_distances all;
+    all.points = points_of(clouds);
+    const std::size_t numbers = all.points * question_.model.size();
+    real* const distance = memory.template room<real>(numbers).data();
+    point_counts* const counts = memory.template room<point_counts>(1).data();
+    all.certain = ask(poses, memory.readable(clouds), all.points, distance, counts, d_max);
+    all.distance = question_.on.copy_out(distance, numbers);
+    all.counts = question_.on.copy_out(counts, 1)[0];
+    return all;
+  }
 
-}  // namespace pairwise
+  /// As `distances_per_part_async`. On a device nothing is waited for, and nothing allocated but by more clouds than ever before. A graph
+  /// that captures this keeps the poses of now.
+  template <class Clouds>
+  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real* distance, point_counts* counts, real d_max = infinity) {
+    static_assert(explain_clouds<Clouds>());
+    question_.memory.begin();
+    return ask(poses, clouds, points_of(clouds), distance, counts, d_max);
+  }
+
+ private:
+  template <class Clouds>
+  static std::size_t points_of(const Clouds& clouds) {
+    std::size_t points = 0;
+    for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
+    return points;
+  }
+
+  template <class Clouds>
+  distance_certainty ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t points, real* distance, point_counts* counts,
+                         real d_max) {
+    pointwise::check({d_max});
+    std::vector<std::uint32_t> first;
+    frames::cloud_frame frame;
+    frames::for_each_turn(frame, question_.model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+      first.push_back(now.first);
+      question_.on.for_each(source.size(), pairwise::nothing_written<S>{source, distance + now.first, points, question_.model.size()});
+    });
+    const auto [start] = question_.memory.put(first);
+    question_.ask(poses, clouds, pairwise::written{distance, start, points, d_max}, counts);
+    return certainty_of(frame);
+  }
+
+  pairwise::pair_question<On, PartView> question_;
+};
+template <class On, robot Robot, class... Memory>
+distances_per_part_query(const On&, const Robot&, Memory...)
+    -> distances_per_part_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
 /// Every point's distance to every part: parts times points numbers. `poses` and `clouds` as for min_distance. Throws
 /// std::invalid_argument if the number of poses is wrong, one is not rigid, or d_max is NaN.
 template <class On, robot Robot, class Clouds>
 part_distances distances_per_part(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real d_max = infinity) {
-  static_assert(explain_clouds<Clouds>());
-  const auto model = view_of(robot);
-  part_distances all;
-  for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { all.points += source.size(); });
-  auto distance = on.template make_scratch<real>(all.points * model.size());
-  auto counts = on.template make_scratch<point_counts>(1);
-  minimum::cloud_copies<On> copies;
-  all.certain =
-      pairwise::enqueue_per_part(on, model, poses, clouds, all.points, distance.data(), d_max, counts.data(), minimum::readable_on<On>{on, copies});
-  all.distance = on.copy_out(distance.data(), all.points * model.size());
-  all.counts = on.copy_out(counts.data(), 1)[0];
-  return all;
+  return pairwise::asked_once<distances_per_part_query>(on, robot, [&](auto& query) { return query(poses, clouds, d_max); });
 }
 
 /// Enqueues it: part k's distances to `distance[k * points]` and on, where `points` is the number of points of all clouds. Clouds, and the
@@ -63,10 +95,7 @@ part_distances distances_per_part(const On& on, const Robot& robot, std::span<co
 template <class On, robot Robot, class Clouds>
 distance_certainty distances_per_part_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                             real* distance, point_counts* counts, real d_max = infinity) {
-  static_assert(explain_clouds<Clouds>());
-  std::size_t points = 0;
-  for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
-  return pairwise::enqueue_per_part(on, view_of(robot), poses, clouds, points, distance, d_max, counts, minimum::as_it_is{});
+  return pairwise::asked_once<distances_per_part_query>(on, robot, [&](auto& query) { return query.enqueue(poses, clouds, distance, counts, d_max); });
 }
 
 }  // namespace clearance

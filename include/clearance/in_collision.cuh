@@ -2,5 +2,5 @@
 #pragma once
 // Is any point closer than a margin? On the host or on a device.
 
-#include <clearance/collect.cuh>
+#include <clearance/collect_query.cuh>
 #include <clearance/in_collision.hpp>

@@ -4,8 +4,7 @@
 
 #include <clearance/answer/first_within.hpp>
 #include <clearance/answer/margins.hpp>
-#include <clearance/backend/staged.hpp>
-#include <clearance/collect.hpp>
+#include <clearance/collect_query.hpp>
 
 namespace clearance {
 
@@ -39,39 +38,75 @@ struct tell_collision {
   }
 };
 
-template <class On, robot Robot, class Clouds, class Here>
-void enqueue_collision(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins,
-                       collision_result* result, const Here& here) {
-  static_assert(explain_clouds<Clouds>());
-  using answer = pairwise::first_within;
-  const auto model = view_of(robot);
-  pairwise::check_margins(margins, model.size());
-  std::vector<std::uint32_t> first;
-  const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
-  std::vector<real> reaches(2 * model.size());
-  for (std::size_t k = 0; k < model.size(); ++k) {
-    const double margin = margins[margins.size() == 1 ? 0 : k];
-    reaches[k] = pairwise::may_be_within(margin, model.facts[k], error);
-    reaches[model.size() + k] = pairwise::is_within(margin, model.facts[k], error);
-  }
-  auto word = staged(on, std::vector{answer::nothing});
-  auto near = staged(on, reaches);
-  auto start = staged(on, first);
-  pairwise::pairs_on<On>::once(on, model, poses, clouds, answer{word.data(), near.data(), near.data() + model.size(), start.data()}, &result->counts, here);
-  on.for_each(1, tell_collision{word.data(), start.data(), std::uint32_t(first.size()), result});
-}
-
 }  // namespace detail
+
+/// The prepared question: made once for a robot, asked every frame with new poses, points and margins. One object is for one thread and one
+/// stream; the robot must stay.
+template <class On, class PartView>
+class in_collision_query {
+ public:
+  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  template <robot Robot, class... Memory>
+  in_collision_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
+
+  /// As `in_collision`. Points that a device cannot read are copied into buffers that are kept.
+  template <class Clouds>
+  collision_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins) {
+    static_assert(explain_clouds<Clouds>());
+    auto& [on, model, memory, pairs] = question_;
+    memory.begin();
+    collision_result* const told = memory.template room<collision_result>(1).data();
+    ask(poses, memory.readable(clouds), margins, told);
+    return on.copy_out(told, 1)[0];
+  }
+  template <class Clouds>
+  collision_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin = 0) {
+    return (*this)(poses, clouds, std::span<const double>(&margin, 1));
+  }
+
+  /// As `in_collision_async`. On a device nothing is waited for, and nothing allocated but by more clouds than ever before. A graph that
+  /// captures this keeps the poses and margins of now.
+  template <class Clouds>
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins, collision_result* result) {
+    static_assert(explain_clouds<Clouds>());
+    question_.memory.begin();
+    ask(poses, clouds, margins, result);
+  }
+  template <class Clouds>
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin, collision_result* result) {
+    enqueue(poses, clouds, std::span<const double>(&margin, 1), result);
+  }
+
+ private:
+  template <class Clouds>
+  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins, collision_result* result) {
+    auto& [on, model, memory, pairs] = question_;
+    using answer = pairwise::first_within;
+    pairwise::check_margins(margins, model.size());
+    std::vector<std::uint32_t> first;
+    const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
+    std::vector<real> reaches(2 * model.size());
+    for (std::size_t k = 0; k < model.size(); ++k) {
+      const double margin = margins[margins.size() == 1 ? 0 : k];
+      reaches[k] = pairwise::may_be_within(margin, model.facts[k], error);
+      reaches[model.size() + k] = pairwise::is_within(margin, model.facts[k], error);
+    }
+    const auto [word, near, start] = memory.put(std::vector{answer::nothing}, reaches, first);
+    question_.ask(poses, clouds, answer{word, near, near + model.size(), start}, &result->counts);
+    on.for_each(1, detail::tell_collision{word, start, std::uint32_t(first.size()), result});
+  }
+
+  pairwise::pair_question<On, PartView> question_;
+};
+template <class On, robot Robot, class... Memory>
+in_collision_query(const On&, const Robot&, Memory...) -> in_collision_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
 /// Is any point closer than `margins`, in metres: one for all parts, or one a part? `poses` and `clouds` as for min_distance. Throws
 /// std::invalid_argument as that does, if there are other than one or as many margins, or one is NaN.
 template <class On, robot Robot, class Clouds>
 collision_result in_collision(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                               std::span<const double> margins) {
-  auto told = on.template make_scratch<collision_result>(1);
-  minimum::cloud_copies<On> copies;
-  detail::enqueue_collision(on, robot, poses, clouds, margins, told.data(), minimum::readable_on<On>{on, copies});
-  return on.copy_out(told.data(), 1)[0];
+  return pairwise::asked_once<in_collision_query>(on, robot, [&](auto& query) { return query(poses, clouds, margins); });
 }
 /// The same with one margin for all parts.
 template <class On, robot Robot, class Clouds>
@@ -83,7 +118,7 @@ collision_result in_collision(const On& on, const Robot& robot, std::span<const 
 template <class On, robot Robot, class Clouds>
 void in_collision_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins,
                         collision_result* result) {
-  detail::enqueue_collision(on, robot, poses, clouds, margins, result, minimum::as_it_is{});
+  pairwise::asked_once<in_collision_query>(on, robot, [&](auto& query) { query.enqueue(poses, clouds, margins, result); });
 }
 
 }  // namespace clearance

@@ -46,53 +46,47 @@ inline std::pair<std::vector<pair_distance>, bool> nearest_points(const nearest_
   return {std::move(pairs), all};
 }
 
-/// Which of some points have enough others around them.
-template <class On, class Clouds, class Here>
-std::vector<std::uint32_t> count_around(const On& on, std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                        std::span<const pair_distance> points, const support_options& options, const Here& here) {
+/// Which of some points have enough others around them. Clouds have to be readable where the question runs.
+template <class Question, class Clouds>
+std::vector<std::uint32_t> count_around(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                        std::span<const pair_distance> points, const support_options& options) {
+  const auto& on = question.on;
+  const auto facts = question.model.facts;
+  auto& memory = question.memory;
   std::vector<std::uint32_t> first, numbers;
   pairwise::look_ahead(facts, poses, clouds, first);
   for (const pair_distance& p : points) numbers.push_back(first[p.cloud] + p.point);
-  auto number = staged(on, numbers);
-  auto place = on.template make_scratch<position>(points.size());
-  auto support = staged(on, std::vector<std::uint32_t>(points.size()));
+  memory.begin();
+  position* const place = memory.template room<position>(points.size()).data();
+  const auto both = memory.put(numbers, std::vector<std::uint32_t>(points.size()));
+  std::uint32_t *const number = std::get<0>(both), *const support = std::get<1>(both);  // clang before 16 captures no structured bindings
   frames::cloud_frame frame;
-  frames::for_each_turn(frame, facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
-    on.for_each(points.size(), pairwise::place_candidates<S>{here(anywhere, now.cloud), frame.world_from_cloud, now.first, number.data(), place.data()});
+  frames::for_each_turn(frame, facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+    on.for_each(points.size(), pairwise::place_candidates<S>{source, frame.world_from_cloud, now.first, number, place});
   });
-  const std::vector<position> at = on.copy_out(place.data(), points.size());
-  frames::for_each_turn(frame, facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
+  const std::vector<position> at = on.copy_out(place, points.size());
+  frames::for_each_turn(frame, facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn&) {
     std::vector<ball> balls;
     for (const position& p : at) balls.push_back(pairwise::around(p, options.radius, frame.world_from_cloud));
-    auto near = staged(on, balls);
-    on.for_each(anywhere.size(), pairwise::count_support<S>{here(anywhere, now.cloud), frame.world_from_cloud, enclosing_ball(std::span<const ball>(balls)),
-                                                            near.data(), place.data(), support.data(), std::uint32_t(points.size()), options.min_points,
-                                                            options.radius * options.radius});
+    const auto [near] = memory.put(balls);
+    on.for_each(source.size(), pairwise::count_support<S>{source, frame.world_from_cloud, enclosing_ball(std::span<const ball>(balls)), near, place, support,
+                                                          std::uint32_t(points.size()), options.min_points, options.radius * options.radius});
   });
-  return on.copy_out(support.data(), points.size());
+  return on.copy_out(support, points.size());
 }
 
-}  // namespace detail
-
-/// The least distance over points that have at least `min_points` - 1 other valid points of all clouds within `radius` of them, by world
-/// coordinates in double. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that does, if min_points or most is 0,
-/// most is above 2^20, or the radius is negative or not finite.
-template <class On, robot Robot, class Clouds>
-supported_distance min_distance_supported(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                          const support_options& options = {}) {
-  static_assert(explain_clouds<Clouds>());
+/// Clouds have to be readable where the question runs.
+template <class Question, class Clouds>
+supported_distance least_supported(Question& question, known_nearest& known, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                   const support_options& options) {
   if (options.min_points == 0 || !(options.radius >= 0 && options.radius < infinity))
     throw std::invalid_argument("clearance: a point cannot be confirmed by " + std::to_string(options.min_points) + " points within " +
                                 std::to_string(options.radius) + " m");
-  const auto model = view_of(robot);
-  minimum::cloud_copies<On> copies;
-  const minimum::readable_on<On> here{on, copies};
   supported_distance r;
   for (std::size_t k = std::min<std::size_t>(16, options.most), asked = 0;; k = std::min(4 * k, options.most)) {
-    const nearest_k_result near = nearest_k(on, robot, poses, clouds, k);
-    const auto [points, all] = detail::nearest_points(near);
-    const auto more = std::span(points).subspan(asked);
-    const auto support = detail::count_around(on, model.facts, poses, clouds, more, options, here);
+    const nearest_k_result near = list_nearest(question, known, poses, clouds, k, infinity);
+    const auto [points, all] = nearest_points(near);
+    const auto support = count_around(question, poses, clouds, std::span(points).subspan(asked), options);
     const auto its = std::size_t(std::find_if(support.begin(), support.end(), [&](std::uint32_t n) { return n >= options.min_points; }) - support.begin());
     asked += its;
     r.counts = near.counts, r.isolated = asked;
@@ -102,8 +96,8 @@ supported_distance min_distance_supported(const On& on, const Robot& robot, std:
       r.distance = found.distance, r.cloud = found.cloud, r.point = found.point, r.part = found.part, r.primitive = found.primitive;
       min_distance_result bracketed;
       bracketed.distance = found.distance, bracketed.part = found.part;
-      minimum::bracket(bracketed, minimum::certain_distance(found.distance, near.certain.slop, near.certain.error), model.facts[found.part].tolerance, false,
-                       near.certain.error);
+      minimum::bracket(bracketed, minimum::certain_distance(found.distance, near.certain.slop, near.certain.error),
+                       question.model.facts[found.part].tolerance, false, near.certain.error);
       bracketed.dropped[int(drop_reason::too_close)] = r.counts.dropped[int(drop_reason::too_close)];
       minimum::allow_for_too_close(bracketed);
       r.state = bracketed.state, r.lower = bracketed.lower;
@@ -114,6 +108,45 @@ supported_distance min_distance_supported(const On& on, const Robot& robot, std:
       return r;
     }
   }
+}
+
+}  // namespace detail
+
+/// The prepared question: made once for a robot, asked every frame with new poses, points and options. It remembers how near the nearest
+/// were, which only ever makes it faster. It cannot be enqueued: how many points have to be asked is known when some have been. One object
+/// is for one thread and one stream; the robot must stay.
+template <class On, class PartView>
+class min_distance_supported_query {
+ public:
+  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  template <robot Robot, class... Memory>
+  min_distance_supported_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
+
+  /// As `min_distance_supported`. Points that a device cannot read are copied into buffers that are kept.
+  template <class Clouds>
+  supported_distance operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const support_options& options = {}) {
+    static_assert(explain_clouds<Clouds>());
+    return detail::least_supported(question_, known_, poses, question_.memory.readable(clouds), options);
+  }
+
+  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  void forget() { known_ = {}; }
+
+ private:
+  pairwise::pair_question<On, PartView> question_;
+  detail::known_nearest known_;
+};
+template <class On, robot Robot, class... Memory>
+min_distance_supported_query(const On&, const Robot&, Memory...)
+    -> min_distance_supported_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+
+/// The least distance over points that have at least `min_points` - 1 other valid points of all clouds within `radius` of them, by world
+/// coordinates in double. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that does, if min_points or most is 0,
+/// most is above 2^20, or the radius is negative or not finite.
+template <class On, robot Robot, class Clouds>
+supported_distance min_distance_supported(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                          const support_options& options = {}) {
+  return pairwise::asked_once<min_distance_supported_query>(on, robot, [&](auto& query) { return query(poses, clouds, options); });
 }
 
 }  // namespace clearance

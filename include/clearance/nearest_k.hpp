@@ -5,6 +5,8 @@
 #include <clearance/answer/nearest_bins.hpp>
 #include <clearance/within.hpp>
 
+#include <cmath>
+
 namespace clearance {
 
 struct nearest_k_options {
@@ -24,22 +26,50 @@ struct nearest_k_result {
 
 namespace detail {
 
-/// How near the k nearest points of each part are: computed distances of k points are at most that, or there are not so many. Not many
-/// more than k are, but for equal distances.
-template <class On, robot Robot, class Clouds>
-std::vector<real> radii_of_nearest(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::uint32_t k,
-                                   real d_max) {
+/// What the last frame tells of the next: how near the k nearest may still be. It is only ever a bound to begin with; where fewer points are
+/// so near, all is asked again.
+struct known_nearest {
+  std::size_t k = 0;
+  std::vector<real> last, radii;  ///< One a part: how near the last of k was, and a bound for the next frame's.
+
+  std::vector<real> first_bounds(std::size_t parts, std::size_t wanted, real d_max) const {
+    std::vector<real> first(parts, d_max);
+    for (std::size_t p = 0; p < parts && wanted <= k; ++p) first[p] = std::min(d_max, radii[p]);
+    return first;
+  }
+  /// The next frame's may be farther by twice as much as they have moved, and 5 mm; at first by a tenth, and 2 cm.
+  void learn(const nearest_k_result& found) {
+    const bool again = k == found.per_part;
+    k = found.per_part, radii.clear();
+    std::vector<real> now;
+    for (std::size_t p = 0; p * k < found.pairs.size(); ++p) {
+      now.push_back(found.of(p).back().distance);
+      const bool moved = again && now[p] < infinity && last[p] < infinity;
+      radii.push_back(now[p] + (moved ? 2 * std::abs(now[p] - last[p]) + 0.005f : std::abs(now[p]) / 10 + 0.02f));
+    }
+    last = std::move(now);
+  }
+};
+
+/// How near the k nearest points of each part are: computed distances of k points are at most that, or there are not so many within d_max.
+/// Not many more than k are, but for equal distances. `first` are bounds to begin with.
+template <class Question, class Clouds>
+std::vector<real> radii_of_nearest(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::uint32_t k, real d_max,
+                                   const std::vector<real>& first) {
   using pairwise::nearest_bins, pairwise::nearest_window;
-  const std::size_t parts = view_of(robot).size(), enough = 4 * k * parts + (1 << 16);
-  std::vector<nearest_window> windows(parts, nearest_window{.wanted = k, .bound = ordered(d_max)});
-  std::vector<std::uint32_t> bounds(parts, ordered(d_max)), before(parts);
+  const auto& on = question.on;
+  const std::size_t parts = question.model.size(), enough = 4 * k * parts + (1 << 16);
+  std::vector<nearest_window> windows;
+  std::vector<std::uint32_t> bounds, before(parts);
+  for (const real bound : first) bounds.push_back(ordered(bound)), windows.push_back({.wanted = k, .bound = bounds.back()});
   for (int pass = 0; pass < nearest_bins::passes; ++pass) {
     const int shift = nearest_bins::shift_of(pass);
-    auto counts = on.template make_scratch<std::uint32_t>(parts * nearest_bins::bins);
-    on.for_each(counts.size(), pairwise::zero_words{counts.data()});
-    auto there = staged(on, windows);
-    collect(on, robot, poses, clouds, nearest_bins{counts.data(), there.data(), shift});
-    const std::vector<std::uint32_t> all = on.copy_out(counts.data(), counts.size());
+    question.memory.begin();
+    std::uint32_t* const counts = question.memory.template room<std::uint32_t>(parts * nearest_bins::bins).data();
+    on.for_each(parts * nearest_bins::bins, pairwise::zero_words{counts});
+    const auto [there] = question.memory.put(windows);
+    question.count(poses, clouds, nearest_bins{counts, there, shift});
+    const std::vector<std::uint32_t> all = on.copy_out(counts, parts * nearest_bins::bins);
     std::size_t listed = 0;
     for (std::size_t p = 0; p < parts; ++p) {
       nearest_window& w = windows[p];
@@ -49,6 +79,7 @@ std::vector<real> radii_of_nearest(const On& on, const Robot& robot, std::span<c
       }
       const auto found = pairwise::find_wanted(std::span(all).subspan(p * nearest_bins::bins, nearest_bins::bins), w.wanted);
       const bool some = found.bin < nearest_bins::bins;
+      if (!some && first[p] < d_max) return radii_of_nearest(question, poses, clouds, k, d_max, std::vector<real>(parts, d_max));
       if (some) bounds[p] = std::min(bounds[p], nearest_bins::end_of(w.low, found.bin, shift));
       w = some ? nearest_window{w.low + (found.bin << shift), w.wanted - found.before, bounds[p]} : nearest_window{.bound = ordered(-infinity)};
       before[p] += found.before;
@@ -61,28 +92,64 @@ std::vector<real> radii_of_nearest(const On& on, const Robot& robot, std::span<c
   return radii;
 }
 
-}  // namespace detail
-
-/// The k nearest points of each part (peers: kNN, top k): by computed distance, then cloud and point; a point may be in the lists of several
-/// parts. `poses` and `clouds` as for min_distance; clouds that `on` cannot read are copied in each of two passes or more. Throws
-/// std::invalid_argument as min_distance, and if k is 0 or above 2^20, or d_max is NaN.
-template <class On, robot Robot, class Clouds>
-nearest_k_result nearest_k(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
-                           const nearest_k_options& options = {}) {
-  static_assert(explain_clouds<Clouds>());
+/// Clouds have to be readable where the question runs.
+template <class Question, class Clouds>
+nearest_k_result list_nearest(Question& question, known_nearest& known, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
+                              real d_max) {
   if (k == 0 || k > (1 << 20)) throw std::invalid_argument("clearance: k is " + std::to_string(k) + "; it must be 1 to 2^20");
-  if (!(options.d_max == options.d_max)) throw std::invalid_argument("clearance: d_max is not a number");
-  const std::vector<real> radii = detail::radii_of_nearest(on, robot, poses, clouds, std::uint32_t(k), options.d_max);
+  if (!(d_max == d_max)) throw std::invalid_argument("clearance: d_max is not a number");
+  const std::vector<real> first = known.first_bounds(question.model.size(), k, d_max);
+  const std::vector<real> radii = radii_of_nearest(question, poses, clouds, std::uint32_t(k), d_max, first);
   nearest_k_result all;
   all.per_part = k;
-  const within_result near = within(on, robot, poses, clouds, std::span<const real>(radii));
+  const within_result near = list_within(question, poses, clouds, radii);
   all.counts = near.counts, all.certain = near.certain;
   for (std::uint32_t p = 0; p < radii.size(); ++p) {
     all.pairs.insert(all.pairs.end(), near.pairs.begin() + std::ptrdiff_t(near.offsets[p]),
                      near.pairs.begin() + std::ptrdiff_t(std::min(near.offsets[p] + k, near.offsets[p + 1])));
     all.pairs.resize((p + 1) * k, {none, none, p, none, infinity});
   }
+  const bool lost = !std::equal(radii.begin(), radii.end(), first.begin(), [](real now, real before) { return now <= before; });
+  if (k >= known.k || lost) known.learn(all);  // what is known of more is a bound for fewer, too
   return all;
+}
+
+}  // namespace detail
+
+/// The prepared question: made once for a robot, asked every frame with new poses, points and k. It remembers how near the nearest were, which
+/// only ever makes it faster. It cannot be enqueued: what one pass counts decides on the host whether there is another, and how much is
+/// listed. One object is for one thread and one stream; the robot must stay.
+template <class On, class PartView>
+class nearest_k_query {
+ public:
+  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  template <robot Robot, class... Memory>
+  nearest_k_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
+
+  /// As `nearest_k`. Points that a device cannot read are copied into buffers that are kept.
+  template <class Clouds>
+  nearest_k_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k, const nearest_k_options& options = {}) {
+    static_assert(explain_clouds<Clouds>());
+    return detail::list_nearest(question_, known_, poses, question_.memory.readable(clouds), k, options.d_max);
+  }
+
+  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  void forget() { known_ = {}; }
+
+ private:
+  pairwise::pair_question<On, PartView> question_;
+  detail::known_nearest known_;
+};
+template <class On, robot Robot, class... Memory>
+nearest_k_query(const On&, const Robot&, Memory...) -> nearest_k_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+
+/// The k nearest points of each part (peers: kNN, top k): by computed distance, then cloud and point; a point may be in the lists of several
+/// parts. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as min_distance, and if k is 0 or above 2^20, or d_max is
+/// NaN.
+template <class On, robot Robot, class Clouds>
+nearest_k_result nearest_k(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
+                           const nearest_k_options& options = {}) {
+  return pairwise::asked_once<nearest_k_query>(on, robot, [&](auto& query) { return query(poses, clouds, k, options); });
 }
 
 }  // namespace clearance

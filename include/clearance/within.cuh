@@ -2,5 +2,5 @@
 #pragma once
 // Points within a distance of parts, on the host or on a device.
 
-#include <clearance/collect.cuh>
+#include <clearance/collect_query.cuh>
 #include <clearance/within.hpp>

@@ -2,10 +2,8 @@
 #pragma once
 // Which points are within a distance of each part? On the host; within.cuh has a device.
 
-#include <clearance/answer/bracket.hpp>
 #include <clearance/answer/listed.hpp>
-#include <clearance/backend/staged.hpp>
-#include <clearance/collect.hpp>
+#include <clearance/collect_query.hpp>
 
 #include <algorithm>
 
@@ -19,45 +17,106 @@ struct within_result {
   distance_certainty certain;  ///< Of each distance.
 };
 
+namespace detail {
+
+/// Of each part, from one radius or one a part.
+inline std::vector<real> radii_of(std::span<const real> radius, std::size_t parts) {
+  if (radius.size() != 1 && radius.size() != parts)
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " + std::to_string(radius.size()) + " radii");
+  std::vector<real> radii;
+  for (std::size_t k = 0; k < parts; ++k) {
+    radii.push_back(radius[radius.size() == 1 ? 0 : k]);
+    if (!(radii[k] == radii[k])) throw std::invalid_argument("clearance: the radius of part " + std::to_string(k) + " is not a number");
+  }
+  return radii;
+}
+
+/// All pairs within `radii`, one a part, in order. Clouds have to be readable where the question runs.
+template <class Question, class Clouds>
+within_result list_within(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const std::vector<real>& radii) {
+  auto& memory = question.memory;
+  within_result all;
+  all.certain = question.certain(poses, clouds);
+  std::vector<pair_distance> pairs;
+  for (std::size_t least = 1 << 16;;) {  // once more, if there was not enough
+    memory.begin();
+    const auto list = memory.template room<pair_distance>(least);
+    const auto [count, reaches] = memory.put(std::vector<unsigned long long>(1), radii);
+    all.counts = question.count(poses, clouds, pairwise::listed{list.data(), count, list.size(), reaches});
+    const std::size_t found = std::size_t(question.on.copy_out(count, 1)[0]);
+    if (found <= list.size()) {
+      pairs = question.on.copy_out(list.data(), found);
+      break;
+    }
+    least = found;
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const pair_distance& a, const pair_distance& b) {
+    return std::tie(a.part, a.distance, a.cloud, a.point) < std::tie(b.part, b.distance, b.cloud, b.point);
+  });
+  all.offsets.assign(radii.size() + 1, 0);
+  for (const pair_distance& pair : pairs) ++all.offsets[pair.part + 1];
+  for (std::size_t k = 0; k < radii.size(); ++k) all.offsets[k + 1] += all.offsets[k];
+  all.pairs = std::move(pairs);
+  return all;
+}
+
+}  // namespace detail
+
+/// The prepared question: made once for a robot, asked every frame with new poses, points and radii. One object is for one thread and one
+/// stream; the robot must stay.
+template <class On, class PartView>
+class within_query {
+ public:
+  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  template <robot Robot, class... Memory>
+  within_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
+
+  /// As `within`. Points that a device cannot read are copied into buffers that are kept.
+  template <class Clouds>
+  within_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const real> radius) {
+    static_assert(explain_clouds<Clouds>());
+    const std::vector<real> radii = detail::radii_of(radius, question_.model.size());
+    return detail::list_within(question_, poses, question_.memory.readable(clouds), radii);
+  }
+  template <class Clouds>
+  within_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real radius) {
+    return (*this)(poses, clouds, std::span<const real>(&radius, 1));
+  }
+
+  /// Enqueues it, with memory of the caller's: up to `capacity` pairs in any order; `count` becomes how many there are: if that is more,
+  /// some were cut. Clouds, and all that is written, must stay until it is done. On a device nothing is allocated or waited for. A graph
+  /// that captures this keeps the poses and radii of now.
+  template <class Clouds>
+  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const real> radius, pair_distance* pairs,
+                             std::size_t capacity, unsigned long long* count, point_counts* counts) {
+    static_assert(explain_clouds<Clouds>());
+    const std::vector<real> radii = detail::radii_of(radius, question_.model.size());
+    const distance_certainty certain = question_.certain(poses, clouds);
+    question_.memory.begin();
+    const auto [reaches] = question_.memory.put(radii);
+    const unsigned long long nothing = 0;
+    question_.on.stage(std::span(&nothing, 1), count);
+    question_.ask(poses, clouds, pairwise::listed{pairs, count, capacity, reaches}, counts);
+    return certain;
+  }
+  template <class Clouds>
+  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real radius, pair_distance* pairs, std::size_t capacity,
+                             unsigned long long* count, point_counts* counts) {
+    return enqueue(poses, clouds, std::span<const real>(&radius, 1), pairs, capacity, count, counts);
+  }
+
+ private:
+  pairwise::pair_question<On, PartView> question_;
+};
+template <class On, robot Robot, class... Memory>
+within_query(const On&, const Robot&, Memory...) -> within_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+
 /// All pairs of a point and a part whose computed distance is at most `radius` metres: one for all parts, or one a part. `poses` and
 /// `clouds` as for min_distance. Throws std::invalid_argument as that does, and if there are other than one or as many radii, or one
 /// is NaN.
 template <class On, robot Robot, class Clouds>
 within_result within(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const real> radius) {
-  static_assert(explain_clouds<Clouds>());
-  const auto model = view_of(robot);
-  if (radius.size() != 1 && radius.size() != model.size())
-    throw std::invalid_argument("clearance: there are " + std::to_string(model.size()) + " parts, but " + std::to_string(radius.size()) + " radii");
-  std::vector<real> reaches;
-  for (std::size_t k = 0; k < model.size(); ++k) {
-    reaches.push_back(radius[radius.size() == 1 ? 0 : k]);
-    if (!(reaches[k] == reaches[k])) throw std::invalid_argument("clearance: the radius of part " + std::to_string(k) + " is not a number");
-  }
-  auto near = staged(on, reaches);
-  within_result all;
-  frames::cloud_frame frame;
-  frames::for_each_turn(frame, model.facts, poses, clouds, [](const auto&, const frames::turn&) {});
-  all.certain = certainty_of(frame);
-  std::vector<pair_distance> pairs;
-  for (std::size_t room = 1 << 16;;) {  // once more, if there was not enough
-    auto list = on.template make_scratch<pair_distance>(room);
-    auto count = staged(on, std::vector<unsigned long long>(1));
-    all.counts = collect(on, robot, poses, clouds, pairwise::listed{list.data(), count.data(), room, near.data()});
-    const std::size_t found = std::size_t(on.copy_out(count.data(), 1)[0]);
-    if (found <= room) {
-      pairs = on.copy_out(list.data(), found);
-      break;
-    }
-    room = found;
-  }
-  std::sort(pairs.begin(), pairs.end(), [](const pair_distance& a, const pair_distance& b) {
-    return std::tie(a.part, a.distance, a.cloud, a.point) < std::tie(b.part, b.distance, b.cloud, b.point);
-  });
-  all.offsets.assign(model.size() + 1, 0);
-  for (const pair_distance& pair : pairs) ++all.offsets[pair.part + 1];
-  for (std::size_t k = 0; k < model.size(); ++k) all.offsets[k + 1] += all.offsets[k];
-  all.pairs = std::move(pairs);
-  return all;
+  return pairwise::asked_once<within_query>(on, robot, [&](auto& query) { return query(poses, clouds, radius); });
 }
 /// The same with one radius for all parts.
 template <class On, robot Robot, class Clouds>

@@ -2,5 +2,5 @@
 #pragma once
 // Zones around parts, on the host or on a device.
 
-#include <clearance/collect.cuh>
+#include <clearance/collect_query.cuh>
 #include <clearance/zones.hpp>

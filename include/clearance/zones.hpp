@@ -4,8 +4,7 @@
 
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/zones.hpp>
-#include <clearance/backend/staged.hpp>
-#include <clearance/collect.hpp>
+#include <clearance/collect_query.hpp>
 
 namespace clearance {
 
@@ -72,54 +71,84 @@ inline void add_reaches(std::span<const double> thresholds, const part_facts& fa
   }
 }
 
-template <class On, robot Robot, class Clouds, class Here>
-std::size_t enqueue_zones(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options,
-                          zone* zones, point_counts* counts, const Here& here) {
-  static_assert(explain_clouds<Clouds>());
-  const auto model = view_of(robot);
-  const std::size_t given = options.thresholds.size(), parts = model.size();
-  std::vector<std::uint32_t> first;
-  const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
-  if (options.each_part && (parts == 0 || given % parts != 0))
-    throw std::invalid_argument("clearance: " + std::to_string(given) + " thresholds are not the same number for each of " + std::to_string(parts) + " parts");
-  const std::size_t per_part = options.each_part ? given / parts : given;
-  std::vector<real> reaches;
-  for (std::size_t k = 0; k < parts; ++k)
-    add_reaches(std::span(options.thresholds).subspan(options.each_part ? k * per_part : 0, per_part), model.facts[k], error, reaches);
-  auto words = on.template make_scratch<pairwise::zone_words>(pairwise::count_in_zones::copies * reaches.size());
-  on.for_each(pairwise::count_in_zones::copies * reaches.size(), pairwise::empty_zones{words.data()});
-  auto near = staged(on, reaches);
-  auto start = staged(on, first);
-  const pairwise::count_in_zones counted{words.data(), near.data(), start.data(), std::uint32_t(per_part), std::uint32_t(reaches.size())};
-  pairwise::pairs_on<On>::once(on, model, poses, clouds, counted, counts, here);
-  on.for_each(reaches.size(), tell_zone{counted, std::uint32_t(first.size()), zones});
-  return per_part;
-}
-
 }  // namespace detail
+
+/// The prepared question: made once for a robot, asked every frame with new poses, points and thresholds. One object is for one thread and
+/// one stream; the robot must stay.
+template <class On, class PartView>
+class zones_query {
+ public:
+  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  template <robot Robot, class... Memory>
+  zones_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
+
+  /// As `zones`. Points that a device cannot read are copied into buffers that are kept.
+  template <class Clouds>
+  zones_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options) {
+    static_assert(explain_clouds<Clouds>());
+    auto& [on, model, memory, pairs] = question_;
+    memory.begin();
+    zone* const told = memory.template room<zone>(model.size() * options.thresholds.size()).data();
+    point_counts* const counts = memory.template room<point_counts>(1).data();
+    zones_result all;
+    all.min_points = options.min_points;
+    all.per_part = ask(poses, memory.readable(clouds), options, told, counts);
+    all.zones = on.copy_out(told, model.size() * all.per_part);
+    all.counts = on.copy_out(counts, 1)[0];
+    return all;
+  }
+
+  /// As `zones_async`. On a device nothing is waited for, and nothing allocated but by more zones or clouds than ever before. A graph that
+  /// captures this keeps the poses and thresholds of now.
+  template <class Clouds>
+  std::size_t enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options, zone* zones, point_counts* counts) {
+    static_assert(explain_clouds<Clouds>());
+    question_.memory.begin();
+    return ask(poses, clouds, options, zones, counts);
+  }
+
+ private:
+  template <class Clouds>
+  std::size_t ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options, zone* zones, point_counts* counts) {
+    auto& [on, model, memory, pairs] = question_;
+    const std::size_t given = options.thresholds.size(), parts = model.size();
+    std::vector<std::uint32_t> first;
+    const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
+    if (options.each_part && (parts == 0 || given % parts != 0))
+      throw std::invalid_argument("clearance: " + std::to_string(given) + " thresholds are not the same number for each of " + std::to_string(parts) +
+                                  " parts");
+    const std::size_t per_part = options.each_part ? given / parts : given;
+    std::vector<real> reaches;
+    for (std::size_t k = 0; k < parts; ++k)
+      detail::add_reaches(std::span(options.thresholds).subspan(options.each_part ? k * per_part : 0, per_part), model.facts[k], error, reaches);
+    using answer = pairwise::count_in_zones;
+    auto* const words = memory.template room<pairwise::zone_words>(answer::copies * reaches.size()).data();
+    on.for_each(answer::copies * reaches.size(), pairwise::empty_zones{words});
+    const auto [near, start] = memory.put(reaches, first);
+    const answer counted{words, near, start, std::uint32_t(per_part), std::uint32_t(reaches.size())};
+    question_.ask(poses, clouds, counted, counts);
+    on.for_each(reaches.size(), detail::tell_zone{counted, std::uint32_t(first.size()), zones});
+    return per_part;
+  }
+
+  pairwise::pair_question<On, PartView> question_;
+};
+template <class On, robot Robot, class... Memory>
+zones_query(const On&, const Robot&, Memory...) -> zones_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
 /// Enqueues it: `zones`, as zones_result has them, and `counts`, in memory that `on` writes; clouds must stay until it is done. How many
 /// zones each part has.
 template <class On, robot Robot, class Clouds>
 std::size_t zones_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options,
                         zone* zones, point_counts* counts) {
-  return detail::enqueue_zones(on, robot, poses, clouds, options, zones, counts, minimum::as_it_is{});
+  return pairwise::asked_once<zones_query>(on, robot, [&](auto& query) { return query.enqueue(poses, clouds, options, zones, counts); });
 }
 
 /// The points in zones around every part, in one pass. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that
 /// does, and if thresholds are negative, not in order, or not the same number for each part.
 template <class On, robot Robot, class Clouds>
 zones_result zones(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options) {
-  const std::size_t parts = view_of(robot).size();
-  auto told = on.template make_scratch<zone>(parts * options.thresholds.size());
-  auto counts = on.template make_scratch<point_counts>(1);
-  minimum::cloud_copies<On> copies;
-  zones_result all;
-  all.min_points = options.min_points;
-  all.per_part = detail::enqueue_zones(on, robot, poses, clouds, options, told.data(), counts.data(), minimum::readable_on<On>{on, copies});
-  all.zones = on.copy_out(told.data(), parts * all.per_part);
-  all.counts = on.copy_out(counts.data(), 1)[0];
-  return all;
+  return pairwise::asked_once<zones_query>(on, robot, [&](auto& query) { return query(poses, clouds, options); });
 }
 
 }  // namespace clearance

@@ -6,8 +6,12 @@
 #include "support/product_device.cuh"
 
 #include <clearance/distances.cuh>
+#include <clearance/distances_per_part.cuh>
+#include <clearance/in_collision.cuh>
 #include <clearance/min_distance_devices.cuh>
 #include <clearance/volume/sphere.hpp>
+#include <clearance/within.cuh>
+#include <clearance/zones.cuh>
 
 namespace {
 
@@ -105,6 +109,45 @@ TEST_CASE("Prepared questions allocate nothing, and do not wait, after their fir
   gpu.wait();
 }
 
+TEST_CASE("Prepared questions about pairs allocate nothing on a device, and do not wait, after a frame of a size") {
+  const device gpu;
+  const auto s = scenes<inner_sphere>()[1];
+  const sources<inner_sphere> all(s);
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{}).on(gpu);
+  const auto points = gpu.copy_in(all.span.bytes());
+  const placed cloud{all.span.at(points.data()), s.cloud_pose};
+  const std::vector two(2, cloud);
+  clearance::zones_query zones(gpu, model);
+  clearance::within_query within(gpu, model);
+  clearance::in_collision_query in_collision(gpu, model);
+  clearance::distances_per_part_query per_part(gpu, model);
+  const clearance::device_buffer<clearance::point_counts> counts(1, gpu.id);
+  const clearance::device_buffer<clearance::zone> zone(2 * model.size(), gpu.id);
+  const clearance::device_buffer<clearance::pair_distance> pairs(1000, gpu.id);
+  const clearance::device_buffer<unsigned long long> count(1, gpu.id);
+  const clearance::device_buffer<clearance::collision_result> result(1, gpu.id);
+  const clearance::device_buffer<real> distance(2 * all.span.size() * model.size(), gpu.id);
+  const auto frame = [&](const auto& clouds, double near) {
+    zones.enqueue(s.poses, clouds, {.thresholds = {near, 2 * near}}, zone.data(), counts.data());
+    within.enqueue(s.poses, clouds, real(near), pairs.data(), pairs.size(), count.data(), counts.data());
+    in_collision.enqueue(s.poses, clouds, near, result.data());
+    per_part.enqueue(s.poses, clouds, distance.data(), counts.data(), real(near));
+  };
+  frame(two, 0.1);
+  const counted before;
+  for (const double near : {0.1, 0.2, 0.3}) frame(two, near), frame(cloud, near);
+  CHECK(before.nothing(false));
+  const auto waited_for = [&] {
+    zones(s.poses, s.points, {.thresholds = {0.1, 0.2}}), within(s.poses, s.points, 0.1f);
+    in_collision(s.poses, s.points, 0.1), per_part(s.poses, s.points, 0.1f);
+  };
+  waited_for();
+  const std::size_t known = on_device;
+  waited_for(), frame(two, 0.1), waited_for();
+  CHECK(on_device == known);
+  gpu.wait();
+}
+
 TEST_CASE("One call takes one block of memory in the order of its stream, and waits for nothing") {
   const device gpu;
   const auto s = scenes<inner_sphere>()[1];
@@ -119,5 +162,11 @@ TEST_CASE("One call takes one block of memory in the order of its stream, and wa
   ask();
   CHECK(on_device == before.before_on_device + 2);  // taken, and given back
   CHECK(waits == before.before_waits);
+  const clearance::device_buffer<clearance::collision_result> found(1, gpu.id);
+  const auto collide = [&] { clearance::in_collision_async(gpu, model, s.poses, cloud, std::vector{0.1}, found.data()); };
+  collide();
+  const counted collided;
+  collide();
+  CHECK((on_device == collided.before_on_device + 2 && waits == collided.before_waits));
   gpu.wait();
 }

@@ -3,7 +3,7 @@
 #include "support/product.hpp"
 #include "support/tallied.hpp"
 
-#include <clearance/collect.hpp>
+#include <clearance/collect_query.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
@@ -30,6 +30,14 @@ void collect_all_scenes() {
       v.require(counts.seen == r.seen && counts.valid == r.valid && std::ranges::equal(counts.dropped, r.dropped), what, ": other counts");
       clearance::collect(host{1}, model, s.poses, cloud, tallied{farthest, one_thread.words});
       v.require(one_thread == expected, what, ": other pairs with one thread");
+      clearance::collect_query query(host{}, model);
+      for (int frame = 0; frame < 2; ++frame) {
+        tally_of_pairs prepared, enqueued;
+        clearance::point_counts seen;
+        v.require(query(s.poses, cloud, tallied{farthest, prepared.words}).valid == counts.valid && prepared == expected, what, ": other pairs, prepared");
+        query.enqueue(s.poses, cloud, tallied{farthest, enqueued.words}, &seen);
+        v.require(seen.valid == counts.valid && enqueued == expected, what, ": other pairs, enqueued");
+      }
       brute_tally(s, s.points, s.cloud_pose, 1, farthest, nothing_inside, expected);
       clearance::collect(host{}, model, s.poses, std::vector(2, cloud), tallied{farthest, of_two.words});
       v.require(of_two == expected, what, ": other pairs of two clouds");

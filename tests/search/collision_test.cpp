@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whether a point is within a margin, and which is the first, as all points and primitives say.
 #include "support/brute_distances.hpp"
+#include "support/frames.hpp"
 
 #include <clearance/in_collision.hpp>
 #include <clearance/make_model.hpp>
@@ -97,4 +98,27 @@ TEST_CASE("What gap and tolerance leave open is possible, and no point says noth
   CHECK_THROWS_AS(ask(0, 0, far, clearance::not_a_number), std::invalid_argument);
   const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball))}};
   CHECK_THROWS_AS(in_collision(host{}, robot, poses, point_span(far), std::vector{0.1, 0.2}), std::invalid_argument);
+}
+
+TEST_CASE("A prepared question of collision says in every frame what one call says, and goes on after one that is refused") {
+  verdict v;
+  moving_frames f(5, 113);
+  const auto model = f.model();
+  clearance::in_collision_query query(host{}, model);
+  const auto same = [](const clearance::collision_result& a, const clearance::collision_result& b) {
+    return a.state == b.state && a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.counts.valid == b.counts.valid;
+  };
+  std::size_t states[4] = {};
+  for (; f.there(); f.next()) {
+    const std::vector<double> margins(f.number % 2 ? 5 : 1, f.number < 4 ? 0.01 : -0.05);
+    const auto expected = in_collision(host{}, model, f.s.poses, f.here(), margins);
+    ++states[int(expected.state)];
+    v.require(same(query(f.s.poses, f.here(), margins), expected), "frame ", f.number, ": ", to_string(expected.state));
+    clearance::collision_result enqueued;
+    query.enqueue(f.s.poses, f.here(), margins, &enqueued);
+    v.require(same(enqueued, expected), "frame ", f.number, ", enqueued: ", to_string(enqueued.state), " and not ", to_string(expected.state));
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), std::vector{0.1, 0.2}), std::invalid_argument);
+  }
+  CHECK((states[int(state::free)] > 0 && states[int(state::collision)] > 0 && states[int(state::no_data)] == 1));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // On a device the point within a margin is the host's.
 #include "support/brute_pairs.hpp"
+#include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
 #include <clearance/in_collision.cuh>
@@ -41,4 +42,35 @@ TEST_CASE("In a crowd the first point is found again and again") {
     CHECK(expected.state == state::collision);
     for (int k = 0; k < 5; ++k) CHECK(same(in_collision(gpu, there, s.poses, point_span(s.points), margin), expected));
   }
+}
+
+TEST_CASE("A prepared question of collision says on a device in every frame what the host says, and in a graph") {
+  verdict v;
+  const own_stream stream;
+  const device gpu{0, stream.handle};
+  std::size_t states[4] = {};
+  for (const int parts : {3, 130}) {
+    moving_frames f(parts, 123);
+    const auto model = f.model();
+    const auto there = model.on(gpu);
+    clearance::in_collision_query query(gpu, there);
+    const auto result = room_on<clearance::collision_result>(gpu, 1);
+    const auto look = [&](const std::vector<double>& margins, const std::string& when) {
+      const auto expected = in_collision(host{}, model, f.s.poses, f.here(), margins);
+      v.require(same(gpu.copy_out(result)[0], expected), parts, " parts, ", when, ", enqueued: differs from the host's");
+      ++states[int(expected.state)];
+      return expected;
+    };
+    for (; f.there(); f.next()) {
+      const std::vector<double> margins(f.number % 2 ? std::size_t(parts) : 1, f.number < 4 ? 0.01 : -0.05);
+      const frame_there seen(gpu, f);
+      query.enqueue(f.s.poses, seen.all, margins, result.data());
+      const auto expected = look(margins, "frame " + std::to_string(f.number));
+      v.require(same(query(f.s.poses, f.here(), margins), expected), parts, " parts, frame ", f.number, ": differs from the host's");
+      CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
+    }
+    replay(stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, 0.02, result.data()); },
+           [&](const std::string& what) { look({0.02}, what); });
+  }
+  CHECK((states[int(state::free)] > 0 && states[int(state::collision)] > 0 && states[int(state::no_data)] > 0));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every part's distance to every point is that of a plain loop, and the least of them is the point's.
 #include "support/brute_per_part.hpp"
+#include "support/frames.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -41,4 +42,22 @@ TEST_CASE("No point, no part in reach, and d_max that is no number") {
   const auto one = distances_per_part(host{}, model, poses, std::vector<vec3>{{3, 0, 0}}, 2.5f);
   CHECK((one.of(0)[0] == 2 && one.of(1)[0] == clearance::infinity && one.counts.valid == 1));
   CHECK_THROWS_AS(distances_per_part(host{}, model, poses, std::vector<vec3>{{3, 0, 0}}, clearance::not_a_number), std::invalid_argument);
+}
+
+TEST_CASE("Prepared, every part's distances are in every frame what one call says, and after one that is refused") {
+  verdict v;
+  moving_frames f(5, 116);
+  const auto model = f.model();
+  clearance::distances_per_part_query query(host{}, model);
+  for (; f.there(); f.next()) {
+    const real d_max = f.number % 2 ? 0.3f : clearance::infinity;
+    const auto expected = distances_per_part(host{}, model, f.s.poses, f.here(), d_max);
+    const std::string what = "frame " + std::to_string(f.number);
+    require_same(query(f.s.poses, f.here(), d_max), expected, v, what);
+    clearance::part_distances enqueued = expected;
+    std::fill(enqueued.distance.begin(), enqueued.distance.end(), real(-1)), enqueued.counts = {};
+    query.enqueue(f.s.poses, f.here(), enqueued.distance.data(), &enqueued.counts, d_max);
+    require_same(enqueued, expected, v, what + ", enqueued");
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
+  }
 }

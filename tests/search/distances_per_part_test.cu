@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // On a device every part's distances are the host's.
 #include "support/brute_per_part.hpp"
+#include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
 #include <clearance/distances_per_part.cuh>
@@ -21,5 +22,35 @@ TEST_CASE("On a device every part's distances are the host's, to the bit") {
       const std::string what = s.name + ", d_max " + std::to_string(d_max);
       require_same(distances_per_part(gpu, model.on(gpu), s.poses, two, d_max), distances_per_part(host{}, model, s.poses, two, d_max), v, what);
     }
+  }
+}
+
+TEST_CASE("Prepared, every part's distances are on a device in every frame the host's, and in a graph") {
+  verdict v;
+  const own_stream stream;
+  const device gpu{0, stream.handle};
+  for (const int parts : {3, 130}) {
+    moving_frames f(parts, 126);
+    const auto model = f.model();
+    const auto there = model.on(gpu);
+    clearance::distances_per_part_query query(gpu, there);
+    const auto distance = room_on<real>(gpu, std::size_t(parts) * 45010);
+    const auto counts = room_on<clearance::point_counts>(gpu, 1);
+    const auto look = [&](real d_max, const std::string& when) {
+      const auto expected = distances_per_part(host{}, model, f.s.poses, f.here(), d_max);
+      const std::string what = std::to_string(parts) + " parts, " + when;
+      require_same({gpu.copy_out(distance.data(), expected.distance.size()), expected.points, gpu.copy_out(counts)[0], {}}, expected, v, what + ", enqueued");
+      return expected;
+    };
+    for (; f.there(); f.next()) {
+      const real d_max = f.number % 2 ? 0.3f : clearance::infinity;
+      const frame_there seen(gpu, f);
+      query.enqueue(f.s.poses, seen.all, distance.data(), counts.data(), d_max);
+      const auto expected = look(d_max, "frame " + std::to_string(f.number));
+      require_same(query(f.s.poses, f.here(), d_max), expected, v, "waited for");
+      CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
+    }
+    replay(stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, distance.data(), counts.data(), 0.3f); },
+           [&](const std::string& what) { look(0.3f, what); });
   }
 }

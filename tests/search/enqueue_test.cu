@@ -7,7 +7,7 @@
 #include "support/tallied.hpp"
 
 #include <clearance/backend/pinned_buffer.cuh>
-#include <clearance/collect.cuh>
+#include <clearance/collect_query.cuh>
 #include <clearance/distances.cuh>
 #include <clearance/in_collision.cuh>
 #include <clearance/min_distance_query.cuh>
@@ -96,6 +96,14 @@ TEST_CASE("An answer of one's own is enqueued without waiting, too", "[concurren
   CHECK(cudaStreamQuery(g.stream.handle) == cudaErrorNotReady);
   held.release();
   CHECK((g.words.data()[0] == expected.words[0] && g.words.data()[1] == expected.words[1]));
+
+  clearance::collect_query query(g.gpu, g.model);
+  g.words.data()[0] = g.words.data()[1] = 0;
+  const auto counts = query(g.s.poses, both, tallied{1, g.words.data()});
+  CHECK((g.words.data()[0] == expected.words[0] && g.words.data()[1] == expected.words[1] && counts.valid == g.counts.data()->valid));
+  query.enqueue(g.s.poses, g.clouds, tallied{1, g.words.data()}, g.counts.data());
+  g.gpu.wait();
+  CHECK((g.words.data()[0] == 2 * expected.words[0] && g.words.data()[1] == 2 * expected.words[1] && counts.valid == g.counts.data()->valid));
 }
 
 TEST_CASE("Several robots are asked in one call, each with its own result") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nearest confirmed point is the first of all, sorted, that has enough others around it.
 #include "support/brute_support.hpp"
+#include "support/frames.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
@@ -70,4 +71,17 @@ TEST_CASE("What confirms nothing is refused") {
   CHECK_THROWS_AS(ask({.radius = double(clearance::not_a_number)}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.radius = double(clearance::infinity)}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.most = 0}), std::invalid_argument);
+}
+
+TEST_CASE("Prepared, the nearest confirmed point is in every frame what one call says, and after one that is refused") {
+  verdict v;
+  moving_frames f(5, 115);
+  const auto model = f.model();
+  clearance::min_distance_supported_query query(host{}, model);
+  for (; f.there(); f.next()) {
+    const clearance::support_options options{.min_points = f.number % 2 ? 2u : 3u, .radius = 0.1};
+    const auto expected = min_distance_supported(host{}, model, f.s.poses, f.here(), options);
+    require_same(query(f.s.poses, f.here(), options), expected, v, "frame " + std::to_string(f.number));
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), {.min_points = 0}), std::invalid_argument);
+  }
 }

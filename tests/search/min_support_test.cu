@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // On a device the nearest point that others confirm is the host's.
 #include "support/brute_support.hpp"
+#include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
 #include <clearance/make_model.hpp>
@@ -29,4 +30,21 @@ TEST_CASE("On a device the nearest point that others confirm is the host's") {
       }
   }
   CHECK(isolated > 100);
+}
+
+TEST_CASE("Prepared, the nearest confirmed point is on a device in every frame the host's") {
+  verdict v;
+  const device gpu;
+  for (const int parts : {3, 130}) {
+    moving_frames f(parts, 125);
+    const auto model = f.model();
+    const auto there = model.on(gpu);
+    clearance::min_distance_supported_query query(gpu, there);
+    for (; f.there(); f.next()) {
+      const clearance::support_options options{.min_points = f.number % 2 ? 2u : 3u, .radius = 0.1};
+      require_same(query(f.s.poses, f.here(), options), min_distance_supported(host{}, model, f.s.poses, f.here(), options), v,
+                   std::to_string(parts) + " parts, frame " + std::to_string(f.number));
+      CHECK_THROWS_AS(query(f.s.poses, f.here(), {.min_points = 0}), std::invalid_argument);
+    }
+  }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The k nearest points of each part are those of a plain loop over all points and primitives, sorted and cut.
 #include "support/brute_nearest.hpp"
+#include "support/frames.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -58,4 +59,25 @@ TEST_CASE("How many and how far are numbers, and no point is no pair") {
   CHECK_THROWS_AS(nearest_k(host{}, robot, poses, points, 0), std::invalid_argument);
   CHECK_THROWS_AS(nearest_k(host{}, robot, poses, points, std::size_t(1) << 21), std::invalid_argument);
   CHECK_THROWS_AS(nearest_k(host{}, robot, poses, points, 1, {clearance::not_a_number}), std::invalid_argument);
+}
+
+TEST_CASE("Prepared, the nearest are in every frame what one call says, and after one that is refused") {
+  verdict v;
+  moving_frames f(5, 114);
+  const auto model = f.model();
+  clearance::nearest_k_query query(host{}, model);
+  for (; f.there(); f.next()) {
+    const std::size_t k = f.number < 4 ? 500 : 3;  // what is known of a frame is of use in some, and in some not
+    require_same(query(f.s.poses, f.here(), k), nearest_k(host{}, model, f.s.poses, f.here(), k), v, "frame " + std::to_string(f.number));
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), 0), std::invalid_argument);
+  }
+  for (const double away : {0.0, 0.0, 0.01, 0.5, 0.0, 3.0}) {  // the same points again, a little farther, far behind what is known, and near again
+    for (auto& pose : f.s.poses) pose.translation().x() += away;
+    f.see(3000);
+    for (const std::size_t k : {40, 7, 100}) {
+      const std::string what = std::to_string(k) + " after " + std::to_string(away) + " m";
+      for (const real d_max : {clearance::infinity, 0.5f})
+        require_same(query(f.s.poses, f.here(), k, {d_max}), nearest_k(host{}, model, f.s.poses, f.here(), k, {d_max}), v, what);
+    }
+  }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // On a device the k nearest points of each part are the host's.
 #include "support/brute_nearest.hpp"
+#include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
 #include <clearance/make_model.hpp>
@@ -46,4 +47,21 @@ TEST_CASE("The nearest of a crowd, and of a shell where all are about equally ne
     for (const std::size_t k : {1, 100, 5000})
       require_same(nearest_k(gpu, model.on(gpu), s.poses, point_span(*points), k), nearest_k(host{}, model, s.poses, point_span(*points), k), v,
                    std::to_string(k));
+}
+
+TEST_CASE("Prepared, the nearest are on a device in every frame the host's") {
+  verdict v;
+  const device gpu;
+  for (const int parts : {3, 130}) {
+    moving_frames f(parts, 124);
+    const auto model = f.model();
+    const auto there = model.on(gpu);
+    clearance::nearest_k_query query(gpu, there);
+    for (; f.there(); f.next()) {
+      const std::size_t k = f.number < 4 ? 500 : 3;  // what is known of a frame is of use in some, and in some not
+      require_same(query(f.s.poses, f.here(), k), nearest_k(host{}, model, f.s.poses, f.here(), k), v,
+                   std::to_string(parts) + " parts, frame " + std::to_string(f.number));
+      CHECK_THROWS_AS(query(f.s.poses, f.here(), 0), std::invalid_argument);
+    }
+  }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points within a distance are those of a plain loop over all points and primitives, in order.
 #include "support/brute_within.hpp"
+#include "support/frames.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -53,4 +54,28 @@ TEST_CASE("A list longer than its first room is whole, and one of the caller's s
   CHECK((count == 100000 && counts.valid == 50000 && pairs[99].distance > 0));
   CHECK_THROWS_AS(within(host{}, model, s.poses, cloud, clearance::not_a_number), std::invalid_argument);
   CHECK_THROWS_AS(within(host{}, model, s.poses, cloud, std::vector<real>(3, 1)), std::invalid_argument);
+}
+
+TEST_CASE("A prepared list says in every frame what one call says, and goes on after one that is refused") {
+  verdict v;
+  moving_frames f(5, 112);
+  const auto model = f.model();
+  clearance::within_query query(host{}, model);
+  std::size_t listed = 0;
+  for (; f.there(); f.next()) {
+    const std::vector<real> radii(f.number % 2 ? 5 : 1, f.number == 4 ? 10 : 0.3f);  // that of frame 4 is a longer list than there is room for at first
+    const auto expected = within(host{}, model, f.s.poses, f.here(), radii);
+    listed = std::max(listed, expected.pairs.size());
+    const std::string what = "frame " + std::to_string(f.number);
+    require_same(query(f.s.poses, f.here(), radii), expected, v, what);
+    std::vector<clearance::pair_distance> pairs(expected.pairs.size());
+    unsigned long long count = 77;
+    clearance::point_counts counts;
+    query.enqueue(f.s.poses, f.here(), radii, pairs.data(), pairs.size(), &count, &counts);
+    require_listed(pairs, count, expected, v, what + ", enqueued");
+    CHECK(counts.valid == expected.counts.valid);
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), std::vector<real>(3, 1)), std::invalid_argument);
+  }
+  CHECK(listed > 1 << 16);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // On a device points within a distance are the host's.
 #include "support/brute_within.hpp"
+#include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
 #include <clearance/make_model.hpp>
@@ -26,4 +27,39 @@ TEST_CASE("On a device points within a distance are the host's, and a long list 
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const std::vector cloud{placed{point_span(s.points)}};
   require_same(within(gpu, model.on(gpu), s.poses, cloud, 10), within(host{}, model, s.poses, cloud, 10), v, "many");
+}
+
+TEST_CASE("A prepared list says on a device in every frame what the host says, and in a graph") {
+  verdict v;
+  const own_stream stream;
+  const device gpu{0, stream.handle};
+  for (const int parts : {3, 130}) {
+    moving_frames f(parts, 122);
+    const auto model = f.model();
+    const auto there = model.on(gpu);
+    clearance::within_query query(gpu, there);
+    constexpr std::size_t capacity = 3000000;
+    const auto pairs = room_on<clearance::pair_distance>(gpu, capacity);
+    const auto count = room_on<unsigned long long>(gpu, 1);
+    const auto counts = room_on<clearance::point_counts>(gpu, 1);
+    const auto look = [&](const std::vector<real>& radii, const std::string& when) {
+      const auto expected = within(host{}, model, f.s.poses, f.here(), radii);
+      const std::string what = std::to_string(parts) + " parts, " + when;
+      const auto found = gpu.copy_out(count)[0];
+      require_listed(gpu.copy_out(pairs.data(), std::min<std::size_t>(found, capacity)), found, expected, v, what + ", enqueued");
+      v.require(gpu.copy_out(counts)[0].valid == expected.counts.valid, what, ": counts");
+      return expected;
+    };
+    for (; f.there(); f.next()) {
+      // That of frame 4 is a longer list than there is room for at first.
+      const std::vector<real> radii(f.number % 2 ? std::size_t(parts) : 1, f.number == 4 ? 0.8f : 0.1f);
+      const frame_there seen(gpu, f);
+      query.enqueue(f.s.poses, seen.all, radii, pairs.data(), capacity, count.data(), counts.data());
+      const auto expected = look(radii, "frame " + std::to_string(f.number));
+      require_same(query(f.s.poses, f.here(), radii), expected, v, "waited for");
+      CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
+    }
+    replay(stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, 0.1f, pairs.data(), capacity, count.data(), counts.data()); },
+           [&](const std::string& what) { look({0.1f}, what); });
+  }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points in zones are those of a plain loop over all points and primitives.
 #include "support/brute_zones.hpp"
+#include "support/frames.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -71,4 +72,25 @@ TEST_CASE("The innermost zone, few points, no point, and what cannot be asked") 
   CHECK_THROWS_AS(zones(host{}, no_parts, std::span<const Eigen::Isometry3d>(), point_span(points), {.thresholds = {0.1}, .each_part = true}), std::invalid_argument);
   const clearance::model two{std::vector{robot.parts()[0], robot.parts()[0]}};
   CHECK_THROWS_AS(zones(host{}, two, std::vector(2, poses[0]), point_span(points), {.thresholds = {0.1, 0.2, 0.3}, .each_part = true}), std::invalid_argument);
+}
+
+TEST_CASE("A prepared question of zones says in every frame what one call says, and goes on after one that is refused") {
+  verdict v;
+  moving_frames f(5, 111);
+  const auto model = f.model();
+  clearance::zones_query query(host{}, model);
+  for (; f.there(); f.next()) {
+    const clearance::zones_options options{.thresholds = f.number % 2 ? std::vector{0.02, 0.3} : std::vector{0.0, 0.05, 0.4}};
+    const auto expected = zones(host{}, model, f.s.poses, f.here(), options);
+    const std::string what = "frame " + std::to_string(f.number);
+    require_same(query(f.s.poses, f.here(), options), expected, v, what);
+    clearance::zones_result enqueued = expected;
+    std::fill(enqueued.zones.begin(), enqueued.zones.end(), clearance::zone{.points = 77});
+    enqueued.counts = {};
+    enqueued.per_part = query.enqueue(f.s.poses, f.here(), options, enqueued.zones.data(), &enqueued.counts);
+    require_same(enqueued, expected, v, what + ", enqueued");
+    v.require(enqueued.counts.valid == expected.counts.valid && expected.counts.valid + 1 >= moving_frames::sizes[f.number], what, ": counts");
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), {.thresholds = {0.2, 0.1}}), std::invalid_argument);
+    CHECK_THROWS_AS(query(std::span(f.s.poses).first(4), f.here(), options), std::invalid_argument);
+  }
 }

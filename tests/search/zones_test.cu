@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // On a device points in zones are the host's.
 #include "support/brute_zones.hpp"
+#include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
 #include <clearance/make_model.hpp>
@@ -48,4 +49,36 @@ TEST_CASE("Crowds in and around solids are counted one by one") {
   const auto found = zones(gpu, boxes.on(gpu), poses, point_span(crowd), options);
   require_same(found, zones(host{}, boxes, poses, point_span(crowd), options), v, "boxes");
   CHECK((found.of(0, 0).points > 10000 && found.of(0, 1).points > found.of(0, 0).points));
+}
+
+TEST_CASE("A prepared question of zones says on a device in every frame what the host says, and in a graph") {
+  verdict v;
+  const own_stream stream;
+  const device gpu{0, stream.handle};
+  for (const int parts : {3, 130}) {
+    moving_frames f(parts, 121);
+    const auto model = f.model();
+    const auto there = model.on(gpu);
+    clearance::zones_query query(gpu, there);
+    const clearance::zones_options wide{.thresholds = {0, 0.05, 0.4}}, narrow{.thresholds = {0.02, 0.3}};
+    const auto zone_there = room_on<clearance::zone>(gpu, wide.thresholds.size() * std::size_t(parts));
+    const auto counts = room_on<clearance::point_counts>(gpu, 1);
+    const auto look = [&](const clearance::zones_options& options, const std::string& when) {
+      const auto expected = zones(host{}, model, f.s.poses, f.here(), options);
+      const std::string what = std::to_string(parts) + " parts, " + when;
+      require_same({expected.per_part, 1, gpu.copy_out(zone_there.data(), expected.zones.size()), {}}, expected, v, what + ", enqueued");
+      v.require(gpu.copy_out(counts)[0].valid == expected.counts.valid, what, ": counts");
+      return expected;
+    };
+    for (; f.there(); f.next()) {
+      const auto& options = f.number % 2 ? narrow : wide;
+      const frame_there seen(gpu, f);
+      CHECK(query.enqueue(f.s.poses, seen.all, options, zone_there.data(), counts.data()) == options.thresholds.size());
+      const auto expected = look(options, "frame " + std::to_string(f.number));
+      require_same(query(f.s.poses, f.here(), options), expected, v, "waited for");
+      CHECK_THROWS_AS(query(f.s.poses, f.here(), {.thresholds = {0.2, 0.1}}), std::invalid_argument);
+    }
+    replay(stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, wide, zone_there.data(), counts.data()); },
+           [&](const std::string& what) { look(wide, what); });
+  }
 }

@@ -29,4 +29,14 @@ inline void require_same(const clearance::within_result& found, const clearance:
   v.require(same, what, ": some pair differs");
 }
 
+/// The same of a list in any order, of which `count` are told.
+inline void require_listed(std::vector<clearance::pair_distance> pairs, unsigned long long count, clearance::within_result expected, verdict& v,
+                           const std::string& what) {
+  v.require(count == expected.pairs.size() && pairs.size() == count, what, ": ", count, " pairs and not ", expected.pairs.size());
+  for (auto* list : {&pairs, &expected.pairs}) std::ranges::sort(*list, {}, [](const clearance::pair_distance& p) { return std::tuple(p.part, p.cloud, p.point); });
+  clearance::within_result found = expected;
+  found.pairs = std::move(pairs);
+  require_same(found, expected, v, what);
+}
+
 }  // namespace testing

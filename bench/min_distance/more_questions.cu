@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Zones, lists, the nearest, confirmed points, motions and joint vectors on a GPU, the points resident there. What is waited for by the
+// host's clock; *enqueued* and *placed* by CUDA events, behind other work: at once with memory for one call, or prepared.
+#include "device.cuh"
+#include "more_questions.hpp"
+
+#include <clearance/distances_per_part.cuh>
+#include <clearance/in_collision.cuh>
+#include <clearance/io/joint_chain.hpp>
+#include <clearance/min_distances.cuh>
+#include <clearance/min_support.cuh>
+#include <clearance/motion_clearance.cuh>
+#include <clearance/volume/sphere.hpp>
+#include <clearance/within.cuh>
+#include <clearance/zones.cuh>
+
+namespace {
+
+using namespace bench;
+using clearance::device, clearance::vec3, clearance::point_counts, clearance::device_buffer;
+
+auto model_there(const device& gpu) { return sphere_model<clearance::sphere>(the_scene()).on(gpu); }
+
+/// The robot and the frame on the GPU.
+struct question {
+  const scene& s = the_scene();
+  device gpu;
+  decltype(model_there(gpu)) model = model_there(gpu);
+  device_buffer<vec3> points;
+  clearance::placed<clearance::point_span> cloud;
+  device_buffer<point_counts> counts{1, gpu.id};
+  device_clock clock{true};
+
+  explicit question(std::size_t count)
+      : points(gpu.copy_in(std::span<const vec3>(repeated(s.cloud, count)))), cloud{clearance::point_span(points.data(), points.size()), s.world_from_camera} {}
+
+  template <class Frame>
+  void time(benchmark::State& state, const Frame& frame) const {
+    frame();
+    for (auto _ : state) state.SetIterationTime(clock.seconds(frame));
+  }
+};
+
+void zones(benchmark::State& state, bool prepared) {
+  if (no_device(state)) return;
+  question q(std::size_t(state.range(0)));
+  const clearance::zones_options options{.thresholds = {0.1, 0.2, 0.4}};
+  const device_buffer<clearance::zone> found(3 * q.model.size(), q.gpu.id);
+  clearance::zones_query query(q.gpu, q.model);
+  q.time(state, [&] {
+    if (prepared)
+      query.enqueue(q.s.poses, q.cloud, options, found.data(), q.counts.data());
+    else
+      clearance::zones_async(q.gpu, q.model, q.s.poses, q.cloud, options, found.data(), q.counts.data());
+  });
+}
+
+void within(benchmark::State& state, bool prepared) {
+  if (no_device(state)) return;
+  question q(std::size_t(state.range(0)));
+  const device_buffer<clearance::pair_distance> pairs(q.points.size(), q.gpu.id);
+  const device_buffer<unsigned long long> count(1, q.gpu.id);
+  const auto reaches = q.gpu.copy_in(std::span<const float>(std::vector<float>(q.model.size(), 0.1f)));
+  clearance::within_query query(q.gpu, q.model);
+  q.time(state, [&] {
+    if (prepared) {
+      query.enqueue(q.s.poses, q.cloud, 0.1f, pairs.data(), pairs.size(), count.data(), q.counts.data());
+    } else {
+      check_cuda(cudaMemsetAsync(count.data(), 0, sizeof(unsigned long long)), "cudaMemsetAsync");
+      clearance::within_async(q.gpu, q.model, q.s.poses, q.cloud, reaches.data(), pairs.data(), pairs.size(), count.data(), q.counts.data());
+    }
+  });
+  state.counters["pairs"] = double(q.gpu.copy_out(count)[0]);
+}
+
+void in_collision(benchmark::State& state, bool prepared) {
+  if (no_device(state)) return;
+  question q(std::size_t(state.range(0)));
+  const device_buffer<clearance::collision_result> found(1, q.gpu.id);
+  const std::vector margin{0.05};
+  clearance::in_collision_query query(q.gpu, q.model);
+  q.time(state, [&] {
+    if (prepared)
+      query.enqueue(q.s.poses, q.cloud, margin, found.data());
+    else
+      clearance::in_collision_async(q.gpu, q.model, q.s.poses, q.cloud, margin, found.data());
+  });
+}
+
+void per_part(benchmark::State& state, float d_max) {
+  if (no_device(state)) return;
+  question q(std::size_t(state.range(0)));
+  const device_buffer<float> distance(q.points.size() * q.model.size(), q.gpu.id);
+  clearance::distances_per_part_query query(q.gpu, q.model);
+  q.time(state, [&] { query.enqueue(q.s.poses, q.cloud, distance.data(), q.counts.data(), d_max); });
+}
+
+/// Seven joints, as the KUKA has them; or a stand-in's, where its data is not.
+clearance::joint_chain<> seven_joints() {
+  const std::size_t parts = the_scene().poses.size();
+  if (the_scene().name == "kuka") {
+    clearance::io::robot_options options;
+    options.geometry = clearance::io::robot_geometry::visual;
+    const std::filesystem::path data = CLEARANCE_TEST_DATA;
+    return clearance::io::joint_chain_of(clearance::io::load_robot(data / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf", options));
+  }
+  std::vector<clearance::chain_link> links(8);
+  for (std::uint32_t k = 1; k < 8; ++k) {
+    links[k].origin.m[2][3] = 0.2, links[k].parent = k - 1, links[k].value = k - 1;
+    links[k].axis = k % 2 ? clearance::position{0, 0, 1} : clearance::position{0, 1, 0};
+  }
+  std::vector<std::uint32_t> of_part;
+  for (std::uint32_t k = 0; k < parts; ++k) of_part.push_back(std::min(k, 7u));
+  return clearance::joint_chain<>(links, of_part, std::vector<clearance::joint_value>(7));
+}
+
+std::vector<double> joint_vectors(std::size_t count) {
+  std::mt19937 bits(5);
+  std::vector<double> q(7 * count);
+  for (double& j : q) j = 4.0 * (double(bits()) / 4294967296.0) - 2.0;
+  return q;
+}
+
+/// Poses of joint vectors that are on the GPU, by the GPU's time.
+void placed(benchmark::State& state) {
+  if (no_device(state)) return;
+  const question of(1);
+  const auto chain = seven_joints().on(of.gpu);
+  const auto q = of.gpu.copy_in(std::span<const double>(joint_vectors(std::size_t(state.range(0)))));
+  clearance::min_distances_query query(of.gpu, of.model);
+  of.time(state, [&] { query.place(chain, q.data(), std::size_t(state.range(0))); });
+}
+/// Of joint vectors of the host, until they are placed; by the host's clock. *there*: the GPU makes poses of them; else the host does.
+void placed_call(benchmark::State& state, bool there) {
+  if (no_device(state)) return;
+  const question of(1);
+  const auto chain = seven_joints();
+  const auto on_gpu = chain.on(of.gpu);
+  const auto q = joint_vectors(std::size_t(state.range(0)));
+  clearance::min_distances_query query(of.gpu, of.model);
+  ask_often(state, [&] {
+    if (there)
+      query.place(on_gpu, q);
+    else
+      query.place(chain.poses(q));
+    of.gpu.wait();
+    return true;
+  });
+}
+
+#define TIMES ->Arg(307200)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(50)
+BENCHMARK_CAPTURE(zones, enqueued_at_once, false) TIMES;
+BENCHMARK_CAPTURE(zones, enqueued_prepared, true) TIMES;
+BENCHMARK_CAPTURE(within, enqueued_at_once, false) TIMES;
+BENCHMARK_CAPTURE(within, enqueued_prepared, true) TIMES;
+BENCHMARK_CAPTURE(in_collision, enqueued_at_once, false) TIMES;
+BENCHMARK_CAPTURE(in_collision, enqueued_prepared, true) TIMES;
+BENCHMARK_CAPTURE(per_part, enqueued_10cm, 0.1f) TIMES;
+BENCHMARK_CAPTURE(per_part, enqueued_50cm, 0.5f) TIMES;
+BENCHMARK_CAPTURE(per_part, enqueued_untruncated, clearance::infinity) TIMES;
+BENCHMARK(placed)->Arg(4096)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(50);
+BENCHMARK_CAPTURE(placed_call, there, true)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
+BENCHMARK_CAPTURE(placed_call, by_the_host, false)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
+
+const int rows = [] {
+  for_each_question([](const std::string& name, const auto& row) {
+    benchmark::RegisterBenchmark(name.c_str(), [row](benchmark::State& state) {
+      if (no_device(state)) return;
+      const question q(307200);
+      row(state, q.gpu, q.model, q.cloud);
+    })->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(200);
+  });
+  return 0;
+}();
+
+}  // namespace
+
+BENCHMARK_MAIN();

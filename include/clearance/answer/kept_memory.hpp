@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Memory that a prepared question keeps from frame to frame. kept_memory.cuh has a device's.
+
+#include <clearance/answer/search_on.hpp>
+#include <clearance/frame/mapped_clouds.hpp>
+
+#include <cstring>
+#include <tuple>
+#include <utility>
+
+namespace clearance::pairwise {
+
+/// Memory is counted in these, so that it is aligned for anything.
+struct alignas(16) memory_unit {
+  std::byte bytes[16];
+};
+
+/// Where the memory is from, and how clouds are read, by where a question runs. Any backend that is not a device:
+template <class On>
+class memory_on {
+ public:
+  using piece = typename On::template scratch<memory_unit>;
+
+  explicit memory_on(const On& on) : on_(on) {}
+
+  piece take(std::size_t units) const { return on_.template make_scratch<memory_unit>(units); }
+
+  /// The same clouds, in copies if `On` cannot read them where they are. Copies stay until the next ones.
+  template <class Clouds>
+  decltype(auto) readable(const Clouds& clouds) {
+    if constexpr (std::is_same_v<On, host>) {
+      return (clouds);
+    } else {
+      copies_.clear();
+      return mapped_clouds(clouds, to_readable{&on_, &copies_});
+    }
+  }
+
+  /// What `ask(memory...)` answers, with memory for one call.
+  template <class Ask>
+  static auto once(const On&, const Ask& ask) {
+    return ask();
+  }
+
+ private:
+  struct to_readable {
+    const On* on;
+    minimum::cloud_copies<On>* copies;
+    std::uint32_t cloud = 0;
+
+    template <point_source S>
+    S operator()(const S& source) {
+      return minimum::readable_on<On>{*on, *copies}(source, cloud++);
+    }
+  };
+
+  On on_;
+  minimum::cloud_copies<On> copies_;
+};
+
+/// Rooms for what a question keeps of one frame. Those of the next frame are in the same places, one after another, unless they are
+/// larger than ever: only then is memory taken.
+template <class On>
+class kept_memory : public memory_on<On> {
+ public:
+  template <class... Memory>
+  explicit kept_memory(const On& on, Memory... memory) : memory_on<On>(on, memory...), on_(on) {}
+
+  /// All rooms are free again. What was enqueued before uses them before what comes.
+  void begin() { used_ = 0; }
+
+  /// The next room: of n, or more.
+  template <class T>
+  std::span<T> room(std::size_t n) {
+    static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= alignof(memory_unit));
+    auto& piece = next(units<T>(n));
+    return {reinterpret_cast<T*>(piece.data()), piece.size() * sizeof(memory_unit) / sizeof(T)};
+  }
+
+  /// The next room, with copies of all `data` one after another; nothing is waited for.
+  template <class... T>
+  std::tuple<T*...> put(const std::vector<T>&... data) {
+    staging_.resize((units<T>(data.size()) + ...));
+    memory_unit* const there = room<memory_unit>(staging_.size()).data();
+    std::size_t at = 0;
+    const auto copy = [&]<class U>(const std::vector<U>& from) {
+      static_assert(std::is_trivially_copyable_v<U> && alignof(U) <= alignof(memory_unit));
+      const std::size_t its = std::exchange(at, at + units<U>(from.size()));
+      if (!from.empty()) std::memcpy(staging_.data() + its, from.data(), from.size() * sizeof(U));
+      return reinterpret_cast<U*>(there + its);
+    };
+    const std::tuple<T*...> all{copy(data)...};  // braces: from left to right
+    on_.stage(std::span<const memory_unit>(staging_), there);
+    return all;
+  }
+
+ private:
+  using piece_type = typename memory_on<On>::piece;
+
+  template <class T>
+  static std::size_t units(std::size_t n) {
+    return (n * sizeof(T) + sizeof(memory_unit) - 1) / sizeof(memory_unit);
+  }
+  piece_type& next(std::size_t units) {
+    if (used_ == rooms_.size()) {
+      rooms_.push_back(this->take(units));
+    } else if (rooms_[used_].size() < units) {
+      outgrown_.push_back(this->take(std::max(units, 2 * rooms_[used_].size())));
+      std::swap(outgrown_.back(), rooms_[used_]);  // a graph may have captured it
+    }
+    return rooms_[used_++];
+  }
+
+  On on_;
+  std::size_t used_ = 0;
+  std::vector<piece_type> rooms_, outgrown_;
+  std::vector<memory_unit> staging_;
+};
+
+}  // namespace clearance::pairwise

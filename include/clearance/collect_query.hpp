@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Prepared questions about pairs of a point and a part. On the host; collect_query.cuh has a device.
+
+#include <clearance/answer/bracket.hpp>
+#include <clearance/answer/kept_memory.hpp>
+#include <clearance/collect.hpp>
+
+namespace clearance {
+
+namespace pairwise {
+
+/// What each of them is made of: a robot that is ready to be asked about, and memory that is kept.
+template <class On, class PartView>
+struct pair_question {
+  On on;
+  model_view<PartView> model;
+  kept_memory<On> memory;
+  typename pairs_on<On>::template kept<PartView> pairs;
+
+  template <class... Memory>
+  pair_question(const On& on, const model_view<PartView>& model, Memory... from) : on(on), model(model), memory(on, from...), pairs{on, model, from...} {}
+
+  /// Enqueues it: clouds have to be readable where it runs.
+  template <class Clouds, answer Answer>
+  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer, point_counts* counts) {
+    pairs.enqueue(poses, clouds, answer, counts, minimum::as_it_is{});
+  }
+  /// The same, waited for.
+  template <class Clouds, answer Answer>
+  point_counts count(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer) {
+    point_counts* const counts = memory.template room<point_counts>(1).data();
+    ask(poses, clouds, answer, counts);
+    return on.copy_out(counts, 1)[0];
+  }
+  /// What is certain of distances, before anything is asked.
+  template <class Clouds>
+  distance_certainty certain(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) const {
+    frames::cloud_frame frame;
+    frames::for_each_turn(frame, model.facts, poses, clouds, [](const auto&, const frames::turn&) {});
+    return certainty_of(frame);
+  }
+};
+
+/// One call: what `ask(query)` answers of a `Query` that is made for it, whose memory is given back in the order of its work.
+template <template <class, class> class Query, class On, robot Robot, class Ask>
+auto asked_once(const On& on, const Robot& robot, const Ask& ask) {
+  return memory_on<On>::once(on, [&](auto... memory) {
+    Query<On, typename decltype(view_of(robot))::part_type> query(on, robot, memory...);
+    return ask(query);
+  });
+}
+
+}  // namespace pairwise
+
+/// `collect`, prepared: made once for a robot, asked every frame with new poses, points and answers. One object is for one thread and one
+/// stream; the robot must stay.
+template <class On, class PartView>
+class collect_query {
+ public:
+  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  template <robot Robot, class... Memory>
+  collect_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
+
+  /// As `collect`. Points that a device cannot read are copied into buffers that are kept.
+  template <class Clouds, class Answer>
+  point_counts operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer) {
+    static_assert(explain_answer<Answer>() && explain_clouds<Clouds>());
+    question_.memory.begin();
+    return question_.count(poses, question_.memory.readable(clouds), answer);
+  }
+
+  /// As `collect_async`. On a device one kernel a cloud, and nothing is allocated or waited for. A graph that captures this keeps the
+  /// poses of now.
+  template <class Clouds, class Answer>
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer, point_counts* counts) {
+    static_assert(explain_answer<Answer>() && explain_clouds<Clouds>());
+    question_.ask(poses, clouds, answer, counts);
+  }
+
+ private:
+  pairwise::pair_question<On, PartView> question_;
+};
+template <class On, robot Robot, class... Memory>
+collect_query(const On&, const Robot&, Memory...) -> collect_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+
+}  // namespace clearance

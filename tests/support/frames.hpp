@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What a prepared question is asked, frame after frame.
+
+#include "support/brute_pairs.hpp"
+#include "support/product.hpp"
+
+#include <clearance/volume/sphere.hpp>
+
+namespace testing {
+
+/// A robot that moves among clouds that grow and shrink; some frames have more clouds, one has no point.
+struct moving_frames {
+  static constexpr std::size_t count = 6;
+  static constexpr std::size_t sizes[count] = {3000, 20000, 0, 500, 30000, 17};
+
+  dice d;
+  scene<inner_sphere> s;
+  std::size_t number = 0;
+  std::vector<std::vector<vec3>> points;
+
+  moving_frames(int parts, unsigned seed) : d(seed) {
+    for (int part = 0; part < parts; ++part) {
+      s.parts.push_back(random_spheres(d, 20, 0.1, 0.03));
+      s.poses.push_back(d.pose(1));
+    }
+    see(sizes[0]);
+  }
+
+  bool there() const { return number < count; }
+  void next() {
+    if (++number >= count) return;
+    s.poses[number % s.poses.size()] = d.pose(1);
+    see(sizes[number]);
+  }
+  /// Clouds of so many points, half as many, and in every other frame of a few more.
+  void see(std::size_t n) {
+    points = {d.points(n, 1.5), d.points(n / 2, 1.5)};
+    if (number % 2 == 1) points.push_back(d.points(10, 1.5));
+    if (n > 100) points[0][n / 3].y = clearance::not_a_number;
+  }
+  clouds here() const {
+    clouds all;
+    for (const auto& p : points) all.push_back({clearance::point_span(p), shifted(0.1 * double(all.size()), 0, 0)});
+    return all;
+  }
+
+  auto model() const { return make_model<clearance::sphere>(s, {}, clearance::wrapped{}); }
+};
+
+}  // namespace testing
