@@ -34,22 +34,15 @@ void replay(const own_stream& stream, const clearance::device& gpu, moving_frame
   const frame_there there(gpu, f);
   enqueue(there.all);  // once, as memory is not for a graph
   gpu.wait();
-  cudaGraph_t graph = nullptr;
-  cudaGraphExec_t ready = nullptr;
-  check(cudaStreamBeginCapture(stream.handle, cudaStreamCaptureModeThreadLocal));
-  enqueue(there.all);
-  check(cudaStreamEndCapture(stream.handle, &graph));
-  check(cudaGraphInstantiate(&ready, graph, 0));
+  const captured_graph graph(stream.handle, [&] { enqueue(there.all); });
   for (int launch = 0; launch < 3; ++launch) {
     f.see(5000);
     for (std::size_t c = 0; c < f.points.size(); ++c)
       check(cudaMemcpyAsync(there.points[c].data(), f.points[c].data(), f.points[c].size() * sizeof(vec3), cudaMemcpyDefault, stream.handle));
-    check(cudaGraphLaunch(ready, stream.handle));
+    graph.launch();
     gpu.wait();
     look("launch " + std::to_string(launch) + " of a graph");
   }
-  check(cudaGraphExecDestroy(ready));
-  check(cudaGraphDestroy(graph));
 }
 
 }  // namespace testing
