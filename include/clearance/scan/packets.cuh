@@ -69,6 +69,7 @@ struct packet_search : tree_steps<Answer> {
 
  private:
   static constexpr std::uint32_t at_once = most_children;
+  static constexpr std::uint32_t worth_sharing = 4;  ///< So few pending nodes are sooner looked at than handed over.
   static __device__ std::uint32_t lane() { return threadIdx.x % 32; }
 
   /// How far the nearest part is, about.
@@ -216,7 +217,7 @@ struct packet_search : tree_steps<Answer> {
       }
 #pragma unroll 1
       for (std::uint32_t begin = 0; begin < count; begin += at_once) top = push(k, e.node, begin, count, q, reach, stack, top);
-      if (sharing::asked() && !too_deep()) {
+      if (top > worth_sharing && sharing::asked() && !too_deep()) {
         sharing::talk(v);
         reach = min(reach, v.reach(k));
         sharing::hand_over(k, reach, v, frame::here().stack, top);
