@@ -4,6 +4,8 @@
 // its last. Whoever walks for a shared packet finds for itself, and tells how near; who is done last has all that was found. Nobody
 // waits for another's walk, and who does what changes no answer: of what is found the least counts, in whatever order.
 
+#include <clearance/ground/ordered.hpp>
+#include <clearance/result.hpp>
 #include <clearance/scan/parts.cuh>
 
 namespace clearance::scan {
