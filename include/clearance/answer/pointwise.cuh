@@ -52,6 +52,14 @@ struct points_of {
     __device__ void offer_inside(std::uint32_t k) {
       if (reach(k) >= 0) best.offer({0, before + k, none});
     }
+    __device__ bool hear(const visitor_type& other) {
+      const real its = scan::fresh(other.best.distance);
+      limit = min(limit, its);
+      return best.distance < its;
+    }
+    __device__ void join(const visitor_type& other) {
+      if (best.offer(other.best)) at = other.at;
+    }
   };
 
   static __device__ real reach_of_part(const block& s, std::uint32_t, std::uint32_t) { return s.head.answer.d_max; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A cloud in one kernel for answers whose bound belongs to a single point: a warp takes 32 neighbours after another.
+// A cloud in one kernel for answers whose bound belongs to a single point: a warp takes 32 neighbours after another, and then helps.
 
 #include <clearance/scan/filter.cuh>
 #include <clearance/scan/finish.cuh>
@@ -47,6 +47,7 @@ __device__ inline std::uint32_t place_in_packet(std::uint32_t b, std::uint32_t c
 template <class Answer, class Source>
 __global__ void __launch_bounds__(block_threads, 2) packet_kernel(const __grid_constant__ Source source,
                                                                   const __grid_constant__ scan_arguments<Answer> a) {
+  using sharing = shared_walk<Answer>;
   auto& s = memory_of_block<Answer>();
   const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds, packets = (a.points + 31) / 32;
   std::uint32_t packet = (t / 32 * gridDim.x + blockIdx.x) * row, left = row, dropped = 0;
@@ -59,20 +60,34 @@ __global__ void __launch_bounds__(block_threads, 2) packet_kernel(const __grid_c
   __syncthreads();
   sharpen<Answer>(t, 0);
   __syncthreads();
-  while (packet < packets) {
-    const std::uint32_t i = place_in_packet(packet, a.columns), index = a.first + i;
+  for (;;) {
+    const bool own = packet < packets;
+    std::uint32_t p = packet;
+    if (!own) {  // there is none left: a part of another warp's
+      if (!sharing::receive()) break;
+      p = sharing::task().packet;
+      next = read(p);
+    }
+    const std::uint32_t i = place_in_packet(p, a.columns), index = a.first + i;
     const sample here = next;
-    ++packet, --left;
-    if (left != 0) next = read(packet);
-    add_dropped(dropped, here.dropped);
+    if (own) {
+      ++packet, --left;
+      if (left != 0) next = read(packet);
+      add_dropped(dropped, here.dropped);
+    }
     const vec3 x = here.position - s.origin;
     const bool exists = i < a.points, counts = exists && here.valid();
     auto v = Answer::visitor(s, index, counts);
-    const bool live = near_any<Answer>(x, a.parts) && counts && s.rigid;
-    if (live) Answer::remind(s, index, x, v);
-    packet_search<Answer>::search(live, x, v);
-    if (exists) Answer::take(s, index, counts, v);
-    if (left == 0) {  // rows are dealt, not before the last is done, to who has none left: some take much longer
+    bool live;
+    if (own) {
+      live = near_any<Answer>(x, a.parts) && counts && s.rigid;
+      if (live) Answer::remind(s, index, x, v);
+    } else {
+      live = (sharing::task().live >> lane & 1) != 0;
+    }
+    packet_search<Answer>::search(p, live, x, v);
+    if (sharing::last(v) && exists) Answer::take(s, index, counts, v);
+    if (own && left == 0) {  // rows are dealt, not before the last is done, to who has none left: some take much longer
       if (lane == 0) packet = (all_warps + atomicAdd(&a.state->taken, 1u)) * row;
       packet = __shfl_sync(all_lanes, packet, 0), left = row;
       next = read(packet);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 // Neighbouring points down the trees as packets: a warp walks once for 32 of them, a lane a point, and all lanes look at the same
-// node. It is taken if any of them wants it, the nearest first. Points that are no neighbours walk alone. (A ball around the packet
-// that first tells which children may be wanted takes longer: at some distance it tells of too many.)
+// node. It is taken if any of them wants it, the nearest first. Where the depth jumps, points before and behind go one after the other:
+// alone, a point a lane, they would be the last to end. Points that are no neighbours at all do walk alone. (A ball around the packet that
+// first tells which children may be wanted takes longer: at some distance it tells of too many.)
 
 #include <clearance/scan/interior.hpp>
+#include <clearance/scan/shared_walk.cuh>
 #include <clearance/scan/steps.cuh>
 
 namespace clearance::scan {
@@ -20,8 +22,9 @@ template <class Answer>
 struct packet_memory : block_memory<Answer> {
   using node_type = packet_node<typename node_of<typename block_memory<Answer>::hierarchy_type>::type>;
   alignas(16) node_type stack[warps][deepest_stack];
+  sharing_memory<Answer> sharing;
 
-  __device__ void clear() {}
+  __device__ void clear() { sharing.clear(); }
 };
 
 /// Each lane has a point, and a visitor for it:
@@ -35,26 +38,56 @@ struct packet_search : tree_steps<Answer> {
   using traits = bounding_volume_traits<typename hierarchy::volume_type>;
   using node_type = typename steps::node_type;
   using stacked = packet_node<node_type>;
+  using sharing = shared_walk<Answer>;
 
   /// The point of this lane, `x` in the cloud's frame, if it is `live`. The whole warp calls it.
   template <class Visitor>
-  static __device__ void search(bool live, vec3 x, Visitor& v) {
-    const unsigned those = __ballot_sync(all_lanes, live);
-    if (those == 0) return;
-    const std::uint32_t parts = frame::here().head.parts;
-    const unsigned later = those >> 16 << 16;  // of neighbours in a row the one in the middle, if it is there
-    const vec3 middle = from_lane(x, later != 0 ? __ffs(int(later)) - 1 : 31 - __clz(int(those)));
-    const real spread = from_bits(most_of(all_lanes, live ? to_bits(rough_length(x - middle)) : 0)) * (1 + slack);
-    real gap = infinity;
-    for (std::uint32_t k = lane(); k < parts; k += 32) gap = min(gap, rough_length(middle - frame::place(k).root.around.center));
-    if (!too_deep() && 2 * spread > from_bits(least_of(all_lanes, to_bits(gap)))) {  // no neighbours
-      v = alone(live, x, v);
-      return;
-    }
+  static __device__ void search(std::uint32_t packet, bool live, vec3 x, Visitor& v) {
+    unsigned left = __ballot_sync(all_lanes, live);
+    if (left == 0) return;
+    const bool helps = sharing::helps();
+    if (!helps) sharing::begin(packet);
 #pragma unroll 1
-    for (std::uint32_t begin = 0; begin < parts; begin += 32) {  // a lane a part, and the nearest first
+    while (left != 0) {
+      const unsigned later = left >> 16 << 16;  // of neighbours in a row the one in the middle, if it is there
+      const vec3 middle = from_lane(x, later != 0 ? __ffs(int(later)) - 1 : 31 - __clz(int(left)));
+      const real way = rough_length(x - middle);
+      unsigned near = left;
+      if (!helps && !too_deep()) {
+        const real most = gap_to(middle) / 2;
+        near = __ballot_sync(all_lanes, live && way <= most);
+        if (4 * __popc(near) < __popc(left)) {  // no neighbours
+          v = alone(live, x, v);
+          return;
+        }
+      }
+      const bool its = (near >> lane() & 1) != 0;
+      together(live && its, x, middle, from_bits(most_of(all_lanes, its ? to_bits(way) : 0)) * (1 + slack), v);
+      live = live && !its, left &= ~near;
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t at_once = most_children;
+  static constexpr std::uint32_t worth_sharing = 4;  ///< So few pending nodes are sooner looked at than handed over.
+  static __device__ std::uint32_t lane() { return threadIdx.x % 32; }
+
+  /// How far the nearest part is, about.
+  static __device__ real gap_to(vec3 middle) {
+    real gap = infinity;
+    for (std::uint32_t k = lane(); k < frame::here().head.parts; k += 32) gap = min(gap, rough_length(middle - frame::place(k).root.around.center));
+    return from_bits(least_of(all_lanes, to_bits(gap)));
+  }
+
+  /// Points within `spread` of their middle, part by part.
+  template <class Visitor>
+  static __device__ void together(bool live, vec3 x, vec3 middle, real spread, Visitor& v) {
+    const bool helps = sharing::helps();
+    const std::uint32_t first = helps ? sharing::task().part : 0, end = helps ? first + 1 : frame::here().head.parts;
+#pragma unroll 1
+    for (std::uint32_t begin = first; begin < end; begin += 32) {  // a lane a part, and the nearest first
       std::uint32_t mine = no_bound;
-      if (begin + lane() < parts) {
+      if (begin + lane() < end) {
         const ball around = frame::place(begin + lane()).root.around;
         const real d = rough_length(middle - around.center);
         mine = ordered(lowered(d - around.radius - spread, d + around.radius + spread));
@@ -69,10 +102,6 @@ struct packet_search : tree_steps<Answer> {
       }
     }
   }
-
- private:
-  static constexpr std::uint32_t at_once = most_children;
-  static __device__ std::uint32_t lane() { return threadIdx.x % 32; }
 
   /// Trees may be too deep or wide for stacks in shared memory.
   static __device__ bool too_deep() {
@@ -100,7 +129,7 @@ struct packet_search : tree_steps<Answer> {
     const frame_part& place = frame::place(k);
     const vec3 q = place.part_from_cloud(x);
     live = live && frames::may_reach(place.root.around, v.reach(k), x);
-    if (live && inside(k, x, v)) live = false;
+    if (live && !sharing::helps() && inside(k, x, v)) live = false;
     walk(k, live, q, v);
   }
 
@@ -162,11 +191,13 @@ struct packet_search : tree_steps<Answer> {
   /// Part k's tree, all lanes together.
   template <class Visitor>
   static __device__ void walk(std::uint32_t k, bool live, vec3 q, Visitor& v) {
+    sharing::talk(v);
     real reach = live ? v.reach(k) : -infinity;
     stacked* const stack = own_stack();
-    std::uint32_t top = 1;
+    const std::uint32_t given = sharing::task().nodes;
+    std::uint32_t top = given != 0 ? given : 1;
     __syncwarp();
-    if (lane() == 0) stack[0] = {-infinity, steps::root(k)};
+    if (lane() == 0 && given == 0) stack[0] = {-infinity, steps::root(k)};
 #pragma unroll 1
     while (top > 0) {
       __syncwarp();  // all that has been pushed is there
@@ -182,9 +213,14 @@ struct packet_search : tree_steps<Answer> {
             if (__all_sync(all_lanes, primitive.lower_bound(q) > reach)) continue;
           if (const real d = primitive.distance(q); d <= reach) v.offer(k, place, steps::id(k, place), d), reach = v.reach(k);
         }
-      } else {
+        continue;
+      }
 #pragma unroll 1
-        for (std::uint32_t begin = 0; begin < count; begin += at_once) top = push(k, e.node, begin, count, q, reach, stack, top);
+      for (std::uint32_t begin = 0; begin < count; begin += at_once) top = push(k, e.node, begin, count, q, reach, stack, top);
+      if (top > worth_sharing && sharing::asked() && !too_deep()) {
+        sharing::talk(v);
+        reach = min(reach, v.reach(k));
+        sharing::hand_over(k, reach, v, frame::here().stack, top);
       }
     }
   }
