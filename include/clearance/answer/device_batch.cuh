@@ -5,6 +5,7 @@
 #include <clearance/answer/batch_kernel.cuh>
 #include <clearance/answer/batch_place.cuh>
 #include <clearance/answer/plain_search.hpp>
+#include <clearance/backend/side_stream.cuh>
 #include <clearance/cloud_tree/device_tree.cuh>
 #include <clearance/frame/clouds.hpp>
 #include <clearance/robot/model.hpp>
@@ -25,7 +26,7 @@ class device_batch {
 
   /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
   device_batch(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
-      : on_(on), model_(model), facts_(model.facts.begin(), model.facts.end()), memory_(memory), counts_(1, on.id, memory) {
+      : on_(on), model_(model), facts_(model.facts.begin(), model.facts.end()), memory_(memory), beside_(on), counts_(1, on.id, memory) {
     check_stack<near_first>(model.depth, model.width);
     model_.facts = facts_;
     anywhere_.assign(facts_.size(), Eigen::Isometry3d::Identity());
@@ -93,11 +94,12 @@ class device_batch {
     const bool foreseen = Question::by_margin && count_clouds(clouds) > 1;  // margins are for what is certain about all clouds
     if (foreseen)
       frames::for_each_turn(frame_, facts_, anywhere_, clouds, [&](const auto& given, const frames::turn& now) {
-        place_in(point_span{}, told(given, now, question, false));
+        place_in(on_, point_span{}, told(given, now, question, false));
       });
     seen_ = frames::for_each_turn(frame_, facts_, anywhere_, clouds, [&](const auto& given, const frames::turn& now) {
       const auto source = here(given, now.cloud);
       while (trees_.size() <= now.cloud) trees_.push_back(std::make_unique<cloud_tree::device_tree>(on_, memory_));
+      beside_.fork();
       trees_[now.cloud]->build(source, &counts_.data()->dropped);
       ask(source, trees_[now.cloud]->view(), told(source, now, question, foreseen));
     });
@@ -125,15 +127,17 @@ class device_batch {
             results_.data(), &counts_.data()->dropped, &counts_.data()->lost};
   }
   template <point_source S>
-  void place_in(const S& source, const arguments& a) const {
-    on_.launch(place_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
+  void place_in(const device& on, const S& source, const arguments& a) const {
+    on.launch(place_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
   }
   template <point_source S>
   void ask(const S& source, const tree_type& tree, const arguments& a) {
-    if constexpr (Question::by_margin)
-      place_in(point_span{}, a);
-    else
-      place_in(source, a);
+    beside_.join([&](const device& beside) {  // the tree does not need it
+      if constexpr (Question::by_margin)
+        place_in(beside, point_span{}, a);
+      else
+        place_in(beside, source, a);
+    });
     // As many threads as a device has room for: of few configurations each gets more; and where most of them end at once, or a look takes
     // long, all do. And stacks as deep as room is left for: the fewer pairs a round may take, the more rounds.
     const bool uneven = a.question.limited() || scan::has_interior<PartView>;
@@ -171,6 +175,7 @@ class device_batch {
   std::pmr::memory_resource* memory_;
   int processors_ = 0;
   std::size_t of_processor_ = 0, of_block_ = 0;  ///< Bytes of shared memory.
+  side_stream beside_;
   const void* allowed_ = nullptr;  ///< The kernel whose limit of shared memory was raised last.
   std::uint32_t configurations_ = 0;
   std::uint64_t seen_ = 0;
