@@ -2,6 +2,7 @@
 #pragma once
 
 #include <clearance/answer/witness.hpp>
+#include <clearance/scan/descend.hpp>
 #include <clearance/scan/threads.cuh>
 
 namespace clearance::minimum {
@@ -24,6 +25,7 @@ struct walk_by_warp {
     using traits = bounding_volume_traits<typename H::volume_type>;
     const std::uint32_t lane = threadIdx.x % 32, at_once = tree.width() <= lanes ? nodes : 1;
     real reach = best.reach();
+    if (!(reach < infinity)) reach = scan::descend(scan::plain_steps<H>{tree}, q);  // inside a solid: something is so near
     if (!(traits::lower_bound(tree.volume(tree.root()), q) <= reach)) return;
     if (lane == 0) pending[0] = tree.root();
     __syncwarp();
@@ -49,7 +51,7 @@ struct walk_by_warp {
         if (near) pending[count + __popc(those & ((1u << lane) - 1))] = child;
         count += std::uint32_t(__popc(those));
       }
-      reach = from_ordered(scan::least_of(scan::all_lanes, ordered(best.reach())));
+      reach = min(reach, from_ordered(scan::least_of(scan::all_lanes, ordered(best.reach()))));
     }
     const bool nearest = best.id != none && best.within == reach;
     if (best.id != scan::least_of(scan::all_lanes, nearest ? best.id : none)) best.id = none;
