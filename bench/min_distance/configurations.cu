@@ -108,8 +108,9 @@ void states(benchmark::State& state, Make make, double margin) {
   ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
       [margin](auto& its, const auto& cloud) { return its.enqueue(cloud, margin); });
 }
-/// The frame as a depth image, whose tree needs no sort: nearly the same points. Without `all` only those nearer than 5 cm.
-void image(benchmark::State& state, bool whole) {
+/// The frame as a depth image, whose tree needs no sort: nearly the same points. `Query` is asked by `enqueue(query, cloud)`.
+template <template <class, class> class Query, class Enqueue>
+void ask_image(benchmark::State& state, Enqueue enqueue) {
   if (no_device(state)) return;
   const scene& s = the_scene();
   const clearance::own_stream stream(0);
@@ -119,24 +120,15 @@ void image(benchmark::State& state, bool whole) {
   const auto there = gpu.copy_in(std::span<const float>(depths));
   const clearance::depth_image seen(there.data(), 640, 480, {525, 525, 319.5, 239.5});
   const auto model = spheres(s);
-  clearance::min_distances_query query(gpu, model);
-  const float d_max = whole ? clearance::infinity : 0.05f;
+  Query query(gpu, model);
   ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
-      [&](auto& its, const auto&) { return its.enqueue(placed{seen, s.world_from_camera}, {d_max}); });
+      [&](auto& its, const auto&) { return enqueue(its, placed{seen, s.world_from_camera}); });
+}
+void image(benchmark::State& state, float d_max) {
+  ask_image<clearance::min_distances_query>(state, [d_max](auto& its, const auto& cloud) { return its.enqueue(cloud, {d_max}); });
 }
 void image_states(benchmark::State& state, double margin) {
-  if (no_device(state)) return;
-  const scene& s = the_scene();
-  const clearance::own_stream stream(0);
-  const device gpu = stream.on();
-  std::vector<float> depths;
-  for (const vec3& p : s.cloud) depths.push_back(p.z);
-  const auto there = gpu.copy_in(std::span<const float>(depths));
-  const clearance::depth_image seen(there.data(), 640, 480, {525, 525, 319.5, 239.5});
-  const auto model = spheres(s);
-  clearance::in_collisions_query query(gpu, model);
-  ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
-      [&](auto& its, const auto&) { return its.enqueue(placed{seen, s.world_from_camera}, margin); });
+  ask_image<clearance::in_collisions_query>(state, [margin](auto& its, const auto& cloud) { return its.enqueue(cloud, margin); });
 }
 void monitor(benchmark::State& state, float d_max) {
   if (no_device(state)) return;
@@ -166,9 +158,9 @@ BENCHMARK_CAPTURE(random, tree_alone, spheres, -1.0f) TIMES(1);
 BENCHMARK_CAPTURE(states, spheres, spheres, 0) TIMES(4096);
 BENCHMARK_CAPTURE(states, spheres_5cm, spheres, 0.05) TIMES(4096);
 BENCHMARK_CAPTURE(states, triangles, triangles, 0) TIMES(4096);
-BENCHMARK_CAPTURE(image, spheres, true) TIMES(4096);
-BENCHMARK_CAPTURE(image, spheres_within_5cm, false) TIMES(4096);
-BENCHMARK_CAPTURE(image, tree_alone, false) TIMES(1);
+BENCHMARK_CAPTURE(image, spheres, all) TIMES(4096);
+BENCHMARK_CAPTURE(image, spheres_within_5cm, 0.05f) TIMES(4096);
+BENCHMARK_CAPTURE(image, tree_alone, 0.05f) TIMES(1);
 BENCHMARK_CAPTURE(image_states, spheres, 0) TIMES(4096);
 BENCHMARK_CAPTURE(image_states, tree_alone, -1) TIMES(1);
 BENCHMARK_CAPTURE(monitor, untruncated, all) TIMES(500);

@@ -83,20 +83,4 @@ template <robot Robot>
 in_collisions_query(const device&, const Robot&, std::pmr::memory_resource*)
     -> in_collisions_query<device, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-namespace detail {
-
-/// Memory for one call comes in the order of its stream.
-template <>
-struct states_once<device> {
-  template <class Robot, class Clouds>
-  static in_collisions_result of(const device& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                 std::span<const double> margins) {
-    stream_resource memory(on.id, on.stream);
-    in_collisions_query query(on, robot, &memory);
-    return query(poses, clouds, margins);
-  }
-};
-
-}  // namespace detail
-
 }  // namespace clearance

@@ -92,27 +92,16 @@ class in_collisions_query<host, PartView> {
 template <class On, robot Robot>
 in_collisions_query(const On&, const Robot&) -> in_collisions_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-namespace detail {
-
-template <class On>
-struct states_once {
-  template <class Robot, class Clouds>
-  static in_collisions_result of(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                 std::span<const double> margins) {
-    in_collisions_query query(on, robot);
-    return query(poses, clouds, margins);
-  }
-};
-
-}  // namespace detail
-
 /// Is any point closer to a configuration than `margins`, in metres: one for all parts, or one a part? `poses` as for min_distances.
 /// Throws std::invalid_argument as that does, if there are other than one or as many margins, or one is NaN.
 template <class On, robot Robot, class Clouds>
 in_collisions_result in_collisions(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                    std::span<const double> margins) {
   static_assert(explain_clouds<Clouds>());
-  return detail::states_once<On>::of(on, robot, poses, clouds, margins);
+  return detail::once<On>::of(on, [&](auto... memory) {
+    in_collisions_query query(on, robot, memory...);
+    return query(poses, clouds, margins);
+  });
 }
 /// The same with one margin for all parts.
 template <class On, robot Robot, class Clouds>

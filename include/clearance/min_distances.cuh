@@ -3,7 +3,6 @@
 // The least distances of many configurations, on the host or on a device.
 
 #include <clearance/answer/placed_batch.cuh>
-#include <clearance/backend/stream_resource.cuh>
 #include <clearance/min_distance.cuh>
 #include <clearance/min_distances.hpp>
 
@@ -71,21 +70,5 @@ class min_distances_query<device, PartView> : public minimum::placed_batch<PartV
 template <robot Robot>
 min_distances_query(const device&, const Robot&, std::pmr::memory_resource*)
     -> min_distances_query<device, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
-
-namespace detail {
-
-/// Memory for one call comes in the order of its stream.
-template <>
-struct batch_once<device> {
-  template <class Robot, class Clouds>
-  static min_distances_result of(const device& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                 const min_distances_options& options) {
-    stream_resource memory(on.id, on.stream);
-    min_distances_query query(on, robot, &memory);
-    return query(poses, clouds, options);
-  }
-};
-
-}  // namespace detail
 
 }  // namespace clearance

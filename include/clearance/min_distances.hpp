@@ -135,20 +135,6 @@ class min_distances_query<host, PartView> {
 template <class On, robot Robot>
 min_distances_query(const On&, const Robot&) -> min_distances_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-namespace detail {
-
-template <class On>
-struct batch_once {
-  template <class Robot, class Clouds>
-  static min_distances_result of(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                 const min_distances_options& options) {
-    min_distances_query query(on, robot);
-    return query(poses, clouds, options);
-  }
-};
-
-}  // namespace detail
-
 /// The least distance of each configuration. `poses` are world-from-part, one a part of the first configuration, then those of the
 /// next; `clouds` as for min_distance. Throws std::invalid_argument as that does, and if poses are no whole configurations, or
 /// d_max is NaN.
@@ -156,7 +142,10 @@ template <class On, robot Robot, class Clouds>
 min_distances_result min_distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                    const min_distances_options& options = {}) {
   static_assert(explain_clouds<Clouds>());
-  return detail::batch_once<On>::of(on, robot, poses, clouds, options);
+  return detail::once<On>::of(on, [&](auto... memory) {
+    min_distances_query query(on, robot, memory...);
+    return query(poses, clouds, options);
+  });
 }
 
 }  // namespace clearance

@@ -63,6 +63,15 @@ void all_scenes(std::uint32_t width) {
   }
 }
 
+/// A scene, dice, its robot of spheres, and so many configurations of that.
+auto configurations_in_a_crowd(unsigned seed, std::size_t count) {
+  auto s = crowd(seed);
+  dice d(seed + 1);
+  auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  auto poses = configurations_of(s, d, count);
+  return std::tuple(std::move(s), d, std::move(model), std::move(poses));
+}
+
 }  // namespace
 
 TEST_CASE("Least distances of many configurations on a device are the host's") {
@@ -101,10 +110,7 @@ TEST_CASE("A trajectory among a crowd is watched on a device, from frame to fram
 
 TEST_CASE("An image's tree is made of its pixels, whatever its size, and asked the same") {
   verdict v;
-  auto s = crowd(516);
-  dice d(517);
-  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
-  const auto poses = configurations_of(s, d, 12);
+  auto [s, d, model, poses] = configurations_in_a_crowd(516, 12);
   for (const std::uint32_t width : {1u, 3u, 64u, 65u, 320u})
     for (const std::uint32_t height : {1u, 63u, 130u}) {
       std::vector<std::uint16_t> pixels(width * height);
@@ -119,10 +125,7 @@ TEST_CASE("An image's tree is made of its pixels, whatever its size, and asked t
 
 TEST_CASE("A tree of a few hundred thousand points has all its levels") {
   verdict v;
-  auto s = crowd(518);
-  dice d(519);
-  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
-  const auto poses = configurations_of(s, d, 6);
+  auto [s, d, model, poses] = configurations_in_a_crowd(518, 6);
   s.points = d.points(200000, 2);
   const device gpu;
   const point_span cloud(s.points);

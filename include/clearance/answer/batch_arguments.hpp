@@ -22,6 +22,21 @@ struct last_place {
   std::uint32_t cloud = none, point = none;
 };
 
+/// Pairs that blocks have left to others, in pieces of one configuration each.
+template <class Pair>
+struct batch_pieces {
+  static constexpr std::uint32_t most = 16;
+  struct piece {
+    std::uint32_t configuration, count;
+    Pair pairs[most];
+  };
+  piece* pieces = nullptr;
+  std::uint32_t* used = nullptr;  ///< How many were asked for.
+  std::uint32_t capacity = 0;     ///< And how many there are.
+
+  CLEARANCE_HD std::uint32_t size() const { return *used < capacity ? *used : capacity; }
+};
+
 /// Many configurations and one cloud; arrays are one a configuration, or one a part of each.
 template <class PartView, class Question>
 struct batch_arguments {
@@ -29,6 +44,7 @@ struct batch_arguments {
   using question_type = Question;
   using memory_type = typename Question::memory_type;
   using body_type = scan::scan_body<PartView, point_span, any_depth, typename Question::answer_type>;
+  using pair_type = node_pair<typename PartView::hierarchy_type::node_type>;
 
   const PartView* parts;
   std::uint32_t part_count, configurations;
@@ -49,7 +65,10 @@ struct batch_arguments {
   typename Question::result_type* results;
   scan::drop_counts* dropped;
   std::uint32_t* lost;  ///< Becomes 1 if a pose is not rigid.
-  std::uint32_t depth = 0;  ///< Of a block's stack, in pairs.
+  batch_pieces<pair_type> left = {};   ///< What blocks leave,
+  batch_pieces<pair_type> given = {};  ///< and what those before have left: if there is any, blocks take that, and not configurations.
+  std::uint32_t depth = 0;             ///< Of a block's stack, in pairs.
+  std::uint32_t rounds = none;         ///< After which a block leaves what it has not done yet.
 
   CLEARANCE_HD frames::placement* its_places(std::uint32_t c) const { return places + std::size_t(c) * part_count; }
   /// A configuration's points against its parts, one at a time, whatever source they are of.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <clearance/answer/batch_arguments.hpp>
+#include <clearance/answer/batch_walk.cuh>
 #include <clearance/answer/beyond.hpp>
 #include <clearance/answer/resolve.hpp>
 #include <clearance/scan/threads.cuh>
@@ -9,24 +10,28 @@
 namespace clearance::minimum {
 
 /// The witness of each configuration's minimum, if it is a point of this cloud; after the last cloud all of its result. A warp a
-/// configuration, whose lanes look for the part.
+/// configuration, whose lanes look for the part, and together for the primitive.
 template <class PartView, class Question, class Source>
 __global__ void __launch_bounds__(128) finish_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
                                                              const __grid_constant__ Source source) {
+  using walk_type = walk_by_warp<typename PartView::hierarchy_type>;
+  __shared__ typename walk_type::node_type pending[4][walk_type::most];
   const std::uint32_t c = (blockIdx.x * 128 + threadIdx.x) / 32, lane = threadIdx.x % 32;
   if (c >= a.configurations) return;
   const configuration_facts& facts = a.facts[c];
   const shared_bounds bounds{a.all + c, nullptr};
-  for (std::uint32_t first = 0; first < a.part_count; first += 32) {
-    const std::uint32_t k = first + lane;
-    min_distance_result mine;
-    if (k < a.part_count)
-      resolve_body<PartView, Source, any_depth>{a.parts + k,   a.its_places(c) + k, 1,      source, facts.origin, facts.world_from_cloud, a.now.first,
-                                                a.now.cloud, bounds,              {},     &mine,  nullptr}(1);
-    const unsigned those = __ballot_sync(scan::all_lanes, mine.part != none);
-    if (those == 0) continue;
-    if (int(lane) == __ffs(int(those)) - 1) mine.part = k, a.results[c] = mine;
-    break;
+  min_distance_result mine;
+  const auto of_part = [&](std::uint32_t k) -> resolve_body<PartView, Source, walk_type> {
+    return {a.parts + k,     a.its_places(c) + k, 1,     source,  facts.origin, facts.world_from_cloud, a.now.first, a.now.cloud, bounds,
+            {pending[threadIdx.x / 32]}, &mine,   nullptr};
+  };
+  for (std::uint32_t first = 0; first < a.part_count && __all_sync(scan::all_lanes, mine.part == none); first += 32) {
+    unsigned those = __ballot_sync(scan::all_lanes, first + lane < a.part_count && of_part(first + lane).may_be_of(0));
+    for (; those != 0 && __all_sync(scan::all_lanes, mine.part == none); those &= those - 1) {
+      const std::uint32_t k = first + std::uint32_t(__ffs(int(those))) - 1;
+      of_part(k)(1);
+      if (mine.part != none) mine.part = k, a.results[c] = mine;
+    }
   }
   __syncwarp();
   if (!a.now.last || lane != 0) return;

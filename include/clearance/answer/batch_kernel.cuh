@@ -34,43 +34,106 @@ struct batch_room {
       : orders(reinterpret_cast<Order*>(memory)), stack(reinterpret_cast<Pair*>(memory + most(threads))), made(stack + depth) {}
 };
 
-/// A block is a configuration, whose parts share its bound. In every round it opens the nearest pairs of its stack, each by eight lanes, and
-/// puts what they made back in order: many at once, because what is found first decides how much the others are worth.
-template <class Arguments, class Tree>
-__global__ void __launch_bounds__(256, 4) batch_kernel(const __grid_constant__ Arguments a, const __grid_constant__ Tree tree) {
-  using body_type = typename Arguments::body_type;
-  using memory_type = typename Arguments::memory_type;
-  using search_type = tree_search<body_type, Tree>;
-  using pair = typename search_type::pair;
-  using room_type = batch_room<pair, typename search_type::order_type>;
-  constexpr std::uint32_t lanes = room_type::lanes;
-  extern __shared__ distance_key memory[];
-  __shared__ alignas(memory_type) std::byte memory_of_best[sizeof(memory_type)];
-  __shared__ std::uint32_t made[2];  // of this round, and of the next
-  memory_type& best = *reinterpret_cast<memory_type*>(memory_of_best);
-  const std::uint32_t c = blockIdx.x, t = threadIdx.x, threads = blockDim.x;
-  if (!a.facts[c].rigid) return;
-  const room_type room(memory, threads, a.depth);
-  if (t == 0) best = a.all[c], made[0] = made[1] = 0;
-  __syncthreads();
-  const body_type body = a.body(c, &best);
-  const search_type search{body, tree, a.bounds + std::size_t(c) * a.part_count};
-  if constexpr (!Arguments::question_type::by_margin)
-    for (std::uint32_t i = t; i < 3 * a.part_count; i += threads)  // where it, and its neighbours, were nearest
-      if (const std::uint32_t from = c + i / a.part_count - 1; from < a.configurations)
-        if (const auto seed = a.seeds[from]; seed.number != none) search.visit(seed, i % a.part_count);
-  __syncthreads();
+/// One configuration's search by a block. In every round it opens the nearest pairs of its stack, each by eight lanes, and puts what they
+/// made back in order: many at once, because what is found first decides how much the others are worth.
+template <class Search>
+struct block_search {
+  using pair = typename Search::pair;
+  using room_type = batch_room<pair, typename Search::order_type>;
+  using pieces_type = batch_pieces<pair>;
+  static constexpr std::uint32_t lanes = room_type::lanes;
 
-  std::uint32_t count = 0, round = 0;
-  const auto make = [&](const pair& p) {
-    const std::uint32_t at = atomicAdd(&made[round % 2], 1u);
-    room.made[at] = p, room.orders[at] = search.order(p);
+  /// What all of its threads share.
+  struct words {
+    std::uint32_t made[2];  ///< Of this round, and of the next.
+    std::uint32_t first;    ///< Piece that the stack is left in.
   };
-  /// Instead of the stack's last `taken` pairs what was made of them, the nearest on top.
-  const auto put_back = [&](std::uint32_t taken) {
+
+  const Search& search;
+  const room_type room;
+  words& shared;
+  const std::uint32_t depth;  ///< Of the stack.
+  std::uint32_t count = 0, round = 0, next = 0;
+  const std::uint32_t t = threadIdx.x, threads = blockDim.x;
+
+  /// All that there is to begin with, or what others have left.
+  __device__ void start() {
+    if (t == 0) shared.made[0] = shared.made[1] = 0;
     __syncthreads();
-    const std::uint32_t n = made[round % 2];
-    if (t == 0) made[(round + 1) % 2] = 0;
+  }
+  __device__ void start(const typename pieces_type::piece& left) {
+    count = left.count, next = search.starts();
+    if (t < count) room.stack[t] = left.pairs[t];
+    start();
+  }
+
+  /// Returns true once nothing is left; false after so many rounds.
+  __device__ bool go_on(std::uint32_t rounds) {
+    for (const std::uint32_t starts = search.starts(); next < starts || count > 0;) {
+      if (count == 0) {
+        pair p;
+        if (next + t < starts && search.start(next + t, p)) make(p);
+        next += threads;
+        put_back(0);
+        continue;
+      }
+      if (round >= rounds && next >= starts) return false;
+      const std::uint32_t left = depth - count, many = left > room_type::reserve ? (left - room_type::reserve) / (lanes + 1) : 0;
+      const std::uint32_t take = scan::lower_of(scan::lower_of(threads / lanes, count), many > 0 ? many : left > lanes);
+      if (take == 0) {
+        const pair top = room.stack[count - 1];
+        visit_all(top);
+        put_back(1);
+        continue;
+      }
+      if (t / lanes < take) open(room.stack[count - 1 - t / lanes]);
+      put_back(take);
+    }
+    return true;
+  }
+
+  /// Leaves the stack to others, dealt out so that each piece has some of the nearest. False if there is no room for that.
+  __device__ bool leave_to(const pieces_type& others, std::uint32_t configuration) {
+    const std::uint32_t pieces = (count - 1) / pieces_type::most + 1;
+    if (t == 0) shared.first = atomicAdd(others.used, pieces);
+    __syncthreads();
+    const std::uint32_t first = shared.first;
+    const bool fits = first < others.capacity && others.capacity - first >= pieces;
+    for (std::uint32_t i = t; i < pieces && first + i < others.capacity; i += threads)
+      others.pieces[first + i].configuration = configuration, others.pieces[first + i].count = fits ? (count - 1 - i) / pieces + 1 : 0;
+    if (fits)
+      for (std::uint32_t i = t; i < count; i += threads) others.pieces[first + i % pieces].pairs[i / pieces] = room.stack[i];
+    return fits;
+  }
+
+ private:
+  __device__ void make(const pair& p) {
+    const std::uint32_t at = atomicAdd(&shared.made[round % 2], 1u);
+    room.made[at] = p, room.orders[at] = search.order(p);
+  }
+
+  /// Every lane a child.
+  __device__ void open(const pair top) {
+    if (search.settled(top)) return;
+    const std::uint32_t lane = t % lanes, size = search.children(top);
+    pair p;
+    if (top.from + lane < size && search.child(top, top.from + lane, p)) make(p);
+    if (lane == 0 && top.from + lanes < size) p = top, p.from += lanes, make(p);
+  }
+  /// No room for what is below it: all its points at once.
+  __device__ void visit_all(const pair& p) const {
+    using tree_type = std::remove_cvref_t<decltype(search.tree)>;
+    std::uint64_t begin = p.at, end = p.at + 1;
+    for (std::uint32_t l = 0; l < p.level; ++l) begin *= l == 0 ? tree_type::tile : tree_type::fan, end *= l == 0 ? tree_type::tile : tree_type::fan;
+    const cloud_tree::numbered_point* const points = search.tree.points;
+    for (begin += t, end = end < search.tree.count ? end : search.tree.count; begin < end; begin += threads) search.visit(points[begin], p.part);
+  }
+
+  /// Instead of the stack's last `taken` pairs what was made of them, the nearest on top.
+  __device__ void put_back(std::uint32_t taken) {
+    __syncthreads();
+    const std::uint32_t n = shared.made[round % 2];
+    if (t == 0) shared.made[(round + 1) % 2] = 0;
     count -= taken;
     for (std::uint32_t i = t; i < n; i += threads) {
       const auto mine = room.orders[i];
@@ -80,44 +143,47 @@ __global__ void __launch_bounds__(256, 4) batch_kernel(const __grid_constant__ A
     }
     count += n, ++round;
     __syncthreads();
-  };
-  /// No room for what is below it: all its points at once.
-  const auto visit_all = [&](const pair& p) {
-    std::uint64_t begin = p.at, end = p.at + 1;
-    for (std::uint32_t l = 0; l < p.level; ++l) begin *= l == 0 ? Tree::tile : Tree::fan, end *= l == 0 ? Tree::tile : Tree::fan;
-    const cloud_tree::numbered_point* const points = tree.points;
-    for (begin += t, end = end < tree.count ? end : tree.count; begin < end; begin += threads) search.visit(points[begin], p.part);
-  };
-
-  for (std::uint32_t next = 0, starts = search.starts(); next < starts || count > 0;) {
-    if (count == 0) {
-      pair p;
-      if (next + t < starts && search.start(next + t, p)) make(p);
-      next += threads;
-      put_back(0);
-      continue;
-    }
-    const std::uint32_t left = a.depth - count, many = left > room_type::reserve ? (left - room_type::reserve) / (lanes + 1) : 0;
-    const std::uint32_t take = scan::lower_of(scan::lower_of(threads / lanes, count), many > 0 ? many : left > lanes);
-    if (take == 0) {
-      const pair top = room.stack[count - 1];
-      visit_all(top);
-      put_back(1);
-      continue;
-    }
-    if (t / lanes < take) {
-      const pair top = room.stack[count - 1 - t / lanes];
-      const std::uint32_t j = top.from + t % lanes;
-      if (!search.settled(top)) {
-        const std::uint32_t size = search.children(top);
-        pair p;
-        if (j < size && search.child(top, j, p)) make(p);
-        if (t % lanes == 0 && top.from + lanes < size) p = top, p.from += lanes, make(p);
-      }
-    }
-    put_back(take);
   }
-  if (t == 0) a.all[c] = best;
+};
+
+/// A block is a configuration, whose parts share its bound. What takes it very long it leaves to others, once all had their turn: the
+/// slowest of many takes twenty times as long as most.
+template <class Arguments, class Tree>
+__global__ void __launch_bounds__(256, 4) batch_kernel(const __grid_constant__ Arguments a, const __grid_constant__ Tree tree) {
+  using question = typename Arguments::question_type;
+  using memory_type = typename Arguments::memory_type;
+  using search_type = tree_search<typename Arguments::body_type, Tree>;
+  using block_type = block_search<search_type>;
+  extern __shared__ distance_key memory[];
+  __shared__ alignas(memory_type) std::byte memory_of_best[sizeof(memory_type)];
+  __shared__ typename block_type::words words;
+  memory_type& best = *reinterpret_cast<memory_type*>(memory_of_best);
+  const std::uint32_t t = threadIdx.x;
+  for (std::uint32_t i = blockIdx.x, count = a.given.pieces != nullptr ? a.given.size() : a.configurations; i < count; i += gridDim.x) {
+    const std::uint32_t c = a.given.pieces != nullptr ? a.given.pieces[i].configuration : i;
+    if (!a.facts[c].rigid) continue;
+    if (t == 0) best = a.all[c];
+    __syncthreads();
+    const typename Arguments::body_type body = a.body(c, &best);
+    const search_type search{body, tree, a.bounds + std::size_t(c) * a.part_count};
+    block_type block{search, typename block_type::room_type(memory, blockDim.x, a.depth), words, a.depth};
+    if (a.given.pieces != nullptr) {
+      block.start(a.given.pieces[i]);
+    } else {
+      if constexpr (!question::by_margin)
+        for (std::uint32_t j = t; j < 3 * a.part_count; j += blockDim.x)  // where it, and its neighbours, were nearest
+          if (const std::uint32_t from = c + j / a.part_count - 1; from < a.configurations)
+            if (const auto seed = a.seeds[from]; seed.number != none) search.visit(seed, j % a.part_count);
+      block.start();
+    }
+    if (!block.go_on(a.rounds) && !block.leave_to(a.left, c)) block.go_on(none);
+    __syncthreads();
+    if (t != 0) continue;
+    if (a.given.pieces != nullptr)
+      question::add(a.all + c, best);
+    else
+      a.all[c] = best;
+  }
 }
 
 }  // namespace clearance::minimum

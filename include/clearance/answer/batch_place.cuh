@@ -12,6 +12,7 @@ __global__ void __launch_bounds__(128) place_configurations(const __grid_constan
                                                             const __grid_constant__ Source source) {
   const std::uint32_t c = (blockIdx.x * 128 + threadIdx.x) / 32, lane = threadIdx.x % 32;
   if (c >= a.configurations) return;
+  if (c == 0 && lane == 0) a.left.used[0] = a.left.used[1] = 0;
   frames::placement* const places = a.its_places(c);
   bool rigid = true;
   for (std::uint32_t k = lane; k < a.part_count; k += 32) {

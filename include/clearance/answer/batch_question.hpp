@@ -21,6 +21,11 @@ struct least_question {
   bool limited() const { return d_max < infinity; }
   CLEARANCE_HD totals start(bool rigid = true) const { return {make_key(rigid ? d_max : -infinity, none)}; }
   CLEARANCE_HD static answer_type answer(totals* all, const margin_reach*) { return {all, nullptr}; }
+  /// What another has found as well.
+  CLEARANCE_HD static void add(totals* all, const totals& found) {
+    lower_to(&all->best, found.best);
+    if (found.certain != 0) add_to(&all->certain, 1);
+  }
 };
 
 /// Is anything nearer than margins, one for all parts or one a part?
@@ -36,6 +41,7 @@ struct margin_question {
   bool limited() const { return true; }
   CLEARANCE_HD margin_word start(bool = true) const { return {}; }
   CLEARANCE_HD static answer_type answer(margin_word* word, const margin_reach* near) { return {word, near}; }
+  CLEARANCE_HD static void add(margin_word* word, const margin_word& found) { lower_word(&word->found, found.found); }
   CLEARANCE_HD margin_reach near(std::uint32_t k, const part_facts& facts, const frames::float_error& error) const {
     const double margin = margins[count == 1 ? 0 : k];
     return {pairwise::may_be_within(margin, facts, error), pairwise::is_within(margin, facts, error)};

@@ -5,6 +5,7 @@
 #include <clearance/answer/batch_kernel.cuh>
 #include <clearance/answer/batch_place.cuh>
 #include <clearance/answer/plain_search.hpp>
+#include <clearance/backend/side_stream.cuh>
 #include <clearance/cloud_tree/device_tree.cuh>
 #include <clearance/frame/clouds.hpp>
 #include <clearance/robot/model.hpp>
@@ -25,7 +26,8 @@ class device_batch {
 
   /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
   device_batch(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
-      : on_(on), model_(model), facts_(model.facts.begin(), model.facts.end()), memory_(memory), counts_(1, on.id, memory) {
+      : on_(on), model_(model), facts_(model.facts.begin(), model.facts.end()), memory_(memory), beside_(on), counts_(1, on.id, memory),
+        left_used_(2, on.id, memory) {
     check_stack<near_first>(model.depth, model.width);
     model_.facts = facts_;
     anywhere_.assign(facts_.size(), Eigen::Isometry3d::Identity());
@@ -75,6 +77,7 @@ class device_batch {
     const std::uint32_t before = std::exchange(configurations_, 0);  // so that nothing is asked of poses that were not placed
     grow(poses_, n), grow(places_, n), grow(bounds_, n);
     grow(of_all_, count), grow(all_, count), grow(results_, count);
+    if constexpr (!Question::by_margin) grow(left_, pieces_of(count, 8)), grow(left_again_, pieces_of(count, 2));
     if constexpr (Question::by_margin)
       grow(near_, n);
     else
@@ -93,13 +96,16 @@ class device_batch {
     const bool foreseen = Question::by_margin && count_clouds(clouds) > 1;  // margins are for what is certain about all clouds
     if (foreseen)
       frames::for_each_turn(frame_, facts_, anywhere_, clouds, [&](const auto& given, const frames::turn& now) {
-        place_in(point_span{}, told(given, now, question, false));
+        place_in(on_, point_span{}, told(given, now, question, false));
       });
     seen_ = frames::for_each_turn(frame_, facts_, anywhere_, clouds, [&](const auto& given, const frames::turn& now) {
       const auto source = here(given, now.cloud);
       while (trees_.size() <= now.cloud) trees_.push_back(std::make_unique<cloud_tree::device_tree>(on_, memory_));
+      beside_.fork();
       trees_[now.cloud]->build(source, &counts_.data()->dropped);
-      ask(source, trees_[now.cloud]->view(), told(source, now, question, foreseen));
+      const arguments a = told(source, now, question, foreseen);
+      ask(source, trees_[now.cloud]->view(), a);
+      finish(source, a);
     });
   }
 
@@ -111,29 +117,38 @@ class device_batch {
  private:
   using arguments = batch_arguments<PartView, Question>;
   using tree_type = cloud_tree::device_tree::view_type;
-  using room = batch_room<node_pair<typename PartView::hierarchy_type::node_type>, pair_order<PartView>>;
+  using room = batch_room<typename arguments::pair_type, pair_order<PartView>>;
+  using piece = typename batch_pieces<typename arguments::pair_type>::piece;
+  /// After so many rounds of 128 threads a block leaves what is left. Where points may be inside, stacks are longer, and earlier too many.
+  static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128, next_rounds = first_rounds > 128 ? 48 : 24, no_limit = 1u << 24;
   static constexpr unsigned resident_threads = 1024;  ///< Of a processor, that the kernel's registers leave room for.
   struct counts {
     scan::drop_counts dropped;
     std::uint32_t lost = 0;
   };
 
+  /// Room for so many pieces that blocks leave; where that is not enough they go on by themselves.
+  static std::size_t pieces_of(std::size_t configurations, std::size_t each) { return each * configurations + 1024; }
+
   template <point_source S>
   arguments told(const S& source, const frames::turn& now, const Question& question, bool foreseen) const {
     return {model_.parts, std::uint32_t(facts_.size()), configurations_, poses_.data(), now, frame_.world_from_cloud, rounding_of(source), question, foreseen,
             now.first + source.size(), places_.data(), bounds_.data(), of_all_.data(), all_.data(), near_.data(), last_.data(), seeds_.data(),
-            results_.data(), &counts_.data()->dropped, &counts_.data()->lost};
+            results_.data(), &counts_.data()->dropped, &counts_.data()->lost,
+            {left_.data(), left_used_.data(), std::uint32_t(left_.size())}};
   }
   template <point_source S>
-  void place_in(const S& source, const arguments& a) const {
-    on_.launch(place_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
+  void place_in(const device& on, const S& source, const arguments& a) const {
+    on.launch(place_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
   }
   template <point_source S>
   void ask(const S& source, const tree_type& tree, const arguments& a) {
-    if constexpr (Question::by_margin)
-      place_in(point_span{}, a);
-    else
-      place_in(source, a);
+    beside_.join([&](const device& beside) {  // the tree does not need it
+      if constexpr (Question::by_margin)
+        place_in(beside, point_span{}, a);
+      else
+        place_in(beside, source, a);
+    });
     // As many threads as a device has room for: of few configurations each gets more; and where most of them end at once, or a look takes
     // long, all do. And stacks as deep as room is left for: the fewer pairs a round may take, the more rounds.
     const bool uneven = a.question.limited() || scan::has_interior<PartView>;
@@ -148,7 +163,22 @@ class device_batch {
       check_cuda(cudaFuncSetAttribute(address, cudaFuncAttributeMaxDynamicSharedMemorySize, int(of_block_)), "cudaFuncSetAttribute");
       allowed_ = address;
     }
-    on_.launch(batch_kernel<arguments, tree_type>, configurations_, threads, room::bytes(threads, with_stack.depth), with_stack, tree);
+    const unsigned at_once = processors_ * (resident_threads / threads);
+    const auto search = [&](unsigned blocks, unsigned rounds) {
+      with_stack.rounds = rounds * 128 / threads;
+      on_.launch(batch_kernel<arguments, tree_type>, blocks, threads, room::bytes(threads, with_stack.depth), with_stack, tree);
+    };
+    if (a.question.limited() || configurations_ <= at_once) return search(configurations_, no_limit);
+    // Of many the slowest takes twenty times as long as most, and most of that may come from one pair: so what is left is dealt out twice.
+    search(configurations_, first_rounds);
+    with_stack.given = with_stack.left;
+    with_stack.left = {left_again_.data(), left_used_.data() + 1, std::uint32_t(left_again_.size())};
+    search(at_once, next_rounds);
+    with_stack.given = with_stack.left, with_stack.left.capacity = 0;
+    search(at_once, no_limit);
+  }
+  template <point_source S>
+  void finish(const S& source, const arguments& a) const {
     if constexpr (!Question::by_margin)
       on_.launch(finish_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
     else if (a.now.last)
@@ -171,6 +201,7 @@ class device_batch {
   std::pmr::memory_resource* memory_;
   int processors_ = 0;
   std::size_t of_processor_ = 0, of_block_ = 0;  ///< Bytes of shared memory.
+  side_stream beside_;
   const void* allowed_ = nullptr;  ///< The kernel whose limit of shared memory was raised last.
   std::uint32_t configurations_ = 0;
   std::uint64_t seen_ = 0;
@@ -188,6 +219,8 @@ class device_batch {
   device_buffer<cloud_tree::numbered_point> seeds_;
   device_buffer<result_type> results_;
   device_buffer<counts> counts_;
+  device_buffer<piece> left_, left_again_;
+  device_buffer<std::uint32_t> left_used_;
 };
 
 }  // namespace clearance::minimum

@@ -4,6 +4,20 @@
 #include <clearance/answer/configurations.hpp>
 #include <clearance/answer/device_batch.cuh>
 #include <clearance/answer/kept_copies.cuh>
+#include <clearance/backend/stream_resource.cuh>
+
+namespace clearance::detail {
+
+template <>
+struct once<device> {
+  template <class Ask>
+  static auto of(const device& on, const Ask& ask) {
+    stream_resource memory(on.id, on.stream);
+    return ask(&memory);
+  }
+};
+
+}  // namespace clearance::detail
 
 namespace clearance::minimum {
 

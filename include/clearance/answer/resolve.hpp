@@ -4,6 +4,7 @@
 #include <clearance/answer/bracket.hpp>
 #include <clearance/answer/shared_bounds.hpp>
 #include <clearance/answer/witness.hpp>
+#include <clearance/frame/root_test.hpp>
 #include <clearance/scan/tally.hpp>
 
 namespace clearance::minimum {
@@ -29,6 +30,12 @@ struct resolve_body {
     requires recursing_traversal<Traversal>
   {
     return stack_bytes;
+  }
+
+  /// Can the key be of part `k`? If not, nothing needs to be looked for in it.
+  CLEARANCE_HD bool may_be_of(std::uint32_t k) const {
+    const distance_key key = bounds.all->best;
+    return mine(key) && frames::may_reach(places[k].around, key_distance(key), source[key_index(key) - first].position - origin);
   }
 
   CLEARANCE_HD void operator()(std::size_t i) const {
