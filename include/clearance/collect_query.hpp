@@ -4,6 +4,7 @@
 
 #include <clearance/answer/bracket.hpp>
 #include <clearance/answer/kept_memory.hpp>
+#include <clearance/backend/one_call.hpp>
 #include <clearance/collect.hpp>
 
 namespace clearance {
@@ -45,7 +46,7 @@ struct pair_question {
 /// One call: what `ask(query)` answers of a `Query` that is made for it, whose memory is given back in the order of its work.
 template <template <class, class> class Query, class On, robot Robot, class Ask>
 auto asked_once(const On& on, const Robot& robot, const Ask& ask) {
-  return memory_on<On>::once(on, [&](auto... memory) {
+  return detail::one_call<On>::of(on, [&](auto... memory) {
     Query<On, typename decltype(view_of(robot))::part_type> query(on, robot, memory...);
     return ask(query);
   });

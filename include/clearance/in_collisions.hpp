@@ -98,7 +98,7 @@ template <class On, robot Robot, class Clouds>
 in_collisions_result in_collisions(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                    std::span<const double> margins) {
   static_assert(explain_clouds<Clouds>());
-  return detail::once<On>::of(on, [&](auto... memory) {
+  return detail::one_call<On>::of(on, [&](auto... memory) {
     in_collisions_query query(on, robot, memory...);
     return query(poses, clouds, margins);
   });

@@ -7,6 +7,7 @@
 #include <clearance/answer/host_batch.hpp>
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/search_on.hpp>
+#include <clearance/backend/one_call.hpp>
 
 namespace clearance {
 
@@ -142,7 +143,7 @@ template <class On, robot Robot, class Clouds>
 min_distances_result min_distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                    const min_distances_options& options = {}) {
   static_assert(explain_clouds<Clouds>());
-  return detail::once<On>::of(on, [&](auto... memory) {
+  return detail::one_call<On>::of(on, [&](auto... memory) {
     min_distances_query query(on, robot, memory...);
     return query(poses, clouds, options);
   });

@@ -19,15 +19,6 @@ inline void check_chain(std::size_t parts, std::size_t of_chain) {
   if (parts != of_chain)
     throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but a joint chain of " + std::to_string(of_chain));
 }
-/// A prepared question that is asked once, by `ask()`. On a device, whose headers have that, memory comes in the order of its stream, and
-/// `ask(&memory)` is told of it.
-template <class On>
-struct once {
-  template <class Ask>
-  static auto of(const On&, const Ask& ask) {
-    return ask();
-  }
-};
 /// Calls `f`; of what it throws because a pose is not rigid the sentence says which configuration's.
 template <class F>
 void named(std::size_t parts, std::span<const Eigen::Isometry3d> poses, const F& f) {

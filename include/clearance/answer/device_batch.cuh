@@ -5,6 +5,7 @@
 #include <clearance/answer/batch_kernel.cuh>
 #include <clearance/answer/batch_place.cuh>
 #include <clearance/answer/plain_search.hpp>
+#include <clearance/backend/raised_limits.cuh>
 #include <clearance/backend/side_stream.cuh>
 #include <clearance/cloud_tree/device_tree.cuh>
 #include <clearance/frame/clouds.hpp>
@@ -157,11 +158,9 @@ class device_batch {
     while (room::bytes(threads, room::least_depth(threads)) > 48 * 1024) threads /= 2;  // as much as a block always has
     arguments with_stack = a;
     with_stack.depth = room::depth(threads, std::min(of_block_, of_processor_ / (resident_threads / threads) - 2048));
-    // Every translation unit has a kernel of its own, and this function may be another's than the constructor.
-    if (const auto address = reinterpret_cast<const void*>(&batch_kernel<arguments, tree_type>); allowed_ != address) {
+    {
       const device_guard guard(on_.id);
-      check_cuda(cudaFuncSetAttribute(address, cudaFuncAttributeMaxDynamicSharedMemorySize, int(of_block_)), "cudaFuncSetAttribute");
-      allowed_ = address;
+      limits_.raise(reinterpret_cast<const void*>(&batch_kernel<arguments, tree_type>), of_block_);
     }
     const unsigned at_once = processors_ * (resident_threads / threads);
     const auto search = [&](unsigned blocks, unsigned rounds) {
@@ -202,7 +201,7 @@ class device_batch {
   int processors_ = 0;
   std::size_t of_processor_ = 0, of_block_ = 0;  ///< Bytes of shared memory.
   side_stream beside_;
-  const void* allowed_ = nullptr;  ///< The kernel whose limit of shared memory was raised last.
+  raised_limits limits_;
   std::uint32_t configurations_ = 0;
   std::uint64_t seen_ = 0;
   std::vector<world_transform> staged_;

@@ -4,11 +4,11 @@
 
 #include <clearance/answer/kept_copies.cuh>
 #include <clearance/answer/kept_memory.hpp>
-#include <clearance/backend/stream_resource.cuh>
+#include <clearance/backend/one_call.cuh>
 
 namespace clearance::pairwise {
 
-/// A device's: from a resource that hands out device memory, if there is one. That for one call comes in the order of its stream.
+/// A device's: from a resource that hands out device memory, if there is one.
 template <>
 class memory_on<device> {
  public:
@@ -21,12 +21,6 @@ class memory_on<device> {
   template <class Clouds>
   auto readable(const Clouds& clouds) {
     return mapped_clouds(clouds, to_copies{&copies_});
-  }
-
-  template <class Ask>
-  static auto once(const device& on, const Ask& ask) {
-    stream_resource memory(on.id, on.stream);
-    return ask(&memory);
   }
 
  private:

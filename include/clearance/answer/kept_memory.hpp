@@ -37,12 +37,6 @@ class memory_on {
     }
   }
 
-  /// What `ask(memory...)` answers, with memory for one call.
-  template <class Ask>
-  static auto once(const On&, const Ask& ask) {
-    return ask();
-  }
-
  private:
   struct to_readable {
     const On* on;

@@ -4,20 +4,7 @@
 #include <clearance/answer/configurations.hpp>
 #include <clearance/answer/device_batch.cuh>
 #include <clearance/answer/kept_copies.cuh>
-#include <clearance/backend/stream_resource.cuh>
-
-namespace clearance::detail {
-
-template <>
-struct once<device> {
-  template <class Ask>
-  static auto of(const device& on, const Ask& ask) {
-    stream_resource memory(on.id, on.stream);
-    return ask(&memory);
-  }
-};
-
-}  // namespace clearance::detail
+#include <clearance/backend/one_call.cuh>
 
 namespace clearance::minimum {
 
@@ -36,9 +23,13 @@ class placed_batch {
   /// joint_chain::count, and if the chain is of another robot.
   void place(const joint_chain<device>& chain, std::span<const double> q) {
     const std::size_t count = chain.count(q);
-    if (q_.size() < q.size()) q_ = device_buffer<double>(q.size(), on_.id, memory_);
-    on_.stage(q, q_.data());
-    place(chain, q_.data(), count);
+    if (there_.size() < q.size()) there_ = device_buffer<double>(q.size(), on_.id, memory_);
+    q_.assign(q.begin(), q.end());
+    if (!q.empty()) {
+      const device_guard guard(on_.id);
+      check_cuda(cudaMemcpyAsync(there_.data(), q_.data(), q.size_bytes(), cudaMemcpyHostToDevice, on_.stream), "cudaMemcpyAsync");
+    }
+    place(chain, there_.data(), count);
   }
   /// The same of joint vectors in the device's memory. One that is not finite or beyond its limits makes poses that are not rigid.
   void place(const joint_chain<device>& chain, const double* q, std::size_t configurations) {
@@ -51,7 +42,7 @@ class placed_batch {
 
  protected:
   placed_batch(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory)
-      : on_(on), memory_(memory), search_(on, model, memory), copies_(on, memory), q_(0, on.id, memory) {}
+      : on_(on), memory_(memory), search_(on, model, memory), copies_(on, memory), there_(0, on.id, memory) {}
 
   /// Throws std::logic_error if what was placed last could not be.
   void check_placed() const {
@@ -77,7 +68,8 @@ class placed_batch {
  private:
   std::vector<Eigen::Isometry3d> poses_;  ///< Of the host, for sentences.
   std::size_t asked_ = 0;
-  device_buffer<double> q_;
+  std::vector<double> q_;  ///< Joint vectors on their way,
+  device_buffer<double> there_;
 };
 
 }  // namespace clearance::minimum
