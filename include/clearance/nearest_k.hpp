@@ -39,15 +39,13 @@ struct known_nearest {
   }
   /// The next frame's may be farther by twice as much as they have moved, and 5 mm; at first by a tenth, and 2 cm.
   void learn(const nearest_k_result& found) {
-    const bool again = k == found.per_part;
-    k = found.per_part, radii.clear();
-    std::vector<real> now;
-    for (std::size_t p = 0; p * k < found.pairs.size(); ++p) {
+    std::vector<real> now, next;
+    for (std::size_t p = 0; p * found.per_part < found.pairs.size(); ++p) {
       now.push_back(found.of(p).back().distance);
-      const bool moved = again && now[p] < infinity && last[p] < infinity;
-      radii.push_back(now[p] + (moved ? 2 * std::abs(now[p] - last[p]) + 0.005f : std::abs(now[p]) / 10 + 0.02f));
+      const bool moved = k == found.per_part && now[p] < infinity && last[p] < infinity;
+      next.push_back(now[p] + (moved ? 2 * std::abs(now[p] - last[p]) + 0.005f : std::abs(now[p]) / 10 + 0.02f));
     }
-    last = std::move(now);
+    last = std::move(now), radii = std::move(next), k = found.per_part;
   }
 };
 

@@ -135,6 +135,8 @@ TEST_CASE("A mask over clouds of every kind numbers them as a call does") {
   CHECK(hidden(std::vector{point_span(a), point_span(b)}) == std::vector{masked, 0, masked});
   CHECK(hidden(std::tuple(a, placed{point_span(b)})) == std::vector{masked, 0, masked});
   CHECK(hidden(std::vector<one_of>{point_span(a), placed{point_span(b)}}) == std::vector{masked, 0, masked});
+  CHECK(hidden(std::variant<std::vector<vec3>, point_span>(a)) == std::vector{masked, 0});
+  CHECK(hidden(std::variant<std::vector<vec3>, point_span>(point_span(a))) == std::vector{masked, 0});
 }
 
 TEST_CASE("A robot that holds something is as if it had always been of more parts") {

@@ -121,7 +121,7 @@ class device_batch {
   using room = batch_room<typename arguments::pair_type, pair_order<PartView>>;
   using piece = typename batch_pieces<typename arguments::pair_type>::piece;
   /// After so many rounds of 128 threads a block leaves what is left. Where points may be inside, stacks are longer, and earlier too many.
-  static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128, next_rounds = first_rounds > 128 ? 48 : 24, no_limit = 1u << 24;
+  static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128, next_rounds = first_rounds > 128 ? 48 : 24;
   static constexpr unsigned resident_threads = 1024;  ///< Of a processor, that the kernel's registers leave room for.
   struct counts {
     scan::drop_counts dropped;
@@ -129,7 +129,7 @@ class device_batch {
   };
 
   /// Room for so many pieces that blocks leave; where that is not enough they go on by themselves.
-  static std::size_t pieces_of(std::size_t configurations, std::size_t each) { return each * configurations + 1024; }
+  static std::size_t pieces_of(std::size_t configurations, std::size_t each) { return std::min(each * configurations, std::size_t(1) << 18) + 1024; }
 
   template <point_source S>
   arguments told(const S& source, const frames::turn& now, const Question& question, bool foreseen) const {
@@ -164,17 +164,17 @@ class device_batch {
     }
     const unsigned at_once = processors_ * (resident_threads / threads);
     const auto search = [&](unsigned blocks, unsigned rounds) {
-      with_stack.rounds = rounds * 128 / threads;
+      with_stack.rounds = rounds == none ? none : rounds * 128 / threads;
       on_.launch(batch_kernel<arguments, tree_type>, blocks, threads, room::bytes(threads, with_stack.depth), with_stack, tree);
     };
-    if (a.question.limited() || configurations_ <= at_once) return search(configurations_, no_limit);
+    if (a.question.limited() || configurations_ <= at_once) return search(configurations_, none);
     // Of many the slowest takes twenty times as long as most, and most of that may come from one pair: so what is left is dealt out twice.
     search(configurations_, first_rounds);
     with_stack.given = with_stack.left;
     with_stack.left = {left_again_.data(), left_used_.data() + 1, std::uint32_t(left_again_.size())};
     search(at_once, next_rounds);
     with_stack.given = with_stack.left, with_stack.left.capacity = 0;
-    search(at_once, no_limit);
+    search(at_once, none);
   }
   template <point_source S>
   void finish(const S& source, const arguments& a) const {

@@ -20,7 +20,7 @@ class placed_batch {
     poses_.assign(poses.begin(), poses.end());
   }
   /// Keeps the poses of joint vectors, one after another, which the device computes. Throws std::invalid_argument as
-  /// joint_chain::count, and if the chain is of another robot.
+  /// joint_chain::count, and if the chain is of another robot. Not for a graph: it copies from the host's memory.
   void place(const joint_chain<device>& chain, std::span<const double> q) {
     const std::size_t count = chain.count(q);
     if (there_.size() < q.size()) there_ = device_buffer<double>(q.size(), on_.id, memory_);

@@ -24,7 +24,7 @@ struct points_of {
   using place_type = typename scan::node_of<hierarchy_type>::place;
   using scan_type = scan::by_packets;
   using block = scan::packet_memory<points_of>;
-  static constexpr bool bound_per_part = true;
+  static constexpr bool bound_per_part = true, goes_ahead = false;
   static constexpr std::size_t top_bytes = 0;  ///< Packets read every node for 32 points: it is at hand anyway.
 
   struct arguments {

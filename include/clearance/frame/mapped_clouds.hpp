@@ -43,7 +43,16 @@ template <class... T, class F>
 struct mapped<std::variant<T...>, F> {
   using type = std::variant<typename mapped<T, F>::type...>;
   static type of(const std::variant<T...>& one, F& f) {
-    return std::visit([&]<class U>(const U& it) -> type { return mapped<U, F>::of(it, f); }, one);
+    return at<0>(one, f);
+  }
+
+ private:
+  /// By number: several may become one type.
+  template <std::size_t I>
+  static type at(const std::variant<T...>& one, F& f) {
+    if constexpr (I + 1 < sizeof...(T))
+      if (one.index() != I) return at<I + 1>(one, f);
+    return type(std::in_place_index<I>, mapped<std::variant_alternative_t<I, std::variant<T...>>, F>::of(std::get<I>(one), f));
   }
 };
 

@@ -55,6 +55,7 @@ struct shared_walk {
 
   /// Waits for something to help with, which is then this warp's task; false: no warp of the block has anything left.
   static __device__ bool receive() {
+    __syncwarp();  // all have seen what this warp's last task was
     if (lane() == 0) atomicOr(&memory().idle, 1u << warp());
     for (;;) {
       bool over = false, given = false;
