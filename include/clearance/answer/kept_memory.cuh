@@ -14,16 +14,7 @@ class memory_on<device> {
  public:
   using piece = device_buffer<memory_unit>;
 
-  explicit memory_on(const device& on, std::pmr::memory_resource* memory = nullptr) : on_(on), memory_(memory), copies_(on, memory) {}
-
-  piece take(std::size_t units) const { return {units, on_.id, memory_}; }
-
-  template <class Clouds>
-  auto readable(const Clouds& clouds) {
-    return mapped_clouds(clouds, to_copies{&copies_});
-  }
-
- private:
+  /// Not private: its name becomes part of a kernel's.
   struct to_copies {
     minimum::kept_copies* copies;
     std::uint32_t cloud = 0;
@@ -34,6 +25,16 @@ class memory_on<device> {
     }
   };
 
+  explicit memory_on(const device& on, std::pmr::memory_resource* memory = nullptr) : on_(on), memory_(memory), copies_(on, memory) {}
+
+  piece take(std::size_t units) const { return {units, on_.id, memory_}; }
+
+  template <class Clouds>
+  auto readable(const Clouds& clouds) {
+    return mapped_clouds(clouds, to_copies{&copies_});
+  }
+
+ private:
   device on_;
   std::pmr::memory_resource* memory_;
   minimum::kept_copies copies_;
