@@ -136,6 +136,48 @@ TEST_CASE("A tree wider than eight, and a flat list, are walked eight children a
   }
 }
 
+TEST_CASE("Wide nodes below wide nodes lose no child, and what is too wide is refused") {
+  const device gpu;
+  verdict v;
+  dice d(36);
+  const auto volume = [](std::span<const ball> balls) { return clearance::bounding_volume_traits<clearance::sphere>::fit(balls); };
+  for (const std::uint32_t width : {9u, 20u, 70u}) {
+    std::vector<inner_sphere> all;
+    std::vector<ball> balls;
+    for (std::uint32_t group = 0; group < width; ++group) {
+      const vec3 about = d.point(1);
+      for (std::uint32_t k = 0; k < width; ++k) all.push_back({about + d.point(0.2), 0.01f + d.number(0, 0.02)}), balls.push_back(all.back().balls()[0]);
+    }
+    clearance::bvh<clearance::sphere, inner_sphere> tree;
+    tree.primitives = all, tree.depth = 2, tree.width = width;
+    tree.nodes.push_back({1, width}), tree.volumes.push_back(volume(balls));
+    for (std::uint32_t group = 0; group < width; ++group) {
+      tree.nodes.push_back({1 + width + group * width, width});
+      tree.volumes.push_back(volume(std::span(balls).subspan(group * width, width)));
+    }
+    for (std::uint32_t k = 0; k < all.size(); ++k) {
+      tree.nodes.push_back({k, 1 | clearance::bvh_node::leaf_bit}), tree.ids.push_back(k);
+      tree.volumes.push_back(volume(all[k].balls()));
+    }
+    const auto tree_there = tree.on(gpu);
+    const clearance::any_tree on_host{tree.view()}, on_gpu{tree_there.view()};
+    using view = clearance::part_view<std::remove_cvref_t<decltype(on_host)>>;
+    const ball around = clearance::enclosing_ball(std::span<const inner_sphere>(all));
+    const clearance::part_facts facts{around.center, around.radius, 0, 0};
+    const view here{on_host, {}, facts}, there{on_gpu, {}, facts};
+    const auto part = gpu.copy_in(std::span<const view>(&there, 1));
+    const std::vector<Eigen::Isometry3d> poses = {d.pose(0.5)};
+    for (const real far : {2, 30}) {  // from 30 m much is nearly equally far
+      const std::vector<vec3> points = d.points(3000, far);
+      for (int again = 0; again < 5; ++again)
+        ask(clearance::model_view<view>{&here, {&facts, 1}, 2, width}, clearance::model_view<view>{part.data(), {&facts, 1}, 2, width}, poses,
+            placed{point_span(points), d.pose(0.1)}, v, std::to_string(width) + " below " + std::to_string(width));
+    }
+    CHECK_THROWS_WITH(min_distance(gpu, clearance::model_view<view>{part.data(), {&facts, 1}, 2, 262'145}, poses, point_span{}),
+                      "clearance: a node has 262145 children; a device takes 262144");
+  }
+}
+
 TEST_CASE("A point inside a solid whose triangles hang on a deep tree is certainly inside") {
   const device gpu;
   verdict v;

@@ -11,6 +11,7 @@ inline constexpr std::uint32_t most_parts = 128;    ///< In one kernel.
 inline constexpr std::uint32_t inline_parts = 12;   ///< As many as travel with the launch.
 inline constexpr std::uint32_t most_children = 8;   ///< Of a node,
 inline constexpr std::uint32_t deepest_stack = 64;  ///< and what a tree's depth-first stack may need; trees that `build` makes keep to both.
+inline constexpr std::uint32_t most_width = most_children << 15;  ///< Children of a node of any other tree.
 inline constexpr std::uint32_t cluster = 8;         ///< Parts that are first tested together, as one ball.
 inline constexpr std::uint32_t most_clusters = most_parts / cluster;
 inline constexpr std::uint32_t no_bound = 0xff800000u;  ///< ordered(infinity): nothing is known of how near anything is.

@@ -27,6 +27,8 @@ class launcher {
       if constexpr (!node_of<typename PartView::hierarchy_type>::any_size)
         throw std::invalid_argument("clearance: a tree of depth " + std::to_string(model.depth) + " and width " + std::to_string(model.width) +
                                     ", which `build` would not make; a device takes it as an any_tree");
+      if (model.width > most_width)
+        throw std::invalid_argument("clearance: a node has " + std::to_string(model.width) + " children; a device takes " + std::to_string(most_width));
       overflow_room_ = std::uint32_t(std::max<std::uint64_t>(need, std::uint64_t(model.depth) * most_children + 2 * stack_capacity));
       overflow_ = device_buffer<std::byte>(std::size_t(processors_) * (warps + 1) * overflow_room_ * sizeof(pending<linked_node>), on.id, memory);
     }

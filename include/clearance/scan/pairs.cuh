@@ -163,6 +163,10 @@ struct pair_search : tree_steps<Answer> {
     if constexpr (any_size) return steps::begin(pair);
     return 0;
   }
+  static __device__ std::uint32_t of_child(std::uint32_t pair) {
+    if constexpr (any_size) return steps::from_first(pair);
+    return pair;
+  }
 
   /// This warp's share of the memory for what is below the stack.
   static __device__ pending* memory_below() {
@@ -220,7 +224,10 @@ struct pair_search : tree_steps<Answer> {
     const real reach = Answer::reach_of_pair(s, part, i);
     const bool live = e.bound <= reach, leaf = live && steps::is_leaf(part, e.node);
     const std::uint32_t count = live ? steps::size(part, e.node) : 0;
-    top = push_children(e.bound, e.node, leaf ? 0 : count - first_of(e.pair), e.pair, v.x, reach, stack, top);
+    std::uint32_t left = leaf ? 0 : count;  // children that are not yet pushed
+    if constexpr (any_size)
+      if (left != 0) left -= first_of(e.pair);
+    top = push_children(e.bound, e.node, left, e.pair, v.x, reach, stack, top);
     look(e.node, leaf ? count : 0, part, i, v, reach);
     return top;
   }
@@ -240,10 +247,10 @@ struct pair_search : tree_steps<Answer> {
 #pragma unroll
     for (std::uint32_t j = 0; j < each; ++j) {
       const std::uint32_t k = lane() + j * mates;
-      child[j] = {infinity, {}, pair_and_part};
+      child[j] = {infinity, {}, of_child(pair_and_part)};
       if (k < count) {
         const auto step = steps::child(steps::part_of(pair_and_part), node, first_of(pair_and_part) + k);
-        child[j] = {traits::lower_bound(step.volume, q), step.node, pair_and_part};
+        child[j] = {traits::lower_bound(step.volume, q), step.node, of_child(pair_and_part)};
       }
       within[j] = k < count && child[j].bound <= reach;
     }

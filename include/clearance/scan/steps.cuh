@@ -36,12 +36,15 @@ struct steps_down : frame_parts<Answer> {
   }
   static __device__ std::uint32_t id(std::uint32_t k, const place_type& p) { return tree(k).id(kind::unpack(p.leaf), p.number); }
   static __device__ place_type place_of(const node_type& leaf, std::uint32_t j) { return {leaf, j}; }
-  /// Of more than eight children the first that are not yet pushed: their number goes with the pair, in bits that it leaves.
+  /// Of more than eight children the first that are not yet pushed: their number goes with the pair, in bits that it leaves. Those count to
+  /// `most_width`.
   static __device__ std::uint32_t begin(std::uint32_t pair) { return (pair >> 10 & 63 | pair >> 23 << 6) * most_children; }
   static __device__ void skip(std::uint32_t& pair) {
     const std::uint32_t eights = begin(pair) / most_children + 1;
-    pair = pair & 0x7f03ff | (eights & 63) << 10 | eights >> 6 << 23;
+    pair = from_first(pair) | (eights & 63) << 10 | eights >> 6 << 23;
   }
+  /// And none: of a child that number says nothing.
+  static __device__ std::uint32_t from_first(std::uint32_t pair) { return pair & 0x7f03ff; }
   static __device__ std::uint32_t pair_of(std::uint32_t pair) { return pair & 1023; }
   static __device__ std::uint32_t part_of(std::uint32_t pair) { return pair >> 16 & 127; }
   static __device__ void fetch_tops(std::uint32_t) {}
