@@ -126,7 +126,7 @@ function(clearance_say_what_is_missing)
   set(names_EXAMPLES "the examples")
   set(names_BENCH "the benchmarks")
   set(names_TOOLS "the command")
-  set(yardsticks libembree-dev libopenvdb-dev)  # what only a comparison with others needs is never an error
+  set(yardsticks libembree-dev libopenvdb-dev libboost-dev)  # what only a comparison with others needs is never an error
   foreach(part TOOLS EXAMPLES BENCH TESTS)
     get_property(lacks GLOBAL PROPERTY clearance_lacks_${part})
     list(REMOVE_DUPLICATES lacks)
