@@ -13,10 +13,7 @@ namespace bench {
 class moved_robot {
  public:
   explicit moved_robot(const scene& s) : scene_(s) {
-    if (s.name != "kuka") return;
-    clearance::io::robot_options options;
-    options.geometry = clearance::io::robot_geometry::visual;
-    robot_.push_back(clearance::io::load_robot(std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf", options));
+    if (s.name == "kuka") robot_.push_back(load_kuka(CLEARANCE_TEST_DATA));
   }
   /// `joints`: seven angles, in radians.
   std::vector<Eigen::Isometry3d> poses(const std::array<double, 7>& joints) const {

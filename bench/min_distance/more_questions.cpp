@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Zones, lists, the nearest, confirmed points and motions on the CPU, with one thread and with all.
+// Zones, lists, the nearest, confirmed points, motions and gradients on the CPU, with one thread and with all.
 #include "more_questions.hpp"
 
 #include <clearance/volume/sphere.hpp>

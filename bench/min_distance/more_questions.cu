@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Zones, lists, the nearest, confirmed points, motions and joint vectors on a GPU, the points resident there. What is waited for by the
+// Zones, lists, the nearest, confirmed points, motions, gradients and joint vectors on a GPU, the points there. What is waited for by the
 // host's clock; *enqueued* and *placed* by CUDA events, behind other work: at once with memory for one call, or prepared.
 #include "device.cuh"
 #include "more_questions.hpp"
 
+#include <clearance/compacted.cuh>
 #include <clearance/distances_per_part.cuh>
 #include <clearance/in_collision.cuh>
 #include <clearance/io/joint_chain.hpp>
 #include <clearance/min_distances.cuh>
 #include <clearance/min_support.cuh>
 #include <clearance/motion_clearance.cuh>
+#include <clearance/signed_distances.cuh>
 #include <clearance/volume/sphere.hpp>
 #include <clearance/within.cuh>
 #include <clearance/zones.cuh>
@@ -95,15 +97,34 @@ void per_part(benchmark::State& state, float d_max) {
   q.time(state, [&] { query.enqueue(q.s.poses, q.cloud, distance.data(), q.counts.data(), d_max); });
 }
 
+/// To triangles: signed, beside the distances that it begins with.
+void to_triangles(benchmark::State& state, bool is_signed) {
+  if (no_device(state)) return;
+  question q(std::size_t(state.range(0)));
+  const auto triangles = triangle_model<clearance::aabb>(q.s).on(q.gpu);
+  const device_buffer<float> distance(q.points.size(), q.gpu.id);
+  const clearance::distances_out out{.distance = distance.data()};
+  q.time(state, [&] {
+    if (is_signed)
+      clearance::signed_distances_async(q.gpu, triangles, q.s.poses, q.cloud, out, q.counts.data(), 0.1f);
+    else
+      clearance::distances_async(q.gpu, triangles, q.s.poses, q.cloud, out, q.counts.data(), 0.1f);
+  });
+}
+
+void compacted(benchmark::State& state) {
+  if (no_device(state)) return;
+  question q(std::size_t(state.range(0)));
+  const device_buffer<vec3> points(q.points.size(), q.gpu.id);
+  const device_buffer<std::uint32_t> numbers(q.points.size(), q.gpu.id), count(1, q.gpu.id);
+  q.time(state, [&] { clearance::compacted_async(q.gpu, q.cloud.source, points.data(), numbers.data(), count.data()); });
+  state.counters["points"] = double(q.gpu.copy_out(count)[0]);
+}
+
 /// Seven joints, as the KUKA has them; or a stand-in's, where its data is not.
 clearance::joint_chain<> seven_joints() {
   const std::size_t parts = the_scene().poses.size();
-  if (the_scene().name == "kuka") {
-    clearance::io::robot_options options;
-    options.geometry = clearance::io::robot_geometry::visual;
-    const std::filesystem::path data = CLEARANCE_TEST_DATA;
-    return clearance::io::joint_chain_of(clearance::io::load_robot(data / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf", options));
-  }
+  if (the_scene().name == "kuka") return clearance::io::joint_chain_of(load_kuka(CLEARANCE_TEST_DATA));
   std::vector<clearance::chain_link> links(8);
   for (std::uint32_t k = 1; k < 8; ++k) {
     links[k].origin.m[2][3] = 0.2, links[k].parent = k - 1, links[k].value = k - 1;
@@ -158,6 +179,9 @@ BENCHMARK_CAPTURE(in_collision, enqueued_prepared, true) TIMES;
 BENCHMARK_CAPTURE(per_part, enqueued_10cm, 0.1f) TIMES;
 BENCHMARK_CAPTURE(per_part, enqueued_50cm, 0.5f) TIMES;
 BENCHMARK_CAPTURE(per_part, enqueued_untruncated, clearance::infinity) TIMES;
+BENCHMARK_CAPTURE(to_triangles, enqueued_at_once_10cm, false) TIMES;
+BENCHMARK_CAPTURE(to_triangles, enqueued_at_once_10cm_signed, true) TIMES;
+BENCHMARK(compacted) TIMES;
 BENCHMARK(placed)->Arg(4096)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(50);
 BENCHMARK_CAPTURE(placed_call, there, true)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
 BENCHMARK_CAPTURE(placed_call, by_the_host, false)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(20);

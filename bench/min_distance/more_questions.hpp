@@ -3,10 +3,19 @@
 // Questions about one frame of 307,200 points that are waited for, wherever they run: prepared, and as one call, by the host's clock.
 #include "configurations.hpp"
 
+#include <clearance/compacted.hpp>
 #include <clearance/distances_per_part.hpp>
+#include <clearance/gradient.hpp>
 #include <clearance/in_collision.hpp>
+#include <clearance/io/jacobian.hpp>
+#include <clearance/min_distance_query.hpp>
 #include <clearance/min_support.hpp>
 #include <clearance/motion_clearance.hpp>
+#include <clearance/part_witnesses.hpp>
+#include <clearance/robot/attached.hpp>
+#include <clearance/signed_distances.hpp>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/sphere.hpp>
 #include <clearance/within.hpp>
 #include <clearance/zones.hpp>
 
@@ -28,6 +37,71 @@ inline clearance::straight_motion some_motion() {
   const auto path = trajectory(500);
   const auto at = [&](std::size_t c) { return std::span(path).subspan(c * parts, parts); };
   return {at(0), at(60)};
+}
+
+inline Eigen::Vector3d origin_of(std::size_t part) { return the_scene().poses[part].translation(); }
+
+/// What gradients cost, each beside the minimum that it is of. The least distance: with respect to the pose of its part, and to the joints
+/// (of the KUKA alone; its stand-in has none). Every part's: one more walk a part.
+template <class Add>
+void for_each_gradient(const Add& add) {
+  add("min_distance, prepared", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
+    clearance::min_distance_query query(on, model);
+    state.counters["mm"] = 1e3 * double(ask_often(state, [&] { return query(the_scene().poses, cloud); }).distance);
+  });
+  add("min_distance and its gradient, prepared", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
+    clearance::min_distance_query query(on, model);
+    const auto found = ask_often(state, [&] {
+      const auto least = query(the_scene().poses, cloud);
+      return clearance::gradient(least, origin_of(least.part));
+    });
+    state.counters["known"] = bool(found);
+  });
+  add("min_distance and its gradient by joints, prepared", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
+    if (the_scene().name != "kuka") return state.SkipWithError("no joints without the real data");
+    const auto robot = load_kuka(CLEARANCE_TEST_DATA);
+    clearance::min_distance_query query(on, model);
+    const auto found = ask_often(state, [&] {
+      const auto least = query(the_scene().poses, cloud);
+      return clearance::io::joint_gradient(robot, kuka_joints, least.part, clearance::gradient(least, origin_of(least.part)));
+    });
+    state.counters["known"] = bool(found);
+  });
+  add("min_distance_per_part, prepared", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
+    clearance::min_distance_query query(on, model);
+    std::vector<clearance::part_minimum> minima(model.size());
+    state.counters["mm"] = 1e3 * double(ask_often(state, [&] { return query.per_part(the_scene().poses, cloud, minima); }).distance);
+  });
+  add("min_distance_per_part and every part's gradient", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
+    clearance::min_distance_query query(on, model);
+    std::vector<clearance::part_minimum> minima(model.size());
+    const auto found = ask_often(state, [&] {
+      query.per_part(the_scene().poses, cloud, minima);
+      std::size_t known = 0;
+      for (const auto& witness : clearance::part_witnesses(on, model, the_scene().poses, cloud, minima))
+        known += witness.part != clearance::none && clearance::gradient(witness, origin_of(witness.part));
+      return known;
+    });
+    state.counters["known"] = double(found);
+  });
+}
+
+/// A robot that holds something: putting it on, and the minimum of both, to be compared with the robot's alone.
+template <class Add>
+void for_each_attached(const Add& add) {
+  const auto held = [](const auto& on) { return clearance::make_model<clearance::sphere>(std::vector{the_scene().packings.back()}).on(on); };
+  add("attach", [=](benchmark::State& state, const auto& on, const auto& model, const auto&) {
+    const auto object = held(on);
+    state.counters["parts"] = double(ask_often(state, [&] { return clearance::attach(on, model, object).size(); }));
+  });
+  add("min_distance with an attached object, prepared", [=](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
+    const auto object = held(on);
+    const auto holding = clearance::attach(on, model, object);
+    auto poses = the_scene().poses;
+    poses.push_back(poses.back() * Eigen::Translation3d(0, 0, 0.1));
+    clearance::min_distance_query query(on, holding);
+    state.counters["mm"] = 1e3 * double(ask_often(state, [&] { return query(poses, cloud); }).distance);
+  });
 }
 
 /// Calls `add(name, row)` for each question: `row(state, on, model, cloud)`, the model and the cloud there.
@@ -70,6 +144,21 @@ void for_each_question(const Add& add) {
     const auto motion = some_motion();
     const auto found = ask_often(state, [&] { return clearance::motion_clearance(query, model, motion, cloud); });
     state.counters["queries"] = double(found.queries), state.counters["lower_mm"] = 1e3 * found.lower;
+  });
+  for_each_gradient(add);
+  for_each_attached(add);
+  // The robot's triangles; signed_distances beside the distances that it begins with.
+  const auto exact = [&](const char* name, const auto& ask) {
+    add(name, [=](benchmark::State& state, const auto& on, const auto&, const auto& cloud) {
+      const auto triangles = triangle_model<clearance::aabb>(the_scene()).on(on);
+      const auto found = ask_often(state, [&] { return ask(on, triangles, the_scene().poses, cloud, clearance::distances_options{.d_max = 0.1f}); });
+      state.counters["inside"] = double(std::ranges::count_if(found.distance, [](float d) { return d < 0; }));
+    });
+  };
+  exact("distances to triangles, 10 cm", [](const auto&... all) { return clearance::distances(all...); });
+  exact("signed_distances, 10 cm", [](const auto&... all) { return clearance::signed_distances(all...); });
+  add("compacted", [](benchmark::State& state, const auto& on, const auto&, const auto& cloud) {
+    state.counters["points"] = double(ask_often(state, [&] { return clearance::compacted(on, cloud.source); }).points.size());
   });
 }
 

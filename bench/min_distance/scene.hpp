@@ -67,15 +67,21 @@ inline scene demo(bool packed) {
   return s;
 }
 
-/// The scene that all figures of this library speak of; the robot's links about 10 cm from the nearest point.
-inline scene kuka(const std::filesystem::path& data, bool packed) {
+inline clearance::io::robot load_kuka(const std::filesystem::path& data) {
   clearance::io::robot_options options;
   options.geometry = clearance::io::robot_geometry::visual;
-  const auto robot = clearance::io::load_robot(data / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf", options);
+  return clearance::io::load_robot(data / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf", options);
+}
+
+inline const std::vector<double> kuka_joints{0, 0.6, 0, -1.4, 0, 0.5, 0};
+
+/// The scene that all figures of this library speak of; the robot's links about 10 cm from the nearest point.
+inline scene kuka(const std::filesystem::path& data, bool packed) {
+  const auto robot = load_kuka(data);
   scene s;
   s.name = "kuka";
   for (const auto& part : robot.parts()) s.meshes.push_back(clearance::close_mesh(part.mesh));
-  s.poses = robot.poses(std::vector<double>{0, 0.6, 0, -1.4, 0, 0.5, 0});
+  s.poses = robot.poses(kuka_joints);
   s.cloud = clearance::io::load_cloud((data / "clouds/kinect_seq/frame_20121214T142255.814212.pcd").string()).relative_to({0, 0, 0}).points;
   s.world_from_camera = looking({2.18, -0.1, 1.25}, {-0.75, 0.1, -0.65});
   if (packed) pack_all(s);
