@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/min_distances.cuh>  // a device's search
+#include <clearance/in_collisions.cuh>  // a device's search
+#include <clearance/min_distances.cuh>
 
 #include "plan.hpp"
 

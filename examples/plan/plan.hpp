@@ -2,6 +2,7 @@
 #pragma once
 // Is a planned trajectory still free in the newest frame, and where is it not?
 
+#include <clearance/in_collisions.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/min_distances.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
@@ -41,6 +42,14 @@ int example(const Backend& on) {
     // [plan]
     if (frame.size() > 1 && stops != 73) return 1;
   }
+
+  // [in_collisions]
+  clearance::in_collisions_query touches(on, arm);  // a state a configuration, and no more
+  const auto& states = touches(trajectory, wall, 0.05);
+  const std::size_t not_free = states.first_not_free();
+  if (not_free < states.of.size()) std::printf("waypoint %zu is the first that may be within 5 cm: %s\n", not_free, to_string(states.of[not_free]));
+  // [in_collisions]
+  if (not_free != 73 || clearance::in_collisions(on, arm, trajectory, wall, 0.05).of != states.of) return 1;
 
   // [joints]
   clearance::chain_link shoulder, slide;  // io::joint_chain_of makes such links of a robot description's

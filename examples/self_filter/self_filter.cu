@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/self_filter.cuh>  // a device's scan
+#include <clearance/compacted.cuh>  // how a device does it
+#include <clearance/self_filter.cuh>
 
 #include "self_filter.hpp"
 

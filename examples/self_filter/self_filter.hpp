@@ -2,6 +2,7 @@
 #pragma once
 // A camera sees the arm that it watches, and what the arm holds. How far is the rest?
 
+#include <clearance/compacted.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/robot/attached.hpp>
@@ -37,6 +38,13 @@ int example(const Backend& on) {
   const auto r = clearance::min_distance_filtered(on, holding, its_poses, seen, options);
   std::printf("%llu of %zu points are the robot's; it is %.3f m from point %u\n", r.filter.counts.own, seen.size(), double(r.rest.distance), r.rest.point);
   // [self_filter]
+
+  // [compacted]
+  const auto labels = on.copy_in(std::span<const clearance::point_label>(r.filter.labels));
+  const auto left = clearance::compacted(on, clearance::masked(clearance::point_span(seen), labels.data()));
+  std::printf("%zu points are left for others; the first of them is number %u of the cloud\n", left.points.size(), left.numbers.front());
+  // [compacted]
+  if (left.numbers != r.filter.rest || left.points.size() != left.numbers.size() || left.points.front() != seen[left.numbers.front()]) return 1;
   return bare.filter.rest.size() == 410 && bare.rest.point >= 400 && bare.rest.point < 410 && r.filter.counts.own == 410 && r.rest.point >= 410 &&
                  std::abs(r.rest.distance - 0.32f) < 1e-4f
              ? 0
