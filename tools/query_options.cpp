@@ -306,6 +306,7 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
     return [raw, &app] { return read(app, *raw); };
   }
   if (recorded) {
+    app.add_flag("--csv", raw->csv, "Print CSV, one row per frame; without it, one JSON object per frame");
     one("--svg", raw->svg, "Write a picture to this .svg file once all frames are answered: the distance in every frame, in the band of its bracket");
     app.footer("Prints one line per frame, a JSON object. latency_us is the time of the query alone, on the host's clock; a frame's points\n"
                "are read before. The exit code is 3 if a frame has no valid point, also with --check.");

@@ -90,7 +90,7 @@ struct query_options {
   std::optional<double> deadline;  // --deadline: milliseconds for the least distance
   bool shard = false;              // --shard: one of the ranks that mpirun started
   std::string configurations;   // of `clearance plan`
-  bool csv = false;             // of `clearance plan`
+  bool csv = false;             // of `clearance plan` and `clearance run`
   bool between = false;         // of `clearance plan`
   recording_options recording;  // of `clearance run`
 };

@@ -12,7 +12,6 @@ std::string to_json(const frame_report& report) {
   json out = {{"frame", report.frame}, {"file", report.file}};
   out.update(witness(report.found.result, report.cloud, report.point, *report.bodies));
   out["points"] = counts(report.found.result);
-  const auto microseconds = [](double seconds) { return std::round(1e9 * seconds) / 1e3; };  // the clock's nanoseconds
   out["upload_us"] = microseconds(report.upload);
   out["latency_us"] = microseconds(report.query);
   if (report.plan) {

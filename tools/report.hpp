@@ -74,6 +74,9 @@ struct frame_report {
 /// One JSON object in one line.
 std::string to_json(const frame_report& report);
 
+/// One line of a table, and before the first frame's the names of the columns.
+std::string to_csv(const frame_report& report);
+
 /// One JSON object, and a line end.
 std::string to_json(const query_report& report);
 

@@ -12,6 +12,8 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> pixel(const observation& 
 
 json or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
+double microseconds(double seconds) { return std::round(1e9 * seconds) / 1e3; }
+
 json witness(const min_distance_result& r, const observation* cloud, std::uint32_t point, const std::vector<body>& bodies) {
   const bool any = r.state != state::no_data, near = cloud != nullptr;  // beyond a d_max there is a bracket, but no witness
   const auto given = [](bool there, json value) { return there ? value : json(nullptr); };

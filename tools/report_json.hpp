@@ -25,7 +25,16 @@ json witness(const clearance::min_distance_result& r, const observation* cloud, 
 
 json counts(const clearance::min_distance_result& r);
 
+/// To the clock's nanoseconds.
+double microseconds(double seconds);
+
 struct plan_report;
+
+/// The witness's cloud; null if there is none.
+const observation* cloud_of(const plan_report& report, const clearance::min_distance_result& r);
+
+/// From row k to the next; `time` and `from` to `to` are between 0 and 1.
+json way_of(const plan_report& report, std::size_t k);
 
 /// How many configurations there are, the least distance of all, at which that is, and, with --check, the first that fails.
 json outcome_of(const plan_report& report);

@@ -123,7 +123,7 @@ int run(const query_options& asked) {
       std::tie(report.cloud, report.point) =
           frame ? std::pair<const observation*, std::uint32_t>(&*frame, r.point) : merged.origin(r.point);
     frame ? frame->recount(r) : merged.recount(r);
-    std::cout << to_json(report);
+    std::cout << (asked.csv ? to_csv(report) : to_json(report));
     if (!std::cout) return code;  // main says so
     if (!asked.recording.svg.empty()) seen.push_back(r);
     const int each = r.state == state::no_data ? 3 : asked.margin && !(r.lower > *asked.margin) ? 2 : 0;

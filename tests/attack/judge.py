@@ -80,7 +80,7 @@ def answers(case, outcome):
     if case.command == "plan":
         return None if ["--csv", None] in case.options else _plan_answers(text)
     if case.command == "run":
-        return [_json_answer(each) for each in text.splitlines()]
+        return None if ["--csv", None] in case.options else [_json_answer(each) for each in text.splitlines()]
     if case.command == "pack" and ["--json", None] in case.options:
         return re.sub(r'"(seconds|cached|mesh)": [^\n]*', "", text)
     if case.command == "info" and ["--json", None] in case.options and any(name == "" for name, _ in case.options):

@@ -141,7 +141,7 @@ def _plan_cases():
     for cloud in ("c.xyz", "d.xyz"):
         for more in ([], [["--check", "0.01"], ["--d-max", "0.3"]], [["--camera-link", "b"]], [["--csv", None]]):
             yield Case("plan", "plan", [["--robot", "r.urdf"], ["--configurations", "q.csv"], *more, ["--cloud", cloud], ["--model", "triangles"]], files, "q.csv")
-    for more in ([], [["--merge", None]], [["--check", "0.01"]]):
+    for more in ([], [["--merge", None]], [["--check", "0.01"]], [["--csv", None]]):
         yield Case("plan", "run", [["--robot", "r.urdf"], ["--frames", "frames.txt"], ["--trajectory", "t.csv"], ["--plan", "q.csv"], ["--model", "triangles"],
                                    *more], files, "q.csv")
 

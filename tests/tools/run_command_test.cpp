@@ -315,6 +315,69 @@ TEST_CASE("--svg draws the distance of every frame in the band of its bracket, a
   }
 }
 
+TEST_CASE("--csv says of every frame what the lines say, and of a plan which waypoint is the first") {
+  const recording r;
+  const scratch_file waypoints(".csv", "turn,slide\n0,0.3\n0,0.35\n");
+  const auto table = [](const outcome& o) {
+    INFO(o.err);
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream in(o.out);
+    for (std::string line; std::getline(in, line);) {
+      std::istringstream words(line + ',');
+      rows.emplace_back();
+      for (std::string cell; std::getline(words, cell, ',');) rows.back().push_back(cell);
+    }
+    return rows;
+  };
+  const std::string columns = "frame,file,state,distance,lower,upper,cloud,point,part,primitive,point_x,point_y,point_z,nearest_x,nearest_y,nearest_z,latency_us";
+  const auto names = [&](const std::string& more) { return run_command(r.run() + " --csv" + more).out.starts_with(columns + (more.empty() ? "\n" : ",")); };
+  CHECK(names(""));
+  CHECK(names(" --plan " + waypoints.path));
+  for (const std::string margin : {"0.01", "0.12", "5"}) {
+    const std::string more = " --plan " + waypoints.path + " --check " + margin;
+    const outcome o = run_command(r.run() + more + " --csv"), plain = run_command(r.run() + more);
+    CHECK(o.code == plain.code);
+    const auto rows = table(o);
+    const auto all = lines(plain);
+    REQUIRE(rows.size() == 4);
+    CHECK(rows[0].back() == "plan_first_below");
+    for (int k = 0; k < 3; ++k) {
+      const auto& row = rows[k + 1];
+      INFO("frame " << k << " margin " << margin);
+      REQUIRE(row.size() == 20);
+      CHECK(row[0] == std::to_string(k));
+      CHECK(row[1] == r.frame(k));
+      const char* const keys[] = {"state", "distance", "lower", "upper", "cloud", "point", "part", "primitive"};
+      for (int i = 0; i < 8; ++i) {
+        const auto& value = all[k].at(keys[i]);
+        CHECK(row[2 + i] == (value.is_string() ? value.get<std::string>() : value.is_null() ? "" : value.dump()));
+      }
+      for (int i = 0; i < 3; ++i) CHECK(row[10 + i] == all[k].at("point_xyz").at(i).dump());
+      for (int i = 0; i < 3; ++i) CHECK(row[13 + i] == all[k].at("nearest_xyz").at(i).dump());
+      CHECK(std::stod(row[16]) >= 0);
+      const auto& plan = all[k].at("plan");
+      CHECK(row[17] == plan.at("least").dump());
+      CHECK(row[18] == plan.at("at").dump());
+      CHECK(row[19] == (plan.at("first_below").is_null() ? "" : plan.at("first_below").dump()));
+    }
+  }
+  // A picture and a table of the same run; a frame of which nothing is known has no numbers.
+  r.put("2.xyz", "nan nan nan\n");
+  const std::string svg = (r.folder / "out.svg").string();
+  const outcome o = run_command(r.run() + " --csv --svg " + svg);
+  CHECK(o.code == 3);
+  CHECK(fs::exists(svg));
+  const auto rows = table(o);
+  REQUIRE(rows.size() == 4);
+  REQUIRE(rows[2].size() == 17);
+  CHECK(rows[2][2] == "no_data");
+  for (int i = 3; i < 16; ++i) CHECK(rows[2][i].empty());
+  refuses(r.run() + " --csv --json", "--json");
+  refuses(r.run() + " --csv=yes", "--csv");
+  r.put("1.xyz", "0 0 zero\n");
+  refuses(r.run() + " --csv", r.frame(0));  // no line of names either
+}
+
 TEST_CASE("a frame that is far above all others is marked in the picture, and does not flatten them") {
   const recording r;
   r.put("near.xyz", "0 0 2\n"), r.put("far.xyz", "0 0 500\n");
