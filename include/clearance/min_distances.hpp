@@ -21,8 +21,11 @@ struct min_distances_result {
   std::vector<min_distance_result> of;
 
   /// The first configuration that is not certain to be farther away than `margin`, in metres; or of.size(). Without a valid point
-  /// none is certain.
-  std::size_t first_below(double margin) const { return first_of(of, margin); }
+  /// none is certain. Throws std::invalid_argument if the margin is negative or NaN: `lower` is 0 in a collision, too.
+  std::size_t first_below(double margin) const {
+    check(margin);
+    return first_of(of, margin);
+  }
 
   /// Where the configurations were several trajectories, [batch, horizon]: trajectory `i`'s. Throws std::invalid_argument if they are no
   /// whole trajectories of `horizon` configurations, or there is none of number i.
@@ -32,12 +35,16 @@ struct min_distances_result {
   }
   /// And `first_below` of each, counted from its own beginning.
   std::vector<std::size_t> first_below(double margin, std::size_t horizon) const {
+    check(margin);
     std::vector<std::size_t> first(count(horizon));
     for (std::size_t i = 0; i < first.size(); ++i) first[i] = first_of(trajectory(i, horizon), margin);
     return first;
   }
 
  private:
+  static void check(double margin) {
+    if (!(margin >= 0)) throw std::invalid_argument("clearance: the margin is " + std::to_string(margin) + " m; it must not be negative");
+  }
   static std::size_t first_of(std::span<const min_distance_result> some, double margin) {
     const auto near = [margin](const min_distance_result& r) { return r.state == state::no_data || !(double(r.lower) > margin); };
     return std::size_t(std::find_if(some.begin(), some.end(), near) - some.begin());

@@ -222,11 +222,16 @@ TEST_CASE("The first waypoint below a margin, and nothing known is below it") {
   CHECK(found.first_below(0.0) == 7);   // 4 - 3.5 - 0.5, less the gap
   CHECK(found.first_below(0.48) == 7);
   CHECK(found.first_below(0.495) == 6);
-  CHECK(found.first_below(-1.0) == 10);
+  CHECK(found.first_below(clearance::infinity) == 0);
+  for (const double nonsense : {-1.0, -1e-9, double(clearance::not_a_number)}) {  // the waypoint at the wall is a collision, and its lower is 0
+    CHECK_THROWS_AS(found.first_below(nonsense), std::invalid_argument);
+    CHECK_THROWS_AS(found.first_below(nonsense, 5), std::invalid_argument);
+    CHECK_THROWS_AS(clearance::min_distances_result{}.first_below(nonsense, 5), std::invalid_argument);
+  }
   const auto nearby = min_distances(host{}, model, poses, wall, {0.6f});
   CHECK(nearby.first_below(0.495) == 6);
   CHECK((nearby.of[0].state == state::free && nearby.of[0].distance == infinity && nearby.of[0].lower > 0.589f && nearby.of[0].lower <= 0.59f));
-  CHECK(min_distances(host{}, model, poses, std::vector<vec3>{}).first_below(-1) == 0);
+  CHECK(min_distances(host{}, model, poses, std::vector<vec3>{}).first_below(0) == 0);
   CHECK(min_distances(host{}, model, poses, std::vector<vec3>{{clearance::not_a_number, 0, 0}}).of[3].state == state::no_data);
 }
 
