@@ -2,6 +2,7 @@
 // The bracket is true wherever most points, the origin of their floats, or the poses are.
 #include "search/far_scenes.hpp"
 
+#include <clearance/in_collision.hpp>
 #include <clearance/min_distance_query.hpp>
 
 using namespace testing;
@@ -63,6 +64,31 @@ TEST_CASE("A robot near the origin of the floats has a bracket of micrometres, w
                                     r.lower, " to", r.upper);
     });
   }
+}
+
+TEST_CASE("A source that may be off by about as much as it measures, or says no number, leaves nothing free") {
+  const std::vector<inner_sphere> ball{{{0, 0, 0}, 1}};
+  const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball))}};
+  const std::vector poses{Eigen::Isometry3d::Identity()};
+  const std::vector<vec3> point{{1.6f, 0, 0}};
+  const auto asked = [&](const clearance::position_error& off) {
+    clearance::point_span source(point);
+    source.off = off;
+    const auto near = clearance::in_collision(host{}, robot, poses, source, 0.5).state;
+    const auto r = clearance::min_distance(host{}, robot, poses, source);
+    return std::tuple(near, r.state, r.lower);
+  };
+  const std::tuple nothing(clearance::state::possible, clearance::state::possible, real(0));
+  const double no = clearance::not_a_number;
+  const std::vector<clearance::position_error> offs{{0, 0.25}, {0, 0.4999}, {0, 0.49999999}, {0, 0.5}, {0, 0.5000003}, {0, 3}, {0, no},
+                                                    {no, 0}, {no, 0.01}, {-1, 0}, {0, -1}};
+  for (const clearance::position_error& off : offs) {
+    INFO(off.absolute << " and " << off.relative);
+    CHECK(asked(off) == nothing);
+  }
+  CHECK(std::get<0>(asked({})) == clearance::state::free);
+  CHECK(std::get<1>(asked({0, 0.2})) == clearance::state::free);
+  CHECK(std::get<0>(asked({0, 0.2})) == clearance::state::possible);
 }
 
 TEST_CASE("What a source's positions have lost is no more than it says") {

@@ -43,12 +43,13 @@ CLEARANCE_HD inline double arithmetic_error(double extent) { return fma(unit_err
 
 /// All that a distance to it can be off. `poses` is the sum of all ways between frames, `origin` that from the source's own
 /// zero to the origin. A point's position is at most extent + distance + origin long, and off by `relative` of that; what
-/// `source_share` covers of the first two is in unit_error, which counts the extent twice.
+/// `source_share` covers of the first two is in unit_error, which counts the extent twice. Nothing is certain of a source that is off
+/// by a quarter of its distances, or says no such numbers.
 CLEARANCE_HD inline float_error error_near(double extent, double poses, double origin, const position_error& off) {
+  if (!(off.absolute >= 0 && off.relative >= 0 && off.relative < 0.25)) return {double(infinity), unit_error};
   const double here = arithmetic_error(extent) + fma(pose_error, poses, fma(off.relative, origin, off.absolute));
   if (off.relative <= source_share) return {here, unit_error};
   const double more = off.relative - source_share;
-  if (!(more < 0.5)) return {double(infinity), unit_error};
   return {fma(more, extent, here) / (1 - more), (unit_error + more) / (1 - more)};  // of the distance as it is, said of the computed one
 }
 
