@@ -30,9 +30,9 @@ struct zones_result {
 
   const zone& of(std::size_t part, std::size_t z) const { return zones[part * per_part + z]; }
   /// The innermost zone of all parts with enough points: 0 is the nearest threshold, `per_part` says that all are empty. Nothing is
-  /// known of a frame without a valid point, or with something too close to be measured: then it is 0.
+  /// known of a frame without a valid point, of no part, or with something too close to be measured: then it is 0.
   std::size_t innermost() const {
-    if (counts.valid == 0 || counts.dropped[int(drop_reason::too_close)] != 0) return 0;
+    if (counts.valid == 0 || zones.empty() || counts.dropped[int(drop_reason::too_close)] != 0) return 0;
     std::size_t least = per_part;
     for (std::size_t i = 0; i < zones.size(); ++i)
       if (zones[i].points >= min_points) least = std::min(least, i % per_part);
@@ -112,6 +112,9 @@ class zones_query {
   std::size_t ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options, zone* zones, point_counts* counts) {
     auto& [on, model, memory, pairs] = question_;
     const std::size_t given = options.thresholds.size(), parts = model.size();
+    if (given == 0 || options.min_points == 0)
+      throw std::invalid_argument("clearance: zones need a threshold, and min_points a point; here are " + std::to_string(given) + " and " +
+                                  std::to_string(options.min_points));
     std::vector<std::uint32_t> first;
     const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
     if (options.each_part && (parts == 0 || given % parts != 0))
@@ -145,7 +148,7 @@ std::size_t zones_async(const On& on, const Robot& robot, std::span<const Eigen:
 }
 
 /// The points in zones around every part, in one pass. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that
-/// does, and if thresholds are negative, not in order, or not the same number for each part.
+/// does, and if thresholds are negative, not in order, none, or not the same number for each part, or min_points is 0.
 template <class On, robot Robot, class Clouds>
 zones_result zones(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options) {
   return pairwise::asked_once<zones_query>(on, robot, [&](auto& query) { return query(poses, clouds, options); });

@@ -64,12 +64,22 @@ TEST_CASE("The innermost zone, few points, no point, and what cannot be asked") 
   CHECK(ask({.thresholds = {0.05, 0.2, 0.5}, .min_points = 2}).innermost() == 2);
   CHECK(ask({.thresholds = {0.05, 0.2, 0.5}, .min_points = 4}).innermost() == 3);
   CHECK(zones(host{}, robot, poses, std::vector<vec3>{}, {.thresholds = {0.1}}).innermost() == 0);
-  CHECK(ask({}).zones.empty());
+  CHECK_THROWS_AS(ask({}), std::invalid_argument);
+  CHECK_THROWS_AS(ask({.thresholds = {0.1}, .min_points = 0}), std::invalid_argument);
+  clearance::zone one;
+  clearance::point_counts counts;
+  for (const clearance::zones_options& none : {clearance::zones_options{}, {.thresholds = {0.1}, .min_points = 0}}) {
+    clearance::zones_query query(host{}, robot);
+    CHECK_THROWS_AS(query(poses, point_span(points), none), std::invalid_argument);
+    CHECK_THROWS_AS(query.enqueue(poses, point_span(points), none, &one, &counts), std::invalid_argument);
+    CHECK_THROWS_AS(zones_async(host{}, robot, poses, point_span(points), none, &one, &counts), std::invalid_argument);
+  }
   CHECK_THROWS_AS(ask({.thresholds = {0.2, 0.1}}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.thresholds = {-0.1}}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.thresholds = {clearance::not_a_number}}), std::invalid_argument);
   const clearance::model_view<decltype(robot)::view_type> no_parts{nullptr, {}, 0, 0};
   CHECK_THROWS_AS(zones(host{}, no_parts, std::span<const Eigen::Isometry3d>(), point_span(points), {.thresholds = {0.1}, .each_part = true}), std::invalid_argument);
+  CHECK(zones(host{}, no_parts, std::span<const Eigen::Isometry3d>(), point_span(points), {.thresholds = {0.1}}).innermost() == 0);
   const clearance::model two{std::vector{robot.parts()[0], robot.parts()[0]}};
   CHECK_THROWS_AS(zones(host{}, two, std::vector(2, poses[0]), point_span(points), {.thresholds = {0.1, 0.2, 0.3}, .each_part = true}), std::invalid_argument);
 }
