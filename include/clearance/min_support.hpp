@@ -82,6 +82,8 @@ supported_distance least_supported(Question& question, known_nearest& known, std
   if (options.min_points == 0 || !(options.radius >= 0 && options.radius < infinity))
     throw std::invalid_argument("clearance: a point cannot be confirmed by " + std::to_string(options.min_points) + " points within " +
                                 std::to_string(options.radius) + " m");
+  if (options.most == 0 || options.most > most_listed)
+    throw std::invalid_argument("clearance: " + std::to_string(options.most) + " nearest points cannot be asked; it must be 1 to 2^20");
   supported_distance r;
   for (std::size_t k = std::min<std::size_t>(16, options.most), asked = 0;; k = std::min(4 * k, options.most)) {
     const nearest_k_result near = list_nearest(question, known, poses, clouds, k, infinity);

@@ -26,6 +26,8 @@ struct nearest_k_result {
 
 namespace detail {
 
+inline constexpr std::size_t most_listed = std::size_t(1) << 20;  ///< Of a part.
+
 /// What the last frame tells of the next: how near the k nearest may still be. It is only ever a bound to begin with; where fewer points are
 /// so near, all is asked again.
 struct known_nearest {
@@ -94,7 +96,7 @@ std::vector<real> radii_of_nearest(Question& question, std::span<const Eigen::Is
 template <class Question, class Clouds>
 nearest_k_result list_nearest(Question& question, known_nearest& known, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
                               real d_max) {
-  if (k == 0 || k > (1 << 20)) throw std::invalid_argument("clearance: k is " + std::to_string(k) + "; it must be 1 to 2^20");
+  if (k == 0 || k > most_listed) throw std::invalid_argument("clearance: k is " + std::to_string(k) + "; it must be 1 to 2^20");
   if (!(d_max == d_max)) throw std::invalid_argument("clearance: d_max is not a number");
   const std::vector<real> first = known.first_bounds(question.model.size(), k, d_max);
   const std::vector<real> radii = radii_of_nearest(question, poses, clouds, std::uint32_t(k), d_max, first);

@@ -71,6 +71,8 @@ TEST_CASE("What confirms nothing is refused") {
   CHECK_THROWS_AS(ask({.radius = double(clearance::not_a_number)}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.radius = double(clearance::infinity)}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.most = 0}), std::invalid_argument);
+  CHECK(ask({.most = 1 << 20}).state == clearance::state::possible);
+  CHECK_THROWS_AS(ask({.most = (1 << 20) + 1}), std::invalid_argument);  // though one point is never so many
 }
 
 TEST_CASE("Prepared, the nearest confirmed point is in every frame what one call says, and after one that is refused") {
