@@ -11,7 +11,7 @@ namespace clearance {
 /// Whether a point is within a margin (peers: security margin, safety distance), and which: the same one on every run and backend.
 struct collision_result {
   /// collision: certainly one is; possible: that cannot be excluded; free: certainly none, and nothing was too close to be measured;
-  /// no_data: there was no valid point.
+  /// no_data: there was no valid point, or no part.
   clearance::state state = clearance::state::no_data;
   std::uint32_t cloud = none, point = none, part = none;  ///< The lowest certain one (by cloud, point, part); else the lowest possible one.
   point_counts counts;
@@ -23,13 +23,13 @@ namespace detail {
 struct tell_collision {
   const unsigned long long* word;
   const std::uint32_t* first;
-  std::uint32_t clouds;
+  std::uint32_t clouds, parts;
   collision_result* result;
 
   CLEARANCE_HD void operator()(std::size_t) const {
     using answer = pairwise::first_within;
     const bool too_close = result->counts.dropped[int(drop_reason::too_close)] != 0;
-    result->state = result->counts.valid == 0 ? state::no_data : too_close ? state::possible : state::free;
+    result->state = result->counts.valid == 0 || parts == 0 ? state::no_data : too_close ? state::possible : state::free;
     result->cloud = result->point = result->part = none;
     if (*word == answer::nothing) return;
     const auto where = pairwise::place_of(std::uint32_t(*word >> 31), first, clouds);
@@ -93,7 +93,7 @@ class in_collision_query {
     }
     const auto [word, near, start] = memory.put(std::vector{answer::nothing}, reaches, first);
     question_.ask(poses, clouds, answer{word, near, near + model.size(), start}, &result->counts);
-    on.for_each(1, detail::tell_collision{word, start, std::uint32_t(first.size()), result});
+    on.for_each(1, detail::tell_collision{word, start, std::uint32_t(first.size()), std::uint32_t(model.size()), result});
   }
 
   pairwise::pair_question<On, PartView> question_;

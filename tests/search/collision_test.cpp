@@ -100,6 +100,18 @@ TEST_CASE("What gap and tolerance leave open is possible, and no point says noth
   CHECK_THROWS_AS(in_collision(host{}, robot, poses, point_span(far), std::vector{0.1, 0.2}), std::invalid_argument);
 }
 
+TEST_CASE("Of a robot without parts nothing is known, whatever is asked") {
+  const std::vector<inner_sphere> ball{{{0, 0, 0}, 1}};
+  const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball))}};
+  const clearance::model_view<decltype(robot)::view_type> no_parts{nullptr, {}, 0, 0};
+  const std::span<const Eigen::Isometry3d> no_poses;
+  const std::vector<vec3> point{{1.5f, 0, 0}};
+  const auto nearest = min_distance(host{}, no_parts, no_poses, point_span(point));
+  const auto near = in_collision(host{}, no_parts, no_poses, point_span(point), 0.1);
+  CHECK((nearest.state == state::no_data && nearest.valid == 1));
+  CHECK((near.state == state::no_data && near.counts.valid == 1 && near.point == clearance::none));
+}
+
 TEST_CASE("A prepared question of collision says in every frame what one call says, and goes on after one that is refused") {
   verdict v;
   moving_frames f(5, 113);
