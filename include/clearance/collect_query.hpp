@@ -4,6 +4,7 @@
 
 #include <clearance/answer/bracket.hpp>
 #include <clearance/answer/kept_memory.hpp>
+#include <clearance/answer/margins.hpp>
 #include <clearance/backend/one_call.hpp>
 #include <clearance/collect.hpp>
 
@@ -11,13 +12,14 @@ namespace clearance {
 
 namespace pairwise {
 
-/// What each of them is made of: a robot that is ready to be asked about, and memory that is kept.
+/// What each of them is made of: a robot that is ready to be asked about, and memory that is kept, there and on the host.
 template <class On, class PartView>
 struct pair_question {
   On on;
   model_view<PartView> model;
   kept_memory<On> memory;
   typename pairs_on<On>::template kept<PartView> pairs;
+  frame_ahead ahead;
 
   template <class... Memory>
   pair_question(const On& on, const model_view<PartView>& model, Memory... from) : on(on), model(model), memory(on, from...), pairs{on, model, from...} {}
@@ -36,10 +38,8 @@ struct pair_question {
   }
   /// What is certain of distances, before anything is asked.
   template <class Clouds>
-  distance_certainty certain(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) const {
-    frames::cloud_frame frame;
-    frames::for_each_turn(frame, model.facts, poses, clouds, [](const auto&, const frames::turn&) {});
-    return certainty_of(frame);
+  distance_certainty certain(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
+    return certainty_of(ahead.look(model.facts, poses, clouds));
   }
 };
 

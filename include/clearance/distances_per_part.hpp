@@ -66,8 +66,8 @@ class distances_per_part_query {
   distance_certainty ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t points, real* distance, point_counts* counts,
                          real d_max) {
     pointwise::check({d_max});
-    std::vector<std::uint32_t> first;
-    frames::cloud_frame frame;
+    auto& [frame, first, reaches] = question_.ahead;
+    first.clear();
     frames::for_each_turn(frame, question_.model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
       first.push_back(now.first);
       question_.on.for_each(source.size(), pairwise::nothing_written<S>{source, distance + now.first, points, question_.model.size()});

@@ -6,6 +6,8 @@
 #include <clearance/answer/margins.hpp>
 #include <clearance/collect_query.hpp>
 
+#include <array>
+
 namespace clearance {
 
 /// Whether a point is within a margin (peers: security margin, safety distance), and which: the same one on every run and backend.
@@ -53,7 +55,7 @@ class in_collision_query {
   template <class Clouds>
   collision_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins) {
     static_assert(explain_clouds<Clouds>());
-    auto& [on, model, memory, pairs] = question_;
+    auto& [on, model, memory, pairs, ahead] = question_;
     memory.begin();
     collision_result* const told = memory.template room<collision_result>(1).data();
     ask(poses, memory.readable(clouds), margins, told);
@@ -80,20 +82,20 @@ class in_collision_query {
  private:
   template <class Clouds>
   void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins, collision_result* result) {
-    auto& [on, model, memory, pairs] = question_;
+    auto& [on, model, memory, pairs, ahead] = question_;
     using answer = pairwise::first_within;
     pairwise::check_margins(margins, model.size());
-    std::vector<std::uint32_t> first;
-    const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
-    std::vector<real> reaches(2 * model.size());
+    const frames::float_error error = ahead.look(model.facts, poses, clouds).error;
+    auto& reaches = ahead.reaches;
+    reaches.resize(2 * model.size());
     for (std::size_t k = 0; k < model.size(); ++k) {
       const double margin = margins[margins.size() == 1 ? 0 : k];
       reaches[k] = pairwise::may_be_within(margin, model.facts[k], error);
       reaches[model.size() + k] = pairwise::is_within(margin, model.facts[k], error);
     }
-    const auto [word, near, start] = memory.put(std::vector{answer::nothing}, reaches, first);
+    const auto [word, near, start] = memory.put(std::array{answer::nothing}, reaches, ahead.first);
     question_.ask(poses, clouds, answer{word, near, near + model.size(), start}, &result->counts);
-    on.for_each(1, detail::tell_collision{word, start, std::uint32_t(first.size()), std::uint32_t(model.size()), result});
+    on.for_each(1, detail::tell_collision{word, start, std::uint32_t(ahead.first.size()), std::uint32_t(model.size()), result});
   }
 
   pairwise::pair_question<On, PartView> question_;

@@ -53,9 +53,9 @@ std::vector<std::uint32_t> count_around(Question& question, std::span<const Eige
   const auto& on = question.on;
   const auto facts = question.model.facts;
   auto& memory = question.memory;
-  std::vector<std::uint32_t> first, numbers;
-  pairwise::look_ahead(facts, poses, clouds, first);
-  for (const pair_distance& p : points) numbers.push_back(first[p.cloud] + p.point);
+  std::vector<std::uint32_t> numbers;
+  question.ahead.look(facts, poses, clouds);
+  for (const pair_distance& p : points) numbers.push_back(question.ahead.first[p.cloud] + p.point);
   memory.begin();
   position* const place = memory.template room<position>(points.size()).data();
   const auto both = memory.put(numbers, std::vector<std::uint32_t>(points.size()));

@@ -90,7 +90,7 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
   motion_clearance_result all;
   std::vector<asked_time> asked;
   std::vector<part_minimum> minima(facts.size());
-  std::vector<std::uint32_t> first;
+  pairwise::frame_ahead ahead;
   double certain = infinity;  // at the times that were asked
   const auto look = [&](double time) {
     moment now = motion.at(time, facts);
@@ -98,8 +98,7 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
     const min_distance_result r = ask(std::span<const Eigen::Isometry3d>(now.poses), std::span(minima));
     if (++all.queries == 1 || r.upper < all.upper || (r.upper == all.upper && time < all.time)) all.upper = r.upper, all.time = time, all.nearest = r;
     if (r.part == none) return false;
-    first.clear();
-    const frames::float_error error = pairwise::look_ahead(facts, now.poses, clouds, first);
+    const frames::float_error error = ahead.look(facts, now.poses, clouds).error;
     asked_time a{time, {}, std::move(now.travels)};
     for (std::size_t k = 0; k < facts.size(); ++k) {
       const double its = minimum::certain_distance(minima[k].distance, frames::slop(facts[k]), error);

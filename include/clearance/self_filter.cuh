@@ -2,6 +2,6 @@
 #pragma once
 // Which points are the robot itself, and how far is the rest? On the host or on a device.
 
-#include <clearance/collect.cuh>
+#include <clearance/collect_query.cuh>
 #include <clearance/min_distance.cuh>
 #include <clearance/self_filter.hpp>

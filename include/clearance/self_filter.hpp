@@ -4,8 +4,7 @@
 
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/own_points.hpp>
-#include <clearance/backend/staged.hpp>
-#include <clearance/collect.hpp>
+#include <clearance/collect_query.hpp>
 #include <clearance/frame/masked_clouds.hpp>
 #include <clearance/min_distance.hpp>
 
@@ -44,49 +43,24 @@ std::size_t count_points(const Clouds& clouds) {
   return points;
 }
 
-/// Enqueues it: `ask(answer, counts)` gives that answer every pair.
-template <class On, class Clouds, class Here, class Ask>
-void label_own(const On& on, std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-               const self_filter_options& options, point_label* labels, self_filter_counts* counts, const Here& here, const Ask& ask) {
-  const std::size_t given = options.padding.size(), parts = facts.size();
+/// How near points must be to each part to be perhaps the robot's, and then to be so certainly. True if all others are uncertain: then
+/// nobody need ask of which.
+inline bool set_paddings(std::span<const double> padding, std::span<const part_facts> facts, const frames::float_error& error, std::vector<real>& reaches) {
+  const std::size_t given = padding.size(), parts = facts.size();
   if (given != 1 && given != parts)
     throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " + std::to_string(given) + " paddings");
-  std::vector<std::uint32_t> first;
-  const frames::float_error error = pairwise::look_ahead(facts, poses, clouds, first);
-  std::vector<real> reaches(2 * parts);
+  reaches.resize(2 * parts);
   bool all_uncertain = false;
   for (std::size_t k = 0; k < parts; ++k) {
-    const double padding = options.padding[given == 1 ? 0 : k];
-    if (!(padding >= 0 && padding < double(infinity)))
-      throw std::invalid_argument("clearance: the padding of part " + std::to_string(k) + " is " + std::to_string(padding) +
+    const double its = padding[given == 1 ? 0 : k];
+    if (!(its >= 0 && its < double(infinity)))
+      throw std::invalid_argument("clearance: the padding of part " + std::to_string(k) + " is " + std::to_string(its) +
                                   " m; it must be finite, and not negative");
-    reaches[parts + k] = pairwise::is_within(padding, facts[k], error);
-    reaches[k] = pairwise::may_be_within(padding, facts[k], error);
-    if (!(reaches[k] < infinity)) all_uncertain = true, reaches[k] = reaches[parts + k];  // nobody need ask of which point
+    reaches[parts + k] = pairwise::is_within(its, facts[k], error);
+    reaches[k] = pairwise::may_be_within(its, facts[k], error);
+    if (!(reaches[k] < infinity)) all_uncertain = true, reaches[k] = reaches[parts + k];
   }
-  using answer = pairwise::own_points;
-  const pairwise::held_values<On, real, 2 * pairwise::paddings::few> near(on, reaches);
-  const pairwise::held_values<On, std::uint32_t, answer::few_clouds> start(on, first);
-  const answer own{labels, counts, {near.view(), std::uint32_t(parts)}, start.view(), all_uncertain};
-  constexpr bool alone = !pairwise::pairs_on<On>::meets_points;
-  if constexpr (alone) {
-    on.for_each(1, pairwise::forget_labels{counts});
-    std::uint32_t cloud = 0;
-    for_each_cloud(clouds, [&]<point_source S>(const S& anywhere, const Eigen::Isometry3d&) {
-      on.for_each(anywhere.size(), pairwise::label_alone<S>{own, here(anywhere, cloud), cloud});
-      ++cloud;
-    });
-  }
-  ask(own, &counts->points);
-  if constexpr (alone) on.for_each(count_points(clouds), pairwise::count_labels{own});
-}
-
-template <class On, class PartView, class Clouds, class Here>
-void label_own_once(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                    const self_filter_options& options, point_label* labels, self_filter_counts* counts, const Here& here) {
-  label_own(on, model.facts, poses, clouds, options, labels, counts, here, [&](const pairwise::own_points& own, point_counts* points) {
-    pairwise::pairs_on<On>::once(on, model, poses, clouds, own, points, here);
-  });
+  return all_uncertain;
 }
 
 /// What is there to the host.
@@ -105,17 +79,81 @@ self_filter_result labelled(const On& on, const Clouds& clouds, const point_labe
 
 }  // namespace detail
 
+/// The prepared question: made once for a robot, asked every frame with new poses, points and paddings. One object is for one thread and
+/// one stream; the robot must stay.
+template <class On, class PartView>
+class self_filter_query {
+ public:
+  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  template <robot Robot, class... Memory>
+  self_filter_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
+
+  /// As `self_filter`. Points that a device cannot read are copied into buffers that are kept.
+  template <class Clouds>
+  self_filter_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const self_filter_options& options = {}) {
+    static_assert(explain_clouds<Clouds>());
+    auto& memory = question_.memory;
+    memory.begin();
+    point_label* const labels = memory.template room<point_label>(detail::count_points(clouds)).data();
+    self_filter_counts* const counts = memory.template room<self_filter_counts>(1).data();
+    ask(poses, memory.readable(clouds), options, labels, counts);
+    return detail::labelled(question_.on, clouds, labels, counts);
+  }
+
+  /// As `self_filter_async`. On a device one kernel a cloud; nothing is waited for, and nothing allocated but by more clouds than ever before.
+  /// A graph that captures this keeps the poses and paddings of now.
+  template <class Clouds>
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const self_filter_options& options, point_label* labels,
+               self_filter_counts* counts) {
+    static_assert(explain_clouds<Clouds>());
+    question_.memory.begin();
+    ask(poses, clouds, options, labels, counts);
+  }
+
+ private:
+  template <class Clouds>
+  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const self_filter_options& options, point_label* labels,
+           self_filter_counts* counts) {
+    using answer = pairwise::own_points;
+    const On& on = question_.on;
+    const auto facts = question_.model.facts;
+    auto& ahead = question_.ahead;
+    const frames::float_error error = ahead.look(facts, poses, clouds).error;
+    const bool all_uncertain = detail::set_paddings(options.padding, facts, error, ahead.reaches);
+    const auto near = pairwise::few_or_kept<2 * pairwise::paddings::few>(ahead.reaches, question_.memory);
+    const auto start = pairwise::few_or_kept<answer::few_clouds>(ahead.first, question_.memory);
+    const answer own{labels, counts, {near, std::uint32_t(facts.size())}, start, all_uncertain};
+    constexpr bool alone = !pairwise::pairs_on<On>::meets_points;
+    if constexpr (alone) {
+      on.for_each(1, pairwise::forget_labels{counts});
+      std::uint32_t cloud = 0;
+      for_each_cloud(clouds, [&]<point_source S>(const S& source, const Eigen::Isometry3d&) {
+        on.for_each(source.size(), pairwise::label_alone<S>{own, source, cloud++});
+      });
+    }
+    question_.ask(poses, clouds, own, &counts->points);
+    if constexpr (alone) on.for_each(detail::count_points(clouds), pairwise::count_labels{own});
+  }
+
+  pairwise::pair_question<On, PartView> question_;
+};
+template <class On, robot Robot, class... Memory>
+self_filter_query(const On&, const Robot&, Memory...) -> self_filter_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+
 /// Which points are the robot itself? `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that does, and if there
 /// are other than one or as many paddings, or one is negative or not finite.
 template <class On, robot Robot, class Clouds>
 self_filter_result self_filter(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                const self_filter_options& options = {}) {
-  static_assert(explain_clouds<Clouds>());
-  auto labels = on.template make_scratch<point_label>(detail::count_points(clouds));
-  auto counts = on.template make_scratch<self_filter_counts>(1);
-  minimum::cloud_copies<On> copies;
-  detail::label_own_once(on, view_of(robot), poses, clouds, options, labels.data(), counts.data(), minimum::readable_on<On>{on, copies});
-  return detail::labelled(on, clouds, labels.data(), counts.data());
+  return pairwise::asked_once<self_filter_query>(on, robot, [&](auto& query) { return query(poses, clouds, options); });
+}
+
+/// Enqueues self_filter, into memory that `on` can write; clouds must be readable where it runs, and stay until it is done. What follows
+/// in the same stream may ask about `masked_clouds(clouds, labels)`.
+template <class On, robot Robot, class Clouds>
+void self_filter_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                       const self_filter_options& options, point_label* labels, self_filter_counts* counts) {
+  pairwise::asked_once<self_filter_query>(on, robot, [&](auto& query) { query.enqueue(poses, clouds, options, labels, counts); });
 }
 
 /// And how far is a robot from the rest? `own` is what is filtered out, such as an arm that a camera sees; `robot` may be another one.
@@ -129,11 +167,12 @@ filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::s
   auto labels = there.template make_scratch<point_label>(detail::count_points(clouds));
   auto counts = there.template make_scratch<self_filter_counts>(1);
   auto result = there.template make_scratch<min_distance_result>(1);
-  minimum::cloud_copies<backend> copies;
-  const minimum::readable_on<backend> here{there, copies};
-  detail::label_own_once(there, view_of(own), own_poses, clouds, options, labels.data(), counts.data(), here);
-  const auto rest = masked_clouds(clouds, labels.data());
-  minimum::search_on<On>::template once<false>(on, view_of(robot), poses, rest, result.data(), nullptr, here);
+  pairwise::memory_on<backend> memory(there);
+  auto&& readable = memory.readable(clouds);
+  self_filter_async(there, own, own_poses, readable, options, labels.data(), counts.data());
+  const auto rest = masked_clouds(readable, labels.data());
+  minimum::cloud_copies<backend> none_left;
+  minimum::search_on<On>::template once<false>(on, view_of(robot), poses, rest, result.data(), nullptr, minimum::readable_on<backend>{there, none_left});
   return {detail::labelled(there, clouds, labels.data(), counts.data()), there.copy_out(result.data(), 1)[0]};
 }
 /// The same robot is filtered out and asked about.
@@ -142,42 +181,5 @@ filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::s
                                         const self_filter_options& options = {}) {
   return min_distance_filtered(on, robot, poses, robot, poses, clouds, options);
 }
-
-/// Enqueues self_filter, into memory that `on` can write; clouds must be readable where it runs, and stay until it is done. What follows
-/// in the same stream may ask about `masked_clouds(clouds, labels)`.
-template <class On, robot Robot, class Clouds>
-void self_filter_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                       const self_filter_options& options, point_label* labels, self_filter_counts* counts) {
-  static_assert(explain_clouds<Clouds>());
-  detail::label_own_once(on, view_of(robot), poses, clouds, options, labels, counts, minimum::as_it_is{});
-}
-
-/// The same of one robot, frame after frame: on a device one kernel a cloud, and nothing is copied, allocated (but for more than 12 parts
-/// or four clouds) or waited for. One object is for one thread and one stream; the robot must stay.
-template <class On, class PartView>
-class self_filter_query {
- public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
-  template <robot Robot, class... Memory>
-  self_filter_query(const On& on, const Robot& robot, Memory... memory) : on_(on), facts_(view_of(robot).facts), pairs_{on, view_of(robot), memory...} {}
-
-  /// As self_filter_async. A graph that captures this keeps the poses of now.
-  template <class Clouds>
-  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const self_filter_options& options, point_label* labels,
-               self_filter_counts* counts) {
-    static_assert(explain_clouds<Clouds>());
-    const minimum::as_it_is here;
-    detail::label_own(on_, facts_, poses, clouds, options, labels, counts, here, [&](const pairwise::own_points& own, point_counts* points) {
-      pairs_.enqueue(poses, clouds, own, points, here);
-    });
-  }
-
- private:
-  On on_;
-  std::span<const part_facts> facts_;
-  typename pairwise::pairs_on<On>::template kept<PartView> pairs_;
-};
-template <class On, robot Robot, class... Memory>
-self_filter_query(const On&, const Robot&, Memory...) -> self_filter_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
 }  // namespace clearance

@@ -20,15 +20,14 @@ struct within_result {
 namespace detail {
 
 /// Of each part, from one radius or one a part.
-inline std::vector<real> radii_of(std::span<const real> radius, std::size_t parts) {
+inline void set_radii(std::span<const real> radius, std::size_t parts, std::vector<real>& radii) {
   if (radius.size() != 1 && radius.size() != parts)
     throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " + std::to_string(radius.size()) + " radii");
-  std::vector<real> radii;
+  radii.clear();
   for (std::size_t k = 0; k < parts; ++k) {
     radii.push_back(radius[radius.size() == 1 ? 0 : k]);
     if (!(radii[k] == radii[k])) throw std::invalid_argument("clearance: the radius of part " + std::to_string(k) + " is not a number");
   }
-  return radii;
 }
 
 /// All pairs within `radii`, one a part, in order. Clouds have to be readable where the question runs.
@@ -75,7 +74,8 @@ class within_query {
   template <class Clouds>
   within_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const real> radius) {
     static_assert(explain_clouds<Clouds>());
-    const std::vector<real> radii = detail::radii_of(radius, question_.model.size());
+    auto& radii = question_.ahead.reaches;
+    detail::set_radii(radius, question_.model.size(), radii);
     return detail::list_within(question_, poses, question_.memory.readable(clouds), radii);
   }
   template <class Clouds>
@@ -90,7 +90,8 @@ class within_query {
   distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const real> radius, pair_distance* pairs,
                              std::size_t capacity, unsigned long long* count, point_counts* counts) {
     static_assert(explain_clouds<Clouds>());
-    const std::vector<real> radii = detail::radii_of(radius, question_.model.size());
+    auto& radii = question_.ahead.reaches;
+    detail::set_radii(radius, question_.model.size(), radii);
     const distance_certainty certain = question_.certain(poses, clouds);
     question_.memory.begin();
     const auto [reaches] = question_.memory.put(radii);

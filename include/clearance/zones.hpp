@@ -86,7 +86,7 @@ class zones_query {
   template <class Clouds>
   zones_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options) {
     static_assert(explain_clouds<Clouds>());
-    auto& [on, model, memory, pairs] = question_;
+    auto& [on, model, memory, pairs, ahead] = question_;
     memory.begin();
     zone* const told = memory.template room<zone>(model.size() * options.thresholds.size()).data();
     point_counts* const counts = memory.template room<point_counts>(1).data();
@@ -110,27 +110,27 @@ class zones_query {
  private:
   template <class Clouds>
   std::size_t ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options, zone* zones, point_counts* counts) {
-    auto& [on, model, memory, pairs] = question_;
+    auto& [on, model, memory, pairs, ahead] = question_;
     const std::size_t given = options.thresholds.size(), parts = model.size();
     if (given == 0 || options.min_points == 0)
       throw std::invalid_argument("clearance: zones need a threshold, and min_points a point; here are " + std::to_string(given) + " and " +
                                   std::to_string(options.min_points));
-    std::vector<std::uint32_t> first;
-    const frames::float_error error = pairwise::look_ahead(model.facts, poses, clouds, first);
+    const frames::float_error error = ahead.look(model.facts, poses, clouds).error;
     if (options.each_part && (parts == 0 || given % parts != 0))
       throw std::invalid_argument("clearance: " + std::to_string(given) + " thresholds are not the same number for each of " + std::to_string(parts) +
                                   " parts");
     const std::size_t per_part = options.each_part ? given / parts : given;
-    std::vector<real> reaches;
+    auto& reaches = ahead.reaches;
+    reaches.clear();
     for (std::size_t k = 0; k < parts; ++k)
       detail::add_reaches(std::span(options.thresholds).subspan(options.each_part ? k * per_part : 0, per_part), model.facts[k], error, reaches);
     using answer = pairwise::count_in_zones;
     auto* const words = memory.template room<pairwise::zone_words>(answer::copies * reaches.size()).data();
     on.for_each(answer::copies * reaches.size(), pairwise::empty_zones{words});
-    const auto [near, start] = memory.put(reaches, first);
+    const auto [near, start] = memory.put(reaches, ahead.first);
     const answer counted{words, near, start, std::uint32_t(per_part), std::uint32_t(reaches.size())};
     question_.ask(poses, clouds, counted, counts);
-    on.for_each(reaches.size(), detail::tell_zone{counted, std::uint32_t(first.size()), zones});
+    on.for_each(reaches.size(), detail::tell_zone{counted, std::uint32_t(ahead.first.size()), zones});
     return per_part;
   }
 

@@ -9,6 +9,7 @@
 #include <clearance/distances_per_part.cuh>
 #include <clearance/in_collision.cuh>
 #include <clearance/min_distance_devices.cuh>
+#include <clearance/self_filter.cuh>
 #include <clearance/volume/sphere.hpp>
 #include <clearance/within.cuh>
 #include <clearance/zones.cuh>
@@ -109,43 +110,71 @@ TEST_CASE("Prepared questions allocate nothing, and do not wait, after their fir
   gpu.wait();
 }
 
-TEST_CASE("Prepared questions about pairs allocate nothing on a device, and do not wait, after a frame of a size") {
+namespace {
+
+/// What a frame asks, made before anything is counted.
+struct pair_options {
+  double near;
+  clearance::zones_options zones = {.thresholds = {near, 2 * near}};
+  clearance::self_filter_options own = {.padding = {near}};
+};
+
+/// Every prepared question about pairs, about one cloud and about so many.
+void ask_about_pairs(const scene<inner_sphere>& s, std::size_t clouds) {
   const device gpu;
-  const auto s = scenes<inner_sphere>()[1];
   const sources<inner_sphere> all(s);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{}).on(gpu);
   const auto points = gpu.copy_in(all.span.bytes());
   const placed cloud{all.span.at(points.data()), s.cloud_pose};
-  const std::vector two(2, cloud);
+  const std::vector several(clouds, cloud);
   clearance::zones_query zones(gpu, model);
   clearance::within_query within(gpu, model);
   clearance::in_collision_query in_collision(gpu, model);
   clearance::distances_per_part_query per_part(gpu, model);
+  clearance::collect_query collect(gpu, model);
+  clearance::self_filter_query filter(gpu, model);
   const clearance::device_buffer<clearance::point_counts> counts(1, gpu.id);
   const clearance::device_buffer<clearance::zone> zone(2 * model.size(), gpu.id);
   const clearance::device_buffer<clearance::pair_distance> pairs(1000, gpu.id);
   const clearance::device_buffer<unsigned long long> count(1, gpu.id);
   const clearance::device_buffer<clearance::collision_result> result(1, gpu.id);
-  const clearance::device_buffer<real> distance(2 * all.span.size() * model.size(), gpu.id);
-  const auto frame = [&](const auto& clouds, double near) {
-    zones.enqueue(s.poses, clouds, {.thresholds = {near, 2 * near}}, zone.data(), counts.data());
-    within.enqueue(s.poses, clouds, real(near), pairs.data(), pairs.size(), count.data(), counts.data());
-    in_collision.enqueue(s.poses, clouds, near, result.data());
-    per_part.enqueue(s.poses, clouds, distance.data(), counts.data(), real(near));
+  const clearance::device_buffer<real> distance(clouds * all.span.size() * model.size(), gpu.id);
+  const clearance::device_buffer<clearance::point_label> labels(clouds * all.span.size(), gpu.id);
+  const clearance::device_buffer<clearance::self_filter_counts> own(1, gpu.id);
+  const auto reaches = gpu.copy_in(std::span<const real>(std::vector<real>(model.size(), 0.2f)));
+  const auto frame = [&](const auto& asked, const pair_options& now) {
+    zones.enqueue(s.poses, asked, now.zones, zone.data(), counts.data());
+    within.enqueue(s.poses, asked, real(now.near), pairs.data(), pairs.size(), count.data(), counts.data());
+    in_collision.enqueue(s.poses, asked, now.near, result.data());
+    per_part.enqueue(s.poses, asked, distance.data(), counts.data(), real(now.near));
+    collect.enqueue(s.poses, asked, clearance::pairwise::listed{pairs.data(), count.data(), pairs.size(), reaches.data()}, counts.data());
+    filter.enqueue(s.poses, asked, now.own, labels.data(), own.data());
   };
-  frame(two, 0.1);
+  const pair_options each[] = {{0.1}, {0.2}, {0.3}};
+  frame(several, each[0]);
   const counted before;
-  for (const double near : {0.1, 0.2, 0.3}) frame(two, near), frame(cloud, near);
-  CHECK(before.nothing(false));
+  for (const pair_options& now : each) frame(several, now), frame(cloud, now);
+  CHECK(before.nothing());
   const auto waited_for = [&] {
-    zones(s.poses, s.points, {.thresholds = {0.1, 0.2}}), within(s.poses, s.points, 0.1f);
-    in_collision(s.poses, s.points, 0.1), per_part(s.poses, s.points, 0.1f);
+    zones(s.poses, s.points, each[0].zones), within(s.poses, s.points, 0.1f), in_collision(s.poses, s.points, 0.1);
+    per_part(s.poses, s.points, 0.1f), filter(s.poses, s.points, each[0].own);
   };
   waited_for();
   const std::size_t known = on_device;
-  waited_for(), frame(two, 0.1), waited_for();
+  waited_for(), frame(several, each[0]), waited_for();
   CHECK(on_device == known);
   gpu.wait();
+}
+
+}  // namespace
+
+TEST_CASE("Prepared questions about pairs allocate nothing, and do not wait, after a frame of a size") {
+  ask_about_pairs(scenes<inner_sphere>()[1], 2);
+  dice d(41);
+  scene<inner_sphere> s;  // of more parts and clouds than travel with a launch
+  for (int part = 0; part < 14; ++part) s.parts.push_back(random_primitives<inner_sphere>(d, 20, 0.2, 0.1)), s.poses.push_back(d.pose(1));
+  s.points = d.points(2000, 2);
+  ask_about_pairs(s, 5);
 }
 
 TEST_CASE("One call takes one block of memory in the order of its stream, and waits for nothing") {

@@ -21,6 +21,7 @@ void all_scenes() {
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
     const auto two = two_clouds(s);
     std::vector<std::vector<vec3>> kept;
+    clearance::self_filter_query prepared(host{}, model);
     for (const double padding : {0.0, 0.02, 0.4}) {
       std::vector<double> each(s.parts.size(), padding * s.size);
       const std::string what = s.name + ", padding " + std::to_string(padding);
@@ -29,6 +30,7 @@ void all_scenes() {
       each.back() *= 3;
       const auto expected = brute_own(s, two, each);
       require_same(self_filter(host{1}, model, s.poses, two, {.padding = each}), expected, v, what + ", one a part");
+      require_same(prepared(s.poses, two, {.padding = each}), expected, v, what + ", prepared");
       const auto both = min_distance_filtered(host{}, model, s.poses, two, {.padding = each});
       require_same(both.filter, expected, v, what + ", with the rest");
       require_rest(both, min_distance(host{}, model, s.poses, without(two, expected, kept)), v, what);

@@ -120,6 +120,8 @@ TEST_CASE("A prepared filter of more parts than a kernel takes and of many cloud
     clearance::self_filter_counts counts_here;
     here.enqueue(s.poses, in_six(points.data()), options, labels_here.data(), &counts_here);
     v.require(labels_here == expected.labels && counts_here.own == expected.counts.own, "frame ", frame, ": the host's prepared one differs");
+    require_same(filter(s.poses, in_six(points.data()), options), expected, v, "waited for, frame " + std::to_string(frame));
+    require_same(here(s.poses, in_six(points.data()), options), expected, v, "waited for on the host, frame " + std::to_string(frame));
     v.require(expected.counts.own > 100 && expected.counts.own < count / 2, "frame ", frame, ": ", expected.counts.own, " are the robot's");
     s.poses[std::size_t(frame)] = d.pose(1);
   }

@@ -5,7 +5,7 @@
 #include <clearance/concepts.hpp>
 
 #include <algorithm>
-#include <optional>
+#include <tuple>
 #include <vector>
 
 namespace clearance::pairwise {
@@ -19,24 +19,15 @@ struct few_values {
   CLEARANCE_HD T operator[](std::uint32_t i) const { return there == nullptr ? here[i] : there[i]; }
 };
 
-/// Their memory, for one call.
-template <backend On, class T, std::uint32_t Few>
-class held_values {
- public:
-  held_values(const On& on, const std::vector<T>& values) {
-    if (values.size() <= Few) {
-      std::copy(values.begin(), values.end(), view_.here);
-    } else {
-      many_.emplace(on.template make_scratch<T>(values.size()));
-      on.stage(std::span<const T>(values), many_->data());
-      view_.there = many_->data();
-    }
-  }
-  const few_values<T, Few>& view() const { return view_; }
-
- private:
-  few_values<T, Few> view_;
-  std::optional<typename On::template scratch<T>> many_;
-};
+/// Of so few `values`, or of a copy in the next room of a question's `memory`.
+template <std::uint32_t Few, class T, class Memory>
+few_values<T, Few> few_or_kept(const std::vector<T>& values, Memory& memory) {
+  few_values<T, Few> view;
+  if (values.size() <= Few)
+    std::copy(values.begin(), values.end(), view.here);
+  else
+    view.there = std::get<0>(memory.put(values));
+  return view;
+}
 
 }  // namespace clearance::pairwise

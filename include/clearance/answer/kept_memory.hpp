@@ -6,6 +6,7 @@
 #include <clearance/frame/mapped_clouds.hpp>
 
 #include <cstring>
+#include <ranges>
 #include <tuple>
 #include <utility>
 
@@ -73,18 +74,18 @@ class kept_memory : public memory_on<On> {
   }
 
   /// The next room, with copies of all `data` one after another; nothing is waited for.
-  template <class... T>
-  std::tuple<T*...> put(const std::vector<T>&... data) {
-    staging_.resize((units<T>(data.size()) + ...));
+  template <std::ranges::contiguous_range... Data>
+  std::tuple<std::ranges::range_value_t<Data>*...> put(const Data&... data) {
+    staging_.resize((units<std::ranges::range_value_t<Data>>(data.size()) + ...));
     memory_unit* const there = room<memory_unit>(staging_.size()).data();
     std::size_t at = 0;
-    const auto copy = [&]<class U>(const std::vector<U>& from) {
+    const auto copy = [&]<class U>(std::span<const U> from) {
       static_assert(std::is_trivially_copyable_v<U> && alignof(U) <= alignof(memory_unit));
       const std::size_t its = std::exchange(at, at + units<U>(from.size()));
-      if (!from.empty()) std::memcpy(staging_.data() + its, from.data(), from.size() * sizeof(U));
+      if (!from.empty()) std::memcpy(staging_.data() + its, from.data(), from.size_bytes());
       return reinterpret_cast<U*>(there + its);
     };
-    const std::tuple<T*...> all{copy(data)...};  // braces: from left to right
+    const std::tuple all{copy(std::span<const std::ranges::range_value_t<Data>>(data))...};  // braces: from left to right
     on_.stage(std::span<const memory_unit>(staging_), there);
     return all;
   }

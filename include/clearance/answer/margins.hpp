@@ -25,14 +25,20 @@ inline void check_margins(std::span<const double> margins, std::size_t parts) {
     if (!(margins[k] == margins[k])) throw std::invalid_argument("clearance: the margin of part " + std::to_string(k) + " is not a number");
 }
 
-/// What is certain about a frame, and the number of each cloud's first point, before anything is asked.
-template <class Clouds>
-frames::float_error look_ahead(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                               std::vector<std::uint32_t>& first) {
+/// What is known of a frame before anything is asked. Kept, it allocates only for more parts or clouds than ever.
+struct frame_ahead {
   frames::cloud_frame frame;
-  frames::for_each_turn(frame, facts, poses, clouds, [&](const auto&, const frames::turn& now) { first.push_back(now.first); });
-  return frame.error;
-}
+  std::vector<std::uint32_t> first;  ///< The number of each cloud's first point.
+  std::vector<real> reaches;         ///< How near points of each part matter, as a question has it.
+
+  /// What all clouds have in common.
+  template <class Clouds>
+  const frames::frame_facts& look(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
+    first.clear();
+    frames::for_each_turn(frame, facts, poses, clouds, [&](const auto&, const frames::turn& now) { first.push_back(now.first); });
+    return frame;
+  }
+};
 
 /// The cloud and point of a number through all clouds.
 struct cloud_point {
