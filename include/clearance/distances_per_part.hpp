@@ -66,7 +66,8 @@ class distances_per_part_query {
   distance_certainty ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t points, real* distance, point_counts* counts,
                          real d_max) {
     pointwise::check({d_max});
-    auto& [frame, first, reaches] = question_.ahead;
+    auto& frame = question_.ahead.frame;
+    auto& first = question_.ahead.first;
     first.clear();
     frames::for_each_turn(frame, question_.model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
       first.push_back(now.first);
