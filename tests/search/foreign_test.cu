@@ -136,46 +136,79 @@ TEST_CASE("A tree wider than eight, and a flat list, are walked eight children a
   }
 }
 
-TEST_CASE("Wide nodes below wide nodes lose no child, and what is too wide is refused") {
+namespace {
+
+/// A tree of a wide root and, below it, `groups` nodes of `width` leaves each.
+clearance::bvh<clearance::sphere, inner_sphere> wide_below_wide(dice& d, std::uint32_t groups, std::uint32_t width) {
+  const auto volume = [](std::span<const ball> balls) { return clearance::bounding_volume_traits<clearance::sphere>::fit(balls); };
+  clearance::bvh<clearance::sphere, inner_sphere> tree;
+  auto& all = tree.primitives;
+  std::vector<ball> balls;
+  for (std::uint32_t group = 0; group < groups; ++group) {
+    const vec3 about = d.point(1);
+    for (std::uint32_t k = 0; k < width; ++k) all.push_back({about + d.point(0.2), 0.01f + d.number(0, 0.02)}), balls.push_back(all.back().balls()[0]);
+  }
+  tree.depth = 2, tree.width = std::max(groups, width);
+  tree.nodes.push_back({1, groups}), tree.volumes.push_back(volume(balls));
+  for (std::uint32_t group = 0; group < groups; ++group) {
+    tree.nodes.push_back({1 + groups + group * width, width});
+    tree.volumes.push_back(volume(std::span(balls).subspan(group * width, width)));
+  }
+  for (std::uint32_t k = 0; k < all.size(); ++k) {
+    tree.nodes.push_back({k, 1 | clearance::bvh_node::leaf_bit}), tree.ids.push_back(k);
+    tree.volumes.push_back(volume(all[k].balls()));
+  }
+  return tree;
+}
+
+/// Some of them are a robot's parts.
+void ask_wide(dice& d, int parts, std::uint32_t groups, std::uint32_t width, int often, verdict& v) {
   const device gpu;
+  scene<inner_sphere> s;
+  using tree_type = clearance::bvh<clearance::sphere, inner_sphere>;
+  std::vector<tree_type> trees;
+  std::vector<decltype(std::declval<tree_type>().on(gpu))> trees_there;
+  using view = clearance::part_view<clearance::any_tree<decltype(trees[0].view())>>;
+  std::vector<view> here, there;
+  std::vector<clearance::part_facts> facts;
+  for (int part = 0; part < parts; ++part) trees.push_back(wide_below_wide(d, groups, width));
+  for (const tree_type& tree : trees) {
+    const ball around = clearance::enclosing_ball(std::span<const inner_sphere>(tree.primitives));
+    facts.push_back({around.center, around.radius, 0, 0});
+    trees_there.push_back(tree.on(gpu));
+    const clearance::any_tree on_host{tree.view()}, on_gpu{trees_there.back().view()};
+    here.push_back({on_host, {}, facts.back()}), there.push_back({on_gpu, {}, facts.back()});
+    s.parts.push_back(tree.primitives), s.poses.push_back(d.pose(0.5));
+  }
+  const auto views = gpu.copy_in(std::span<const view>(there));
+  const std::uint32_t most = std::max(groups, width);
+  const std::string what = std::to_string(parts) + " parts, " + std::to_string(width) + " below " + std::to_string(groups);
+  for (const real far : {2, 30}) {  // from 30 m much is nearly equally far
+    s.points = d.points(3000, far);
+    for (int again = 0; again < often; ++again) {
+      const placed cloud{point_span(s.points), d.pose(0.1)};
+      const clearance::model_view<view> on_host{here.data(), facts, 2, most}, model{views.data(), facts, 2, most};
+      if (again == 0)
+        require_equal(min_distance(gpu, model, s.poses, cloud), brute_force(brute_parts(s), s.poses, {brute_cloud(cloud.source, cloud.pose)}), v, what);
+      ask(on_host, model, s.poses, cloud, v, what);
+    }
+  }
+  CHECK_THROWS_WITH(min_distance(gpu, clearance::model_view<view>{views.data(), facts, 2, 262'145}, s.poses, point_span{}),
+                    "clearance: a node has 262145 children; a device takes 262144");
+}
+
+}  // namespace
+
+TEST_CASE("Wide nodes below wide nodes lose no child, and what is too wide is refused") {
   verdict v;
   dice d(36);
-  const auto volume = [](std::span<const ball> balls) { return clearance::bounding_volume_traits<clearance::sphere>::fit(balls); };
-  for (const std::uint32_t width : {9u, 20u, 70u}) {
-    std::vector<inner_sphere> all;
-    std::vector<ball> balls;
-    for (std::uint32_t group = 0; group < width; ++group) {
-      const vec3 about = d.point(1);
-      for (std::uint32_t k = 0; k < width; ++k) all.push_back({about + d.point(0.2), 0.01f + d.number(0, 0.02)}), balls.push_back(all.back().balls()[0]);
-    }
-    clearance::bvh<clearance::sphere, inner_sphere> tree;
-    tree.primitives = all, tree.depth = 2, tree.width = width;
-    tree.nodes.push_back({1, width}), tree.volumes.push_back(volume(balls));
-    for (std::uint32_t group = 0; group < width; ++group) {
-      tree.nodes.push_back({1 + width + group * width, width});
-      tree.volumes.push_back(volume(std::span(balls).subspan(group * width, width)));
-    }
-    for (std::uint32_t k = 0; k < all.size(); ++k) {
-      tree.nodes.push_back({k, 1 | clearance::bvh_node::leaf_bit}), tree.ids.push_back(k);
-      tree.volumes.push_back(volume(all[k].balls()));
-    }
-    const auto tree_there = tree.on(gpu);
-    const clearance::any_tree on_host{tree.view()}, on_gpu{tree_there.view()};
-    using view = clearance::part_view<std::remove_cvref_t<decltype(on_host)>>;
-    const ball around = clearance::enclosing_ball(std::span<const inner_sphere>(all));
-    const clearance::part_facts facts{around.center, around.radius, 0, 0};
-    const view here{on_host, {}, facts}, there{on_gpu, {}, facts};
-    const auto part = gpu.copy_in(std::span<const view>(&there, 1));
-    const std::vector<Eigen::Isometry3d> poses = {d.pose(0.5)};
-    for (const real far : {2, 30}) {  // from 30 m much is nearly equally far
-      const std::vector<vec3> points = d.points(3000, far);
-      for (int again = 0; again < 5; ++again)
-        ask(clearance::model_view<view>{&here, {&facts, 1}, 2, width}, clearance::model_view<view>{part.data(), {&facts, 1}, 2, width}, poses,
-            placed{point_span(points), d.pose(0.1)}, v, std::to_string(width) + " below " + std::to_string(width));
-    }
-    CHECK_THROWS_WITH(min_distance(gpu, clearance::model_view<view>{part.data(), {&facts, 1}, 2, 262'145}, poses, point_span{}),
-                      "clearance: a node has 262145 children; a device takes 262144");
-  }
+  for (const std::uint32_t width : {9u, 20u, 70u}) ask_wide(d, 1, width, width, 5, v);
+}
+
+TEST_CASE("Of more than 512 children below a wide node every part's are its own") {
+  verdict v;
+  dice d(37);
+  ask_wide(d, 3, 9, 600, 2, v);
 }
 
 TEST_CASE("A point inside a solid whose triangles hang on a deep tree is certainly inside") {

@@ -238,6 +238,8 @@ struct pair_search : tree_steps<Answer> {
                                                 real reach, pending* stack, std::uint32_t top) {
     constexpr std::uint32_t each = most_children / mates;
     if constexpr (any_size) {
+      if (count > most_children && (frame::here().head.overflow == nullptr || first_of(pair_and_part) + count > most_width))
+        __trap();  // the tree is wider than it said
       pending others{bound, node, pair_and_part};
       steps::skip(others.pair);
       top = push(others, count > most_children && lane() == 0, stack, top);
