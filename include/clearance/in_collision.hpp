@@ -86,6 +86,7 @@ class in_collision_query {
     using answer = pairwise::first_within;
     pairwise::check_margins(margins, model.size());
     const frames::float_error error = ahead.look(model.facts, poses, clouds).error;
+    const auto& first = ahead.first;
     auto& reaches = ahead.reaches;
     reaches.resize(2 * model.size());
     for (std::size_t k = 0; k < model.size(); ++k) {
@@ -93,9 +94,9 @@ class in_collision_query {
       reaches[k] = pairwise::may_be_within(margin, model.facts[k], error);
       reaches[model.size() + k] = pairwise::is_within(margin, model.facts[k], error);
     }
-    const auto [word, near, start] = memory.put(std::array{answer::nothing}, reaches, ahead.first);
+    const auto [word, near, start] = memory.put(std::array{answer::nothing}, reaches, first);
     question_.ask(poses, clouds, answer{word, near, near + model.size(), start}, &result->counts);
-    on.for_each(1, detail::tell_collision{word, start, std::uint32_t(ahead.first.size()), std::uint32_t(model.size()), result});
+    on.for_each(1, detail::tell_collision{word, start, std::uint32_t(first.size()), std::uint32_t(model.size()), result});
   }
 
   pairwise::pair_question<On, PartView> question_;

@@ -115,6 +115,7 @@ class zones_query {
     if (given == 0 || options.min_points == 0)
       throw std::invalid_argument("clearance: zones need a threshold, and min_points a point; here are " + std::to_string(given) + " and " +
                                   std::to_string(options.min_points));
+    const auto& first = ahead.first;
     const frames::float_error error = ahead.look(model.facts, poses, clouds).error;
     if (options.each_part && (parts == 0 || given % parts != 0))
       throw std::invalid_argument("clearance: " + std::to_string(given) + " thresholds are not the same number for each of " + std::to_string(parts) +
@@ -127,10 +128,10 @@ class zones_query {
     using answer = pairwise::count_in_zones;
     auto* const words = memory.template room<pairwise::zone_words>(answer::copies * reaches.size()).data();
     on.for_each(answer::copies * reaches.size(), pairwise::empty_zones{words});
-    const auto [near, start] = memory.put(reaches, ahead.first);
+    const auto [near, start] = memory.put(reaches, first);
     const answer counted{words, near, start, std::uint32_t(per_part), std::uint32_t(reaches.size())};
     question_.ask(poses, clouds, counted, counts);
-    on.for_each(reaches.size(), detail::tell_zone{counted, std::uint32_t(ahead.first.size()), zones});
+    on.for_each(reaches.size(), detail::tell_zone{counted, std::uint32_t(first.size()), zones});
     return per_part;
   }
 
