@@ -83,7 +83,7 @@ attached_thing load_attached(const query_options& asked, const attachment_option
 }
 
 body_options body_options_of(const query_options& asked) {
-  return {.model = asked.model, .pack = {.count = asked.spheres}, .cache = chosen_cache(asked.no_cache, asked.cache)};
+  return {.model = asked.model, .pack = {.count = asked.spheres.value_or(pack_options{}.count)}, .cache = chosen_cache(asked.no_cache, asked.cache)};
 }
 
 body make_held(const query_options& asked, const attached_thing& thing, progress& shown) {
@@ -143,6 +143,9 @@ std::vector<body> make_bodies(const query_options& asked, const asked_robot& rob
   std::vector<io::packed_part> given;
   if (!asked.packing.empty()) given = io::within_memory(asked.packing, [&] { return io::load_spheres(asked.packing); });
   const auto spheres_of = assigned(given, robot.description, asked);
+  const bool packs_held = std::ranges::any_of(robot.held, [](const auto& thing) { return !thing.spheres; });
+  if (asked.spheres && !packs_held && std::ranges::count(spheres_of, nullptr) == 0)
+    throw usage_error("--spheres", "is for links that are packed, and " + asked.packing + " has spheres for all");
   std::vector<body_source> sources;
   for (std::size_t k = 0; k < robot.description.parts().size(); ++k) {
     const io::robot_part& part = robot.description.parts()[k];

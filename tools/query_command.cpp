@@ -81,7 +81,7 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
 /// Who asks about nothing but what is hidden should know that.
 void note_hidden(const query_options& asked, std::vector<std::string>& notes) {
   const auto note = [&](const char* option, double metres) {
-    if (metres >= 0 && metres <= *asked.self_filter)
+    if (metres <= *asked.self_filter)
       notes.push_back(text("%s %g: points that are certainly so near, an obstacle's too, are hidden by --self-filter %g; "
                            "only uncertain ones lead to exit code 2",
                            option, metres, *asked.self_filter));

@@ -10,12 +10,27 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 #include <utility>
 
 bool cloud_options::is_image() const { return clearance::io::extension(file) == ".png"; }
 
 void cloud_options::check(const std::string& option) const {
   if (is_image() && !camera) throw usage_error(option, file + " is a depth image, which needs --intrinsics fx,fy,cx,cy");
+}
+
+namespace {
+
+constexpr std::string_view for_images[] = {"--intrinsics", "--depth-scale"}, for_clouds[] = {"--use-viewpoint", "--zero-is-missing"};
+
+}  // namespace
+
+void check_all_clouds(const cloud_options& all, const std::vector<cloud_options>& clouds) {
+  const auto images = std::size_t(std::ranges::count_if(clouds, &cloud_options::is_image));
+  for (const std::string& option : all.given) {
+    if (images == 0 && std::ranges::count(for_images, option)) throw usage_error(option, "is for depth images, and there is none");
+    if (images == clouds.size() && std::ranges::count(for_clouds, option)) throw usage_error(option, "is for point clouds, and there is none");
+  }
 }
 
 namespace {
@@ -50,9 +65,10 @@ void set(cloud_options& cloud, const std::string& option, const std::string& tex
   }
   if (option == "--use-viewpoint") cloud.use_viewpoint = true;
   if (option == "--zero-is-missing") cloud.zero_is_missing = true;
-  if (!cloud.file.empty() && !cloud.is_image() && (option == "--intrinsics" || option == "--depth-scale"))
+  if (cloud.file.empty()) cloud.given.push_back(option);
+  if (!cloud.file.empty() && !cloud.is_image() && std::ranges::count(for_images, option))
     throw usage_error(option, "is for depth images, and " + cloud.file + " is none");
-  if (!cloud.file.empty() && cloud.is_image() && (option == "--use-viewpoint" || option == "--zero-is-missing"))
+  if (!cloud.file.empty() && cloud.is_image() && std::ranges::count(for_clouds, option))
     throw usage_error(option, "is for point clouds, and " + cloud.file + " is a depth image");
 }
 
@@ -76,6 +92,7 @@ std::vector<cloud_options> clouds_of(const CLI::App& app, cloud_options& all) {
     }
   }
   for (const auto& cloud : clouds) cloud.check("--cloud");
+  if (!clouds.empty()) check_all_clouds(all, clouds);
   return clouds;
 }
 
@@ -154,9 +171,20 @@ void read_deadline(const raw_options& raw, query_options& o) {
   if (o.deadline) throw usage_error("--shard", "cannot be mixed with --deadline: ranks wait for one another");
 }
 
+/// Throws if something is said about spheres, and there are none.
+void check_model(const query_options& o) {
+  const std::pair<const char*, bool> of_spheres[] = {
+      {"--packing", !o.packing.empty()}, {"--spheres", o.spheres.has_value()}, {"--cache", !o.cache.empty()}, {"--no-cache", o.no_cache}};
+  for (const auto& [option, given] : of_spheres)
+    if (given && o.model != model_kind::spheres) throw usage_error(option, "is for --model spheres");
+}
+
 /// What is asked beside the least distance.
 void read_questions(const raw_options& raw, query_options& o) {
-  if (!raw.check.empty()) o.margin = number("--check", raw.check);
+  if (!raw.check.empty()) {
+    o.margin = number("--check", raw.check) + 0.0;  // no -0
+    if (!(*o.margin >= 0)) throw usage_error("--check", "must not be negative (metres): the lower end is 0 in a collision, too");
+  }
   if (!raw.zones.empty()) o.zones = thresholds("--zones", raw.zones);
   if (!raw.min_points.empty()) {
     o.min_points = whole_number("--min-points", raw.min_points);
@@ -179,7 +207,6 @@ void read_questions(const raw_options& raw, query_options& o) {
   o.configurations = raw.configurations;
   o.csv = raw.csv;
   o.between = raw.between;
-  if (o.between && o.margin && *o.margin < 0) throw usage_error("--check", "must not be negative with --between (metres)");
   if (o.between && !o.attached.empty()) throw usage_error("--between", "cannot be mixed with --attach: how what is held moves is not bounded yet");
   o.recording.plan = raw.plan;
   o.recording.svg = raw.svg;
@@ -220,11 +247,11 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.model = model_kind(choice("--model", raw.model, {"spheres", "triangles"}));
   o.volume = usual_volume(o.model);
   if (!raw.volume.empty()) o.volume = volume_kind(choice("--volume", raw.volume, {"sphere", "aabb", "obb"}));
-  o.spheres = whole_number("--spheres", raw.spheres);
+  if (!raw.spheres.empty()) o.spheres = whole_number("--spheres", raw.spheres);
   o.packing = raw.packing;
-  if (!o.packing.empty() && o.model != model_kind::spheres) throw usage_error("--packing", "is for --model spheres");
   o.no_cache = raw.no_cache;
   o.cache = raw.cache;
+  check_model(o);
   o.excluded = raw.excluded;
   o.on_device = raw.backend.empty() ? find_device().present : is_device(raw.backend);
   o.json = raw.json;
@@ -240,7 +267,6 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   const bool recorded = how == asking::run, planned = how == asking::plan;
   auto raw = std::make_shared<raw_options>();
   raw->model = "spheres";
-  raw->spheres = "2048";
   const auto one = [&](const std::string& name, std::string& to, const std::string& says) {
     return app.add_option(name, to, says);
   };
@@ -280,8 +306,8 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   app.add_flag("--use-viewpoint")->description("Apply the VIEWPOINT of a PCD file");
   app.add_flag("--zero-is-missing")->description("(0,0,0) is no point");
   one("--model", raw->model, "spheres (default) or triangles");
-  if (!planned) one("--volume", raw->volume, "sphere, aabb or obb (default: sphere for spheres, obb for triangles)");
-  one("--spheres", raw->spheres, "Inner spheres per link (default 2048)");
+  if (!planned) one("--volume", raw->volume, "sphere, aabb or obb, for the least distance alone (default: sphere for spheres, obb for triangles)");
+  one("--spheres", raw->spheres, "Inner spheres per link that is packed (default 2048)");
   one("--packing", raw->packing, "The links' spheres: .ist (from clearance pack), .yaml as for cuRobo, .csv");
   app.add_flag("--no-cache", raw->no_cache, "Pack anew, and keep nothing");
   one("--cache", raw->cache, "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");

@@ -28,12 +28,16 @@ struct cloud_options {
   double nearest = 0, farthest = clearance::infinity;
   bool use_viewpoint = false, zero_is_missing = false;
   clearance::io::read_limits limits;
+  std::vector<std::string> given;  // the options before the first --cloud, by name: of all clouds
 
   bool is_image() const;
 
   /// Throws usage_error, about `option`, if something is missing.
   void check(const std::string& option) const;
 };
+
+/// Throws usage_error if something is said of `all` that is for another kind than any of `clouds` is.
+void check_all_clouds(const cloud_options& all, const std::vector<cloud_options>& clouds);
 
 /// One --attach: something that a link holds.
 struct attachment_options {
@@ -68,7 +72,7 @@ struct query_options {
   std::vector<cloud_options> clouds;
   model_kind model = model_kind::spheres;
   volume_kind volume = volume_kind::sphere;
-  std::size_t spheres = 2048;
+  std::optional<std::size_t> spheres;
   std::string packing;  // --packing: a file of spheres
   bool no_cache = false;
   std::string cache;

@@ -67,6 +67,7 @@ int run(const query_options& asked) {
     frames.back().file = file;
     frames.back().check("--frames");
   }
+  check_all_clouds(asked.recording.camera, frames);
   const motion moves(asked, robot);
   if (moves.size() != 1 && moves.size() != frames.size())
     throw usage_error("--trajectory", asked.recording.trajectory + " has " + std::to_string(moves.size()) +

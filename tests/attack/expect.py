@@ -133,19 +133,28 @@ class _Options:
                               ("--geometry", "collision visual")):
             demand(self.one.get(name, choices.split()[0]) in choices.split(), f"{name} is none of its choices")
         demand("--robot" in self.one, "no robot")
-        demand("--packing" not in self.one or self.one.get("--model", "spheres") == "spheres", "--packing with triangles")
+        of_spheres = {"--packing", "--spheres", "--cache", "--no-cache"} & (self.one.keys() | self.flags)
+        demand(not of_spheres or self.one.get("--model", "spheres") == "spheres", "an option of spheres with triangles")
+        if case.command != "run":
+            self.check_all(self.sensors)
         self.base = _pose(self.one["--base-pose"]) if "--base-pose" in self.one else IDENTITY
         whole(self.one.get("--spheres", "1"), 1, 10_000_000)
         whole(self.one.get("--unfold-limit", "1"), 1, 10_000_000)
         _check_limits(self.many.get("--mesh-limit", []))
         if "--check" in self.one:
-            _real(self.one["--check"])
+            demand(_real(self.one["--check"]) >= 0, "a margin below 0")
         self._questions()
         for sensor in [before] + self.sensors:
             for name, reader in (("--camera-pose", _pose), ("--intrinsics", lambda t: _reals(t, 4)), ("--depth-scale", _real),
                                  ("--range", lambda t: _reals(t, 2, False))):
                 if name in sensor:
                     reader(sensor[name])
+
+    def check_all(self, sensors):
+        """What is said of all clouds is for one of them."""
+        images = sum(os.path.splitext(sensor["file"])[1].lower() == ".png" for sensor in sensors)
+        demand(not sensors or images > 0 or not self.before.keys() & {"--intrinsics", "--depth-scale"}, "an option of images, and none")
+        demand(not sensors or images < len(sensors) or not self.before.keys() & {"--use-viewpoint", "--zero-is-missing"}, "an option of clouds, and none")
 
     def _questions(self):
         if "--zones" in self.one:
@@ -277,6 +286,9 @@ def _check_packing(options, robot, files):
     if not (len(parts) == 1 and len(robot.bodies) == 1):
         for part in parts:
             demand(part in robot.bodies or part in options.many.get("--exclude-link", []), "spheres of an unknown link")
+    if "--spheres" in options.one and "--attach" not in options.many:
+        all_given = len(parts) == len(robot.bodies) == 1 or all(body in parts for body in robot.bodies)
+        demand(not all_given, "--spheres, and nothing to pack")
 
 
 def _carrier(robot, given, base, sensor):
@@ -350,6 +362,7 @@ def _run(case):
     demand(listed and all(os.path.normpath(name) in case.files for name in listed), "a frame that does not exist")
     demand(len(rows) in (1, len(listed)), "rows for other than the frames")
     sensors = [dict(options.before, file=os.path.normpath(name)) for name in listed]
+    options.check_all(sensors)
     rows = rows if len(rows) > 1 else rows * len(listed)
     options.held(robot, case.files)
     frames, carriers = [], [_carrier(robot, row, options.base, sensor) for row, sensor in zip(rows, sensors)]

@@ -88,7 +88,6 @@ TEST_CASE("the exit code says free enough, too near, no data or error") {
   CHECK(run_command(ask + " --check 0.39").code == 0);
   CHECK(run_command(ask + " --check 0.4").code == 2);  // lower is rounded down
   CHECK(parsed(run_command(ask + " --check 0.5")).at("check").at("passes") == false);
-  CHECK(run_command(ask + " --check -1").code == 0);
   const scratch_file empty(".xyz", "# nothing\n");
   const outcome none = run_command(s.robot + " --model triangles --json --check 0.1 --cloud " + empty.path);
   CHECK(none.code == 3);
@@ -114,6 +113,8 @@ TEST_CASE("a point inside a link is a collision at distance 0") {
   CHECK(spheres.at("state") == "collision");
   CHECK(spheres.at("distance").get<double>() < 0);
   CHECK(spheres.at("upper") == 0);
+  CHECK(run_command(s.robot + " --model triangles --cloud " + inside.path + " --check 0").code == 2);
+  refuses(s.robot + " --model triangles --cloud " + inside.path + " --check -0.001", "--check: must not be negative (metres)");
 }
 
 TEST_CASE("poses, intrinsics, scale and range before the first cloud hold for all, after one for that one") {
@@ -139,6 +140,14 @@ TEST_CASE("poses, intrinsics, scale and range before the first cloud hold for al
   CHECK(j.at("points").at("dropped").at("out_of_range") == 1);
   j = parsed(run_command(common + "--cloud " + first.path + " --range 0,0.5 --cloud " + second.path));
   CHECK(j.at("cloud") == second.path);
+  // What is said of all has to be for one of them.
+  const scratch_file points(".xyz", "0.5 0 0.6\n");
+  const std::string robot = s.robot + " --model triangles --json ";
+  CHECK(run_command(common + "--zero-is-missing --cloud " + points.path + " --cloud " + first.path).code == 0);
+  refuses(common + "--cloud " + points.path, "--intrinsics: is for depth images, and there is none");
+  refuses(robot + "--depth-scale 0.001 --cloud " + points.path + " --cloud " + points.path, "--depth-scale: is for depth images, and there is none");
+  refuses(common + "--use-viewpoint --cloud " + first.path, "--use-viewpoint: is for point clouds, and there is none");
+  refuses(common + "--zero-is-missing --cloud " + first.path, "--zero-is-missing: is for point clouds, and there is none");
 }
 
 TEST_CASE("a camera on a link moves with the joint") {
@@ -189,6 +198,9 @@ TEST_CASE("wrong usage is one sentence and exit code 1") {
   refuses(s.ask + " --spheres 1e3", "is not a whole number");
   refuses(s.ask + " --check near", "--check: \"near\" is not a number");
   refuses(s.ask + " --check nan", "--check: \"nan\" is not a finite number");
+  refuses(s.ask + " --check -1", "--check: must not be negative (metres)");
+  for (const std::string of_spheres : {"--spheres 5", "--cache /tmp", "--no-cache"})
+    refuses(s.ask + " --model triangles " + of_spheres, of_spheres.substr(0, of_spheres.find(' ')) + ": is for --model spheres");
   refuses(s.ask + " --base-pose 0,0,0,0,0,0,2", "the quaternion has length 2");
   refuses(s.ask + " --camera-pose 0,0,0,0,0,0,0", "the quaternion has length 0");
   refuses(s.ask + " --camera-pose 0,0,0,1", "--camera-pose: needs 7 numbers, x,y,z,qx,qy,qz,qw; here are 4");

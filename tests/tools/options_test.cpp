@@ -77,8 +77,10 @@ TEST_CASE("an option takes one word each time, and a word in brackets is that wo
   refuses(ask + " --cloud " + cloud.path + ' ' + other.path, other.path);
   refuses(ask + " --cloud " + quoted_shell("[" + cloud.path + "," + other.path + "]"), "[");
   refuses(ask + " --cloud " + cloud.path + " --exclude-link '[]'", "[]");
-  CHECK(run_command(ask + " --cloud " + cloud.path + " --check -.5").code == 0);
-  CHECK(run_command(ask + " --cloud " + cloud.path + " --check=-1e-3").code == 0);
+  CHECK(run_command(ask + " --cloud " + cloud.path + " --camera-pose -.5,0,0,0,0,0,1").code == 0);
+  CHECK(run_command(ask + " --cloud " + cloud.path + " --check=-0").code == 0);
+  refuses(ask + " --cloud " + cloud.path + " --check -.5", "--check: must not be negative (metres)");
+  refuses(ask + " --cloud " + cloud.path + " --check=-1e-3", "--check: must not be negative (metres)");
   // A number that is too small for a double is 0, however it is spelt; one that is too large is refused.
   CHECK(run_command(ask + " --cloud " + cloud.path + " --check 0." + std::string(330, '0') + "1").code == 0);
   refuses(ask + " --cloud " + cloud.path + " --check 1" + std::string(330, '0'), "--check");

@@ -62,6 +62,7 @@ TEST_CASE("clearance pack fills the links of a robot, and a query takes them fro
   CHECK(y.at("primitive") == direct.at("primitive"));
   CHECK(y.at("lower").get<double>() == Approx(direct.at("lower").get<double>()).margin(1e-3));
   CHECK(y.at("upper").get<double>() == Approx(direct.at("upper").get<double>()).margin(1e-6));
+  refuses(s.ask + " --spheres 50 --packing " + s.path("r.ist"), "--spheres: is for links that are packed, and " + s.path("r.ist") + " has");
   // Without a file's link it is packed; of another mesh it is proven anew.
   CHECK(run_command(s.ask + " --spheres 50 --packing " + s.folder.put("one.yml", "collision_spheres: {tool: [{center: [0,0,0], radius: 0.09}]}").string())
             .err.find("has no spheres for 1 links, which were packed") != std::string::npos);

@@ -83,7 +83,7 @@ TEST_CASE("--check names the first configuration that is too near, and the exit 
   CHECK(last(run_command(p.ask + " --check 0.4")).at("plan").at("first_below") == 0);  // lower is rounded down
 
   const scratch_file blind(".xyz", "nan nan nan\n");
-  for (const std::string check : {"", " --check 0.1", " --check -1"}) {
+  for (const std::string check : {"", " --check 0.1", " --check 0"}) {
     const outcome o = run_command("plan" + p.robot + " --configurations " + p.rows.path + " --cloud " + blind.path + check);
     CHECK(o.code == 3);
     const auto all = lines(o);
@@ -228,7 +228,7 @@ TEST_CASE("clearance run --plan says in every frame what clearance plan says of 
   CHECK(run_command(run + first.path + " --check 0.04").code == 0);
   CHECK(run_command(run + first.path + " --check 0.07").code == 2);
   CHECK_FALSE(lines(run_command(run + first.path)).at(0).at("plan").contains("first_below"));
-  const outcome o = run_command(run + none.path + " --check -1");
+  const outcome o = run_command(run + none.path + " --check 0");
   CHECK(o.code == 3);
   const auto plan = lines(o).at(0).at("plan");
   CHECK(plan.at("first_below") == 0);
@@ -278,5 +278,5 @@ TEST_CASE("--between judges the way from each row to the next, and --check is ab
   CHECK(dark.code == 3);
   CHECK(lines(dark)[0].at("way").at("state") == "no_data");
   refuses(ask + " --between --attach tool=" + p.cloud.path, "--between: cannot be mixed with --attach");
-  refuses(ask + " --between --check -0.1", "--check: must not be negative with --between");
+  for (const std::string more : {"", " --between"}) refuses(ask + more + " --check -0.1", "--check: must not be negative (metres)");
 }

@@ -336,7 +336,7 @@ TEST_CASE("--self-filter hides what is the robot's own from every question, and 
   // Where nothing is left, nothing is known; images keep their pixels' numbers.
   const scratch_file own(".xyz", "0 0 0.605\n"), depth(".png", png(0, 1000));
   for (const std::string& all : {own.path, depth.path + " --intrinsics 500,500,0,0 --camera-pose 0,0,-0.395,0,0,0,1"})
-    for (const std::string check : {"", " --check -1"}) {
+    for (const std::string check : {"", " --check 0"}) {
       const outcome blind = run_command(q.robot + " --json --self-filter 0.02" + check + " --cloud " + all);
       CHECK(blind.code == 3);
       CHECK(parsed(blind).at("state") == "no_data");
@@ -381,7 +381,7 @@ TEST_CASE("--min-support tells the nearest point that others confirm, and what i
         std::string::npos);
   CHECK(parsed(run_command(ask + " --min-support 2@0")).at("support").at("state") == "possible");
   const scratch_file blind(".xyz", "nan nan nan\n");
-  const outcome nothing = run_command(q.robot + " --json --min-support 3@1 --check -1 --cloud " + blind.path);
+  const outcome nothing = run_command(q.robot + " --json --min-support 3@1 --check 0 --cloud " + blind.path);
   CHECK(nothing.code == 3);
   CHECK(parsed(nothing).at("support").at("state") == "no_data");
   CHECK(parsed(nothing).at("support").at("passes") == false);
@@ -540,7 +540,7 @@ TEST_CASE("--deadline tells how many points are unseen, and what is certain all 
   CHECK(run_command(q.robot + " --deadline 1e9 --cloud " + q.cloud.path).out.find("deadline  1e+09 ms: all points were looked at\n") != std::string::npos);
 
   for (const std::string never : {"0", "-0", "0.0"}) {
-    const outcome o = run_command(q.ask + " --check -1 --deadline " + never);
+    const outcome o = run_command(q.ask + " --check 0 --deadline " + never);
     CHECK(o.code == 3);
     const auto none = parsed(o);
     CHECK(none.at("state") == "no_data");

@@ -158,7 +158,7 @@ TEST_CASE("the exit code of a recording is its worst frame's") {
   CHECK(run_command(r.run() + " --check " + std::to_string(least - 1e-3)).code == 0);
   CHECK(run_command(r.run() + " --check " + std::to_string(least + 1e-3)).code == 2);
   r.put("2.xyz", "nan nan nan\n");
-  const outcome blind = run_command(r.run() + " --check -1");
+  const outcome blind = run_command(r.run() + " --check 0");
   CHECK(blind.code == 3);
   REQUIRE(lines(blind).size() == 3);
   CHECK(lines(blind)[1].at("state") == "no_data");
@@ -201,6 +201,8 @@ TEST_CASE("what is wrong with a recording is one sentence and exit code 1") {
   r.put("0.png", "damaged");
   refuses(r.run(), "0.png is a depth image, which needs --intrinsics");
   fs::remove(r.folder / "0.png");
+  refuses(r.run() + " --intrinsics 500,500,0,0", "--intrinsics: is for depth images, and there is none");
+  refuses(r.run() + " --check -0.001", "--check: must not be negative (metres)");
 
   r.put("2.xyz", "0 0 zero\n");  // the frames before it are answered
   const outcome o = run_command(r.run());
