@@ -4,7 +4,7 @@
 #include "configurations.hpp"
 
 #include <clearance/min_distance_query.hpp>
-#include <clearance/min_distances.hpp>
+#include <clearance/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -37,6 +37,15 @@ void random(benchmark::State& state, const Model& (*model)(), float d_max) {
   const placed cloud{point_span(s.cloud), s.world_from_camera};
   clearance::min_distances_result found;
   for (auto _ : state) found = clearance::min_distances(cpu, model(), poses, cloud, {d_max});
+  report(state, found);
+}
+
+void each_part(benchmark::State& state) {
+  const bench::scene& s = bench::the_scene();
+  const clearance::host cpu{.threads = unsigned(state.range(0))};
+  const auto poses = bench::random_configurations(std::size_t(state.range(1)));
+  clearance::min_distances_result found;
+  for (auto _ : state) found.of = clearance::min_distances_per_part(cpu, spheres(), poses, placed{point_span(s.cloud), s.world_from_camera}).all;
   report(state, found);
 }
 
@@ -74,6 +83,7 @@ BENCHMARK_CAPTURE(random, spheres_within_5cm, spheres, 0.05f) TIMES(1000);
 BENCHMARK_CAPTURE(random, triangles, triangles, all) TIMES(1000);
 BENCHMARK_CAPTURE(random, triangles_within_5cm, triangles, 0.05f) TIMES(1000);
 BENCHMARK_CAPTURE(random, tree_alone, spheres, 0.0f) TIMES(1);
+BENCHMARK(each_part) TIMES(1000);
 BENCHMARK(monitor) TIMES(500);
 BENCHMARK(each) TIMES(100);
 

@@ -8,6 +8,7 @@
 
 #include <clearance/backend/own_stream.cuh>
 #include <clearance/in_collisions.cuh>
+#include <clearance/min_distances_per_part.cuh>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -148,6 +149,23 @@ void call(benchmark::State& state) {
   report(state, found.of);
 }
 
+/// Each part's least distances, waited for, beside `call`'s one for all parts.
+void each_part(benchmark::State& state) {
+  if (no_device(state)) return;
+  const scene& s = the_scene();
+  const device gpu;
+  const auto model = spheres(s);
+  const auto poses = random_configurations(std::size_t(state.range(0)));
+  const auto there = gpu.copy_in(std::span<const vec3>(s.cloud));
+  clearance::min_distances_per_part_query query(gpu, model);
+  std::vector<clearance::min_distance_result> found;
+  for (auto _ : state) {
+    query.forget();
+    found = query(poses, placed{point_span(there.data(), there.size()), s.world_from_camera}).all;
+  }
+  report(state, found);
+}
+
 constexpr float all = clearance::infinity;
 #define TIMES(n) ->Arg(n)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30)
 BENCHMARK_CAPTURE(random, spheres, spheres, all) TIMES(4096);
@@ -166,6 +184,7 @@ BENCHMARK_CAPTURE(image_states, tree_alone, -1) TIMES(1);
 BENCHMARK_CAPTURE(monitor, untruncated, all) TIMES(500);
 BENCHMARK_CAPTURE(monitor, within_20cm, 0.2f) TIMES(500);
 BENCHMARK(call)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(10);
+BENCHMARK(each_part)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(10);
 
 }  // namespace
 

@@ -4,7 +4,7 @@
 
 #include <clearance/in_collisions.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distances.hpp>
+#include <clearance/min_distances_per_part.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -50,6 +50,13 @@ int example(const Backend& on) {
   if (not_free < states.of.size()) std::printf("waypoint %zu is the first that may be within 5 cm: %s\n", not_free, to_string(states.of[not_free]));
   // [in_collisions]
   if (not_free != 73 || clearance::in_collisions(on, arm, trajectory, wall, 0.05).of != states.of) return 1;
+
+  // [parts]
+  const auto each = clearance::min_distances_per_part(on, arm, trajectory, wall);
+  const auto at_73 = each.of(73);
+  std::printf("at waypoint 73 link 0 is %.3f m away, and link 1 %.3f m\n", double(at_73[0].distance), double(at_73[1].distance));
+  // [parts]
+  if (!(at_73[1].distance <= at_73[0].distance && at_73[1].part == 1)) return 1;
 
   // [joints]
   clearance::chain_link shoulder, slide;  // io::joint_chain_of makes such links of a robot description's

@@ -20,6 +20,7 @@
 #include <clearance/min_distance_by.hpp>
 #include <clearance/min_distance_query.hpp>
 #include <clearance/min_distances.hpp>
+#include <clearance/min_distances_per_part.hpp>
 #include <clearance/min_support.hpp>
 #include <clearance/motion_clearance.hpp>
 #include <clearance/nearest_k.hpp>

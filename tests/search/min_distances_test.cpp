@@ -9,6 +9,7 @@
 
 #include <clearance/in_collisions.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -43,6 +44,41 @@ void all_scenes() {
       check(model, s.parts.size(), poses, placed{all.span, s.cloud_pose}, s.size, v, s.name);
       const auto several = std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}), placed{all.metres, all.camera_pose});
       check(model, s.parts.size(), poses, several, s.size, v, s.name + ", several clouds");
+    }
+  }
+}
+
+/// Each part's are those of a robot that has no other part.
+template <class V, class P>
+void all_parts() {
+  verdict v;
+  dice d(431);
+  for (const auto& s : scenes<P>()) {
+    const sources<P> all(s);
+    const auto poses = configurations_of(s, d);
+    const std::size_t parts = s.parts.size();
+    const auto model = make_model<V>(s, {}, clearance::wrapped{});
+    const auto clouds = std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}));
+    clearance::min_distances_per_part_query query(host{}, model);
+    for (const double d_max : {0.2, double(infinity)}) {
+      const clearance::min_distances_options options{real(d_max * s.size)};
+      const auto found = clearance::min_distances_per_part(host{1}, model, poses, clouds, options);
+      const auto& prepared = query(poses, clouds, options);
+      v.require(found.size() == poses.size() / parts && prepared.size() == found.size(), s.name, ": another number of configurations");
+      for (std::size_t k = 0; k < parts; ++k) {
+        clearance::min_distances_result its;
+        configurations own;
+        for (std::size_t c = 0; c < found.size() && c < prepared.size(); ++c) {
+          auto r = found.of(c)[k];
+          v.require(same_result(r, prepared.of(c)[k]), s.name, ", configuration", c, ", part", k, ": another result, prepared");
+          v.require(r.part == k || (r.part == clearance::none && r.point == clearance::none), s.name, ": part", r.part, " and not", k);
+          if (r.part == k) r.part = 0;
+          its.of.push_back(r);
+          own.push_back(poses[c * parts + k]);
+        }
+        require_same(its, own, 1, options.d_max, [&](auto pose) { return min_distance(host{1}, model.parts()[k], pose[0], clouds); }, v,
+                     s.name + ", part " + std::to_string(k));
+      }
     }
   }
 }
@@ -110,6 +146,9 @@ TEST_CASE("Least distances of many configurations of triangles are those of each
   all_scenes<clearance::sphere, triangle>();
   all_scenes<clearance::aabb, triangle>();
 }
+
+TEST_CASE("Each part's least distances of many configurations of inner spheres are those of the part alone") { all_parts<clearance::sphere, inner_sphere>(); }
+TEST_CASE("Each part's least distances of many configurations of triangles are those of the part alone") { all_parts<clearance::aabb, triangle>(); }
 
 TEST_CASE("Which of many configurations of inner spheres are in collision is what each says") { all_states<clearance::sphere, inner_sphere>(); }
 TEST_CASE("Which of many configurations of triangles are in collision is what each says") { all_states<clearance::aabb, triangle>(); }
@@ -245,7 +284,13 @@ TEST_CASE("What is no batch is refused, and an empty one is one") {
   CHECK_THROWS_WITH(min_distances(host{}, model, std::span(poses).first(4), cloud), "clearance: 4 poses are no whole configurations of 3 parts");
   CHECK_THROWS_AS(min_distances(host{}, model, poses, cloud, {clearance::not_a_number}), std::invalid_argument);
   CHECK_THROWS_AS(min_distances(host{}, model, poses, placed{cloud, Eigen::Isometry3d(Eigen::Scaling(2.0))}), std::invalid_argument);
+  CHECK(clearance::min_distances_per_part(host{}, model, configurations{}, cloud).size() == 0);
+  CHECK_THROWS_WITH(clearance::min_distances_per_part(host{}, model, std::span(poses).first(4), cloud),
+                    "clearance: 4 poses are no whole configurations of 3 parts");
+  CHECK_THROWS_AS(clearance::min_distances_per_part(host{}, model, poses, cloud, {clearance::not_a_number}), std::invalid_argument);
   poses[4].linear() *= 1.5;
+  CHECK_THROWS_WITH(clearance::min_distances_per_part(host{}, model, poses, cloud),
+                    Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
   CHECK_THROWS_WITH(min_distances(host{}, model, poses, cloud),
                     Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
 }

@@ -7,6 +7,7 @@
 #include <clearance/in_collisions.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/min_distances.cuh>
+#include <clearance/min_distances_per_part.cuh>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -49,6 +50,21 @@ void check(const Model& model, const configurations& poses, const Clouds& clouds
   }
 }
 
+/// Each part's, prepared and in one call; the cloud in host memory, too.
+template <class Model, class Clouds>
+void check_parts(const Model& model, const configurations& poses, const Clouds& clouds, double size, verdict& v, const std::string& what) {
+  const device gpu;
+  const auto there = model.on(gpu);
+  clearance::min_distances_per_part_query query(gpu, there);
+  for (const double d_max : {0.2, double(infinity)}) {
+    const clearance::min_distances_options options{real(d_max * size)};
+    const auto expected = clearance::min_distances_per_part(host{}, model, poses, clouds, options);
+    require_results(query(poses, clouds, options).all, expected.all, v, what + ", each part, prepared, d_max " + std::to_string(options.d_max));
+    require_results(clearance::min_distances_per_part(gpu, there, poses, clouds, options).all, expected.all, v,
+                    what + ", each part, d_max " + std::to_string(options.d_max));
+  }
+}
+
 template <class V, class P>
 void all_scenes(std::uint32_t width) {
   verdict v;
@@ -58,6 +74,7 @@ void all_scenes(std::uint32_t width) {
     const auto poses = configurations_of(s, d);
     const auto model = make_model<V>(s, {.width = width}, clearance::wrapped{});
     check(model, poses, placed{all.span, s.cloud_pose}, s.size, v, s.name);
+    check_parts(model, poses, placed{all.span, s.cloud_pose}, s.size, v, s.name);
     const auto several = std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}));
     check(model, poses, several, s.size, v, s.name + ", several clouds");
   }
