@@ -15,8 +15,16 @@ struct in_collisions_result {
   point_counts counts;  ///< Nothing, if there was no configuration.
 
   /// The first configuration that is not certain to be farther away than its margins; or of.size().
-  std::size_t first_not_free() const {
-    return std::size_t(std::find_if(of.begin(), of.end(), [](state s) { return s != state::free; }) - of.begin());
+  std::size_t first_not_free() const { return first_of(of); }
+
+  /// Where the configurations were several trajectories, [batch, horizon]: trajectory `i`'s, and the first of each, counted from its own
+  /// beginning. Throws std::invalid_argument if they are no whole trajectories of `horizon` configurations, or there is none of number i.
+  std::span<const state> trajectory(std::size_t i, std::size_t horizon) const { return detail::trajectory_of(std::span(of), i, horizon); }
+  std::vector<std::size_t> first_not_free(std::size_t horizon) const { return detail::first_of_each(std::span(of), horizon, first_of); }
+
+ private:
+  static std::size_t first_of(std::span<const state> some) {
+    return std::size_t(std::find_if(some.begin(), some.end(), [](state s) { return s != state::free; }) - some.begin());
   }
 };
 

@@ -29,16 +29,11 @@ struct min_distances_result {
 
   /// Where the configurations were several trajectories, [batch, horizon]: trajectory `i`'s. Throws std::invalid_argument if they are no
   /// whole trajectories of `horizon` configurations, or there is none of number i.
-  std::span<const min_distance_result> trajectory(std::size_t i, std::size_t horizon) const {
-    if (i >= count(horizon)) throw std::invalid_argument("clearance: there is no trajectory " + std::to_string(i) + " of " + std::to_string(count(horizon)));
-    return std::span(of).subspan(i * horizon, horizon);
-  }
+  std::span<const min_distance_result> trajectory(std::size_t i, std::size_t horizon) const { return detail::trajectory_of(std::span(of), i, horizon); }
   /// And `first_below` of each, counted from its own beginning.
   std::vector<std::size_t> first_below(double margin, std::size_t horizon) const {
     check(margin);
-    std::vector<std::size_t> first(count(horizon));
-    for (std::size_t i = 0; i < first.size(); ++i) first[i] = first_of(trajectory(i, horizon), margin);
-    return first;
+    return detail::first_of_each(std::span(of), horizon, [&](auto its) { return first_of(its, margin); });
   }
 
  private:
@@ -48,11 +43,6 @@ struct min_distances_result {
   static std::size_t first_of(std::span<const min_distance_result> some, double margin) {
     const auto near = [margin](const min_distance_result& r) { return r.state == state::no_data || !(double(r.lower) > margin); };
     return std::size_t(std::find_if(some.begin(), some.end(), near) - some.begin());
-  }
-  std::size_t count(std::size_t horizon) const {
-    if (horizon == 0 || of.size() % horizon != 0)
-      throw std::invalid_argument("clearance: " + std::to_string(of.size()) + " configurations are no whole trajectories of " + std::to_string(horizon));
-    return of.size() / horizon;
   }
 };
 

@@ -341,4 +341,13 @@ TEST_CASE("Results of several trajectories are taken apart by their horizon") {
   CHECK_THROWS_AS(found.first_below(0.08, 4), std::invalid_argument);
   CHECK_THROWS_AS(found.first_below(0.08, 0), std::invalid_argument);
   CHECK_THROWS_AS(found.trajectory(3, 2), std::invalid_argument);
+  const auto states = clearance::in_collisions(host{}, model, poses, std::vector<vec3>{{2, 0, 0}}, 0.08);
+  CHECK(states.first_not_free() == 2);
+  CHECK(states.first_not_free(3) == std::vector<std::size_t>{2, 0});
+  CHECK(states.first_not_free(2) == std::vector<std::size_t>{2, 0, 2});
+  CHECK(states.trajectory(1, 2)[1] == states.of[3]);
+  CHECK_THROWS_AS(states.first_not_free(4), std::invalid_argument);
+  CHECK_THROWS_AS(states.trajectory(3, 2), std::invalid_argument);
+  const auto none = clearance::min_distances(host{}, model, std::vector<Eigen::Isometry3d>{}, std::vector<vec3>{});
+  CHECK(none.first_below(0, 7).empty());
 }

@@ -4,7 +4,10 @@
 
 #include <clearance/robot/joint_chain.hpp>
 
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace clearance::detail {
 
@@ -13,6 +16,26 @@ inline std::size_t count_configurations(std::size_t parts, std::size_t poses) {
   if (parts == 0 ? poses != 0 : poses % parts != 0)
     throw std::invalid_argument("clearance: " + std::to_string(poses) + " poses are no whole configurations of " + std::to_string(parts) + " parts");
   return parts == 0 ? 0 : poses / parts;
+}
+/// How many trajectories of `horizon` configurations there are in `all`, [batch, horizon]. Throws std::invalid_argument if one is not whole.
+inline std::size_t count_trajectories(std::size_t all, std::size_t horizon) {
+  if (horizon == 0 || all % horizon != 0)
+    throw std::invalid_argument("clearance: " + std::to_string(all) + " configurations are no whole trajectories of " + std::to_string(horizon));
+  return all / horizon;
+}
+/// Trajectory `i` of them. Throws std::invalid_argument if there is none.
+template <class T>
+std::span<const T> trajectory_of(std::span<const T> all, std::size_t i, std::size_t horizon) {
+  const std::size_t count = count_trajectories(all.size(), horizon);
+  if (i >= count) throw std::invalid_argument("clearance: there is no trajectory " + std::to_string(i) + " of " + std::to_string(count));
+  return all.subspan(i * horizon, horizon);
+}
+/// The first configuration of each that `found(trajectory)` finds.
+template <class T, class Find>
+std::vector<std::size_t> first_of_each(std::span<const T> all, std::size_t horizon, const Find& found) {
+  std::vector<std::size_t> first(count_trajectories(all.size(), horizon));
+  for (std::size_t i = 0; i < first.size(); ++i) first[i] = found(trajectory_of(all, i, horizon));
+  return first;
 }
 /// Throws std::invalid_argument if a chain is of another robot.
 inline void check_chain(std::size_t parts, std::size_t of_chain) {
