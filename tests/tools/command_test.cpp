@@ -333,9 +333,9 @@ TEST_CASE("a real depth image and the point cloud of the same frame give the sam
   const std::string frame = data + "/clouds/kinect_seq/frame_20121214T142255.814212";
   const std::string png = " --intrinsics 525,525,320,240 --cloud " + frame + "_depth.png", pcd = " --cloud " + frame + ".pcd";
   for (const std::string robot : {"kuka_lwr_kresse/kuka.urdf", "ur5e/ur5e.urdf"}) {
-    const std::string ask = "query --json --spheres 200 --camera-pose -0.8,0.6,1.5,0,0.92388,0,0.38268 --robot " + data + "/robots/" + robot;
+    const std::string ask = "query --json --camera-pose -0.8,0.6,1.5,0,0.92388,0,0.38268 --robot " + data + "/robots/" + robot;
     double lower = 0, upper = 1e9;
-    for (const std::string model : {" --model spheres", " --model triangles"}) {
+    for (const std::string model : {" --model spheres --spheres 200", " --model triangles"}) {
       const auto a = parsed(run_command(ask + model + png)), b = parsed(run_command(ask + model + pcd));
       CHECK(std::abs(a.at("distance").get<double>() - b.at("distance").get<double>()) < 1e-6);
       CHECK(a.at("points").at("valid") == 271575);
