@@ -137,33 +137,30 @@ void monitor(benchmark::State& state, float d_max) {
   ask(state, spheres(s), trajectory(std::size_t(state.range(0))), {next_frame(s.cloud, 1), next_frame(s.cloud, 2)}, d_max, true);
 }
 
-void call(benchmark::State& state) {
+/// Of points that are there already; waited for. `ask(gpu, model)` makes what is asked for `(poses, cloud)`.
+template <class Ask>
+void waited(benchmark::State& state, Ask ask) {
   if (no_device(state)) return;
   const scene& s = the_scene();
   const device gpu;
   const auto model = spheres(s);
   const auto poses = random_configurations(std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const vec3>(s.cloud));
-  clearance::min_distances_result found;
-  for (auto _ : state) found = clearance::min_distances(gpu, model, poses, placed{point_span(there.data(), there.size()), s.world_from_camera});
-  report(state, found.of);
-}
-
-/// Each part's least distances, waited for, beside `call`'s one for all parts.
-void each_part(benchmark::State& state) {
-  if (no_device(state)) return;
-  const scene& s = the_scene();
-  const device gpu;
-  const auto model = spheres(s);
-  const auto poses = random_configurations(std::size_t(state.range(0)));
-  const auto there = gpu.copy_in(std::span<const vec3>(s.cloud));
-  clearance::min_distances_per_part_query query(gpu, model);
+  auto asked = ask(gpu, model);
   std::vector<clearance::min_distance_result> found;
-  for (auto _ : state) {
-    query.forget();
-    found = query(poses, placed{point_span(there.data(), there.size()), s.world_from_camera}).all;
-  }
+  for (auto _ : state) found = asked(poses, placed{point_span(there.data(), there.size()), s.world_from_camera});
   report(state, found);
+}
+void call(benchmark::State& state) {
+  waited(state, [](const device& gpu, const auto& model) {
+    return [&](const auto& poses, const auto& cloud) { return clearance::min_distances(gpu, model, poses, cloud).of; };
+  });
+}
+/// Each part's least distances, beside `call`'s one for all parts.
+void each_part(benchmark::State& state) {
+  waited(state, [](const device& gpu, const auto& model) {
+    return [&](const auto& poses, const auto& cloud) { return clearance::min_distances_per_part(gpu, model, poses, cloud).all; };
+  });
 }
 
 constexpr float all = clearance::infinity;

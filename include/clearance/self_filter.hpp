@@ -163,16 +163,14 @@ filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::s
                                         std::span<const Eigen::Isometry3d> own_poses, const Clouds& clouds, const self_filter_options& options = {}) {
   static_assert(explain_clouds<Clouds>());
   const auto& there = minimum::search_on<On>::backend_of(on);
-  using backend = detail::backend_of<On>;
   auto labels = there.template make_scratch<point_label>(detail::count_points(clouds));
   auto counts = there.template make_scratch<self_filter_counts>(1);
   auto result = there.template make_scratch<min_distance_result>(1);
-  pairwise::memory_on<backend> memory(there);
+  pairwise::memory_on<detail::backend_of<On>> memory(there);
   auto&& readable = memory.readable(clouds);
   self_filter_async(there, own, own_poses, readable, options, labels.data(), counts.data());
   const auto rest = masked_clouds(readable, labels.data());
-  minimum::cloud_copies<backend> none_left;
-  minimum::search_on<On>::template once<false>(on, view_of(robot), poses, rest, result.data(), nullptr, minimum::readable_on<backend>{there, none_left});
+  minimum::search_on<On>::template once<false>(on, view_of(robot), poses, rest, result.data(), nullptr, minimum::as_it_is{});
   return {detail::labelled(there, clouds, labels.data(), counts.data()), there.copy_out(result.data(), 1)[0]};
 }
 /// The same robot is filtered out and asked about.
