@@ -24,7 +24,7 @@ using Eigen::Vector3d;
 namespace {
 
 // Sanitizers take ten times as long: fewer solids, of fewer spheres, and fewer points.
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(CLEARANCE_SANITIZED)
 constexpr int points_a_solid = 900, one_of = 6, spheres_a_solid = 20;
 #else
 constexpr int points_a_solid = 27000, one_of = 1, spheres_a_solid = 100;

@@ -11,7 +11,7 @@
 namespace testing {
 
 /// Spheres of the largest part. Sanitizers take ten times as long.
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(CLEARANCE_SANITIZED)
 inline constexpr std::size_t very_many = 4000;
 #else
 inline constexpr std::size_t very_many = 100000;

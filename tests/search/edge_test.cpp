@@ -129,7 +129,7 @@ TEST_CASE("Poses so far away that distances in float would overflow are refused;
 }
 
 TEST_CASE("Ten million points: the one that is near is found wherever it is", "[slow]") {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(CLEARANCE_SANITIZED)
   constexpr std::size_t n = 1'000'001;
 #else
   constexpr std::size_t n = 10'000'001;

@@ -201,7 +201,7 @@ TEST_CASE("what is wrong with a robot is said of its file and its link or joint"
 }
 
 TEST_CASE("where memory ends, the sentence names the file that was read") {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(CLEARANCE_SANITIZED)
   WARN("SKIPPED: the address sanitizer itself takes more addresses than this test gives");
   return;
 #endif
