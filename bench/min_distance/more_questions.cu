@@ -11,6 +11,7 @@
 #include <clearance/min_distances.cuh>
 #include <clearance/min_support.cuh>
 #include <clearance/motion_clearance.cuh>
+#include <clearance/part_witnesses.cuh>
 #include <clearance/signed_distances.cuh>
 #include <clearance/volume/sphere.hpp>
 #include <clearance/within.cuh>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <clearance/min_distance.cuh>  // a device's scan
+#include <clearance/part_witnesses.cuh>
 
 #include "gradient.hpp"
 

@@ -2,10 +2,10 @@
 #pragma once
 // Prepared questions about pairs of a point and a part. On the host; collect_query.cuh has a device.
 
+#include <clearance/answer/asked_once.hpp>
 #include <clearance/answer/bracket.hpp>
 #include <clearance/answer/kept_memory.hpp>
 #include <clearance/answer/margins.hpp>
-#include <clearance/backend/one_call.hpp>
 #include <clearance/collect.hpp>
 
 namespace clearance {
@@ -42,15 +42,6 @@ struct pair_question {
     return certainty_of(ahead.look(model.facts, poses, clouds));
   }
 };
-
-/// One call: what `ask(query)` answers of a `Query` that is made for it, whose memory is given back in the order of its work.
-template <template <class, class> class Query, class On, robot Robot, class Ask>
-auto asked_once(const On& on, const Robot& robot, const Ask& ask) {
-  return detail::one_call<On>::of(on, [&](auto... memory) {
-    Query<On, typename decltype(view_of(robot))::part_type> query(on, robot, memory...);
-    return ask(query);
-  });
-}
 
 }  // namespace pairwise
 

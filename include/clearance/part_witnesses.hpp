@@ -1,89 +1,110 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Where every part's least distance is, after min_distance_per_part. On any backend.
+// Where every part's least distance is, after min_distance_per_part. On the host; part_witnesses.cuh has a device.
 
+#include <clearance/answer/asked_once.hpp>
+#include <clearance/answer/few_values.hpp>
+#include <clearance/answer/kept_memory.hpp>
 #include <clearance/answer/plain_search.hpp>
-#include <clearance/answer/search_on.hpp>
-#include <clearance/backend/staged.hpp>
+#include <clearance/traversal/any_depth.hpp>
 
 namespace clearance {
 
 namespace minimum {
 
+/// Of so many parts the places go with the launch.
+inline constexpr std::uint32_t few = 12;
+
 /// A thread a part, of one cloud.
-template <class PartView, point_source Source, class Traversal>
+template <class PartView, point_source Source>
 struct witness_body {
   const PartView* parts;
-  const frames::placement* places;
+  pairwise::few_values<frames::placement, few> places;
   Source source;
   vec3 origin;
   world_transform world_from_cloud;
   std::uint32_t cloud;
   const part_minimum* minima;
-  Traversal walk;
+  any_depth walk;
   part_witness* witnesses;
 
   CLEARANCE_HD void operator()(std::size_t i) const {
-    const part_minimum& least = minima[i];
-    if (least.cloud != cloud) return;
-    part_witness& w = witnesses[i];
-    const vec3 p = source[least.point].position, q = places[i].part_from_cloud(p - origin);
+    const part_minimum least = minima[i];
+    if (cloud == 0) witnesses[i] = {};
+    if (least.cloud != cloud || least.point >= source.size()) return;
+    const frames::placement place = places[std::uint32_t(i)];
+    const vec3 p = source[least.point].position, q = place.part_from_cloud(p - origin);
     const auto f = evaluate(parts[i], q, least.distance, walk);
-    w.distance = f.distance;
-    if (f.nearest.id == none) return;
-    const contact here = f.at(q, places[i].world_from_part);
-    w.part = std::uint32_t(i), w.cloud = cloud, w.point = least.point, w.primitive = f.nearest.id;
-    w.at = world_from_cloud(p), w.nearest = here.nearest, w.normal = here.normal;
+    if (f.nearest.id == none || f.distance != least.distance) return;
+    const contact here = f.at(q, place.world_from_part);
+    witnesses[i] = {f.distance, std::uint32_t(i), cloud, least.point, f.nearest.id, world_from_cloud(p), here.nearest, here.normal};
   }
 };
 
 }  // namespace minimum
 
+/// The prepared question: made once for a robot, asked after every frame's minima. One object is for one thread and one stream; the
+/// robot must stay.
+template <class On, class PartView>
+class part_witnesses_query {
+ public:
+  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory. Throws std::invalid_argument if a tree is too
+  /// deep for `near_first` on a device.
+  template <robot Robot, class... Memory>
+  part_witnesses_query(const On& on, const Robot& robot, Memory... memory) : on_(on), model_(view_of(robot)), memory_(on, memory...) {
+    if constexpr (requires { typename On::own_scan; }) minimum::check_stack<near_first>(model_.depth, model_.width);
+  }
+
+  /// As `part_witnesses`. Points that a device cannot read are copied into buffers that are kept.
+  template <class Clouds>
+  std::vector<part_witness> operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const part_minimum> minima) {
+    frames::check_room(model_.size(), minima.size());
+    memory_.begin();
+    part_witness* const found = memory_.template room<part_witness>(minima.size()).data();
+    look(poses, memory_.readable(clouds), std::get<0>(memory_.put(minima)), found);
+    auto all = on_.copy_out(found, minima.size());
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (minima[k].cloud != none && all[k].part == none)
+        throw std::invalid_argument("clearance: the minimum of part " + std::to_string(k) + " is not one of these poses and clouds");
+    return all;
+  }
+
+  /// Enqueues it: `minima` and `witnesses`, one a part, and the clouds are in memory that `on` reads and writes. A minimum that is none of
+  /// these poses and clouds has no witness either. On a device one kernel a cloud; nothing is waited for, and nothing allocated but by more
+  /// parts or clouds than ever. A graph that captures this keeps the poses of now.
+  template <class Clouds>
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima, part_witness* witnesses) {
+    memory_.begin();
+    look(poses, clouds, minima, witnesses);
+  }
+
+ private:
+  template <class Clouds>
+  void look(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima, part_witness* witnesses) {
+    frames::for_each_turn(frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+      on_.for_each(model_.size(), minimum::witness_body<PartView, S>{model_.parts, pairwise::few_or_kept<minimum::few>(frame_.places, memory_), source, frame_.origin,
+                                                                     frame_.world_from_cloud, now.cloud, minima,
+                                                                     any_depth{stack_need(model_.depth, model_.width)}, witnesses});
+    });
+  }
+
+  On on_;
+  model_view<PartView> model_;
+  pairwise::kept_memory<On> memory_;
+  frames::cloud_frame frame_;
+};
+template <class On, robot Robot, class... Memory>
+part_witnesses_query(const On&, const Robot&, Memory...)
+    -> part_witnesses_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+
 /// The witnesses of minima that min_distance_per_part gave for the same robot, poses and clouds, one a part; a minimum at no point has
 /// none. One walk a part; clouds that `on` cannot read are copied once more. Throws std::invalid_argument as min_distance, or if the
-/// minima are not those of this robot, these poses and these clouds, or a tree is too deep for `near_first` elsewhere than on the host.
+/// minima are not those of this robot, these poses and these clouds, or a tree is too deep for `near_first` on a device.
 template <backend On, robot Robot, class Clouds>
 std::vector<part_witness> part_witnesses(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                          std::span<const part_minimum> minima) {
   static_assert(explain_clouds<Clouds>());
-  const auto model = view_of(robot);
-  using part_type = typename decltype(model)::part_type;
-  frames::check_room(model.size(), minima.size());
-  const auto not_of_these = [](std::size_t k) {
-    throw std::invalid_argument("clearance: the minimum of part " + std::to_string(k) + " is not one of these poses and clouds");
-  };
-  const auto look = [&](const auto& walk) {
-    auto least = staged(on, std::vector<part_minimum>(minima.begin(), minima.end()));
-    auto found = staged(on, std::vector<part_witness>(minima.size()));
-    minimum::cloud_copies<On> copies;
-    const minimum::readable_on<On> readable{on, copies};
-    std::uint32_t count = 0;
-    frames::cloud_frame frame;
-    frames::for_each_turn(frame, model.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
-      count = now.cloud + 1;
-      bool here = false;
-      for (std::size_t k = 0; k < minima.size(); ++k) {
-        if (minima[k].cloud != now.cloud) continue;
-        if (minima[k].point >= anywhere.size()) not_of_these(k);
-        here = true;
-      }
-      if (!here) return;
-      auto places = staged(on, frame.places);
-      using body = minimum::witness_body<part_type, S, std::remove_cvref_t<decltype(walk)>>;
-      on.for_each(model.size(), body{model.parts, places.data(), readable(anywhere, now.cloud), frame.origin, frame.world_from_cloud, now.cloud,
-                                     least.data(), walk, found.data()});
-    });
-    std::vector<part_witness> all = on.copy_out(found.data(), minima.size());
-    for (std::size_t k = 0; k < all.size(); ++k)
-      if (minima[k].cloud != none && (minima[k].cloud >= count || all[k].part == none || all[k].distance != minima[k].distance)) not_of_these(k);
-    return all;
-  };
-  if constexpr (std::is_same_v<On, host>) {
-    return look(any_depth{stack_need(model.depth, model.width)});
-  } else {
-    minimum::check_stack<near_first>(model.depth, model.width);
-    return look(near_first{});
-  }
+  return pairwise::asked_once<part_witnesses_query>(on, robot, [&](auto& query) { return query(poses, clouds, minima); });
 }
 
 }  // namespace clearance

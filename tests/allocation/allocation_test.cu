@@ -9,6 +9,7 @@
 #include <clearance/distances_per_part.cuh>
 #include <clearance/in_collision.cuh>
 #include <clearance/min_distance_devices.cuh>
+#include <clearance/part_witnesses.cuh>
 #include <clearance/self_filter.cuh>
 #include <clearance/volume/sphere.hpp>
 #include <clearance/within.cuh>
@@ -133,6 +134,9 @@ void ask_about_pairs(const scene<inner_sphere>& s, std::size_t clouds) {
   clearance::distances_per_part_query per_part(gpu, model);
   clearance::collect_query collect(gpu, model);
   clearance::self_filter_query filter(gpu, model);
+  clearance::part_witnesses_query where(gpu, model);
+  const clearance::device_buffer<clearance::part_minimum> minima(model.size(), gpu.id);
+  const clearance::device_buffer<clearance::part_witness> witnesses(model.size(), gpu.id);
   const clearance::device_buffer<clearance::point_counts> counts(1, gpu.id);
   const clearance::device_buffer<clearance::zone> zone(2 * model.size(), gpu.id);
   const clearance::device_buffer<clearance::pair_distance> pairs(1000, gpu.id);
@@ -149,7 +153,9 @@ void ask_about_pairs(const scene<inner_sphere>& s, std::size_t clouds) {
     per_part.enqueue(s.poses, asked, distance.data(), counts.data(), real(now.near));
     collect.enqueue(s.poses, asked, clearance::pairwise::listed{pairs.data(), count.data(), pairs.size(), reaches.data()}, counts.data());
     filter.enqueue(s.poses, asked, now.own, labels.data(), own.data());
+    where.enqueue(s.poses, asked, minima.data(), witnesses.data());
   };
+  gpu.stage(std::span<const clearance::part_minimum>(std::vector<clearance::part_minimum>(model.size())), minima.data());
   const pair_options each[] = {{0.1}, {0.2}, {0.3}};
   frame(several, each[0]);
   const counted before;

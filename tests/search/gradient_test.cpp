@@ -97,10 +97,20 @@ void of_all_scenes() {
       const double size = std::abs(double(w.distance)) + Eigen::Vector3d(w.at.x, w.at.y, w.at.z).cwiseAbs().maxCoeff() + 100;
       v.require(std::abs(away - std::abs(double(w.distance))) <= 1e-5 * size, s.name, ": nearest and point are", away, " apart, not", w.distance);
     }
-    const auto other = part_witnesses(clearance::host{1}, model, s.poses, std::tuple(two[0], two[1]), minima);
-    const auto same = [](const part_witness& a, const part_witness& b) { return same_bytes(a.at, b.at) && same_bytes(a.normal, b.normal); };
-    v.require(other.size() == all.size() && std::equal(all.begin(), all.end(), other.begin(), same),
-              s.name, ", clouds of several kinds");
+    const auto same = [&](const std::vector<part_witness>& other) {
+      return other.size() == all.size() && std::equal(all.begin(), all.end(), other.begin(), [](const part_witness& a, const part_witness& b) {
+               return a.part == b.part && a.point == b.point && same_bytes(a.at, b.at) && same_bytes(a.normal, b.normal);
+             });
+    };
+    v.require(same(part_witnesses(clearance::host{1}, model, s.poses, std::tuple(two[0], two[1]), minima)), s.name, ", clouds of several kinds");
+    clearance::part_witnesses_query query(host{}, model);
+    query(s.poses, two[0], min_distance_per_part(host{}, model, s.poses, two[0]).second);
+    v.require(same(query(s.poses, two, minima)), s.name, ", prepared");
+    std::vector<part_witness> room(minima.size());
+    query.enqueue(s.poses, two, minima.data(), room.data());
+    v.require(same(room), s.name, ", enqueued");
+    query.enqueue(s.poses, std::vector<vec3>(), minima.data(), room.data());
+    v.require(std::all_of(room.begin(), room.end(), [](const part_witness& w) { return w.part == clearance::none; }), s.name, ", of another cloud");
   }
 }
 

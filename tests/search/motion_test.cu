@@ -4,7 +4,7 @@
 #include "support/product.hpp"
 
 #include <clearance/motion_clearance.cuh>
-#include <clearance/part_witnesses.hpp>
+#include <clearance/part_witnesses.cuh>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 

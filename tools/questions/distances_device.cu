@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <clearance/distances.cuh>
+#include <clearance/part_witnesses.cuh>
 #include <clearance/signed_distances.cuh>
 
 #include "distances.hpp"

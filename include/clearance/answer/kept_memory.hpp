@@ -20,6 +20,8 @@ struct alignas(16) memory_unit {
 /// Where the memory is from, and how clouds are read, by where a question runs. Any backend that is not a device:
 template <class On>
 class memory_on {
+  static_assert(!requires { typename On::own_scan; }, "a device keeps its memory otherwise: include the question's .cuh header, not the .hpp");
+
  public:
   using piece = typename On::template scratch<memory_unit>;
 

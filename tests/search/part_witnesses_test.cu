@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where every part's least distance is: on a device in every frame what the host says, and in a graph after the minima.
+#include "support/frames_device.cuh"
+#include "support/product_device.cuh"
+
+#include <clearance/min_distance_query.cuh>
+#include <clearance/part_witnesses.cuh>
+
+using namespace testing;
+using clearance::device, clearance::host, clearance::part_minimum, clearance::part_witness;
+
+namespace {
+
+void require_witnesses(const std::vector<part_witness>& found, const std::vector<part_witness>& expected, verdict& v, const std::string& what) {
+  v.require(found.size() == expected.size(), what);
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    const part_witness &a = found[k], &b = expected[k];
+    v.require(a.part == b.part && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive && same_bits(a.distance, b.distance) &&
+                  same_bytes(a.at, b.at) && same_bytes(a.nearest, b.nearest) && same_bytes(a.normal, b.normal),
+              what, ": the witness of part", k);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("A prepared question of every part's witness says on a device in every frame what the host says, and in a graph") {
+  verdict v;
+  const own_stream stream;
+  const device gpu{0, stream.handle};
+  for (const int parts : {3, 40}) {
+    moving_frames f(parts, 161);
+    const auto model = f.model();
+    const auto there = model.on(gpu);
+    clearance::min_distance_query least(gpu, there);
+    clearance::part_witnesses_query query(gpu, there), follows(gpu, there);
+    const auto result = room_on<clearance::min_distance_result>(gpu, 1);
+    const auto minima = room_on<part_minimum>(gpu, std::size_t(parts));
+    const auto witnesses = room_on<part_witness>(gpu, std::size_t(parts));
+    std::size_t seen = 0;
+    const auto look = [&](const std::string& when) {
+      const auto nearest = min_distance_per_part(host{}, model, f.s.poses, f.here()).second;
+      const auto expected = part_witnesses(host{}, model, f.s.poses, f.here(), nearest);
+      const std::string what = std::to_string(parts) + " parts, " + when;
+      require_witnesses(gpu.copy_out(witnesses), expected, v, what + ", enqueued");
+      require_witnesses(query(f.s.poses, f.here(), nearest), expected, v, what + ", prepared");
+      require_witnesses(part_witnesses(gpu, there, f.s.poses, f.here(), nearest), expected, v, what + ", one call");
+      for (const part_witness& w : expected) seen += w.part != clearance::none;
+    };
+    const auto enqueue = [&](const clouds& all) {
+      least.enqueue_per_part(f.s.poses, all, result.data(), minima.data());
+      follows.enqueue(f.s.poses, all, minima.data(), witnesses.data());
+    };
+    for (; f.there(); f.next()) {
+      enqueue(frame_there(gpu, f).all);
+      look("frame " + std::to_string(f.number));
+    }
+    replay(stream, gpu, f, enqueue, look);
+    v.require(seen > 6 * std::size_t(parts), "witnesses:", seen);
+  }
+}
+
+TEST_CASE("Minima of other clouds have no witness on a device") {
+  const device gpu;
+  moving_frames f(4, 162);
+  const auto there = f.model().on(gpu);
+  const auto minima = min_distance_per_part(gpu, there, f.s.poses, f.here()).second;
+  const auto others = gpu.copy_in(std::span<const part_minimum>(minima));
+  const auto witnesses = room_on<part_witness>(gpu, minima.size());
+  clearance::part_witnesses_query query(gpu, there);
+  f.see(10);  // smaller: points of those numbers are not there
+  CHECK_THROWS_AS(query(f.s.poses, f.here(), minima), std::invalid_argument);
+  query.enqueue(f.s.poses, frame_there(gpu, f).all, others.data(), witnesses.data());
+  for (const part_witness& w : gpu.copy_out(witnesses)) CHECK((w.part == clearance::none && w.point == clearance::none));
+  query.enqueue(f.s.poses, std::vector<clearance::placed<clearance::point_span>>{}, others.data(), witnesses.data());
+  for (const part_witness& w : gpu.copy_out(witnesses)) CHECK(w.part == clearance::none);
+}
