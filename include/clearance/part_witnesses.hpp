@@ -81,10 +81,11 @@ class part_witnesses_query {
  private:
   template <class Clouds>
   void look(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima, part_witness* witnesses) {
+    const any_depth walk{stack_need(model_.depth, model_.width)};
     frames::for_each_turn(frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
-      on_.for_each(model_.size(), minimum::witness_body<PartView, S>{model_.parts, pairwise::few_or_kept<minimum::few>(frame_.places, memory_), source, frame_.origin,
-                                                                     frame_.world_from_cloud, now.cloud, minima,
-                                                                     any_depth{stack_need(model_.depth, model_.width)}, witnesses});
+      const auto places = pairwise::few_or_kept<minimum::few>(frame_.places, memory_);
+      on_.for_each(model_.size(), minimum::witness_body<PartView, S>{model_.parts, places, source, frame_.origin, frame_.world_from_cloud,
+                                                                     now.cloud, minima, walk, witnesses});
     });
   }
 
