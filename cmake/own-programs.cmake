@@ -112,7 +112,7 @@ function(clearance_check program)
 endfunction()
 if(CLEARANCE_HAS_CUDA AND CLEARANCE_DEVICE_PROGRAMS STREQUAL "CHECK")
   include(CheckCompilerFlag)
-  check_compiler_flag(CUDA -Ofc=max CLEARANCE_NVCC_FAST)  # nvcc 13 and newer
+  check_compiler_flag(CUDA -Ofc=max CLEARANCE_NVCC_FAST)  # not every nvcc has it
   if(CLEARANCE_NVCC_FAST)
     set(clearance_fast_device_code -Ofc=max)
   endif()

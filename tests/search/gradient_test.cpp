@@ -2,6 +2,7 @@
 // How a distance changes as parts move: against differences of distances that are asked anew.
 #include "support/brute_pairs.hpp"
 #include "support/product.hpp"
+#include "support/same_result.hpp"
 
 #include <clearance/gradient.hpp>
 #include <clearance/part_witnesses.hpp>
@@ -98,9 +99,7 @@ void of_all_scenes() {
       v.require(std::abs(away - std::abs(double(w.distance))) <= 1e-5 * size, s.name, ": nearest and point are", away, " apart, not", w.distance);
     }
     const auto same = [&](const std::vector<part_witness>& other) {
-      return other.size() == all.size() && std::equal(all.begin(), all.end(), other.begin(), [](const part_witness& a, const part_witness& b) {
-               return a.part == b.part && a.point == b.point && same_bytes(a.at, b.at) && same_bytes(a.normal, b.normal);
-             });
+      return std::equal(all.begin(), all.end(), other.begin(), other.end(), same_witness);
     };
     v.require(same(part_witnesses(clearance::host{1}, model, s.poses, std::tuple(two[0], two[1]), minima)), s.name, ", clouds of several kinds");
     clearance::part_witnesses_query query(host{}, model);

@@ -2,6 +2,7 @@
 // A device says of motions and of every part's witness what the host says, to the bit.
 #include "support/brute_pairs.hpp"
 #include "support/product.hpp"
+#include "support/same_result.hpp"
 
 #include <clearance/motion_clearance.cuh>
 #include <clearance/part_witnesses.cuh>
@@ -24,10 +25,7 @@ void like_the_host() {
     const auto minima = min_distance_per_part(host{}, model, s.poses, cloud).second;
     const auto expected = part_witnesses(host{}, model, s.poses, cloud, minima), found = part_witnesses(on, there, s.poses, cloud, minima);
     for (std::size_t k = 0; k < expected.size(); ++k)
-      v.require(found[k].part == expected[k].part && found[k].point == expected[k].point && found[k].primitive == expected[k].primitive &&
-                    same_bits(found[k].distance, expected[k].distance) && same_bytes(found[k].at, expected[k].at) &&
-                    same_bytes(found[k].nearest, expected[k].nearest) && same_bytes(found[k].normal, expected[k].normal),
-                s.name, ": the witness of part", k);
+      v.require(same_witness(found[k], expected[k]), s.name, ": the witness of part", k);
     std::vector<Eigen::Isometry3d> to;
     for (const auto& pose : s.poses) to.push_back(shifted(0.2 * s.size, 0, 0) * pose * Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()));
     const clearance::straight_motion motion(s.poses, to);

@@ -2,6 +2,7 @@
 // Where every part's least distance is: on a device in every frame what the host says, and in a graph after the minima.
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"
+#include "support/same_result.hpp"
 
 #include <clearance/min_distance_query.cuh>
 #include <clearance/part_witnesses.cuh>
@@ -13,12 +14,7 @@ namespace {
 
 void require_witnesses(const std::vector<part_witness>& found, const std::vector<part_witness>& expected, verdict& v, const std::string& what) {
   v.require(found.size() == expected.size(), what);
-  for (std::size_t k = 0; k < expected.size(); ++k) {
-    const part_witness &a = found[k], &b = expected[k];
-    v.require(a.part == b.part && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive && same_bits(a.distance, b.distance) &&
-                  same_bytes(a.at, b.at) && same_bytes(a.nearest, b.nearest) && same_bytes(a.normal, b.normal),
-              what, ": the witness of part", k);
-  }
+  for (std::size_t k = 0; k < expected.size(); ++k) v.require(same_witness(found[k], expected[k]), what, ": the witness of part", k);
 }
 
 }  // namespace

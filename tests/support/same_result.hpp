@@ -17,4 +17,10 @@ inline bool same_result(const clearance::min_distance_result& a, const clearance
          std::equal(a.dropped, a.dropped + clearance::drop_reasons, b.dropped);
 }
 
+/// And everything that a part's witness says.
+inline bool same_witness(const clearance::part_witness& a, const clearance::part_witness& b) {
+  return a.part == b.part && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive && same_bits(a.distance, b.distance) &&
+         same_bytes(a.at, b.at) && same_bytes(a.nearest, b.nearest) && same_bytes(a.normal, b.normal);
+}
+
 }  // namespace testing
