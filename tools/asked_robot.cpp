@@ -86,12 +86,14 @@ body_options body_options_of(const query_options& asked) {
   return {.model = asked.model, .pack = {.count = asked.spheres.value_or(pack_options{}.count)}, .cache = chosen_cache(asked.no_cache, asked.cache)};
 }
 
-body make_held(const query_options& asked, const attached_thing& thing, progress& shown) {
+body make_held(const query_options& asked, const attached_thing& thing, progress& shown, std::vector<std::string>& notes) {
   if (thing.spheres) return {thing.name, thing.spheres->spheres, {}, thing.spheres->tolerance};
   const body_source source{thing.name, &thing.mesh};
   body_account account;
   try {
-    return std::move(make_bodies(std::vector{source}, body_options_of(asked), shown, account)[0]);
+    body made = std::move(make_bodies(std::vector{source}, body_options_of(asked), shown, account)[0]);
+    notes.insert(notes.end(), account.notes.begin(), account.notes.end());
+    return made;
   } catch (const std::runtime_error& error) {  // it is known by its file, and is no link
     std::string why = error.what();
     if (const std::string link = "link " + io::quoted(thing.name) + ": "; why.starts_with(link)) why.erase(0, link.size());
@@ -159,6 +161,7 @@ std::vector<body> make_bodies(const query_options& asked, const asked_robot& rob
     io::refuse(asked.robot, error.what());
   }
   note_packing(asked, account, notes);
-  for (const attached_thing& thing : robot.held) bodies.push_back(make_held(asked, thing, shown));
+  notes.insert(notes.end(), account.notes.begin(), account.notes.end());
+  for (const attached_thing& thing : robot.held) bodies.push_back(make_held(asked, thing, shown, notes));
   return bodies;
 }

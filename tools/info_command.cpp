@@ -2,9 +2,13 @@
 #include "backends.hpp"
 #include "command_line.hpp"
 #include "json_text.hpp"
+#include "messages.hpp"
+#include "robot_bodies.hpp"
 
 #include <clearance/ground/config.hpp>
+#include <clearance/io/mesh.hpp>
 #include <clearance/io/packing_cache.hpp>
+#include <clearance/io/robot.hpp>
 #include <clearance/io/spheres_file.hpp>
 
 #include <CLI/CLI.hpp>
@@ -53,19 +57,69 @@ int describe(const std::string& file, bool as_json) {
   return 0;
 }
 
+/// The parts of a robot, or the one of a mesh: how what they enclose is known. Exit code 0: every file of it is whole.
+int describe_solids(const std::string& file, const std::vector<std::string>& packages, bool as_json) {
+  std::vector<clearance::io::robot_part> parts;
+  std::vector<std::string> notes;
+  if (file.ends_with(".urdf")) {
+    clearance::io::robot_options options;
+    for (const auto& text : packages) {
+      const auto [name, folder] = assignment("--package", text, "name=DIR");
+      options.packages[name] = folder;
+    }
+    const auto robot = clearance::io::load_robot(file, options);
+    parts = robot.parts(), notes = robot.notes();
+  } else {
+    if (!packages.empty()) throw usage_error("--package", "is for robots, and " + file + " is none by its name");
+    parts.push_back({.name = std::filesystem::path(file).stem().string(), .mesh = clearance::io::load_mesh(file)});
+  }
+  std::vector<body_source> sources;
+  for (const auto& part : parts) sources.push_back({part.name, &part.mesh, part.tessellation_error});
+  progress shown;
+  body_account account;
+  const std::vector<body> bodies = make_bodies(sources, {.model = model_kind::triangles}, shown, account);
+  shown.clear();
+  notes.insert(notes.end(), account.notes.begin(), account.notes.end());
+  say_notes(notes);
+  json out = {{"file", file}, {"parts", json::array()}};
+  std::string text = clearance::io::printable(file) + ": " + std::to_string(bodies.size()) + (bodies.size() == 1 ? " part\n" : " parts\n");
+  for (const body& b : bodies) {
+    const double tolerance = b.tolerance + b.closed.tolerance;
+    out["parts"].push_back({{"name", b.name},
+                            {"triangles", b.closed.loaded},
+                            {"bodies", b.closed.encloses.size()},
+                            {"inside", to_string(b.closed.inside)},
+                            {"tolerance", tolerance},
+                            {"caps", {{"loops", b.closed.caps.loops}, {"area", b.closed.caps.area}}}});
+    char line[256];
+    std::snprintf(line, sizeof line, "%u triangles, inside by %s, %u holes closed, to within %.6f m\n", b.closed.loaded, to_string(b.closed.inside),
+                  b.closed.caps.loops, tolerance);
+    const std::string name = clearance::io::printable(b.name);
+    text += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') + line;
+  }
+  std::cout << (as_json ? json_text(out, 2) : text);
+  return 0;
+}
+
 }  // namespace
 
 subcommand add_info(CLI::App& app) {
-  CLI::App* sub = app.add_subcommand("info", "What this clearance was built with and runs on; or what is in a file of spheres");
+  CLI::App* sub = app.add_subcommand("info", "What this clearance was built with and runs on; what is in a file of spheres; or how it is known what a "
+                                             "robot's parts, or a mesh, enclose");
   struct settings {
     std::string file;
+    std::vector<std::string> packages;
     bool json = false;
   };
   auto asked = std::make_shared<settings>();
-  sub->add_option("FILE", asked->file, "Spheres: .ist, .yaml or .csv");
+  sub->add_option("FILE", asked->file, "Spheres (.ist, .yaml or .csv), a robot (.urdf) or a mesh");
+  sub->add_option("--package", asked->packages, "name=DIR: where package://name/ is");
   sub->add_flag("--json", asked->json, "Print one JSON object");
   return [asked] {
-    if (!asked->file.empty()) return describe(asked->file, asked->json);
+    const bool spheres = !clearance::io::spheres_format(asked->file).empty();
+    if (spheres && !asked->packages.empty()) throw usage_error("--package", "is for robots, and " + asked->file + " is none by its name");
+    if (spheres) return describe(asked->file, asked->json);
+    if (!asked->file.empty()) return clearance::io::within_memory(asked->file, [&] { return describe_solids(asked->file, asked->packages, asked->json); });
     const std::string version = std::to_string(CLEARANCE_VERSION_MAJOR) + '.' + std::to_string(CLEARANCE_VERSION_MINOR) + '.' +
                                 std::to_string(CLEARANCE_VERSION_PATCH);
     const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);

@@ -35,6 +35,7 @@ struct subject {
 struct packed_subject {
   std::vector<body> bodies;
   std::vector<bool> cached;
+  std::vector<std::string> notes;
   double seconds = 0;  // of all, beside one another
 };
 
@@ -84,6 +85,7 @@ packed_subject fill(const subject& what, const pack_settings& asked, progress& s
   positive("--seconds", asked.seconds, how.pack.seconds);
   if (!asked.seed.empty()) how.pack.seed = whole_number("--seed", asked.seed);
   how.pack.allow_overlap = asked.overlap;
+  how.sheets = what.robot;  // who packs a mesh wants to know that nothing fits
   how.on_device = is_device(asked.backend);
   how.cache = chosen_cache(asked.no_cache, asked.cache);
   std::vector<body_source> sources;
@@ -94,6 +96,7 @@ packed_subject fill(const subject& what, const pack_settings& asked, progress& s
     body_account account;
     made.bodies = make_bodies(sources, how, shown, account);
     made.cached = account.cached;
+    made.notes = std::move(account.notes);
   } catch (const std::runtime_error& error) {  // a mesh alone is known by its file's name
     std::string why = error.what();
     const std::string link = "link " + io::quoted(what.parts[0].name) + ": ";
@@ -132,6 +135,8 @@ nlohmann::ordered_json quality(const body& b, bool cached) {
           {"radius_min", p.radius_min},
           {"radius_max", p.radius_max},
           {"caps", {{"loops", b.closed.caps.loops}, {"area", b.closed.caps.area}}},
+          {"inside", to_string(b.closed.inside)},
+          {"tolerance", b.tolerance + p.tolerance},
           {"stopped_by", name_of(p.stopped_by)},
           {"seconds", p.seconds},
           {"cached", cached}};
@@ -187,6 +192,7 @@ int run(const pack_settings& asked) {
   }
   shown.clear();
   say_notes(what.notes);
+  say_notes(made.notes);
   if (asked.json) {
     nlohmann::ordered_json out = {{what.robot ? "robot" : "mesh", asked.input}, {"backend", asked.backend}};
     if (what.robot) {

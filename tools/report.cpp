@@ -38,7 +38,8 @@ std::string to_json(const query_report& report) {
                  {"cloud", found ? json(cloud_name(m.cloud)) : json(nullptr)},
                  {"point", found ? json(m.point) : json(nullptr)},
                  {"primitive", found && m.primitive != none ? json(m.primitive) : json(nullptr)},
-                 {"caps", {{"loops", made.closed.caps.loops}, {"area", made.closed.caps.area}}}};
+                 {"caps", {{"loops", made.closed.caps.loops}, {"area", made.closed.caps.area}}},
+                 {"inside", made.closed.loaded != 0 ? json(to_string(made.closed.inside)) : json(nullptr)}};
     if (report.asked->model == model_kind::spheres) part["gap"] = or_null(made.packed.gap);
     if (const attached_thing* held = report.robot->held_as(k))
       part["attached"] = {{"link", held->from.link}, {"file", held->from.file}, {"pose", pose_of(held->from.pose)}};

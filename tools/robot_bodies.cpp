@@ -5,6 +5,9 @@
 
 #include <clearance/io/certify.hpp>
 
+#include <tbb/parallel_for.h>
+
+#include <exception>
 #include <ranges>
 #include <stdexcept>
 
@@ -17,25 +20,87 @@ namespace {
 }
 
 /// The part's tolerance holds either way; what sticks out of the solid goes there.
-void take(body& made, const io::packed_part& given, progress& shown, body_account& account) {
-  if (given.solid && given.solid == io::digest_of(made.closed) && std::isfinite(given.spheres.gap)) {
-    made.packed = given.spheres;
-    ++account.certified;
-    return;
-  }
-  shown.show("proving the spheres of " + made.name);
-  io::certified_spheres proven = io::certify(mesh_solid(made.closed), given.spheres);
-  account.largest_gap = std::max(account.largest_gap, proven.spheres.gap);
-  account.largest_excess = std::max(account.largest_excess, proven.excess);
-  ++account.proven;
+void take(body& made, io::certified_spheres proven) {
   made.tolerance += proven.excess;
   made.packed = std::move(proven.spheres);
   made.packed.gap = proven.part_gap();
 }
+void take(body& made, const io::packed_part& given, progress& shown, body_account& account) {
+  if (given.solid && given.solid == io::digest_of(made.closed) && std::isfinite(given.spheres.gap)) {
+    made.packed = given.spheres;
+    made.tolerance = std::max(made.tolerance + made.closed.tolerance, given.tolerance);
+    ++account.certified;
+    return;
+  }
+  shown.show("proving the spheres of " + made.name);
+  io::certified_spheres proven = io::certify(mesh_solid::of_surface(made.closed), given.spheres);
+  account.largest_gap = std::max(account.largest_gap, proven.spheres.gap);
+  account.largest_excess = std::max(account.largest_excess, proven.excess);
+  ++account.proven;
+  take(made, std::move(proven));
+}
+
+/// No sphere fits into it: small ones along its surface stand for it, as far as they are proven to.
+void line(body& made, std::size_t count, progress& shown) {
+  shown.show("lining " + made.name);
+  const mesh_solid solid = mesh_solid::of_surface(made.closed);
+  const double radius = 1e-4 * solid.bounds().diagonal().norm();
+  std::vector<inner_sphere> spheres;
+  for (const Eigen::Vector3d& p : solid.surface_points(count)) spheres.push_back({{real(p.x()), real(p.y()), real(p.z())}, real(radius)});
+  take(made, io::certify(solid, io::uncertified(std::move(spheres))));
+}
+
+/// "3 links (a, b, c)": the first few names of many.
+std::string named(const std::vector<std::string>& names) {
+  std::string all = std::to_string(names.size()) + (names.size() == 1 ? " link (" : " links (");
+  for (std::size_t k = 0; k < std::min<std::size_t>(names.size(), 3); ++k) all += (k > 0 ? ", " : "") + io::sentence(names[k], 40);
+  return all + (names.size() > 3 ? ", ...)" : ")");
+}
+
+std::string mm(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g mm", 1e3 * metres);
+  return text;
+}
+
+/// Notes about what the links enclose, one of each kind.
+void note_insides(const std::vector<body>& bodies, const std::vector<std::string>& lined, body_account& account) {
+  std::vector<std::string> flooded, sheets;
+  double unsure = 0, gap = 0;
+  for (const body& b : bodies) {
+    if (b.closed.inside == inside_by::flood) flooded.push_back(b.name), unsure = std::max(unsure, b.closed.tolerance);
+    if (b.closed.loaded != 0 && b.closed.inside == inside_by::nothing) sheets.push_back(b.name);
+    if (std::ranges::find(lined, b.name) != lined.end()) gap = std::max(gap, b.packed.gap);
+  }
+  if (!flooded.empty())
+    account.notes.push_back(named(flooded) + " are no clean solids: what they enclose was found on a grid, and is uncertain within " + mm(unsure) +
+                            " of their surfaces");
+  if (!sheets.empty()) account.notes.push_back(named(sheets) + " enclose nothing, so no point is inside them");
+  if (!lined.empty()) account.notes.push_back(named(lined) + " have no room for inner spheres: small ones along the surface stand for them, to within " + mm(gap));
+}
+
+/// Closes the meshes beside one another.
+void close(const std::vector<body_source>& sources, std::vector<body>& made, progress& shown) {
+  shown.show(sources.size() == 1 ? "closing " + sources[0].name : "closing " + std::to_string(sources.size()) + " links");
+  std::vector<std::exception_ptr> wrong(sources.size());
+  for (const body_source& source : sources) made.push_back({source.name, {}, {}, source.tolerance});
+  tbb::parallel_for(std::size_t(0), sources.size(), [&](std::size_t k) {
+    try {
+      made[k].closed = close_mesh(*sources[k].mesh);
+    } catch (...) {
+      wrong[k] = std::current_exception();
+    }
+  });
+  for (std::size_t k = 0; k < sources.size(); ++k) try {
+      if (wrong[k]) std::rethrow_exception(wrong[k]);
+    } catch (const std::invalid_argument& error) {
+      refuse(sources[k].name, error);
+    }
+}
 
 /// Packs the bodies with these numbers, beside one another.
 void fill(std::vector<body>& bodies, const std::vector<std::size_t>& which, const body_options& options, progress& shown,
-          body_account& account) {
+          body_account& account, std::vector<std::string>& lined) {
   pack_options wanted = options.pack;
   const std::string what = which.size() == 1 ? bodies[which[0]].name : std::to_string(which.size()) + " links";
   wanted.progress = [&](std::size_t done, std::size_t of) {
@@ -52,8 +117,12 @@ void fill(std::vector<body>& bodies, const std::vector<std::size_t>& which, cons
   for (std::size_t i = 0; i < which.size(); ++i) {
     auto& [packed, found] = packings[i];
     body& made = bodies[which[i]];
-    if (packed.spheres.empty())
-      refuse(made.name, std::invalid_argument("no sphere fits inside: " + packed.reason()));
+    if (packed.spheres.empty()) {
+      if (!options.sheets) refuse(made.name, std::invalid_argument("no sphere fits inside: " + packed.reason()));
+      line(made, options.pack.count, shown);
+      lined.push_back(made.name);
+      continue;
+    }
     made.packed = std::move(packed);
     account.cached[which[i]] = found;
     ++(found ? account.from_cache : account.packed);
@@ -66,21 +135,23 @@ std::vector<body> make_bodies(const std::vector<body_source>& sources, const bod
                               body_account& account) {
   std::vector<body> made;
   std::vector<std::size_t> to_pack;
+  std::vector<std::string> lined;
   account.cached.assign(sources.size(), false);
-  for (const body_source& source : sources) {
-    made.push_back({source.name, {}, {}, source.tolerance});
-    try {
-      shown.show("closing " + source.name);
-      made.back().closed = close_mesh(*source.mesh);
-      if (source.given)
-        take(made.back(), *source.given, shown, account);
-      else if (options.model == model_kind::spheres || options.both)
-        to_pack.push_back(made.size() - 1);
+  close(sources, made, shown);
+  for (std::size_t k = 0; k < sources.size(); ++k) try {
+      if (sources[k].given)
+        take(made[k], *sources[k].given, shown, account);
+      else if (options.model != model_kind::spheres && !options.both)
+        continue;
+      else if (has_inside(made[k].closed) || !options.sheets)
+        to_pack.push_back(k);
+      else
+        line(made[k], options.pack.count, shown), lined.push_back(made[k].name);
     } catch (const std::invalid_argument& error) {
-      refuse(source.name, error);
+      refuse(made[k].name, error);
     }
-  }
-  fill(made, to_pack, options, shown, account);
+  fill(made, to_pack, options, shown, account, lined);
+  note_insides(made, lined, account);
   return made;
 }
 

@@ -19,6 +19,7 @@ struct body_options {
   model_kind model = model_kind::spheres;
   clearance::pack_options pack = {};  // .count spheres a body; progress is shown as well
   bool both = false;                  // pack whichever the model
+  bool sheets = true;                 // what has no inside gets spheres along its surface; else it is refused
   bool on_device = false;             // pack there: sooner, but other spheres than the host's
   clearance::io::packing_cache cache = {};
 };
@@ -28,6 +29,7 @@ struct body_account {
   std::vector<bool> cached;  // by body: from the cache
   std::size_t packed = 0, from_cache = 0, certified = 0, proven = 0;
   double largest_gap = 0, largest_excess = 0;  // of those that were proven anew, metres
+  std::vector<std::string> notes = {};         // what a user should see
 };
 
 /// Closes the meshes, and packs them beside one another for the sphere model. Errors name the body.

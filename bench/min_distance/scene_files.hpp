@@ -18,7 +18,8 @@ inline std::vector<std::array<Eigen::Vector3d, 3>> robot_in_camera(const scene& 
   std::vector<std::array<Eigen::Vector3d, 3>> all;
   for (std::size_t k = 0; k < s.meshes.size(); ++k) {
     const Eigen::Isometry3d pose = s.world_from_camera.inverse() * s.poses[k];
-    const auto& [vertices, faces] = s.meshes[k].surface;
+    const auto& vertices = s.meshes[k].surface.vertices;
+    const auto& faces = s.meshes[k].surface.triangles;
     for (const auto& f : faces)
       if ((vertices[f[1]] - vertices[f[0]]).cross(vertices[f[2]] - vertices[f[0]]).norm() > 0)
         all.push_back({pose * vertices[f[0]], pose * vertices[f[1]], pose * vertices[f[2]]});

@@ -21,7 +21,8 @@ class links {
     for (std::size_t k = 0; k < s.meshes.size(); ++k) {
       const auto body = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
       body->beginModel();
-      const auto& [vertices, faces] = s.meshes[k].surface;
+      const auto& vertices = s.meshes[k].surface.vertices;
+      const auto& faces = s.meshes[k].surface.triangles;
       for (const auto& f : faces)
         if ((vertices[f[1]] - vertices[f[0]]).cross(vertices[f[2]] - vertices[f[0]]).norm() > 0)
           body->addTriangle(vertices[f[0]], vertices[f[1]], vertices[f[2]]);

@@ -6,7 +6,7 @@
 #include <clearance/primitive/triangle.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/robot/part.hpp>
-#include <clearance/solid/winding.hpp>
+#include <clearance/solid/close_mesh.hpp>
 
 #include <ranges>
 
@@ -18,14 +18,15 @@ struct part_options {
   bool certified = true;   ///< False: the solid is not known (an open mesh without caps), so no lower bound is claimed.
 };
 
-/// Inner spheres: signed distances, and the packing's gap in the bracket.
+/// Inner spheres: signed distances, and the packing's gap and tolerance in the bracket.
 template <class V, class Fit = wrapped>
 auto make_part(const packing& spheres, const part_options& options = {}, Fit fit = {}) {
-  return make_part(build<V>(spheres.spheres, options.build, fit), options.certified ? spheres.gap : infinity, options.tolerance);
+  return make_part(build<V>(spheres.spheres, options.build, fit), options.certified ? spheres.gap : infinity,
+                   options.tolerance + spheres.tolerance);
 }
 
 /// Triangles, caps among them: exact distances outside, 0 inside. Primitive i is triangle i as loaded; caps come after.
-/// An open mesh has no inside, and no certificate.
+/// An open mesh has no inside, and no certificate. The mesh's own tolerance is added.
 template <class V, class Fit = wrapped>
 auto make_part(const closed_mesh& mesh, const part_options& options = {}, Fit fit = {}) {
   const auto corner = [&](std::uint32_t i) {
@@ -35,7 +36,7 @@ auto make_part(const closed_mesh& mesh, const part_options& options = {}, Fit fi
   std::vector<triangle> triangles;
   for (const auto& t : mesh.surface.triangles) triangles.push_back(triangle::from(corner(t[0]), corner(t[1]), corner(t[2])));
   const bool certain = options.certified && mesh.closed;
-  auto surface = make_part(build<V>(triangles, options.build, fit), certain ? 0 : infinity, options.tolerance);
+  auto surface = make_part(build<V>(triangles, options.build, fit), certain ? 0 : infinity, options.tolerance + mesh.tolerance);
   winding<> interior;
   if (mesh.closed)
     interior = make_winding(mesh);

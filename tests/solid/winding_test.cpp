@@ -2,7 +2,7 @@
 #include "solid/shapes.hpp"
 #include "support/catch.hpp"
 
-#include <clearance/solid/winding.hpp>
+#include <clearance/solid/close_mesh.hpp>
 
 #include <random>
 

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solid/shapes.hpp"
+#include "solid/damaged.hpp"
 #include "support/catch.hpp"
 
 #include <clearance/backend/device.cuh>
-#include <clearance/solid/winding.hpp>
+#include <clearance/solid/close_mesh.hpp>
 
 #include <random>
 
 using namespace clearance;
 
 namespace {
+
+struct ask_inside {
+  winding_view view;
+  const vec3* points;
+  unsigned char* answers;
+  __host__ __device__ void operator()(std::size_t i) const { answers[i] = view.inside(points[i]); }
+};
 
 struct ask {
   winding_view view;
@@ -56,4 +63,31 @@ TEST_CASE("winding numbers are the same on host and device, in the surface and i
   }
   CHECK(different == 0);
   CHECK(inside > points.size() / 20);
+}
+
+TEST_CASE("What is inside damaged solids is the same on host and device, by floods too") {
+  std::size_t different = 0, inside = 0, flooded = 0;
+  for (unsigned k = 0; k < 132; ++k) {  // each kind of damage by itself, and each pair
+    const testing::damaged_solid s = testing::damaged(k);
+    const closed_mesh closed = close_mesh(s.mesh);
+    flooded += !closed.enclosed.bits.empty();
+    const auto w = make_winding(closed);
+    std::vector<vec3> points;
+    for (const Eigen::Vector3d& p : testing::probes(s, k, 500)) points.push_back({real(p.x()), real(p.y()), real(p.z())});
+    const device gpu;
+    const auto there = w.on(gpu);
+    const auto on_device = gpu.copy_in(std::span<const vec3>(points));
+    auto answers = gpu.copy_in(std::span<const unsigned char>(std::vector<unsigned char>(points.size(), 9)));
+    gpu.for_each(points.size(), ask_inside{there.view(), on_device.data(), answers.data()});
+    gpu.wait();
+    const std::vector<unsigned char> got = gpu.copy_out(answers);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const bool expected = w.view().inside(points[i]);
+      different += (got[i] != 0) != expected || got[i] > 1;
+      inside += expected;
+    }
+  }
+  CHECK(different == 0);
+  CHECK(inside > 10000);
+  CHECK(flooded > 0);
 }

@@ -183,7 +183,7 @@ consteval bool explain_hierarchy() {
 ///
 /// Law: `inside(q)` tells whether q is inside; a point that is is 0 away from the part.
 /// Law: the solid ends where the part's primitives are: no point of it is outside a ball around them, and a way from inside to outside
-///      meets one. So what is not near the primitives need not be asked.
+///      meets one, except within the part's tolerance of them. So what is not near the primitives need not be asked.
 template <class I>
 concept interior = std::is_trivially_copyable_v<I> && requires(const I i, vec3 q) { { i.inside(q) } -> std::same_as<bool>; };
 

@@ -39,7 +39,8 @@ template <solid S>
 certified_spheres certify(const S& s, packing spheres, double gap_tolerance = 0.01) {
   const gap_report gap = measure_gap(s, std::span<const inner_sphere>(spheres.spheres), gap_tolerance);
   spheres.gap = gap.certified, spheres.gap_mean = gap.mean, spheres.gap_p95 = gap.p95;
-  spheres.fill = 0;
+  spheres.fill = spheres.tolerance = 0;
+  if constexpr (requires { s.tolerance(); }) spheres.tolerance = s.tolerance();
   if constexpr (requires { s.volume(); })
     for (const inner_sphere& ball : spheres.spheres)
       spheres.fill += 4.0 / 3 * std::numbers::pi * std::pow(double(ball.radius), 3) / s.volume();

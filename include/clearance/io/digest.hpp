@@ -34,10 +34,11 @@ inline digest digest_of(std::string_view bytes) {
   return made;
 }
 
-/// Of all that decides which points are inside: corners, triangles with their caps, and which of them count.
+/// Of all that decides which points are inside: corners, triangles with their caps, which of them count, and what a flood found.
 inline digest digest_of(const closed_mesh& mesh) {
   byte_writer out;
-  const auto& [vertices, triangles] = mesh.surface;
+  const auto& vertices = mesh.surface.vertices;
+  const auto& triangles = mesh.surface.triangles;
   out.reserve(64 + 24 * vertices.size() + 13 * triangles.size());
   out.put(std::string_view("clearance closed mesh"));
   out.put(std::uint64_t(vertices.size()));
@@ -46,9 +47,15 @@ inline digest digest_of(const closed_mesh& mesh) {
   out.put(std::uint64_t(triangles.size()));
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (const std::uint32_t v : triangles[i]) out.put(v);
-    out.put(std::uint8_t(i < mesh.counts.size() && mesh.counts[i]));
+    out.put(std::uint8_t(mesh.counts[i]));
   }
   out.put(std::uint8_t(mesh.closed));
+  if (!mesh.enclosed.bits.empty()) {
+    const enclosure_grid& grid = mesh.enclosed;
+    for (int k = 0; k < 3; ++k) out.put(grid.low[k]), out.put(grid.size[k]);
+    out.put(grid.cube);
+    for (const std::uint32_t word : grid.bits) out.put(word);
+  }
   return digest_of(out.bytes());
 }
 

@@ -21,7 +21,8 @@ namespace detail {
 /// does not compile: then it belongs into the file as well, and ist_version goes up.
 template <class Packing, class Visit>
 void for_each_member(Packing& p, Visit visit) {
-  auto& [spheres, gap, gap_mean, gap_p95, fill, radius_min, radius_max, room, stopped_by, seconds] = p;
+  auto& [spheres, gap, tolerance, gap_mean, gap_p95, fill, radius_min, radius_max, room, stopped_by, seconds] = p;
+  static_cast<void>(tolerance);  // is in the part's
   visit(gap), visit(gap_mean), visit(gap_p95), visit(fill), visit(radius_min), visit(radius_max), visit(room),
       visit(seconds);
   visit(stopped_by);
@@ -33,7 +34,7 @@ inline void put_part(byte_writer& out, const packed_part& part) {
   out.put(std::string_view(part.name));
   for (const auto& known : {part.solid, part.recipe})
     for (const std::uint8_t byte : known.bytes) out.put(byte);
-  out.put(part.tolerance);
+  out.put(part.tolerance + part.spheres.tolerance);
   for_each_member(part.spheres, [&]<class T>(const T& member) {
     if constexpr (std::same_as<T, double>) {
       out.put(member);

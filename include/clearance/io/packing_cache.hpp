@@ -97,7 +97,10 @@ cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options,
                            std::string_view maker, Make make) {
   if (cache.folder().empty()) return {make(mesh_solid(mesh), options)};
   const digest key = packing_key(mesh, options, maker);
-  if (auto found = cache.find(key)) return {std::move(*found), true};
+  if (auto found = cache.find(key)) {
+    found->tolerance = mesh.tolerance;  // files keep it with the part's
+    return {std::move(*found), true};
+  }
   cached_packing fresh{make(mesh_solid(mesh), options)};
   if (fresh.made.stopped_by != pack_stop::time && fresh.made.stopped_by != pack_stop::cancelled)
     cache.keep(key, digest_of(mesh), fresh.made);

@@ -69,6 +69,7 @@ class robot_reader {
       if (!part.mesh.vertices.back().allFinite())
         refuse(file_, owner + "its origin or scale puts a vertex beyond what a number can hold", shape.line);
     }
+    part.mesh.shapes.push_back(std::uint32_t(part.mesh.triangles.size()));
     for (const auto& t : added.mesh.triangles)
       part.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     part.tessellation_error = std::max(part.tessellation_error, added.error);

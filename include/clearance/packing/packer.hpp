@@ -41,6 +41,7 @@ class packer {
     out.gap = gap.certified, out.gap_mean = gap.mean, out.gap_p95 = gap.p95;
     for (const solid_sphere& s : spheres_.here())
       out.spheres.push_back({{real(s.center.x), real(s.center.y), real(s.center.z)}, real(s.radius)});  // floats: see `fit`
+    if constexpr (requires { solid_.tolerance(); }) out.tolerance = solid_.tolerance();
     double volume = double(infinity);
     if constexpr (requires { solid_.volume(); }) volume = solid_.volume();
     arrange(out, volume);

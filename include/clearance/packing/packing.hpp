@@ -32,6 +32,7 @@ struct packing {
   std::vector<inner_sphere> spheres;  ///< Largest first; inside the solid and apart from one another, in double.
   /// Certified: no point of the solid, surface and interior, is farther from the spheres than this.
   double gap = 0;
+  double tolerance = 0;               ///< From the solid's surface, within which it is not certain what is inside.
   double gap_mean = 0, gap_p95 = 0;   ///< Mean and 95th percentile over the surface, from samples. 0 if it has none.
   double fill = 0;                    ///< The spheres' part of the solid's volume; with overlaps counted as often as they are.
   double radius_min = 0, radius_max = 0;

@@ -25,6 +25,34 @@ inline std::vector<boundary_edge> boundary(std::span<const edge_use> uses) {
   return edges;
 }
 
+/// The same of each body by itself, one body after another.
+struct body_rim {
+  std::uint32_t body;
+  std::vector<boundary_edge> edges;
+};
+inline std::vector<body_rim> boundaries(std::span<const edge_use> uses, std::span<const std::uint32_t> body) {
+  std::vector<std::pair<std::uint32_t, boundary_edge>> all;
+  std::vector<std::pair<std::uint32_t, std::int32_t>> signs;  // of one edge: bodies and the signs of their uses
+  for_each_edge(uses, [&](std::span<const edge_use> edge) {
+    signs.clear();
+    for (const edge_use& u : edge) signs.emplace_back(body[u.triangle], u.sign);
+    std::sort(signs.begin(), signs.end());
+    for (std::size_t i = 0; i < signs.size();) {
+      const std::uint32_t its = signs[i].first;
+      std::int32_t excess = 0;
+      for (; i < signs.size() && signs[i].first == its; ++i) excess += signs[i].second;
+      if (excess != 0) all.push_back({its, {edge[0].low, edge[0].high, excess}});
+    }
+  });
+  std::stable_sort(all.begin(), all.end(), [](const auto& p, const auto& q) { return p.first < q.first; });
+  std::vector<body_rim> rims;
+  for (const auto& [b, edge] : all) {
+    if (rims.empty() || rims.back().body != b) rims.push_back({b, {}});
+    rims.back().edges.push_back(edge);
+  }
+  return rims;
+}
+
 /// Closed walks without repeated vertices, which together go each boundary edge `excess` times *against* the surface, so
 /// that a patch over each walk closes it. They exist always: as many sides enter a vertex as leave it.
 inline std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const boundary_edge> edges) {

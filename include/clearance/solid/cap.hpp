@@ -10,10 +10,8 @@
 
 namespace clearance {
 
-/// Triangles whose sides are those of the loop, in its direction, once all sides inside have cancelled: ears cut in the
-/// loop's mean plane, and where there is no ear (the loop crosses itself, or is very long), a fan around the middle.
-/// May append one vertex.
-inline void append_cap(triangle_mesh& mesh, std::span<const std::uint32_t> loop) {
+/// See append_cap.
+inline void append_polygon(triangle_mesh& mesh, std::span<const std::uint32_t> loop) {
   const std::size_t n = loop.size();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
   const Eigen::Vector3d origin = mesh.vertices[loop[0]];
@@ -71,6 +69,21 @@ inline void append_cap(triangle_mesh& mesh, std::span<const std::uint32_t> loop)
   mesh.vertices.push_back(origin + middle);
   for (std::size_t i = 0; i < left.size(); ++i)
     mesh.triangles.push_back({hub, loop[left[i]], loop[left[(i + 1) % left.size()]]});
+}
+
+/// Triangles whose sides are those of the loop, in its direction, once all sides inside have cancelled: ears cut in the
+/// loop's mean plane, and where there is no ear (the loop crosses itself, or is very long), a fan around the middle.
+/// May append one vertex. The same loop the other way round gets the same triangles, turned: two bodies that meet in a loop
+/// leave nothing between their caps.
+inline void append_cap(triangle_mesh& mesh, std::span<const std::uint32_t> given) {
+  const std::size_t n = given.size(), start = std::size_t(std::min_element(given.begin(), given.end()) - given.begin());
+  std::vector<std::uint32_t> loop(n);
+  const bool turned = given[(start + 1) % n] > given[(start + n - 1) % n];
+  for (std::size_t i = 0; i < n; ++i) loop[i] = given[(turned ? start + n - i : start + i) % n];
+  const std::size_t before = mesh.triangles.size();
+  append_polygon(mesh, loop);
+  if (turned)
+    for (std::size_t i = before; i < mesh.triangles.size(); ++i) std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
 }
 
 }  // namespace clearance

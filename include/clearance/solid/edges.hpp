@@ -15,13 +15,14 @@ struct edge_use {
   std::int32_t sign;
 };
 
-/// All sides of the chosen triangles, those of one edge side by side. Sides from a vertex to itself are left out.
-inline std::vector<edge_use> edge_uses(std::span<const std::array<std::uint32_t, 3>> triangles,
-                                       const std::vector<bool>& chosen) {
+/// All sides of the triangles that count (`counts[i]` is not 0), those of one edge side by side. Sides from a vertex to itself
+/// are left out.
+template <class Counts>
+std::vector<edge_use> edge_uses(std::span<const std::array<std::uint32_t, 3>> triangles, const Counts& counts) {
   std::vector<edge_use> uses;
   uses.reserve(3 * triangles.size());
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    if (!chosen[i]) continue;
+    if (!counts[i]) continue;
     const auto& t = triangles[i];
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t u = t[k], v = t[(k + 1) % 3];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <clearance/solid/box_tree.hpp>
+#include <clearance/solid/close_mesh.hpp>
 #include <clearance/solid/mesh_solid_view.hpp>
 #include <clearance/solid/solid_view.hpp>
 #include <clearance/solid/volume.hpp>
@@ -25,15 +26,27 @@ struct mesh_solid_copy {
   mesh_solid_view view() const { return {{nodes.data(), order.data(), items, root}, triangles.data(), winding.view()}; }
 };
 
-/// The solid that a closed mesh encloses, in double: exact distances to its surface, caps included, and the inside by
-/// winding number. Surfaces inside overlapping shells are surface too, so that no sphere crosses one.
+/// The solid that a closed mesh encloses, in double: exact distances to its surface, caps included, and the inside as
+/// close_mesh found it. Surfaces inside overlapping shells are surface too, so that no sphere crosses one.
 class mesh_solid {
  public:
   /// Throws std::invalid_argument for a mesh that is not closed, and for one that has no inside: a single sheet, or a
   /// Moebius strip.
-  explicit mesh_solid(closed_mesh mesh) : mesh_(std::move(mesh)) {
+  explicit mesh_solid(closed_mesh mesh) : mesh_solid(std::move(mesh), surface_too{}) {
     if (mesh_.one_sided_area > 0.5 * mesh_.area)
       throw std::invalid_argument("clearance: the mesh has no inside: its surface has only one side, as a Moebius strip");
+    if (!(enclosed_.volume > 1e-9 * bounds_.diagonal().norm() * mesh_.area))
+      throw std::invalid_argument("clearance: the mesh has no inside: it is a sheet, and its " +
+                                  std::to_string(mesh_.loaded) + " triangles and their caps enclose no volume");
+  }
+  explicit mesh_solid(const triangle_mesh& mesh) : mesh_solid(close_mesh(mesh)) {}
+
+  /// A mesh that encloses nothing is a solid, too: its surface. No sphere fits into it, but distances and gaps can be asked.
+  static mesh_solid of_surface(closed_mesh mesh) { return mesh_solid(std::move(mesh), surface_too{}); }
+
+ private:
+  struct surface_too {};
+  mesh_solid(closed_mesh mesh, surface_too) : mesh_(std::move(mesh)) {
     winding_ = make_winding<double>(mesh_);
     std::vector<Eigen::AlignedBox3d> boxes;
     for (const auto& t : mesh_.surface.triangles) {
@@ -42,13 +55,11 @@ class mesh_solid {
       bounds_.extend(boxes.back());
     }
     enclosed_ = enclosed_volume(winding_);
-    if (!(enclosed_.volume > 1e-9 * bounds_.diagonal().norm() * mesh_.area))
-      throw std::invalid_argument("clearance: the mesh has no inside: it is a sheet, and its " +
-                                  std::to_string(mesh_.loaded) + " triangles and their caps enclose no volume");
+    if (!mesh_.enclosed.bits.empty()) enclosed_.volume = std::max(enclosed_.volume, mesh_.enclosed.volume()), enclosed_.exact = false;
     tree_ = box_tree(boxes);
   }
-  explicit mesh_solid(const triangle_mesh& mesh) : mesh_solid(close_mesh(mesh)) {}
 
+ public:
   const closed_mesh& mesh() const { return mesh_; }
   Eigen::AlignedBox3d bounds() const { return bounds_; }
 
@@ -67,6 +78,7 @@ class mesh_solid {
             winding_.on(other), tree_.view().items, tree_.view().root};
   }
 
+  double tolerance() const { return mesh_.tolerance; }
   double volume() const { return enclosed_.volume; }
   /// Do shells overlap, so that some winding numbers are above 1?
   bool overlaps() const { return enclosed_.overlaps; }
@@ -98,6 +110,9 @@ class mesh_solid {
   Eigen::AlignedBox3d bounds_;
   enclosed enclosed_;
 };
+
+/// Is there anything that inner spheres could fill?
+inline bool has_inside(const closed_mesh& mesh) { return mesh.inside != inside_by::nothing && mesh.one_sided_area <= 0.5 * mesh.area; }
 
 static_assert(solid<mesh_solid> && solid_view<mesh_solid_view>);
 

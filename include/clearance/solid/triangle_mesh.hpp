@@ -13,6 +13,8 @@ namespace clearance {
 struct triangle_mesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// First triangle of each shape that the part is made of; empty: it is one shape. Each is closed by itself.
+  std::vector<std::uint32_t> shapes = {};
 };
 
 }  // namespace clearance

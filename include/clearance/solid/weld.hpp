@@ -7,6 +7,8 @@
 
 #include <bit>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -64,6 +66,38 @@ inline triangle_mesh weld(const triangle_mesh& mesh) {
   for (auto& t : welded.triangles)
     for (std::uint32_t& v : t) v = number[v];
   return welded;
+}
+
+/// Of these vertices those within `reach` metres of an earlier one become that one; returns how many. Each is compared with
+/// the first of its group, so that a row of close ones does not shrink to a point.
+inline std::size_t weld_near(triangle_mesh& mesh, std::span<const std::uint32_t> vertices, double reach) {
+  struct cell_hash {
+    std::size_t operator()(const std::array<std::int64_t, 3>& cell) const {
+      std::uint64_t h = 0;
+      for (const std::int64_t c : cell) h = (h ^ std::uint64_t(c)) * 0x9e3779b97f4a7c15u, h ^= h >> 29;
+      return h;
+    }
+  };
+  std::unordered_map<std::array<std::int64_t, 3>, std::vector<std::uint32_t>, cell_hash> kept;
+  std::vector<std::uint32_t> number(mesh.vertices.size());
+  std::iota(number.begin(), number.end(), 0u);
+  std::size_t moved = 0;
+  for (const std::uint32_t v : vertices) {
+    const Eigen::Vector3d &p = mesh.vertices[v], at = (p - mesh.vertices[vertices[0]]) / reach;
+    const std::array<std::int64_t, 3> cell{std::llround(at.x()), std::llround(at.y()), std::llround(at.z())};
+    const std::uint32_t* found = nullptr;
+    for (int k = 0; k < 27 && !found; ++k)
+      if (const auto near = kept.find({cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1}); near != kept.end())
+        for (const std::uint32_t& other : near->second)
+          if ((mesh.vertices[other] - p).norm() <= reach && !found) found = &other;
+    if (found)
+      number[v] = *found, ++moved;
+    else
+      kept[cell].push_back(v);
+  }
+  for (auto& t : mesh.triangles)
+    for (std::uint32_t& v : t) v = number[v];
+  return moved;
 }
 
 }  // namespace clearance

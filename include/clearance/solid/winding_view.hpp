@@ -3,6 +3,7 @@
 
 #include <clearance/ground/math.hpp>
 #include <clearance/solid/crossing.hpp>
+#include <clearance/solid/enclosure_view.hpp>
 
 namespace clearance {
 
@@ -16,6 +17,7 @@ struct basic_winding_view {
   T low[3], high[3];           ///< Bounds of the surface.
   T per_y, per_z;              ///< Cells a metre.
   std::uint32_t columns, rows; ///< Along y and z.
+  const enclosure_head<T>* enclosed;  ///< What is inside as well, although no winding number says so; or null.
 
   /// 0 outside and for points that are not finite.
   CLEARANCE_HD int winding(T x, T y, T z) const {
@@ -31,9 +33,11 @@ struct basic_winding_view {
   }
   CLEARANCE_HD int winding(vec3 p) const { return winding(T(p.x), T(p.y), T(p.z)); }
 
-  /// Is the winding number not zero? So overlapping shells and inside-out ones are inside too.
-  CLEARANCE_HD bool inside(T x, T y, T z) const { return winding(x, y, z) != 0; }
-  CLEARANCE_HD bool inside(vec3 p) const { return winding(p) != 0; }
+  /// Is the winding number not zero, or the point where a flood from outside does not come?
+  CLEARANCE_HD bool inside(T x, T y, T z) const {
+    return winding(x, y, z) != 0 || (enclosed != nullptr && enclosed->contains(x, y, z));
+  }
+  CLEARANCE_HD bool inside(vec3 p) const { return inside(T(p.x), T(p.y), T(p.z)); }
 
   /// Never decreasing in their argument, in rounded arithmetic too: so a triangle lies over all cells from that of its
   /// lowest corner to that of its highest.

@@ -8,21 +8,26 @@
 
 namespace clearance {
 
-struct orientation_report {
-  std::uint32_t flipped = 0;   ///< Triangles that were turned.
-  double one_sided_area = 0;   ///< Area of the pieces that cannot be oriented, such as a Moebius strip; left as they are.
+/// The connected surfaces of a mesh: triangles are joined by edges that exactly two of them have.
+struct body_report {
+  std::vector<std::uint32_t> body;  ///< By triangle; those that do not count are in body 0.
+  std::vector<bool> one_sided;      ///< By body: it cannot be oriented, as a Moebius strip; then it is left as it is.
+  std::uint32_t flipped = 0;        ///< Triangles that were turned.
+  double one_sided_area = 0;        ///< Square metres.
 };
 
-/// Turns triangles until neighbours (the two triangles of an edge that has two) agree, piece by piece. Of a piece's two
-/// orientations that is kept which most of its area has, so a cavity stays a cavity.
-inline orientation_report orient(triangle_mesh& mesh, const std::vector<bool>& chosen) {
+/// Finds the bodies, and turns their triangles until neighbours agree, if asked to. Of a body's two orientations that is kept
+/// which most of its area has.
+template <class Counts>
+body_report find_bodies(triangle_mesh& mesh, const Counts& counts, bool orient) {
   struct link {
     std::uint32_t to;
     bool agree;
   };
-  const std::vector<edge_use> uses = edge_uses(mesh.triangles, chosen);
-  std::vector<std::array<link, 3>> links(mesh.triangles.size());
-  std::vector<std::uint8_t> count(mesh.triangles.size(), 0);
+  const std::size_t n = mesh.triangles.size();
+  const std::vector<edge_use> uses = edge_uses(mesh.triangles, counts);
+  std::vector<std::array<link, 3>> links(n);
+  std::vector<std::uint8_t> count(n, 0);
   for_each_edge(uses, [&](std::span<const edge_use> edge) {
     if (edge.size() != 2 || edge[0].triangle == edge[1].triangle) return;
     const bool agree = edge[0].sign != edge[1].sign;
@@ -30,11 +35,13 @@ inline orientation_report orient(triangle_mesh& mesh, const std::vector<bool>& c
     links[edge[1].triangle][count[edge[1].triangle]++] = {edge[0].triangle, agree};
   });
 
-  orientation_report report;
-  std::vector<std::int8_t> side(mesh.triangles.size(), 0);
+  body_report report;
+  report.body.assign(n, 0);
+  std::vector<std::int8_t> side(n, 0);
   std::vector<std::uint32_t> piece;
-  for (std::uint32_t first = 0; first < mesh.triangles.size(); ++first) {
-    if (!chosen[first] || side[first] != 0) continue;
+  for (std::uint32_t first = 0; first < n; ++first) {
+    if (!counts[first] || side[first] != 0) continue;
+    const auto number = std::uint32_t(report.one_sided.size());
     piece.assign(1, first);
     side[first] = 1;
     bool two_sided = true;
@@ -43,6 +50,7 @@ inline orientation_report orient(triangle_mesh& mesh, const std::vector<bool>& c
       const std::uint32_t i = piece[next];
       const auto& t = mesh.triangles[i];
       const Eigen::Vector3d& a = mesh.vertices[t[0]];
+      report.body[i] = number;
       area[side[i] < 0] += (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm() / 2;
       for (int k = 0; k < count[i]; ++k) {
         const link& l = links[i][k];
@@ -54,10 +62,9 @@ inline orientation_report orient(triangle_mesh& mesh, const std::vector<bool>& c
         two_sided = two_sided && side[l.to] == wanted;
       }
     }
-    if (!two_sided) {
-      report.one_sided_area += area[0] + area[1];
-      continue;
-    }
+    report.one_sided.push_back(!two_sided);
+    if (!two_sided) report.one_sided_area += area[0] + area[1];
+    if (!two_sided || !orient) continue;
     const std::int8_t turn = area[1] > area[0] ? 1 : -1;
     for (const std::uint32_t i : piece)
       if (side[i] == turn) std::swap(mesh.triangles[i][1], mesh.triangles[i][2]), ++report.flipped;
