@@ -36,8 +36,7 @@ std::vector<double> numbers(const std::string& option, const std::string& text, 
 
 double number(const std::string& option, const std::string& text) { return numbers(option, text, 1, "one")[0]; }
 
-std::size_t whole_number(const std::string& option, const std::string& text) {
-  constexpr std::uint64_t most = 10'000'000;
+std::size_t whole_number(const std::string& option, const std::string& text, std::size_t most) {
   const auto value = clearance::io::number<std::uint64_t>(text);
   if (!value || *value < 1 || *value > most)
     throw usage_error(option, clearance::io::quoted(text) + " is not a whole number from 1 to " + std::to_string(most));

@@ -47,8 +47,8 @@ std::vector<double> numbers(const std::string& option, const std::string& text, 
                             const std::string& what, bool infinite = false);
 double number(const std::string& option, const std::string& text);
 
-/// A whole number from 1 to 10 million.
-std::size_t whole_number(const std::string& option, const std::string& text);
+/// A whole number from 1 to `most`.
+std::size_t whole_number(const std::string& option, const std::string& text, std::size_t most = 10'000'000);
 
 /// x,y,z,qx,qy,qz,qw. A quaternion within 1e-3 of unit length is normalised, any other refused.
 Eigen::Isometry3d pose(const std::string& option, const std::string& text);

@@ -15,36 +15,57 @@ double blue_at(const query_options& asked) { return std::isfinite(asked.d_max) ?
 
 }  // namespace
 
+namespace {
+
+/// The points of all clouds that count, in pieces that memory has room for.
+class distance_pieces {
+ public:
+  distance_pieces(const asked_clouds& clouds, const point_distances& found, double blue) : clouds_(clouds), found_(found), blue_(blue) {}
+
+  io::ply_piece operator()() {
+    std::vector<Eigen::Vector3d> positions;
+    std::vector<float> distance;
+    std::vector<std::uint8_t> red, green, blue;
+    std::vector<std::uint32_t> cloud, point;
+    std::vector<std::int32_t> part;
+    while (positions.empty() && cloud_ < clouds_.files.size()) {
+      const std::size_t end = std::min<std::size_t>(clouds_.files[cloud_].size(), begin_ + most);
+      const auto placed = clouds_.files[cloud_].in_world(clouds_.carriers[cloud_], clouds_.seen[cloud_], begin_, end);
+      for (std::size_t i = begin_; i < end; ++i) {
+        const real d = found_.distance[first_ + i];
+        if (std::isnan(d)) continue;
+        const io::colour shown = io::distance_colour(d, blue_);
+        const auto byte = [](float value) { return std::uint8_t(std::lround(255 * value)); };
+        positions.push_back(placed[i - begin_]);
+        distance.push_back(d);
+        red.push_back(byte(shown.red)), green.push_back(byte(shown.green)), blue.push_back(byte(shown.blue));
+        cloud.push_back(std::uint32_t(cloud_)), point.push_back(std::uint32_t(i)), part.push_back(std::int32_t(found_.part[first_ + i]));  // none: -1
+      }
+      begin_ = end;
+      if (end == clouds_.files[cloud_].size()) begin_ = 0, first_ += end, ++cloud_;
+    }
+    return {std::move(positions),
+            {{"red", std::move(red)}, {"green", std::move(green)}, {"blue", std::move(blue)}, {"distance", std::move(distance)},
+             {"cloud", std::move(cloud)}, {"point", std::move(point)}, {"part", std::move(part)}}};
+  }
+
+ private:
+  static constexpr std::size_t most = 1 << 18;
+
+  const asked_clouds& clouds_;
+  const point_distances& found_;
+  double blue_;
+  std::size_t cloud_ = 0, begin_ = 0, first_ = 0;  // the next record of a cloud, and the number of the cloud's first among all
+};
+
+}  // namespace
+
 distances_written write_distances(const query_options& asked, const asked_clouds& clouds, const point_distances& found) {
   distances_written made{.blue_at = blue_at(asked)};
-  std::vector<Eigen::Vector3d> positions;
-  std::vector<float> distance;
-  std::vector<std::uint8_t> red, green, blue;
-  std::vector<std::uint32_t> cloud, point;
-  std::vector<std::int32_t> part;
-  std::size_t at = 0;  // of all records of all clouds
-  for (std::size_t c = 0; c < clouds.files.size(); ++c) {
-    const auto placed = clouds.files[c].in_world(clouds.carriers[c], clouds.seen[c]);
-    for (std::size_t i = 0; i < placed.size(); ++i, ++at) {
-      const real d = found.distance[at];
-      if (std::isnan(d)) {
-        ++made.left_out;
-        continue;
-      }
-      made.beyond += std::isinf(d);
-      const io::colour shown = io::distance_colour(d, made.blue_at);
-      const auto byte = [](float value) { return std::uint8_t(std::lround(255 * value)); };
-      positions.push_back(placed[i]);
-      distance.push_back(d);
-      red.push_back(byte(shown.red)), green.push_back(byte(shown.green)), blue.push_back(byte(shown.blue));
-      cloud.push_back(std::uint32_t(c)), point.push_back(std::uint32_t(i)), part.push_back(std::int32_t(found.part[at]));  // none: -1
-    }
-  }
-  made.points = positions.size();
+  for (const real d : found.distance) ++(std::isnan(d) ? made.left_out : made.points), made.beyond += std::isinf(d);
   char says[200];
   std::snprintf(says, sizeof says, "distance in metres, inf beyond %g m; red at 0 m and inside, blue at %g m and beyond", asked.d_max, made.blue_at);
-  const io::ply_column columns[] = {{"red", red}, {"green", green}, {"blue", blue}, {"distance", distance}, {"cloud", cloud}, {"point", point}, {"part", part}};
-  io::save_ply(asked.distances, positions, columns, says);
+  io::save_ply_pieces(asked.distances, made.points, distance_pieces(clouds, found, made.blue_at), says);
   return made;
 }
 

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include <fcntl.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <csignal>
@@ -16,6 +17,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <optional>
 
 namespace {
 
@@ -56,6 +58,13 @@ std::vector<std::string> checked_words(int argc, char** argv, const CLI::App& ap
 void take_one_value_each(CLI::App& app) {
   for (CLI::App* sub : app.get_subcommands({}))
     for (CLI::Option* option : sub->get_options()) option->allow_extra_args(false);
+}
+
+/// Of all subcommands that compute.
+void add_threads(CLI::App& app, std::string& threads) {
+  for (CLI::App* sub : app.get_subcommands({}))
+    if (!sub->check_name("info"))
+      sub->add_option("--threads", threads, "How many threads of the CPU may work, 1 to 1024 (default: as many as it has); no answer depends on it");
 }
 
 /// CLI11 would only say that a subcommand is missing.
@@ -99,11 +108,15 @@ int main(int argc, char** argv) {
   app.footer(exit_codes);
   std::vector<subcommand> run;
   for (const auto add : {add_query, add_run, add_plan, add_pack, add_demo, add_info}) run.push_back(add(app));
+  std::string threads;
+  add_threads(app, threads);
   take_one_value_each(app);
   try {
     auto words = checked_words(argc, argv, app);
     check_subcommand(argc, argv, app);
     app.parse(words);
+    std::optional<tbb::global_control> at_most;
+    if (!threads.empty()) at_most.emplace(tbb::global_control::max_allowed_parallelism, whole_number("--threads", threads, 1024));
     for (std::size_t i = 0; i < run.size(); ++i) {
       if (!app.get_subcommands({}).at(i)->parsed()) continue;
       return finish(run[i]());

@@ -6,9 +6,26 @@
 #include <clearance/io/cloud_file.hpp>
 #include <clearance/io/png.hpp>
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 using namespace clearance;
+
+namespace {
+
+/// Refuses a small file that becomes very much, by all that is made of each of its points.
+void check_made(const cloud_options& from, std::uint64_t points, std::uint64_t each, const std::string& what) {
+  constexpr std::uint64_t times = 64;  // of the file: what is not packed stays far below
+  std::error_code none;
+  const auto size = std::filesystem::file_size(from.file, none);
+  const std::uint64_t made = points * (from.bytes_each + each), most = std::max(from.limits.unfolded, none ? 0 : times * size);
+  if (made > most)
+    io::refuse(from.file, "has " + std::to_string(points) + ' ' + what + ", of which " + io::mebibytes(made) + " would be made here, more than the limit of " +
+                              io::mebibytes(most) + " (--unfold-limit MiB raises it)");
+}
+
+}  // namespace
 
 std::uint64_t observation::size() const { return image() ? image()->pixels.size() : points()->points.size(); }
 
@@ -17,9 +34,11 @@ observation observe(const cloud_options& from) {
   made.from = from;
   if (from.is_image()) {
     made.data = io::load_png(from.file, from.limits);
+    check_made(from, made.size(), sizeof(std::uint16_t), "pixels");
     return made;
   }
   io::cloud cloud = io::load_cloud(from.file, from.limits);
+  check_made(from, cloud.points.size(), sizeof(Eigen::Vector3d) + sizeof(vec3), "points");
   std::uint64_t zeros = 0;
   for (Eigen::Vector3d& p : cloud.points) {
     if (!p.isZero(0)) continue;
@@ -66,15 +85,15 @@ seen_points observation::seen(const Eigen::Isometry3d& carrier, poses_of robot) 
   return {source, pose};
 }
 
-std::vector<Eigen::Vector3d> observation::in_world(const Eigen::Isometry3d& carrier, const seen_points& seen) const {
+std::vector<Eigen::Vector3d> observation::in_world(const Eigen::Isometry3d& carrier, const seen_points& seen, std::size_t begin, std::size_t end) const {
   std::vector<Eigen::Vector3d> at;
   if (points()) {  // in the file's doubles
     const Eigen::Isometry3d placed = world(carrier);
-    for (const Eigen::Vector3d& p : points()->points) at.push_back(placed * p);
+    for (std::size_t i = begin; i < end; ++i) at.push_back(placed * points()->points[i]);
     return at;
   }
   const auto& source = std::get<depth_image<std::uint16_t>>(seen.points);
-  for (std::size_t i = 0; i < source.size(); ++i) {
+  for (std::size_t i = begin; i < end; ++i) {
     const vec3 p = source[i].position;
     at.push_back(seen.pose * Eigen::Vector3d(p.x, p.y, p.z));
   }

@@ -29,10 +29,10 @@ int run(const query_options& asked) {
   std::vector<std::string> notes;
   const asked_robot robot = load_robot(asked, notes);
   const auto rows = read_rows(asked, robot.description, asked.configurations);
-  const std::vector<Eigen::Isometry3d> poses = placed_rows(asked, robot, rows, asked.configurations);
+  const placed_rows placed(asked, robot, rows, asked.configurations);
   asked_clouds clouds;
   clouds.load(asked, shown, notes);
-  clouds.place(asked, robot.description, rows[0], poses);  // a plan begins where the robot is when it looks
+  clouds.place(asked, robot.description, rows[0], placed.first());  // a plan begins where the robot is when it looks
   plan_report report{.asked = &asked, .clouds = &clouds.files};
   report.load = clock.lap();
 
@@ -42,8 +42,7 @@ int run(const query_options& asked) {
   shown.show("asking about " + std::to_string(rows.size()) + " configurations");
   const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies});
   report.upload = there->see(clouds.seen);
-  report.found = there->plan(poses, asked.d_max);
-  report.query = there->query;
+  report.found = ask_plan(*there, placed, asked.d_max, report.query);
   if (asked.between) {
     shown.show("asking about the ways between them");
     // With a margin no more than what decides; without, to a centimetre.

@@ -142,7 +142,8 @@ int run(const query_options& asked, all_ranks* ranks) {
     for (const observation& cloud : clouds.files) points += cloud.size();
     report.nearest = there->nearest(poses, std::min(asked.nearest, points), asked.d_max);
   }
-  if (asked.support) report.support = there->supported(poses, {.min_points = asked.support->min_points, .radius = asked.support->radius});
+  if (asked.support) 
+    report.support = there->supported(poses, {.min_points = asked.support->min_points, .radius = asked.support->radius, .most = asked.support->most});
   if (asked.gradient) report.gradients = gradients(asked, robot, joints, poses, there->witnesses(poses, report.found.parts));
   std::optional<point_distances> distances;
   if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max, asked.is_signed);

@@ -21,6 +21,8 @@ void cloud_options::check(const std::string& option) const {
 
 namespace {
 
+constexpr std::size_t most_listed = std::size_t(1) << 20;  // as the library's, of --nearest and --support-limit
+
 constexpr std::string_view for_images[] = {"--intrinsics", "--depth-scale"}, for_clouds[] = {"--use-viewpoint", "--zero-is-missing"};
 
 }  // namespace
@@ -39,7 +41,7 @@ using texts = std::vector<std::string>;
 
 struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames, trajectory, unfolded;
-  std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, svg, deadline, nearest;
+  std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, support_limit, svg, deadline, nearest;
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges;
   bool ignore_limits = false, json = false, no_cache = false, merge = false, csv = false, gradient = false, shard = false, is_signed = false, between = false;
 };
@@ -132,7 +134,7 @@ support_asked support_of(const std::string& option, const std::string& text) {
   if (at == text.npos) throw usage_error(option, clearance::io::quoted(text) + " is not of the form N@RADIUS, such as 3@0.02");
   const std::size_t points = whole_number(option, text.substr(0, at));
   if (points < 2) throw usage_error(option, "needs at least 2 points: one alone always confirms itself");
-  return {std::uint32_t(points), length(option, text.substr(at + 1))};
+  return {.min_points = std::uint32_t(points), .radius = length(option, text.substr(at + 1))};
 }
 
 std::vector<double> thresholds(const std::string& option, const std::string& text) {
@@ -197,12 +199,13 @@ void read_questions(const raw_options& raw, query_options& o) {
   if (o.is_signed && o.distances.empty()) throw usage_error("--signed", "is for --distances");
   if (o.is_signed && o.model != model_kind::triangles)
     throw usage_error("--signed", "is for --model triangles: distances to spheres are signed already");
-  if (!raw.nearest.empty()) {
-    o.nearest = whole_number("--nearest", raw.nearest);
-    if (o.nearest > (1 << 20)) throw usage_error("--nearest", "must be at most 1048576");
-  }
+  if (!raw.nearest.empty()) o.nearest = whole_number("--nearest", raw.nearest, most_listed);
   if (!raw.self_filter.empty()) o.self_filter = length("--self-filter", raw.self_filter);
   if (!raw.min_support.empty()) o.support = support_of("--min-support", raw.min_support);
+  if (!raw.support_limit.empty()) {
+    if (!o.support) throw usage_error("--support-limit", "is for --min-support");
+    o.support->most = whole_number("--support-limit", raw.support_limit, most_listed);
+  }
   o.gradient = raw.gradient;
   o.configurations = raw.configurations;
   o.csv = raw.csv;
@@ -220,6 +223,18 @@ void read_questions(const raw_options& raw, query_options& o) {
     if (!o.configurations.empty() && o.margin && !(o.d_max > *o.margin))
       throw usage_error("--d-max", "must be above the margin of --check, or nothing could pass");
   }
+}
+
+/// What is made of each point by what is asked: bytes, or time that is worth as many.
+std::uint64_t bytes_each(const query_options& o) {
+  std::uint64_t bytes = 16;
+  for (const bool asked : {!o.zones.empty(), o.nearest != 0, o.support.has_value(), o.self_filter.has_value(), o.model == model_kind::triangles})
+    if (asked) bytes += 16;
+  if (!o.distances.empty()) bytes += 64;                              // what is known, and a record of the file
+  if (!o.scene.empty()) bytes += 128;                                 // several copies of position and colour
+  if (!o.configurations.empty() || !o.recording.plan.empty()) bytes += 80;  // a tree
+  if (o.recording.merge) bytes += 64;
+  return bytes;
 }
 
 query_options read(const CLI::App& app, const raw_options& raw) {
@@ -258,6 +273,8 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.scene = raw.scene;
   read_questions(raw, o);
   read_deadline(raw, o);
+  o.recording.camera.bytes_each = bytes_each(o);
+  for (cloud_options& cloud : o.clouds) cloud.bytes_each = o.recording.camera.bytes_each;
   return o;
 }
 
@@ -302,7 +319,7 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   app.add_option("--intrinsics", raw->cameras, "fx,fy,cx,cy of a depth image, pixels");
   app.add_option("--depth-scale", raw->scales, "Metres per unit of a depth image (default 0.001)");
   app.add_option("--range", raw->ranges, "near,far: other points do not count (m; along z for images, else from the sensor)");
-  one("--unfold-limit", raw->unfolded, "MiB of memory that the points or pixels of one compressed cloud or image may take (default 1024)");
+  one("--unfold-limit", raw->unfolded, "MiB that one compressed cloud or image may become, with all that is made of its points or pixels here (default 1024)");
   app.add_flag("--use-viewpoint")->description("Apply the VIEWPOINT of a PCD file");
   app.add_flag("--zero-is-missing")->description("(0,0,0) is no point");
   one("--model", raw->model, "spheres (default) or triangles");
@@ -353,6 +370,7 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
       "they are; exit code 3 if none is left");
   one("--min-support", raw->min_support,
       "N@RADIUS, such as 3@0.02: say also how far the nearest point is that has N points, itself among them, within RADIUS m; --check stays about all points");
+  one("--support-limit", raw->support_limit, "How many of the nearest points --min-support asks before it gives up (default 4096, at most 1048576)");
   app.add_flag("--gradient", raw->gradient,
                "How each part's distance changes with its pose, and with the joints: m per m and m per rad of a twist at the part's origin");
   one("--deadline", raw->deadline,

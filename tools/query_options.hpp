@@ -28,6 +28,7 @@ struct cloud_options {
   double nearest = 0, farthest = clearance::infinity;
   bool use_viewpoint = false, zero_is_missing = false;
   clearance::io::read_limits limits;
+  std::uint64_t bytes_each = 0;    // that are made of each point, in memory or in a file that is written; of which the limit is, too
   std::vector<std::string> given;  // the options before the first --cloud, by name: of all clouds
 
   bool is_image() const;
@@ -48,7 +49,8 @@ struct attachment_options {
 /// --min-support N@RADIUS.
 struct support_asked {
   std::uint32_t min_points;
-  double radius;  // metres
+  double radius;            // metres
+  std::size_t most = 4096;  // --support-limit
 };
 
 /// What `clearance run` plays.

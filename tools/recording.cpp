@@ -6,6 +6,7 @@
 #include <clearance/io/cloud_file.hpp>
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
+#include <clearance/min_distances.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -107,13 +108,30 @@ std::vector<std::vector<double>> read_rows(const query_options& asked, const io:
   return read_trajectory(file, robot.kinematics(), {asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits});
 }
 
-std::vector<Eigen::Isometry3d> placed_rows(const query_options& asked, const asked_robot& robot, const std::vector<std::vector<double>>& rows,
-                                           const std::string& file) {
+placed_rows::placed_rows(const query_options& asked, const asked_robot& robot, const std::vector<std::vector<double>>& rows, const std::string& file)
+    : asked_(asked), robot_(robot), rows_(rows), file_(file) {
+  constexpr std::size_t most = 1 << 20;  // poses
+  rows_each_ = std::max<std::size_t>(1, most / (robot.description.parts().size() + robot.held.size()));
+  first_ = placed(0);
+}
+
+std::vector<Eigen::Isometry3d> placed_rows::placed(std::size_t begin) const {
   std::vector<Eigen::Isometry3d> all;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto poses = placed_links(asked, robot, rows[k], " in row " + std::to_string(k) + " of " + file);
+  for (std::size_t k = begin; k < std::min(rows_.size(), begin + rows_each_); ++k) {
+    const auto poses = placed_links(asked_, robot_, rows_[k], " in row " + std::to_string(k) + " of " + file_);
+    if (k == begin) all.reserve(poses.size() * std::min(rows_.size() - begin, rows_each_));
     all.insert(all.end(), poses.begin(), poses.end());
   }
+  return all;
+}
+
+min_distances_result ask_plan(backend_robot& there, const placed_rows& rows, double d_max, double& query) {
+  min_distances_result all;
+  rows.for_each_block([&](poses_of poses) {
+    const min_distances_result some = there.plan(poses, d_max);
+    all.of.insert(all.of.end(), some.of.begin(), some.of.end());
+    query += there.query;
+  });
   return all;
 }
 

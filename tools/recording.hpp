@@ -21,9 +21,34 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
 /// The same of what is asked, --joint among it.
 std::vector<std::vector<double>> read_rows(const query_options& asked, const clearance::io::robot& robot, const std::string& file);
 
-/// The parts' poses in one row of `file` after another.
-std::vector<Eigen::Isometry3d> placed_rows(const query_options& asked, const asked_robot& robot, const std::vector<std::vector<double>>& rows,
-                                           const std::string& file);
+/// The parts' poses in one row of a file after another, in blocks that memory has room for. All that is given must stay.
+class placed_rows {
+ public:
+  placed_rows(const query_options& asked, const asked_robot& robot, const std::vector<std::vector<double>>& rows, const std::string& file);
+
+  /// Of the first block, and so nearly always all.
+  poses_of first() const { return first_; }
+
+  /// Calls `ask(poses)` for each block.
+  template <class Ask>
+  void for_each_block(Ask ask) const {
+    ask(poses_of(first_));
+    for (std::size_t begin = rows_each_; begin < rows_.size(); begin += rows_each_) ask(poses_of(placed(begin)));
+  }
+
+ private:
+  std::vector<Eigen::Isometry3d> placed(std::size_t begin) const;
+
+  const query_options& asked_;
+  const asked_robot& robot_;
+  const std::vector<std::vector<double>>& rows_;
+  std::string file_;
+  std::size_t rows_each_;
+  std::vector<Eigen::Isometry3d> first_;
+};
+
+/// Asks about all of them; seconds are added to `query`.
+clearance::min_distances_result ask_plan(backend_robot& there, const placed_rows& rows, double d_max, double& query);
 
 /// The clouds of many frames as one, in the world. Points that do not count keep their places, as NaN.
 class merged_cloud {

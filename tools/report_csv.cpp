@@ -38,13 +38,13 @@ std::string cells(const min_distance_result& r, const observation* cloud, std::u
 }  // namespace
 
 std::string to_csv(const plan_report& report) {
-  std::string out = std::string("row,") + of_witness + (report.asked->between ? ",way_state,way_lower,way_upper,way_time,way_part\n" : "\n");
+  std::string out = std::string("row,") + of_witness + (report.asked->between ? ",way_state,way_lower,way_upper,way_time,way_from,way_to,way_part\n" : "\n");
   for (std::size_t k = 0; k < report.found.of.size(); ++k) {
     const min_distance_result& r = report.found.of[k];
     out += std::to_string(k) + ',' + cells(r, cloud_of(report, r), r.point, *report.bodies);
     if (report.asked->between) {
       const json way = k < report.ways.size() ? way_of(report, k) : json::object();  // none from the last
-      for (const char* name : {"state", "lower", "upper", "time", "part"}) out += ',' + (way.contains(name) ? csv_word(way[name]) : std::string());
+      for (const char* name : {"state", "lower", "upper", "time", "from", "to", "part"}) out += ',' + (way.contains(name) ? csv_word(way[name]) : std::string());
     }
     out += '\n';
   }

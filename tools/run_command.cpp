@@ -73,8 +73,12 @@ int run(const query_options& asked) {
     throw usage_error("--trajectory", asked.recording.trajectory + " has " + std::to_string(moves.size()) +
                                           " rows, but there are " + std::to_string(frames.size()) +
                                           " frames (one row would hold for all)");
-  std::vector<Eigen::Isometry3d> waypoints;
-  if (!asked.recording.plan.empty()) waypoints = placed_rows(asked, robot, read_rows(asked, robot.description, asked.recording.plan), asked.recording.plan);
+  std::vector<std::vector<double>> to_come;
+  std::optional<placed_rows> waypoints;
+  if (!asked.recording.plan.empty()) {
+    to_come = read_rows(asked, robot.description, asked.recording.plan);
+    waypoints.emplace(asked, robot, to_come, asked.recording.plan);
+  }
   const auto load = [&](std::size_t k) {
     shown.show("frame " + std::to_string(k + 1) + '/' + std::to_string(frames.size()));
     observation frame = observe(frames[k]);
@@ -114,9 +118,8 @@ int run(const query_options& asked) {
     report.upload = std::exchange(upload, 0);
     report.query = there->query;
     plan_report plan{.asked = &asked};
-    if (!waypoints.empty()) {
-      plan.found = there->plan(waypoints, infinity);
-      plan.query = there->query;
+    if (waypoints) {
+      plan.found = ask_plan(*there, *waypoints, infinity, plan.query);
       report.plan = &plan;
     }
     min_distance_result& r = report.found.result;

@@ -43,7 +43,7 @@ min_distance_result min_distance(const On& on, const part<Tree, Interior>& body,
   const auto view = body.view();
   const auto there = minimum::search_on<On>::backend_of(on).copy_in(std::span(&view, 1));
   const model_view<std::remove_const_t<decltype(view)>> one{there.data(), {&body.facts, 1}, view.tree.depth(), view.tree.width()};
-  return detail::least_distance<false>(on, one, std::span(&pose, 1), as_clouds(clouds...));
+  return detail::least_distance<false>(on, view_of(one), std::span(&pose, 1), as_clouds(clouds...));
 }
 
 /// With the minimum of every part beside the robot's: one bound a part instead of one for all, and a tighter `lower`.

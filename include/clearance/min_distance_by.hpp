@@ -21,6 +21,7 @@ struct min_distance_so_far : min_distance_result {
 
 struct deadline_options {
   std::size_t piece = 0;  ///< Points between two looks at the clock; 0: what suits the backend.
+  bool per_part = false;  ///< Every part's minimum is looked for, which takes longer: `lower` is then min_distance_per_part's.
 };
 
 namespace minimum {
@@ -94,13 +95,14 @@ min_distance_so_far min_distance_while(min_distance_query<On, PartView>& query, 
     const minimum::of_pieces its(r);
     all ? all->add(its) : void(all = its);
   };
+  std::vector<part_minimum> minima(options.per_part ? poses.size() : 0);
   real nearest = infinity;
   std::size_t i = 0;
   for (; i < n && go_on(); ++i) {
     const std::size_t k = minimum::spread(i, n);
     const auto some = mapped_clouds(clouds, minimum::some_slices{k, k + 1, n});  // of every cloud, so that errors are those of all
-    query.bound_by(nearest);  // the first by nothing, whatever the query was told before
-    const min_distance_result r = query(poses, some);
+    if (!options.per_part) query.bound_by(nearest);  // the first by nothing, whatever the query was told before
+    const min_distance_result r = options.per_part ? query.per_part(poses, some, minima) : query(poses, some);
     if (r.part != none) nearest = r.distance;
     add(r.cloud == none ? r : renumbered(r, 0, std::uint32_t(first_of_slice(sizes[r.cloud], k, n))));
   }
@@ -123,8 +125,8 @@ min_distance_so_far min_distance_by(min_distance_query<On, PartView>& query, std
 }
 
 /// The least distance, or as much of it as is known `deadline` after the call: pieces of all clouds are asked one after another, spread over
-/// the clouds. If there is time for all, it is min_distance's answer, to the bit; if for none (0), nothing is known. Arguments as
-/// for min_distance. Throws std::invalid_argument as that does, and if the deadline is negative or NaN.
+/// the clouds. If there is time for all, it is min_distance's answer, to the bit (`per_part`: min_distance_per_part's); if for none (0), nothing is
+/// known. Arguments as for min_distance. Throws std::invalid_argument as that does, and if the deadline is negative or NaN.
 template <class On, robot Robot, class Clouds>
 min_distance_so_far min_distance_by(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                     std::chrono::duration<double> deadline, const deadline_options& options = {}) {

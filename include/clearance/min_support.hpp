@@ -13,14 +13,14 @@ namespace clearance {
 struct support_options {
   std::uint32_t min_points = 3;  ///< So many points, itself among them, within
   double radius = 0.02;          ///< metres of a point confirm it.
-  std::size_t most = 4096;       ///< So many of the nearest points are asked, then it is given up.
+  std::size_t most = 4096;       ///< So many of the nearest points are asked, each once, then it is given up.
 };
 
 /// The nearest point that others confirm, and what is nearer, but alone.
 struct supported_distance {
-  /// Of the confirmed point, as in min_distance; possible: none is confirmed; no_data: there is no valid point.
+  /// As min_distance's, if the confirmed points that were asked were all; possible: none is confirmed; no_data: there is no valid point.
   clearance::state state = clearance::state::no_data;
-  real distance = not_a_number;  ///< Metres. Infinite: all points were asked; NaN: only the `most` nearest.
+  real distance = not_a_number;  ///< Metres. Infinite: no point is confirmed; NaN: none of the `most` nearest is.
   real lower = 0;                ///< All confirmed points are certainly at least so far away; 0 if none is.
   std::uint32_t cloud = none, point = none, part = none, primitive = none;
   std::uint64_t isolated = 0;  ///< Points that come before it and are not confirmed,
@@ -30,20 +30,31 @@ struct supported_distance {
 
 namespace detail {
 
-/// The nearest points of a robot with their parts: by distance, cloud, point, as far as lists of each part's nearest tell; and whether that
-/// is all of them.
+/// The nearest points of a robot with their parts: by distance, cloud, point, as far as lists of each part's nearest tell, which is as many
+/// as each list has; and whether that is all of them.
 inline std::pair<std::vector<pair_distance>, bool> nearest_points(const nearest_k_result& of_parts) {
-  std::vector<pair_distance> pairs = of_parts.pairs;
-  std::erase_if(pairs, [](const pair_distance& pair) { return pair.cloud == none; });
-  std::sort(pairs.begin(), pairs.end(), [](const pair_distance& a, const pair_distance& b) {
+  const auto before = [](const pair_distance& a, const pair_distance& b) {
     return std::tie(a.distance, a.cloud, a.point, a.part) < std::tie(b.distance, b.cloud, b.point, b.part);
-  });
-  bool all = true;
-  for (std::size_t last = of_parts.per_part; last <= of_parts.pairs.size(); last += of_parts.per_part) all &= of_parts.pairs[last - 1].cloud == none;
-  if (!all) pairs.resize(of_parts.per_part);  // of those behind, some may be missing
+  };
+  const pair_distance* last = nullptr;  // of those behind, some may be missing
+  for (std::size_t end = of_parts.per_part; end <= of_parts.pairs.size(); end += of_parts.per_part)
+    if (const pair_distance& its = of_parts.pairs[end - 1]; its.cloud != none && (last == nullptr || before(its, *last))) last = &its;
+  std::vector<pair_distance> pairs;
+  for (const pair_distance& pair : of_parts.pairs)
+    if (pair.cloud != none && (last == nullptr || !before(*last, pair))) pairs.push_back(pair);
+  std::sort(pairs.begin(), pairs.end(), before);
   std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
   std::erase_if(pairs, [&](const pair_distance& pair) { return !seen.emplace(pair.cloud, pair.point).second; });
-  return {std::move(pairs), all};
+  if (last != nullptr) pairs.resize(of_parts.per_part);  // the list that ends first has so many
+  return {std::move(pairs), last == nullptr};
+}
+
+/// The numbers of points through all clouds of the frame that was looked at last.
+template <class Question>
+std::vector<std::uint32_t> numbers_of(const Question& question, std::span<const pair_distance> points) {
+  std::vector<std::uint32_t> numbers;
+  for (const pair_distance& p : points) numbers.push_back(question.ahead.first[p.cloud] + p.point);
+  return numbers;
 }
 
 /// Which of some points have enough others around them. Clouds have to be readable where the question runs.
@@ -53,12 +64,10 @@ std::vector<std::uint32_t> count_around(Question& question, std::span<const Eige
   const auto& on = question.on;
   const auto facts = question.model.facts;
   auto& memory = question.memory;
-  std::vector<std::uint32_t> numbers;
   question.ahead.look(facts, poses, clouds);
-  for (const pair_distance& p : points) numbers.push_back(question.ahead.first[p.cloud] + p.point);
   memory.begin();
   position* const place = memory.template room<position>(points.size()).data();
-  const auto both = memory.put(numbers, std::vector<std::uint32_t>(points.size()));
+  const auto both = memory.put(numbers_of(question, points), std::vector<std::uint32_t>(points.size()));
   std::uint32_t *const number = std::get<0>(both), *const support = std::get<1>(both);  // clang before 16 captures no structured bindings
   frames::cloud_frame frame;
   frames::for_each_turn(frame, facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
@@ -67,45 +76,101 @@ std::vector<std::uint32_t> count_around(Question& question, std::span<const Eige
   const std::vector<position> at = on.copy_out(place, points.size());
   frames::for_each_turn(frame, facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn&) {
     std::vector<ball> balls;
-    for (const position& p : at) balls.push_back(pairwise::around(p, options.radius, frame.world_from_cloud));
+    std::vector<double> all_within;
+    for (const position& p : at) {
+      const pairwise::place_around its = pairwise::around(p, options.radius, frame.world_from_cloud);
+      balls.push_back(its.near), all_within.push_back(its.all_within);
+    }
     const auto [near] = memory.put(balls);
-    on.for_each(source.size(), pairwise::count_support<S>{source, frame.world_from_cloud, enclosing_ball(std::span<const ball>(balls)), near, place, support,
-                                                          std::uint32_t(points.size()), options.min_points, options.radius * options.radius});
+    const pairwise::count_support<S> each{source, frame.world_from_cloud, enclosing_ball(std::span<const ball>(balls)), near, place, support,
+                                          std::uint32_t(points.size()), options.min_points, options.radius * options.radius};
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(on)>, host>)
+      on.for_ranges(source.size(), pairwise::count_support_of_pieces<S>{each, all_within.data()});
+    else
+      on.for_each(source.size(), each);
   });
   return on.copy_out(support, points.size());
+}
+
+/// Is one of some points certainly inside a part that knows its inside?
+template <class Question, class Clouds>
+bool any_inside(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const pair_distance> points) {
+  using part_view = typename decltype(question.model)::part_type;
+  if constexpr (scan::has_interior<part_view>) {
+    const auto& model = question.model;
+    if (points.empty()) return false;
+    question.ahead.look(model.facts, poses, clouds);
+    question.memory.begin();
+    const auto both = question.memory.put(numbers_of(question, points), std::vector<std::uint32_t>(points.size()));
+    std::uint32_t *const number = std::get<0>(both), *const inside = std::get<1>(both);
+    frames::cloud_frame frame;
+    frames::for_each_turn(frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+      const auto [places] = question.memory.put(frame.places);
+      question.on.for_each(points.size(), pairwise::find_inside<part_view, S>{model.parts, places, std::uint32_t(model.size()), source, frame.origin, now.first,
+                                                                              number, inside, any_depth{stack_need(model.depth, model.width)}});
+    });
+    const std::vector<std::uint32_t> found = question.on.copy_out(inside, points.size());
+    return std::ranges::find(found, 1u) != found.end();
+  }
+  return false;
+}
+
+inline void check(const support_options& options) {
+  if (options.min_points == 0 || !(options.radius >= 0 && options.radius < infinity))
+    throw std::invalid_argument("clearance: a point cannot be confirmed by " + std::to_string(options.min_points) + " points within " +
+                                std::to_string(options.radius) + " m");
+  if (options.most == 0 || options.most > most_listed)
+    throw std::invalid_argument("clearance: " + std::to_string(options.most) + " nearest points cannot be asked; it must be 1 to 2^20");
+}
+
+/// State and lower end of what was found, as those of min_distance; `inside`: a confirmed point is for certain.
+inline void bracket(supported_distance& r, const distance_certainty& certain, real tolerance, bool inside) {
+  min_distance_result bracketed;
+  bracketed.distance = r.distance, bracketed.part = r.part;
+  minimum::bracket(bracketed, minimum::certain_distance(r.distance, certain.slop, certain.error), tolerance, inside, certain.error);
+  bracketed.dropped[int(drop_reason::too_close)] = r.counts.dropped[int(drop_reason::too_close)];
+  minimum::allow_for_too_close(bracketed);
+  r.state = bracketed.state, r.lower = bracketed.lower;
 }
 
 /// Clouds have to be readable where the question runs.
 template <class Question, class Clouds>
 supported_distance least_supported(Question& question, known_nearest& known, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                    const support_options& options) {
-  if (options.min_points == 0 || !(options.radius >= 0 && options.radius < infinity))
-    throw std::invalid_argument("clearance: a point cannot be confirmed by " + std::to_string(options.min_points) + " points within " +
-                                std::to_string(options.radius) + " m");
-  if (options.most == 0 || options.most > most_listed)
-    throw std::invalid_argument("clearance: " + std::to_string(options.most) + " nearest points cannot be asked; it must be 1 to 2^20");
+  check(options);
   supported_distance r;
-  for (std::size_t k = std::min<std::size_t>(16, options.most), asked = 0;; k = std::min(4 * k, options.most)) {
+  bool inside = false;
+  for (std::size_t k = std::min<std::size_t>(16, options.most), asked = 0;; k = std::min(8 * k, options.most)) {
     const nearest_k_result near = list_nearest(question, known, poses, clouds, k, infinity);
     const auto [points, all] = nearest_points(near);
-    const auto support = count_around(question, poses, clouds, std::span(points).subspan(asked), options);
-    const auto its = std::size_t(std::find_if(support.begin(), support.end(), [&](std::uint32_t n) { return n >= options.min_points; }) - support.begin());
-    asked += its;
-    r.counts = near.counts, r.isolated = asked;
-    if (asked > 0) r.nearest_isolated = points[0];
-    if (its < support.size()) {
-      const pair_distance& found = points[asked];
-      r.distance = found.distance, r.cloud = found.cloud, r.point = found.point, r.part = found.part, r.primitive = found.primitive;
-      min_distance_result bracketed;
-      bracketed.distance = found.distance, bracketed.part = found.part;
-      minimum::bracket(bracketed, minimum::certain_distance(found.distance, near.certain.slop, near.certain.error),
-                       question.model.facts[found.part].tolerance, false, near.certain.error);
-      bracketed.dropped[int(drop_reason::too_close)] = r.counts.dropped[int(drop_reason::too_close)];
-      minimum::allow_for_too_close(bracketed);
-      r.state = bracketed.state, r.lower = bracketed.lower;
+    r.counts = near.counts;
+    if (!points.empty() && r.counts.valid < options.min_points) {  // so many are nowhere
+      r.state = state::possible, r.distance = infinity, r.isolated = r.counts.valid, r.nearest_isolated = points[0];
       return r;
     }
-    if (all || k == options.most) {
+    const auto some = std::span(points).subspan(asked);
+    const auto support = count_around(question, poses, clouds, some, options);
+    std::vector<pair_distance> within;  // the confirmed ones that are as near as the first of them, which may be 0
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      if (support[i] < options.min_points || (r.point != none && some[i].distance != r.distance)) continue;
+      if (r.point == none) {
+        r.distance = some[i].distance, r.cloud = some[i].cloud, r.point = some[i].point, r.part = some[i].part, r.primitive = some[i].primitive;
+        r.isolated = asked + i;
+      }
+      within.push_back(some[i]);
+    }
+    asked = points.size();
+    if (r.point == none) r.isolated = asked;
+    if (r.isolated > 0) r.nearest_isolated = points[0];
+    const bool ends = all || k == options.most;
+    if (r.point != none) {
+      inside = inside || (r.distance == 0 && any_inside(question, poses, clouds, within));
+      const bool more = !inside && r.distance == 0 && points.back().distance == 0 && scan::has_interior<typename decltype(question.model)::part_type>;
+      if (more && !ends) continue;  // the next of them may be deeper inside
+      bracket(r, near.certain, question.model.facts[r.part].tolerance, inside);
+      return r;
+    }
+    if (ends) {
       if (asked > 0) r.state = state::possible, r.distance = all ? infinity : not_a_number;
       return r;
     }

@@ -3,6 +3,7 @@
 // The k nearest points of each part. On the host; nearest_k.cuh has a device.
 
 #include <clearance/answer/nearest_bins.hpp>
+#include <clearance/answer/nearest_sample.hpp>
 #include <clearance/within.hpp>
 
 #include <cmath>
@@ -34,9 +35,10 @@ struct known_nearest {
   std::size_t k = 0;
   std::vector<real> last, radii;  ///< One a part: how near the last of k was, and a bound for the next frame's.
 
-  std::vector<real> first_bounds(std::size_t parts, std::size_t wanted, real d_max) const {
-    std::vector<real> first(parts, d_max);
-    for (std::size_t p = 0; p < parts && wanted <= k; ++p) first[p] = std::min(d_max, radii[p]);
+  /// For no more than k.
+  std::vector<real> first_bounds(real d_max) const {
+    std::vector<real> first = radii;
+    for (real& bound : first) bound = std::min(d_max, bound);
     return first;
   }
   /// The next frame's may be farther by twice as much as they have moved, and 5 mm; at first by a tenth, and 2 cm.
@@ -51,11 +53,20 @@ struct known_nearest {
   }
 };
 
+/// Bounds that hold, to begin with, where nothing is known of a frame before.
+template <class Question, class Clouds>
+std::vector<real> bounds_of_nearest(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k, real d_max) {
+  std::vector<real> bounds(question.model.size(), d_max);
+  pairwise::nearest_sample<std::remove_cvref_t<decltype(question.on)>>::lower(question.on, question.model, poses, clouds, k, bounds);
+  return bounds;
+}
+
 /// How near the k nearest points of each part are: computed distances of k points are at most that, or there are not so many within d_max.
-/// Not many more than k are, but for equal distances. `first` are bounds to begin with.
+/// Not many more than k are, but for equal distances. `first` are bounds to begin with; where they are too low and `again` allows it, all is
+/// asked once more.
 template <class Question, class Clouds>
 std::vector<real> radii_of_nearest(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::uint32_t k, real d_max,
-                                   const std::vector<real>& first) {
+                                   const std::vector<real>& first, bool again) {
   using pairwise::nearest_bins, pairwise::nearest_window;
   const auto& on = question.on;
   const std::size_t parts = question.model.size(), enough = 4 * k * parts + (1 << 16);
@@ -79,7 +90,8 @@ std::vector<real> radii_of_nearest(Question& question, std::span<const Eigen::Is
       }
       const auto found = pairwise::find_wanted(std::span(all).subspan(p * nearest_bins::bins, nearest_bins::bins), w.wanted);
       const bool some = found.bin < nearest_bins::bins;
-      if (!some && first[p] < d_max) return radii_of_nearest(question, poses, clouds, k, d_max, std::vector<real>(parts, d_max));
+      if (!some && again && first[p] < d_max)
+        return radii_of_nearest(question, poses, clouds, k, d_max, bounds_of_nearest(question, poses, clouds, k, d_max), false);
       if (some) bounds[p] = std::min(bounds[p], nearest_bins::end_of(w.low, found.bin, shift));
       w = some ? nearest_window{w.low + (found.bin << shift), w.wanted - found.before, bounds[p]} : nearest_window{.bound = ordered(-infinity)};
       before[p] += found.before;
@@ -98,8 +110,9 @@ nearest_k_result list_nearest(Question& question, known_nearest& known, std::spa
                               real d_max) {
   if (k == 0 || k > most_listed) throw std::invalid_argument("clearance: k is " + std::to_string(k) + "; it must be 1 to 2^20");
   if (!(d_max == d_max)) throw std::invalid_argument("clearance: d_max is not a number");
-  const std::vector<real> first = known.first_bounds(question.model.size(), k, d_max);
-  const std::vector<real> radii = radii_of_nearest(question, poses, clouds, std::uint32_t(k), d_max, first);
+  const bool cold = k > known.k;
+  const std::vector<real> first = cold ? bounds_of_nearest(question, poses, clouds, k, d_max) : known.first_bounds(d_max);
+  const std::vector<real> radii = radii_of_nearest(question, poses, clouds, std::uint32_t(k), d_max, first, !cold);
   nearest_k_result all;
   all.per_part = k;
   const within_result near = list_within(question, poses, clouds, radii);

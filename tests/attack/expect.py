@@ -13,18 +13,18 @@ import robots
 from geometry import IDENTITY, apply, compose, distance_range, inverse, quaternion
 from strict import Unknown, demand, lines_of, number, text_of, whole
 
-FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache", "--json", "--merge", "--allow-overlap", "--csv", "--gradient"}
+FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache", "--json", "--merge", "--allow-overlap", "--csv", "--gradient", "--between"}
 PER_CLOUD = {"--camera-pose", "--camera-link", "--intrinsics", "--depth-scale", "--range", "--use-viewpoint", "--zero-is-missing"}
 SINGLE = {
     "query": {"--robot", "--joints", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend",
               "--check", "--scene", "--unfold-limit", "--zones", "--min-points", "--distances", "--d-max", "--self-filter", "--min-support",
-              "--deadline"},
+              "--support-limit", "--nearest", "--threads", "--deadline"},
     "plan": {"--robot", "--geometry", "--base-pose", "--model", "--spheres", "--packing", "--cache", "--backend", "--check", "--unfold-limit",
-             "--configurations", "--d-max"},
+             "--configurations", "--d-max", "--threads"},
     "run": {"--robot", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend", "--check",
-            "--frames", "--trajectory", "--unfold-limit", "--plan", "--svg"},
-    "pack": {"", "--spheres", "--gap", "--smallest-radius", "--seconds", "--seed", "--cache", "--geometry", "--joints"},
-    "demo": {"--spheres", "--cache", "--scene"},
+            "--frames", "--trajectory", "--unfold-limit", "--plan", "--svg", "--threads"},
+    "pack": {"", "--threads", "--spheres", "--gap", "--smallest-radius", "--seconds", "--seed", "--cache", "--geometry", "--joints"},
+    "demo": {"--threads", "--spheres", "--cache", "--scene"},
     "info": {""},
 }
 _of_robots = {"--package", "--exclude-link", "--mesh-limit", "--attach", "--attach-pose"}
@@ -168,7 +168,7 @@ class _Options:
             demand(os.path.normpath(self.one["--distances"]) != os.path.normpath(self.one.get("--scene", "")), "one file for two")
         if "--d-max" in self.one:
             demand(_real(self.one["--d-max"]) > 0, "--d-max is not above 0")
-            demand("--distances" in self.one or self.command == "plan", "--d-max without --distances")
+            demand(self.one.keys() & {"--distances", "--nearest"} or self.command == "plan", "--d-max without --distances")
             demand(self.command != "plan" or "--check" not in self.one or _real(self.one["--d-max"]) > _real(self.one["--check"]), "--d-max within --check")
 
         if "--self-filter" in self.one:
@@ -177,9 +177,16 @@ class _Options:
             points, _, radius = self.one["--min-support"].partition("@")
             whole(points, 2, 10_000_000)
             demand(0 <= _real(radius) <= 1e15, "a radius that is none")
+        if "--support-limit" in self.one:
+            whole(self.one["--support-limit"], 1, 1 << 20)
+            demand("--min-support" in self.one, "--support-limit without --min-support")
+        if "--nearest" in self.one:
+            whole(self.one["--nearest"], 1, 1 << 20)
+        if "--threads" in self.one:
+            whole(self.one["--threads"], 1, 1024)
         if "--deadline" in self.one:
             demand(0 <= _real(self.one["--deadline"]) <= 1e9, "a deadline that is none")
-            demand(not any(name in self.one for name in ("--zones", "--distances", "--self-filter", "--min-support")) and "--gradient" not in self.flags,
+            demand(not any(name in self.one for name in ("--zones", "--distances", "--self-filter", "--min-support", "--nearest")) and "--gradient" not in self.flags,
                    "more than a deadline is for")
             usual = "obb" if self.one.get("--model") == "triangles" else "sphere"
             demand(self.one.get("--volume", usual) == usual, "--deadline with another volume")

@@ -345,7 +345,10 @@ def options(rng, case):
             ["--min-support", "3@0.1"], ["--min-support", "3@"], ["--min-support", "1@0.1"], ["--min-support", "2@nan"], ["--gradient", None],
             ["--deadline", ""], ["--deadline", "0"], ["--deadline", "1e9"], ["--deadline", "-1"], ["--deadline", "nan"], ["--deadline", "1e300"], ["--attach", ""],
             ["--attach", "a=m.obj"], ["--attach", "b=c.xyz"], ["--attach", "x=m.obj"], ["--attach-pose", "0,0,1,0,0,0,1"], ["--attach-pose", "0,0,1,0,0,0,2"],
-            ["--svg", ""], ["--svg", "o.svg"], ["--svg", "c.xyz"], ["--svg", "r.urdf.svg"]]))
+            ["--svg", ""], ["--svg", "o.svg"], ["--svg", "c.xyz"], ["--svg", "r.urdf.svg"],
+            ["--min-support", "9999999@1e15"], ["--min-support", "4@0.5"], ["--support-limit", ""], ["--support-limit", "1"], ["--support-limit", "1048577"],
+            ["--nearest", ""], ["--nearest", "3"], ["--nearest", "1048576"], ["--nearest", "1048577"], ["--threads", ""], ["--threads", "0"], ["--threads", "2"],
+            ["--threads", "1e3"], ["--threads", "1024"], ["--threads", "1025"], ["--between", None]]))
 
 
 def mutated(rng, case):

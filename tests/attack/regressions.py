@@ -4,6 +4,7 @@ stands, expect.py has it."""
 
 import json
 import os
+import random
 import shlex
 import struct
 import zlib
@@ -80,9 +81,63 @@ def _sizes():
     yield "pcd-unfolds", Case("regression", "query", seen, {"r.urdf": box, "c.pcd": head + struct.pack("<II", len(packed), 3 * points) + packed}, "")
 
 
+def _flat_png(side, depth=1500):
+    """Many equal pixels in few bytes."""
+    packer, row = zlib.compressobj(9), b"\0" + struct.pack(">H", depth) * side
+    data = b"".join(packer.compress(row) for _ in range(side)) + packer.flush()
+    head = writers.png_chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 16, 0, 0, 0, 0))
+    return b"\x89PNG\r\n\x1a\n" + head + writers.png_chunk(b"IDAT", data) + writers.png_chunk(b"IEND", b"")
+
+
+def _zeros_pcd(points):
+    """Points that are all (0, 0, 0), in few bytes."""
+    packed = b"\x02\0\0\0" + b"\xe0\xff\0" * ((3 * points - 3) // 264)
+    points = 1 + 264 * ((3 * points - 3) // 264) // 3
+    head = f"FIELDS x y z\nSIZE 1 1 1\nTYPE I I I\nWIDTH {points}\nHEIGHT 1\nDATA binary_compressed\n".encode()
+    return head + struct.pack("<II", len(packed), 3 * points) + packed
+
+
+def _many(parts):
+    """A robot of boxes on a slide, which stand beside one another."""
+    links = "".join(f'<link name="l{k}"><collision><geometry><box size=".1 .08 .06"/></geometry></collision></link><joint name="j{k}" type="fixed"><parent link="a"/>'
+                    f'<child link="l{k}"/><origin xyz="{k % 7 * 0.12} {k // 7 % 7 * 0.12} {k // 49 * 0.12}"/></joint>' for k in range(parts))
+    return ('<robot name="r"><link name="base"/><link name="a"/><joint name="s" type="prismatic"><parent link="base"/><child link="a"/><axis xyz="1 0 0"/>'
+            '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>' + links + "</robot>").encode()
+
+
+def _questions():
+    """Small questions that once took minutes, or gigabytes."""
+    frame = writers.png(640, 480, [1200 + (x * x + 3 * y) % 97 + x // 3 for y in range(480) for x in range(640)])
+    camera = [["--intrinsics", "525,525,319.5,239.5"], ["--camera-pose", "0.3,0.3,-0.5,0,0,0,1"]]
+    query = [["--robot", "r.urdf"], ["--cloud", "c.png"], *camera, ["--spheres", "50"], ["--no-cache", None], ["--threads", "1"], ["--json", None]]
+    files = {"r.urdf": _many(46), "c.png": frame}
+    for name, more in (("nearest-50", ["--nearest", "50"]), ("nearest-most", ["--nearest", "20000"]), ("support-above-all", ["--min-support", "1000000@10"]),
+                       ("support-nearly-all", ["--min-support", "300000@10"]), ("support-part", ["--min-support", "200000@0.4"])):
+        yield name, Case("regression", "query", query + [more], files, "")
+    rows = b"s\n" + b"".join(f"{k / 400}\n".encode() for k in range(200))
+    rng = random.Random(7)
+    cell = [tuple(v + rng.random() * 1e-6 for v in at) for at in ((1.1, 0.3, 0.2), (1.1, 0, 0)) for _ in range(200_000)]
+    head = f"FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nWIDTH {len(cell)}\nHEIGHT 1\nDATA binary\n".encode()
+    crowds = {"equal.pcd": _zeros_pcd(2_000_000), "cell.pcd": head + b"".join(struct.pack("<3d", *p) for p in cell), "c.png": _flat_png(2000)}
+    for cloud, data in crowds.items():
+        for model in ("spheres", "triangles"):
+            plan = [["--robot", "r.urdf"], ["--cloud", cloud], ["--camera-pose", "0,0,0,0,0,0,1" if cloud == "cell.pcd" else "1.1,0.3,0.2,0,0,0,1"],
+                    ["--configurations", "q.csv"], ["--threads", "1"], ["--model", model]]
+            plan += [["--intrinsics", "1e9,1e9,0,0"]] if cloud == "c.png" else []
+            plan += [["--spheres", "200"], ["--no-cache", None]] if model == "spheres" else []
+            yield f"plan-{cloud}-{model}", Case("regression", "plan", plan, {"r.urdf": _many(6), "q.csv": rows, cloud: data}, "")
+    image = {"r.urdf": _many(2), "q.csv": b"s\n0\n0.1\n", "c.png": _flat_png(8400)}
+    for name, more in (("query", []), ("distances", [["--distances", "o.ply"]]), ("scene", [["--scene", "o.glb"]]), ("zones", [["--zones", "1,3"]]),
+                       ("self-filter", [["--self-filter", "0.1"]]), ("nearest", [["--nearest", "100"]]), ("min-support", [["--min-support", "100000@0.01"]])):
+        asked = [["--robot", "r.urdf"], ["--cloud", "c.png"], ["--intrinsics", "8000,8000,4200,4200"], ["--model", "triangles"], ["--threads", "1"], ["--json", None]]
+        yield f"flat-{name}", Case("regression", "query", asked + more, image, "", outputs=["o.ply", "o.glb"])
+    asked = [["--robot", "r.urdf"], ["--cloud", "c.png"], ["--intrinsics", "8000,8000,4200,4200"], ["--model", "triangles"], ["--configurations", "q.csv"]]
+    yield "flat-plan", Case("regression", "plan", asked, image, "")
+
+
 def cases(data):
     """[(name, case, what is right or None), ...]; those with files of their own everywhere, the others where the data is."""
-    return [(name, case, "manners") for name, case in _sizes()] + _recorded(os.path.join(data, "attack") if data else "")
+    return [(name, case, "manners") for name, case in (*_sizes(), *_questions())] + _recorded(os.path.join(data, "attack") if data else "")
 
 
 def _recorded(folder):

@@ -160,7 +160,8 @@ def _option_cases():
     for cloud in ("c.xyz", "d.xyz"):
         yield _query("options", files, "options", ["--joints", "0.25,0.5"], ["--zones", "0.05,0.2,0.6"], ["--min-points", "2"], ["--distances", "o.ply"],
                      ["--d-max", "0.5"], ["--scene", "o.glb"], cloud=cloud, outputs=["o.ply", "o.glb"])
-        yield _query("options", files, "options", ["--joints", "0.25,0.5"], ["--min-support", "3@0.5"], ["--gradient", None], ["--check", "0.02"], cloud=cloud)
+        yield _query("options", files, "options", ["--joints", "0.25,0.5"], ["--min-support", "3@0.5"], ["--support-limit", "100"], ["--gradient", None], ["--nearest", "7"],
+                     ["--threads", "2"], ["--check", "0.02"], cloud=cloud)
         yield _query("options", files, "options", ["--joints", "0.25,0.5"], ["--deadline", "1000"], ["--check", "0.02"], cloud=cloud)
         yield _query("options", files, "options", ["--joints", "0.25,0.5"], ["--self-filter", "0.05"], ["--attach", "c=m.obj"],
                      ["--attach-pose", "0,0,0.2,0,0,0,1"], ["--gradient", None], cloud=cloud)

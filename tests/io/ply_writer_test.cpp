@@ -68,3 +68,27 @@ TEST_CASE("a distance is red at 0 and inside, green half way, and blue where far
   CHECK(is(infinity, 2, 0, 0, 1));
   CHECK(is(0.25, 2, 1, 0.5f, 0));
 }
+
+TEST_CASE("a PLY file in pieces is the same file, and pieces that are not its points are refused") {
+  std::vector<Eigen::Vector3d> points;
+  std::vector<float> values;
+  for (int i = 0; i < 10; ++i) points.emplace_back(i, 0.1 * i, -i), values.push_back(float(i) / 3);
+  const scratch_file file(".ply");
+  const io::ply_column whole[] = {{"distance", values}};
+  for (const std::size_t each : {1u, 3u, 10u}) {
+    std::size_t at = 0;
+    io::save_ply_pieces(file.path, points.size(), [&] {
+      const std::size_t begin = std::exchange(at, std::min(points.size(), at + each));
+      const auto some = [&](const auto& all) { return std::remove_cvref_t<decltype(all)>(all.begin() + std::ptrdiff_t(begin), all.begin() + std::ptrdiff_t(at)); };
+      return io::ply_piece{some(points), {{"distance", some(values)}}};
+    }, "made");
+    CHECK(io::read_bytes(file.path) == io::ply_bytes(points, whole, "made"));
+  }
+  io::save_ply_pieces(file.path, 0, [] { return io::ply_piece{{}, {{"distance", std::vector<float>{}}}}; });
+  const std::string empty = io::read_bytes(file.path);
+  CHECK(empty.find("element vertex 0\n") != empty.npos);
+  CHECK(empty.find("property float distance\n") != empty.npos);
+  CHECK_THROWS_AS(io::save_ply_pieces(file.path, 3, [&] { return io::ply_piece{points, {}}; }), std::invalid_argument);
+  CHECK_THROWS_AS(io::save_ply_pieces(file.path, 3, [] { return io::ply_piece{}; }), std::invalid_argument);
+  CHECK(io::read_bytes(file.path) == empty);  // whole or not at all
+}

@@ -124,3 +124,19 @@ TEST_CASE("No time, little time, and deadlines that are none") {
     CHECK_THROWS_AS(min_distance_by(host{}, model, poses, points, std::chrono::duration<double>(seconds)), std::invalid_argument);
   CHECK_THROWS_AS(min_distance_by(host{}, model, std::vector(2, poses[0]), points, 0s), std::invalid_argument);
 }
+
+TEST_CASE("Asked per part, an answer with time for all is min_distance_per_part's, with its lower end") {
+  verdict v;
+  std::size_t higher = 0;
+  for (const auto& s : scenes<inner_sphere>()) {
+    std::vector<clearance::part<clearance::bvh<clearance::sphere, inner_sphere>>> parts;
+    for (std::size_t k = 0; k < s.parts.size(); ++k) parts.push_back(clearance::make_part(clearance::build<clearance::sphere>(s.parts[k]), 0.01 * double(k) * s.size));
+    const clearance::model model{parts};
+    const placed cloud{point_span(s.points), s.cloud_pose};
+    const auto whole = clearance::min_distance_per_part(host{}, model, s.poses, cloud).first;
+    const auto r = min_distance_by(host{}, model, s.poses, cloud, ever, {.piece = 100, .per_part = true});
+    v.require(r.unseen == 0 && same_result(r, whole), s.name, ": another answer");
+    higher += r.lower > min_distance_by(host{}, model, s.poses, cloud, ever, {.piece = 100}).lower;
+  }
+  CHECK(higher > 0);
+}

@@ -2,6 +2,7 @@
 // The least distances of many configurations are those of one after another, in every bit.
 #include "search/edge_scenes.hpp"
 #include "support/brute_pairs.hpp"
+#include "support/closed.hpp"
 #include "support/configurations.hpp"
 #include "support/linked_tree.hpp"
 #include "support/volumes.hpp"
@@ -350,4 +351,49 @@ TEST_CASE("Results of several trajectories are taken apart by their horizon") {
   CHECK_THROWS_AS(states.trajectory(3, 2), std::invalid_argument);
   const auto none = clearance::min_distances(host{}, model, std::vector<Eigen::Isometry3d>{}, std::vector<vec3>{});
   CHECK(none.first_below(0, 7).empty());
+}
+
+namespace {
+
+/// Clouds in which very many points are in one place, or nearly, alone or among others, with their numbers mixed.
+std::vector<std::pair<std::string, std::vector<vec3>>> crowds(dice& d, std::size_t count) {
+  std::vector<std::pair<std::string, std::vector<vec3>>> all;
+  const auto cell = [&](vec3 at, real size) { return at + vec3{d.number(0, size), d.number(0, size), d.number(0, size)}; };
+  std::vector<vec3> equal(count, vec3{1.1f, 0.3f, 0.2f}), near, at_zero, image, mixed;
+  for (std::size_t i = 0; i < count; ++i) {
+    near.push_back(cell({1.1f, 0.3f, 0.2f}, 1e-6f));
+    at_zero.push_back(cell({1.1f, 0, 0}, 1e-6f));
+    image.push_back({1.1f, 1e-9f * real(i % 100), 1e-9f * real(i / 100)});
+    mixed.push_back(i % 3 == 0 ? equal[0] : i % 3 == 1 ? cell({1.1f, 0.3f, 0.2f}, 1e-3f) : cell({-2, -2, -2}, 6));
+  }
+  all = {{"equal", equal}, {"in a cell", near}, {"in a cell at 0", at_zero}, {"an image of nothing", image}, {"among others", mixed}};
+  return all;
+}
+
+template <class Model>
+void check_crowds(const Model& model, verdict& v, const std::string& what) {
+  dice d(434);
+  configurations poses;
+  for (int c = 0; c < 12; ++c)
+    for (std::size_t k = 0; k < model.size(); ++k) poses.push_back(c == 0 ? shifted(0.125 * double(k), 0, 0) : d.pose(c < 6 ? 0.3 : 1.2));
+  for (const auto& [name, points] : crowds(d, 20000)) {
+    const auto one = [&, &points = points](auto own) { return min_distance(host{}, model, own, points); };
+    for (const double d_max : {0.5, double(infinity)})
+      require_same(min_distances(host{}, model, poses, points, {real(d_max)}), poses, model.size(), real(d_max), one, v, what + ", " + name);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Of very many points in one place, or nearly, the lowest is found, as of any others") {
+  verdict v;
+  dice d(433);
+  std::vector<std::vector<inner_sphere>> balls(2);
+  for (auto& its : balls)
+    for (int i = 0; i < 60; ++i) its.push_back({clearance::scaled(0.3f, vec3{d.number(-1, 1), d.number(-1, 1), d.number(-1, 1)}), d.number(0.01f, 0.05f)});
+  check_crowds(clearance::make_model<clearance::sphere>(balls), v, "spheres");
+  check_crowds(clearance::make_model<clearance::obb>(balls), v, "spheres in boxes");
+  const auto closed = closed_scene(12);
+  check_crowds(clearance::make_model<clearance::obb>(closed.meshes), v, "solids");
+  check_crowds(clearance::make_model<clearance::sphere>(closed.meshes), v, "solids in balls");
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nearest confirmed point is the first of all, sorted, that has enough others around it.
+#include "solid/shapes.hpp"
 #include "support/brute_support.hpp"
 #include "support/frames.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
+#include <clearance/solid/close_mesh.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -86,4 +88,61 @@ TEST_CASE("Prepared, the nearest confirmed point is in every frame what one call
     require_same(query(f.s.poses, f.here(), options), expected, v, "frame " + std::to_string(f.number));
     CHECK_THROWS_AS(query(f.s.poses, f.here(), {.min_points = 0}), std::invalid_argument);
   }
+}
+
+TEST_CASE("More points than there are confirm nothing, which is known at once") {
+  verdict v;
+  dice d(117);
+  scene<inner_sphere> s;
+  s.parts = {{{{0, 0, 0}, 0.5f}}, {{{0.2f, 0, 0}, 0.25f}}}, s.poses = {shifted(0, 0, 0), shifted(0.125, 0, 0)};
+  for (int i = 0; i < 500; ++i) s.points.push_back(clearance::scaled(d.number(1, 3), d.direction()));
+  s.points.push_back({clearance::not_a_number, 0, 0});
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const clouds cloud{{point_span(s.points)}};
+  for (const std::uint32_t n : {1u, 2u, 499u, 500u, 501u, 502u, 4'000'000'000u})
+    for (const double radius : {0.5, 5.9, 10.0}) {
+      const clearance::support_options options{.min_points = n, .radius = radius, .most = 8};
+      const auto r = min_distance_supported(host{}, model, s.poses, cloud, options);
+      const auto expected = brute_support(s, cloud, {.min_points = n, .radius = radius});
+      const std::string what = std::to_string(n) + " within " + std::to_string(radius);
+      if (n > 500 || expected.isolated < 8)
+        require_same(r, expected, v, what);
+      else
+        v.require(r.distance != r.distance && r.isolated == 8 && r.state == clearance::state::possible, what, ": more than the nearest were asked");
+    }
+}
+
+TEST_CASE("As many points are asked as are to be, however many parts are near each") {
+  dice d(118);
+  scene<inner_sphere> s;
+  for (int k = 0; k < 40; ++k) s.parts.push_back({{{0, 0, 0.01f * float(k)}, 0.2f}}), s.poses.push_back(shifted(0, 0, 0));  // all are near all points
+  for (int i = 0; i < 300; ++i) s.points.push_back(clearance::scaled(1 + 0.01f * float(i), d.direction()));
+  const vec3 last = s.points.back();
+  s.points.push_back(last);
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const clouds cloud{{point_span(s.points)}};
+  const auto whole = brute_support(s, cloud, {.min_points = 2, .radius = 0});
+  REQUIRE((whole.point == 299 && whole.isolated > 100));
+  for (const std::size_t most : {std::size_t(1), std::size_t(17), std::size_t(whole.isolated), std::size_t(whole.isolated + 1), std::size_t(4096)}) {
+    const auto r = min_distance_supported(host{}, model, s.poses, cloud, {.min_points = 2, .radius = 0, .most = most});
+    INFO(most);
+    CHECK(r.isolated == std::min<std::size_t>(most, whole.isolated));
+    CHECK((r.point == whole.point) == (most > whole.isolated));
+  }
+}
+
+TEST_CASE("A confirmed point that is certainly inside is a collision, as for min_distance, even behind others that are not certain") {
+  const auto cube = clearance::make_part<clearance::aabb>(clearance::close_mesh(shapes::box({-1, -1, -1}, {1, 1, 1})), {.tolerance = 0.1});
+  const clearance::model solid{std::vector{cube}};
+  std::vector<vec3> points(600, vec3{0.95f, 0, 0});  // inside, but by less than the tolerance
+  const auto ask = [&](std::uint32_t n) { return min_distance_supported(host{}, solid, poses, points, {.min_points = n, .radius = 0.001}); };
+  CHECK((ask(3).state == clearance::state::possible && ask(3).distance == 0 && ask(3).point == 0));
+  points.push_back({0.5f, 0, 0});
+  REQUIRE(clearance::min_distance(host{}, solid, poses, points).state == clearance::state::collision);
+  CHECK(ask(2).state == clearance::state::possible);  // it is alone
+  points.push_back({0.5f, 0, 0});
+  const auto r = ask(2);
+  CHECK((r.state == clearance::state::collision && r.point == 0 && r.distance == 0 && r.lower == 0 && r.isolated == 0));
+  points = {{0.5f, 0, 0}};
+  CHECK((ask(1).state == clearance::state::collision && ask(1).point == 0));
 }

@@ -81,3 +81,20 @@ TEST_CASE("Prepared, the nearest are in every frame what one call says, and afte
     }
   }
 }
+
+TEST_CASE("Of a robot of many parts before a frame of many points the nearest are the first of all, from cold") {
+  verdict v;
+  dice d(42);
+  scene<inner_sphere> s;
+  for (int k = 0; k < 20; ++k) {
+    s.parts.push_back({{{0, 0, 0}, 0.05f}, {{0.1f, 0, 0}, 0.03f}});
+    s.poses.push_back(d.pose(0.8));
+  }
+  for (int i = 0; i < 30000; ++i)  // a wall, row by row, and floor
+    s.points.push_back(i % 3 != 0 ? vec3{1.5f, float(i % 200) / 100 - 1, float(i / 200) / 75 - 1} : vec3{float(i % 211) / 100 - 1, float(i / 211) / 75 - 1, -1});
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const clouds two{{point_span(s.points)}, {point_span(s.points), d.pose(0.3)}};
+  for (const std::size_t k : {1, 50, 2000})
+    for (const real d_max : {clearance::infinity, 0.4f})
+      require_same(nearest_k(host{}, model, s.poses, two, k, {d_max}), brute_nearest(s, two, k, d_max), v, std::to_string(k) + " within " + std::to_string(d_max));
+}

@@ -124,3 +124,22 @@ TEST_CASE("the attack's empty --check is refused", "[data]") {
   refuses(ask + " --check ''", "--check");
   CHECK(run_command(ask + " --check 0").code == 2);
 }
+
+TEST_CASE("--threads is taken by all that computes, changes no answer, and is refused where it is no number of threads") {
+  const scratch_file urdf(".urdf", R"(<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
+  const scratch_file cloud(".xyz", "1 1 1\n2 0 0\n"), csv(".csv", "\n");
+  const std::string robot = " --backend host --no-cache --spheres 20 --robot " + urdf.path;
+  const auto answer = [&](const std::string& more) {
+    auto j = parsed(run_command("query --json" + robot + " --cloud " + cloud.path + more));
+    j.erase("seconds");
+    return j;
+  };
+  CHECK(answer(" --threads 1") == answer(""));
+  CHECK(answer(" --threads 3") == answer(""));
+  CHECK(run_command("plan --threads 1 --configurations " + csv.path + robot + " --cloud " + cloud.path).code == 0);
+  CHECK(run_command("run --threads 1 --frames " + cloud.path + robot).code == 1);  // a list of no files
+  CHECK(run_command("pack --threads 1 --spheres 5 --no-cache " + urdf.path).code == 0);
+  for (const std::string bad : {"0", "-1", "1025", "many", "1.5", "1e3"})
+    refuses("query" + robot + " --cloud " + cloud.path + " --threads " + bad, "--threads: \"" + bad + "\" is not a whole number from 1 to 1024");
+  CHECK(run_command("info --threads 1 " + cloud.path).code == 1);
+}

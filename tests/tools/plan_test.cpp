@@ -268,8 +268,10 @@ TEST_CASE("--between judges the way from each row to the next, and --check is ab
   CHECK(run_command("plan" + p.robot + " --cloud " + beside.path + " --configurations " + apart.path + " --check 0.08 --between").code == 0);
   const outcome csv = run_command(wide + " --between --csv");
   CHECK(csv.code == 2);
-  CHECK(csv.out.find(",nearest_z,way_state,way_lower,way_upper,way_time,way_part\n") != csv.out.npos);
-  CHECK(csv.out.ends_with(",,,,,\n"));
+  CHECK(csv.out.find(",nearest_z,way_state,way_lower,way_upper,way_time,way_from,way_to,way_part\n") != csv.out.npos);
+  CHECK(csv.out.ends_with(",,,,,,,\n"));
+  const auto way = lines(o)[0].at("way");
+  CHECK(csv.out.find(',' + way.at("time").dump() + ',' + way.at("from").dump() + ',' + way.at("to").dump() + ',') != csv.out.npos);
   CHECK(csv.err.find("on the way from row 0 to the next the margin may be fallen below") != csv.err.npos);
   const scratch_file one{".csv", "turn, slide\n0,0\n"}, blind{".xyz", "nan nan nan\n"};
   const auto alone = lines(run_command("plan" + p.robot + " --cloud " + beside.path + " --configurations " + one.path + " --between --check 0.1"));
@@ -279,4 +281,32 @@ TEST_CASE("--between judges the way from each row to the next, and --check is ab
   CHECK(lines(dark)[0].at("way").at("state") == "no_data");
   refuses(ask + " --between --attach tool=" + p.cloud.path, "--between: cannot be mixed with --attach");
   for (const std::string more : {"", " --between"}) refuses(ask + more + " --check -0.1", "--check: must not be negative (metres)");
+}
+
+TEST_CASE("a plan of more poses than are in memory at once has the same answers") {
+  constexpr int links = 1100, rows = 1000;  // blocks of 2^20 poses
+  std::string robot = "<robot name=\"many\"><link name=\"base\"/>\n", csv = "j0\n";
+  for (int k = 0; k < links; ++k) {
+    const std::string name = std::to_string(k);
+    robot += "<link name=\"l" + name + "\"><collision><geometry><sphere radius=\"0.01\"/></geometry></collision></link><joint name=\"j" + name + "\" type=\"" +
+             (k == 0 ? "continuous" : "fixed") + "\"><parent link=\"base\"/><child link=\"l" + name + "\"/><origin xyz=\"" + std::to_string(0.05 * k) + " 0 0\"/></joint>\n";
+  }
+  for (int row = 0; row < rows; ++row) csv += std::to_string(0.001 * row) + "\n";
+  const scratch_file urdf{".urdf", robot + "</robot>"}, path{".csv", csv}, spheres{".yaml", [] {
+    std::string text = "collision_spheres:\n";
+    for (int k = 0; k < links; ++k) text += "  l" + std::to_string(k) + ":\n    - center: [0, 0.02, 0]\n      radius: 0.01\n";
+    return text;
+  }()};
+  const scratch_file cloud{".xyz", "0 0.1 0\n"};
+  const std::string with = " --backend host --no-cache --packing " + spheres.path + " --robot " + urdf.path + " --cloud " + cloud.path;
+  const auto all = lines(run_command("plan --configurations " + path.path + with));
+  REQUIRE(all.size() == rows + 1);
+  CHECK(all.back().at("plan").at("rows") == rows);
+  for (const int row : {0, 952, 953, 954, 999}) {  // the second block begins at 953
+    const scratch_file one{".csv", "j0\n" + std::to_string(0.001 * row) + "\n"};
+    auto alone = lines(run_command("plan --configurations " + one.path + with))[0];
+    alone.at("row") = row;
+    CHECK(all[std::size_t(row)] == alone);
+  }
+  CHECK(all[952] != all[953]);
 }

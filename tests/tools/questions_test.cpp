@@ -4,6 +4,7 @@
 #include "tools/run_command.hpp"
 #include "tools/small_png.hpp"
 
+#include <clearance/io/pcd.hpp>
 #include <clearance/io/ply.hpp>
 
 #include <cmath>
@@ -275,7 +276,7 @@ TEST_CASE("what is wrong with zones and distances is one sentence that names the
   refuses(q.ask + " --signed", "--signed: is for --distances");
   refuses("query --robot " + q.urdf.path + " --cloud " + q.cloud.path + " --distances x.ply --signed", "--signed: is for --model triangles");
   refuses(q.ask + " --nearest 0", "--nearest: \"0\" is not a whole number from 1");
-  refuses(q.ask + " --nearest 1048577", "--nearest: must be at most 1048576");
+  refuses(q.ask + " --nearest 1048577", "--nearest: \"1048577\" is not a whole number from 1 to 1048576");
   refuses(q.ask + " --nearest 3 --deadline 5", "--deadline: is for the least distance alone, and cannot be mixed with --nearest");
   const scratch_file ply(".ply");
   for (const std::string value : {"0", "-1"}) refuses(q.ask + " --distances " + ply.path + " --d-max " + value, "--d-max: must be above 0");
@@ -659,4 +660,66 @@ TEST_CASE("--signed says how deep points are in a mesh") {
   CHECK(deep[2].part == 1);
   CHECK(parsed(run_command(ask)).at("distances").at("signed") == false);
   CHECK(records(ply.path)[0].distance == 0);
+}
+
+TEST_CASE("a complete answer by a deadline has the lower end of the answer without one, where links have other gaps") {
+  const question q;
+  const scratch_file spheres(".csv", "0,0,0,0.05\n");
+  const std::string ask = "query --backend host --no-cache --json --spheres 20 --robot " + q.urdf.path + " --attach tool=" + spheres.path + " --cloud " + q.cloud.path;
+  const auto plain = parsed(run_command(ask)), all = parsed(run_command(ask + " --deadline 1e9"));
+  CHECK(all.at("deadline").at("complete") == true);
+  for (const char* key : {"state", "distance", "lower", "upper", "point", "part"}) CHECK(all.at(key) == plain.at(key));
+}
+
+TEST_CASE("--min-support asks as many points as --support-limit says, and none where there are too few") {
+  const question q;
+  std::string dust;
+  for (int k = 0; k < 20; ++k) dust += "0.3 0 " + std::to_string(0.001 * k * k) + "\n";
+  const scratch_file cloud(".xyz", dust + "0.5 0 0\n0.5 0 0\n");
+  const std::string ask = q.robot + " --json --cloud " + cloud.path + " --min-support ";
+  const auto support = [&](const std::string& more) { return parsed(run_command(ask + more)).at("support"); };
+  CHECK(support("2@0").at("point") == 20);
+  CHECK(support("2@0 --support-limit 21").at("point") == 20);
+  const auto few = support("2@0 --support-limit 20");
+  CHECK(few.at("point").is_null());
+  CHECK(few.at("complete") == false);
+  CHECK(few.at("isolated") == 20);
+  const auto none = support("23@10 --support-limit 5");
+  CHECK(none.at("complete") == true);
+  CHECK(none.at("isolated") == 22);
+  CHECK(support("22@10 --support-limit 1").at("point") == 0);
+  for (const std::string limit : {"0", "1048577", "-1", "x"})
+    refuses(ask + "2@0 --support-limit " + limit, "--support-limit: \"" + limit + "\" is not a whole number from 1 to 1048576");
+  refuses(q.ask + " --support-limit 5", "--support-limit: is for --min-support");
+  CHECK(run_command("query --help").out.find("--support-limit") != std::string::npos);
+}
+
+TEST_CASE("a point that is certainly inside is a collision of --min-support, too") {
+  const question q;
+  const scratch_file inside(".xyz", "0 0 0.02\n0 0 0.021\n5 5 5\n");
+  const auto j = parsed(run_command(q.robot + " --json --cloud " + inside.path + " --min-support 2@0.01"));
+  CHECK(j.at("state") == "collision");
+  CHECK(j.at("support").at("state") == "collision");
+  CHECK(j.at("support").at("point") == j.at("point"));
+}
+
+TEST_CASE("what a small file would become is counted with all that is asked, and refused with the limit and the option that raises it") {
+  const question q;
+  const std::uint32_t points = 1'000'000;  // that are all 0, three bytes each
+  const std::string zeros(3 * std::size_t(points), '\0');
+  std::string data(zeros.size(), '\0');
+  data.resize(lzf_compress(zeros.data(), unsigned(zeros.size()), data.data(), unsigned(data.size())));
+  std::string packed = "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH " + std::to_string(points) + "\nHEIGHT 1\nDATA binary_compressed\n";
+  for (const std::size_t size : {data.size(), zeros.size()}) packed.append(reinterpret_cast<const char*>(&size), 4);
+  const scratch_file cloud(".pcd", packed + data), file(".ply"), scene(".glb"), rows(".csv", "\n");
+  const std::string with = " --backend host --model triangles --robot " + q.urdf.path + " --cloud " + cloud.path + " --unfold-limit 90";
+  CHECK(parsed(run_command("query --json" + with)).at("state") == "collision");
+  const std::string says = cloud.path + ": has 1000000 points, of which ", limit = " MiB would be made here, more than the limit of 90 MiB (--unfold-limit MiB raises it)";
+  refuses("query" + with + " --distances " + file.path, says + "125" + limit);
+  refuses("query" + with + " --scene " + scene.path, says + "186" + limit);
+  refuses("plan" + with + " --configurations " + rows.path, says + "141" + limit);
+  CHECK(run_command("plan" + with + "0 --configurations " + rows.path).code == 0);
+  // A file of that many bytes is no small one.
+  const scratch_file plain(".pcd", "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH 1000000\nHEIGHT 1\nDATA binary\n" + zeros);
+  CHECK(run_command("query --json --backend host --model triangles --robot " + q.urdf.path + " --cloud " + plain.path + " --unfold-limit 1 --distances " + file.path).code == 0);
 }

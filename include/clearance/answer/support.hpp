@@ -2,9 +2,14 @@
 #pragma once
 // How many points are around a few candidates.
 
+#include <clearance/backend/host.hpp>
+#include <clearance/frame/frame.hpp>
+#include <clearance/frame/root_test.hpp>
 #include <clearance/ground/ordered.hpp>
-#include <clearance/ground/pose.hpp>
+#include <clearance/ground/vectors.hpp>
 #include <clearance/point_source.hpp>
+#include <clearance/scan/interior.hpp>
+#include <clearance/traversal/any_depth.hpp>
 
 #include <cmath>
 
@@ -24,12 +29,17 @@ struct place_candidates {
   }
 };
 
-/// A ball in a cloud's frame that contains all that is within `radius` of a place in the world, whatever rounding does.
-inline ball around(position at, double radius, const world_transform& world_from_cloud) {
+/// Balls in a cloud's frame around a place in the world, whatever rounding does: what is within `radius` is in the ball, and what is within
+/// `all_within` of its middle (nothing, if that is negative) is within `radius`.
+struct place_around {
+  ball near;
+  double all_within;
+};
+inline place_around around(position at, double radius, const world_transform& world_from_cloud) {
   const auto norm = [](position p) { return std::hypot(p.x, p.y, p.z); };
   const position c = world_from_cloud.inverse()(at);
-  const double most = radius * (1 + 0x1p-16) + 0x1p-20 * norm(c) + 0x1p-40 * (norm(at) + norm(world_from_cloud.translation()));
-  return {{real(c.x), real(c.y), real(c.z)}, rounded_up(most)};
+  const double off = radius * 0x1p-16 + 0x1p-20 * norm(c) + 0x1p-40 * (norm(at) + norm(world_from_cloud.translation()));
+  return {{{real(c.x), real(c.y), real(c.z)}, rounded_up(radius + off)}, radius - off};
 }
 
 /// One more of a cloud's points: is it within `radius` of candidates? In world coordinates, in double; itself counts, too. Candidates that
@@ -48,17 +58,84 @@ struct count_support {
   CLEARANCE_HD void operator()(std::size_t i) const {
     const sample s = source[i];
     if (!s.valid() || !may_be_in(all, s.position)) return;
-    for (std::uint32_t c = 0; c < candidates; ++c) {
-      if (!may_be_in(near[c], s.position) || load_relaxed(support + c) >= enough) continue;
-      const position p = world_from_cloud(s.position), d{p.x - at[c].x, p.y - at[c].y, p.z - at[c].z};
-      if (fma(d.x, d.x, fma(d.y, d.y, d.z * d.z)) <= square) count_one(support + c);
-    }
+    for (std::uint32_t c = 0; c < candidates; ++c)
+      if (may_be_in(near[c], s.position) && load_relaxed(support + c) < enough && confirms(world_from_cloud(s.position), c)) count_one(support + c);
+  }
+  CLEARANCE_HD bool confirms(position p, std::uint32_t c) const {
+    const position d{p.x - at[c].x, p.y - at[c].y, p.z - at[c].z};
+    return fma(d.x, d.x, fma(d.y, d.y, d.z * d.z)) <= square;
   }
 
  private:
   CLEARANCE_HD static bool may_be_in(const ball& b, vec3 p) {
     const vec3 d = p - b.center;
     return d.x * d.x + d.y * d.y + d.z * d.z <= b.radius * b.radius * (1 + 4 * slack);
+  }
+};
+
+/// The same on a host, of neighbours at once: mostly a candidate's ball has all of them in it, or none.
+template <point_source Source>
+struct count_support_of_pieces {
+  count_support<Source> each;
+  const double* all_within;  ///< One a candidate.
+
+  void operator()(indices range) const {
+    with_vectors([&] {
+      for (std::size_t i = range.begin; i < range.end; i += most) count(i, std::min(range.end, i + most));
+    });
+  }
+
+ private:
+  static constexpr std::size_t most = 1024;
+
+  void count(std::size_t begin, std::size_t end) const {
+    position at[most];
+    extent box;
+    std::uint32_t valid = 0;
+    for (std::size_t i = begin; i < end; ++i)
+      if (const sample s = each.source[i]; s.valid()) box.add(s.position), at[valid++] = each.world_from_cloud(s.position);
+    if (valid == 0 || !(nearest(box, each.all.center) <= each.all.radius)) return;
+    for (std::uint32_t c = 0; c < each.candidates; ++c) {
+      const ball& near = each.near[c];
+      if (!(nearest(box, near.center) <= near.radius) || load_relaxed(each.support + c) >= each.enough) continue;
+      std::uint32_t its = farthest(box, near.center) <= all_within[c] ? valid : 0;
+      if (its == 0)
+        for (std::uint32_t j = 0; j < valid; ++j) its += each.confirms(at[j], c);
+      if (its != 0) count_one(each.support + c, its);
+    }
+  }
+  static double nearest(const extent& box, vec3 p) {
+    const auto beyond = [](double low, double high, double x) { return std::fmax(std::fmax(low - x, x - high), 0); };
+    return norm(beyond(box.lower.x, box.upper.x, p.x), beyond(box.lower.y, box.upper.y, p.y), beyond(box.lower.z, box.upper.z, p.z)) * (1 - 0x1p-40);
+  }
+  static double farthest(const extent& box, vec3 p) {
+    const auto away = [](double low, double high, double x) { return std::fmax(high - x, x - low); };
+    return norm(away(box.lower.x, box.upper.x, p.x), away(box.lower.y, box.upper.y, p.y), away(box.lower.z, box.upper.z, p.z)) * (1 + 0x1p-40);
+  }
+  static double norm(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
+};
+
+/// Which candidates are certainly inside a part's solid.
+template <class PartView, point_source Source>
+struct find_inside {
+  const PartView* parts;
+  const frames::placement* places;
+  std::uint32_t part_count;
+  Source source;
+  vec3 origin;
+  std::uint32_t first;
+  const std::uint32_t* number;
+  std::uint32_t* inside;  ///< One a candidate: becomes 1.
+  any_depth walk;
+
+  CLEARANCE_HD void operator()(std::size_t c) const {
+    if (number[c] < first || number[c] - first >= source.size()) return;
+    const vec3 p = source[number[c] - first].position - origin;
+    for (std::uint32_t k = 0; k < part_count; ++k) {
+      if (!frames::may_reach(places[k].around, 0, p)) continue;
+      const vec3 q = places[k].part_from_cloud(p);
+      if (parts[k].interior.inside(q) && scan::certainly_inside(parts[k], q, places[k].error, walk)) inside[c] = 1;
+    }
   }
 };
 

@@ -84,6 +84,22 @@ struct tree_search {
     return look(c);
   }
 
+  /// May all of a node's points be as good as one another, for all that bounds can tell? Then it is quicker to look at each than to open nodes.
+  bool is_small(const pair& p) const {
+    return p.by_points && !p.whole && p.level != 0 && body.parts[p.part].tree.is_leaf(p.node) && tree.balls[node_of(p)].radius <= bounds[p.part].most;
+  }
+  /// Looks at all points of a node that is small. Those in one place, neighbours mostly, are looked at once.
+  void look_at_points(const pair& p) const {
+    pair its = p;
+    its.level = 0;
+    std::uint32_t begin = p.at, end = p.at + 1;
+    for (std::uint32_t level = p.level; level-- > 0;) {
+      const std::uint32_t last = end - 1;
+      end = tree.end_below(level, last), begin = tree.first_below(level, begin);
+    }
+    for (its.at = begin; its.at < end; ++its.at) look_at_point(its, tree.points[its.at]);
+  }
+
   /// Is there nothing left to learn from it?
   CLEARANCE_HD bool settled(const pair& p) const {
     if (!(p.bound <= reach(p.part))) return true;
@@ -111,9 +127,10 @@ struct tree_search {
 
   /// What a pair can be worth, and which of the two is to be opened; false if nothing in it matters, or all has been looked at.
   CLEARANCE_HD bool look(pair& p) const {
-    if (p.level == 0) return look_at_point(p);
+    if (p.level == 0) return look_at_point(p, tree.points[p.at]);
     const ball b = tree.balls[node_of(p)];
     if (!(b.radius >= 0)) return false;  // no point of it counts
+    if (b.radius <= bounds[p.part].most && in_one_place(p)) return look_at_point(p, {tree.boxes[node_of(p)].lower, least(p)});
     const vec3 x = b.center - body.origin;
     if (solid && p.whole && !look_inside(p, b, x)) return false;
     p.by_points = true;
@@ -147,8 +164,25 @@ struct tree_search {
     return rough_max(rough_length(beyond), rough_length(x - w) - b.radius * (1 + slack));
   }
 
-  CLEARANCE_HD bool look_at_point(pair& p) const {
-    const cloud_tree::numbered_point here = tree.points[p.at];
+  /// Are all of a node's points in one place in the part's frame, as that is computed? Then the one of the lowest number stands for them:
+  /// equal points, and others that are nearer to one another than floats there can tell. What is computed rises or falls with each coordinate,
+  /// so the box's corners tell. (A sum of 0 has a sign that they do not.)
+  CLEARANCE_HD bool in_one_place(const pair& p) const {
+    const extent& box = tree.boxes[node_of(p)];
+    if (box.lower == box.upper) return true;
+    const rigid_transform& to = body.places[p.part].part_from_cloud;
+    const vec3 low = box.lower - body.origin, high = box.upper - body.origin;
+    const auto one = [&](vec3 row, real t) {
+      const auto along = [&](real x, real y, real z) { return fma(row.x, x, fma(row.y, y, fma(row.z, z, t))); };
+      const bool x = row.x < 0, y = row.y < 0, z = row.z < 0;
+      const real least = along(x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z);
+      return least != 0 && least == along(x ? low.x : high.x, y ? low.y : high.y, z ? low.z : high.z);
+    };
+    return one(to.row[0], to.translation.x) && one(to.row[1], to.translation.y) && one(to.row[2], to.translation.z);
+  }
+
+  /// `here`: the pair's point, or one that stands for a node.
+  CLEARANCE_HD bool look_at_point(pair& p, const cloud_tree::numbered_point& here) const {
     if (here.number == none) return false;  // no point, and what a volume says of NaN is its own business
     if (solid && p.whole) return visit(here, p.part), false;
     const auto& its = body.parts[p.part].tree;

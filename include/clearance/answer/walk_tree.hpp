@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Down the trees over points and parts by one thread, nearest first.
+// Down the trees over points and parts by one thread on a host, nearest first.
 
 #include <clearance/answer/tree_search.hpp>
 
@@ -34,6 +34,10 @@ void walk_trees(const Search& search, std::vector<pending_pair<typename Search::
     const typename Search::pair top = pending.back().pair;
     pending.pop_back();
     if (search.settled(top)) continue;
+    if (search.is_small(top)) {
+      search.look_at_points(top);
+      continue;
+    }
     for (std::uint32_t j = 0, count = search.children(top); j < count; ++j)
       if (search.child(top, j, next)) push(next);
   }

@@ -7,6 +7,9 @@
 #include <clearance/cloud_tree/tree_view.hpp>
 #include <clearance/scan/tally.hpp>
 
+#include <algorithm>
+#include <tuple>
+
 namespace clearance::cloud_tree {
 
 /// Owns a tree; built anew for every frame, in memory that is kept. The valid points are sorted along a Z-curve: the rows of a
@@ -21,6 +24,7 @@ class host_tree {
     read(workers, source, dropped);
     encode(workers);
     for (int shift = 0; shift < 3 * morton_grid::bits; shift += morton_grid::bits) sort_by(workers, shift);
+    sort_dense_cells(workers);
     put_up(workers);
   }
   const view_type& view() const { return view_; }
@@ -28,8 +32,12 @@ class host_tree {
  private:
   static constexpr std::size_t piece = 16384;
   static constexpr std::uint32_t digits = 1 << morton_grid::bits;
+  static constexpr std::size_t dense = 256;
   struct coded {
     std::uint32_t code, at;
+  };
+  struct cell {
+    std::size_t begin, end;
   };
 
   static std::size_t pieces(std::size_t n) { return (n + piece - 1) / piece; }
@@ -99,6 +107,29 @@ class host_tree {
     codes_.swap(others_);
   }
 
+  /// Where very many points are in one cell of the curve, neighbours come together by a curve of that cell's own, and equal ones in any case.
+  void sort_dense_cells(host_workers& workers) {
+    cells_.clear();
+    const auto code_less = [](const coded& a, const coded& b) { return a.code < b.code; };
+    for (std::size_t i = 0; i + dense < codes_.size(); i += dense)
+      if (codes_[i].code == codes_[i + dense].code && (cells_.empty() || i >= cells_.back().end)) {
+        const auto its = std::equal_range(codes_.begin(), codes_.end(), codes_[i], code_less);
+        cells_.push_back({std::size_t(its.first - codes_.begin()), std::size_t(its.second - codes_.begin())});
+      }
+    workers.for_pieces(cells_.size(), 1, [&](std::size_t k, std::size_t) { sort_cell(cells_[k].begin, cells_[k].end); });
+  }
+  void sort_cell(std::size_t begin, std::size_t end) {
+    extent box;
+    for (std::size_t i = begin; i < end; ++i) box.add(read_[codes_[i].at].at);
+    if (box.lower == box.upper) return;
+    const morton_grid grid(box.lower, box.upper);
+    for (std::size_t i = begin; i < end; ++i) codes_[i].code = grid(read_[codes_[i].at].at);
+    std::sort(codes_.begin() + std::ptrdiff_t(begin), codes_.begin() + std::ptrdiff_t(end), [this](const coded& a, const coded& b) {
+      const vec3 p = read_[a.at].at, q = read_[b.at].at;
+      return std::tie(a.code, p.x, p.y, p.z, a.at) < std::tie(b.code, q.x, q.y, q.z, b.at);
+    });
+  }
+
   void put_up(host_workers& workers) {
     points_.resize(view_.count), boxes_.resize(view_.nodes()), balls_.resize(view_.nodes()), least_.resize(view_.nodes());
     view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(), view_.least = least_.data();
@@ -137,6 +168,7 @@ class host_tree {
   std::vector<numbered_point> read_, points_;
   std::vector<std::uint32_t> kept_, starts_, least_;
   std::vector<coded> codes_, others_;
+  std::vector<cell> cells_;
   std::vector<extent> boxes_;
   std::vector<ball> balls_;
 };

@@ -44,9 +44,9 @@ CLEARANCE_HD inline double arithmetic_error(double extent) { return fma(unit_err
 /// All that a distance to it can be off. `poses` is the sum of all ways between frames, `origin` that from the source's own
 /// zero to the origin. A point's position is at most extent + distance + origin long, and off by `relative` of that; what
 /// `source_share` covers of the first two is in unit_error, which counts the extent twice. Nothing is certain of a source that is off
-/// by a quarter of its distances, or says no such numbers.
+/// by a quarter of its distances, or says no such numbers, nor of a part whose extent is none.
 CLEARANCE_HD inline float_error error_near(double extent, double poses, double origin, const position_error& off) {
-  if (!(off.absolute >= 0 && off.relative >= 0 && off.relative < 0.25)) return {double(infinity), unit_error};
+  if (!(off.absolute >= 0 && off.relative >= 0 && off.relative < 0.25 && extent >= 0)) return {double(infinity), unit_error};
   const double here = arithmetic_error(extent) + fma(pose_error, poses, fma(off.relative, origin, off.absolute));
   if (off.relative <= source_share) return {here, unit_error};
   const double more = off.relative - source_share;
@@ -82,20 +82,23 @@ CLEARANCE_HD inline placement place(const part_facts& facts, const world_transfo
   const position start = part_from_world(world_from_cloud(origin));
   part_from_cloud.m[0][3] = start.x, part_from_cloud.m[1][3] = start.y, part_from_cloud.m[2][3] = start.z;
   const position center = part_from_cloud.inverse()(facts.center);
-  const double extent = norm({facts.center.x, facts.center.y, facts.center.z}) + facts.radius + norm(start);
+  const double radius = facts.radius >= 0 ? facts.radius : infinity;
+  const double extent = norm({facts.center.x, facts.center.y, facts.center.z}) + radius + norm(start);
   const double origin_away = norm({origin.x, origin.y, origin.z});
   const double poses = norm(world_from_part.translation()) + norm(world_from_cloud.translation()) + origin_away;
   placement p;
   p.part_from_cloud = to_floats(part_from_cloud);
   // Only what arithmetic can do to the points as they were read: bounds are about what is computed.
-  p.around = {{real(center.x), real(center.y), real(center.z)}, rounded_up(facts.radius + 2 * arithmetic_error(extent))};
+  p.around = {{real(center.x), real(center.y), real(center.z)}, rounded_up(radius + 2 * arithmetic_error(extent))};
   p.error = rounded_up(error_near(extent, poses, origin_away, off).here);
   p.world_from_part = world_from_part;
   return p;
 }
 
-/// By how much a part's solid may be nearer than what a distance is computed to.
-CLEARANCE_HD inline double slop(const part_facts& f) { return double(f.gap) + double(f.tolerance); }
+/// By how much a part's solid may be nearer than what a distance is computed to; where facts are no lengths, nobody knows.
+CLEARANCE_HD inline double slop(const part_facts& f) {
+  return f.gap >= 0 && f.tolerance >= 0 ? double(f.gap) + double(f.tolerance) : double(infinity);
+}
 
 /// What all parts of a frame have in common.
 struct frame_facts {

@@ -104,11 +104,11 @@ CLEARANCE_HD inline void lower_word(std::uint32_t* word, std::uint32_t value) {
     if (shared.compare_exchange_weak(seen, value, std::memory_order_relaxed)) break;
 #endif
 }
-CLEARANCE_HD inline std::uint32_t count_one(std::uint32_t* word) {
+CLEARANCE_HD inline std::uint32_t count_one(std::uint32_t* word, std::uint32_t by = 1) {
 #if defined(__CUDA_ARCH__)
-  return atomicAdd(word, 1u);
+  return atomicAdd(word, by);
 #else
-  return std::atomic_ref<std::uint32_t>(*word).fetch_add(1, std::memory_order_relaxed);
+  return std::atomic_ref<std::uint32_t>(*word).fetch_add(by, std::memory_order_relaxed);
 #endif
 }
 

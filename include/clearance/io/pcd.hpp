@@ -114,7 +114,7 @@ inline std::vector<Eigen::Vector3d> pcd_compressed(std::string_view rest, const 
   const std::uint64_t memory = unpacked + header.points * (sizeof(Eigen::Vector3d) + sizeof(vec3));
   if (memory > limits.unfolded)
     refuse(file, std::to_string(rest.size()) + " bytes unfold to " + mebibytes(memory) +
-                     " of points, more than the limit of " + mebibytes(limits.unfolded) + " (read_limits::unfolded)");
+                     " of points, more than the limit of " + mebibytes(limits.unfolded) + " (read_limits::unfolded), which --unfold-limit of the command raises");
   std::vector<char> data(unpacked);
   if (lzf_decompress(rest.data(), packed, data.data(), unpacked) != unpacked)
     refuse(file, "the compressed block is damaged");

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -20,18 +21,32 @@ struct ply_column {
   std::variant<std::vector<float>, std::vector<std::uint8_t>, std::vector<std::int32_t>, std::vector<std::uint32_t>> values;
 };
 
-/// A PLY file, binary and little-endian: positions in double, then the columns in their order. Throws std::invalid_argument if a
-/// column has not one value a point, or a name that is no word.
-inline std::string ply_bytes(std::span<const Eigen::Vector3d> points, std::span<const ply_column> columns, const std::string& comment = {}) {
+/// Points with their columns, of which a file is made one after another.
+struct ply_piece {
+  std::vector<Eigen::Vector3d> points;
+  std::vector<ply_column> columns;
+};
+
+/// What stands before the records of `count` points with such columns. Throws std::invalid_argument if a column has a name that is no word.
+inline std::string ply_header(std::size_t count, std::span<const ply_column> columns, const std::string& comment = {}) {
   constexpr const char* kinds[] = {"float", "uchar", "int", "uint"};
-  byte_writer out;
-  out.put(std::string_view("ply\nformat binary_little_endian 1.0\n"));
-  if (!comment.empty()) out.put(std::string_view("comment " + printable(comment) + '\n'));
-  out.put(std::string_view("element vertex " + std::to_string(points.size()) + "\nproperty double x\nproperty double y\nproperty double z\n"));
-  std::size_t record = 3 * sizeof(double);
+  std::string out = "ply\nformat binary_little_endian 1.0\n";
+  if (!comment.empty()) out += "comment " + printable(comment) + '\n';
+  out += "element vertex " + std::to_string(count) + "\nproperty double x\nproperty double y\nproperty double z\n";
   for (const ply_column& column : columns) {
     if (column.name.empty() || std::ranges::any_of(column.name, [](char c) { return c <= ' ' || c > '~'; }))
       throw std::invalid_argument("clearance: " + io::quoted(column.name) + " is no name of a PLY column");
+    out += std::string("property ") + kinds[column.values.index()] + ' ' + column.name + '\n';
+  }
+  return out + "end_header\n";
+}
+
+/// The records of points: positions in double, then the columns in their order. Throws std::invalid_argument if a column has not one value
+/// a point.
+inline std::string ply_records(std::span<const Eigen::Vector3d> points, std::span<const ply_column> columns) {
+  byte_writer out;
+  std::size_t record = 3 * sizeof(double);
+  for (const ply_column& column : columns)
     std::visit(
         [&](const auto& values) {
           if (values.size() != points.size())
@@ -40,10 +55,7 @@ inline std::string ply_bytes(std::span<const Eigen::Vector3d> points, std::span<
           record += sizeof values[0];
         },
         column.values);
-    out.put(std::string_view(std::string("property ") + kinds[column.values.index()] + ' ' + column.name + '\n'));
-  }
-  out.put(std::string_view("end_header\n"));
-  out.reserve(out.bytes().size() + record * points.size());
+  out.reserve(record * points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (int k = 0; k < 3; ++k) out.put(points[i][k]);
     for (const ply_column& column : columns)
@@ -59,9 +71,32 @@ inline std::string ply_bytes(std::span<const Eigen::Vector3d> points, std::span<
   return out.bytes();
 }
 
+/// A PLY file, binary and little-endian. Throws std::invalid_argument as the two above.
+inline std::string ply_bytes(std::span<const Eigen::Vector3d> points, std::span<const ply_column> columns, const std::string& comment = {}) {
+  return ply_header(points.size(), columns, comment) + ply_records(points, columns);
+}
+
 /// Writes it, whole or not at all. Throws std::runtime_error naming the file.
 inline void save_ply(const std::string& file, std::span<const Eigen::Vector3d> points, std::span<const ply_column> columns, const std::string& comment = {}) {
   write_bytes(file, ply_bytes(points, columns, comment));
+}
+
+/// The same of `count` points that need not be in memory at once: `next()` gives a ply_piece, at least once, and as often as points are
+/// missing. All pieces have columns of the same names and kinds. Throws std::invalid_argument if a piece has none of the missing points, or
+/// more.
+template <class Next>
+void save_ply_pieces(const std::string& file, std::size_t count, Next next, const std::string& comment = {}) {
+  std::size_t done = 0;
+  bool begun = false;
+  write_pieces(file, [&]() -> std::string {
+    if (begun && done == count) return {};
+    const ply_piece piece = next();
+    if (piece.points.size() > count - done || (piece.points.empty() && count != 0))
+      throw std::invalid_argument("clearance: a piece of " + std::to_string(piece.points.size()) + " points where " + std::to_string(count - done) + " are missing");
+    done += piece.points.size();
+    const std::string before = std::exchange(begun, true) ? std::string() : ply_header(count, piece.columns, comment);
+    return before + ply_records(piece.points, piece.columns);
+  });
 }
 
 }  // namespace clearance::io

@@ -92,7 +92,7 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
   if (const std::uint64_t memory = 4 * width * height; memory > limits.unfolded)  // of the pixels, and while they are unpacked
     refuse(file, std::to_string(packed) + " bytes unfold to " + std::to_string(width) + "x" + std::to_string(height) +
                      " pixels of " + mebibytes(memory) + ", more than the limit of " + mebibytes(limits.unfolded) +
-                     " (read_limits::unfolded)");
+                     " (read_limits::unfolded), which --unfold-limit of the command raises");
   image.width = std::size_t(width), image.height = std::size_t(height);
   return image;
 }

@@ -89,14 +89,20 @@ class file_beside {
 
 }  // namespace detail
 
-/// Replaces the file's content: all of it, or nothing. The bytes go to a new file beside it, reach the disk, and take
-/// its name (and its permissions). Throws std::runtime_error naming the file, which is then as it was.
-inline void write_bytes(const std::string& file, std::string_view bytes) {
+/// As the next, of what `next()` gives until that is empty.
+template <class Next>
+void write_pieces(const std::string& file, Next next) {
   const auto there = check_target(file);
   detail::file_beside made(file, there ? 0600 : 0666);
   if (there) made.allow(there->st_mode & 0777);
-  made.write(bytes);
+  for (auto piece = next(); !piece.empty(); piece = next()) made.write(piece);
   made.put_in_place();
+}
+
+/// Replaces the file's content: all of it, or nothing. The bytes go to a new file beside it, reach the disk, and take
+/// its name (and its permissions). Throws std::runtime_error naming the file, which is then as it was.
+inline void write_bytes(const std::string& file, std::string_view bytes) {
+  write_pieces(file, [&] { return std::exchange(bytes, {}); });
 }
 
 /// As check_target, and refuses a file that `inputs` has seen.

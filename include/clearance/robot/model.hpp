@@ -9,7 +9,7 @@
 namespace clearance {
 
 /// What an operation takes of a robot: part views in the memory of a backend, and their facts on the host.
-/// Whoever has trees of his own fills this in himself.
+/// Whoever has trees of his own fills this in himself; his facts are those of the part views, and are checked as a model's.
 template <class PartView>
 struct model_view {
   using part_type = PartView;
@@ -21,6 +21,12 @@ struct model_view {
   std::size_t size() const { return facts.size(); }
 };
 
+/// Throws std::invalid_argument if facts of a part are none. Every view that nobody has checked passes here.
+template <class PartView>
+void check(const model_view<PartView>& view) {
+  for (std::size_t k = 0; k < view.size(); ++k) check(view.facts[k], std::int64_t(k));
+}
+
 /// What operations take for a robot: a `model` or its view. `view_of` gives the view.
 template <class Robot>
 concept robot = requires(const Robot r) { { r.facts } -> std::convertible_to<std::span<const part_facts>>; r.parts; } ||
@@ -30,7 +36,7 @@ auto view_of(const Robot& r) {
   if constexpr (requires { r.view(); })
     return r.view();
   else
-    return r;
+    return check(r), r;
 }
 
 template <class Model>
@@ -45,10 +51,12 @@ class model {
   using part_type = Part;
   using view_type = decltype(std::declval<const Part&>().view());
 
+  /// Throws std::invalid_argument if there is no part, or facts of one are none.
   explicit model(std::vector<Part> parts, const B& on = {}) : parts_(std::move(parts)) {
     if (parts_.empty()) throw std::invalid_argument("clearance::model: there are no parts");
     std::vector<view_type> views;
     for (const Part& p : parts_) {
+      check(p.facts, std::int64_t(facts_.size()));
       views.push_back(p.view());
       facts_.push_back(p.facts);
       depth_ = std::max(depth_, views.back().tree.depth());

@@ -4,6 +4,8 @@
 #include <clearance/bvh/bvh.hpp>
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace clearance {
 
@@ -14,6 +16,19 @@ struct part_facts {
   real gap = 0;        ///< The solid's largest distance to the primitives, certified; infinite: no certificate.
   real tolerance = 0;  ///< How far the solid may differ from the true surface, either way (tessellation).
 };
+
+/// Throws std::invalid_argument unless `metres` is a length, from 0 to infinity: what is less, or no number, would make points free that are not.
+inline void check_length(double metres, const std::string& what) {
+  if (!(metres >= 0)) throw std::invalid_argument("clearance: " + what + " is " + std::to_string(metres) + " m, which must be 0 or more");
+}
+/// The one rule of what is known of a part; `number` says in the message which it is.
+inline void check(const part_facts& facts, std::int64_t number = -1) {
+  const std::string of = number < 0 ? " of a part" : " of part " + std::to_string(number);
+  check_length(facts.gap, "the gap" + of);
+  check_length(facts.tolerance, "the tolerance" + of);
+  check_length(facts.radius, "the radius" + of);
+  if (!is_finite(facts.center)) throw std::invalid_argument("clearance: the centre" + of + " is not finite");
+}
 
 /// For primitives that know their own inside: nothing else is asked.
 struct no_interior {
@@ -102,9 +117,11 @@ struct part {
 template <class Tree, class Interior>
 part(Tree, Interior, part_facts) -> part<Tree, Interior>;
 
-/// A part whose primitives are all there is of the solid; or, with a certified `gap`, all but that. Metres.
+/// A part whose primitives are all there is of the solid; or, with a certified `gap`, all but that. Metres. Throws std::invalid_argument if
+/// gap or tolerance is negative or NaN.
 template <bounding_volume V, primitive P>
 part<bvh<V, P>> make_part(bvh<V, P> tree, double gap = 0, double tolerance = 0) {
+  check_length(gap, "the gap of a part"), check_length(tolerance, "the tolerance of a part");
   const ball around = enclosing_ball(std::span<const P>(tree.primitives));
   return {std::move(tree), {}, {around.center, around.radius, rounded_up(gap), rounded_up(tolerance)}};
 }

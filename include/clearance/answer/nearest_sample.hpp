@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How near the k nearest points of each part are at most, before all points are asked: from those that are likely to be near.
+
+#include <clearance/frame/clouds.hpp>
+#include <clearance/robot/model.hpp>
+#include <clearance/scan/interior.hpp>
+#include <clearance/scan/tile_scan.hpp>
+#include <clearance/traversal/any_depth.hpp>
+#include <clearance/visitor/nearest.hpp>
+
+#include <algorithm>
+
+namespace clearance::pairwise {
+
+/// The k least of the distances that it is given.
+class least_distances {
+ public:
+  least_distances(std::size_t k, real bound) : k_(k), bound_(bound) {}
+
+  /// What is farther is none of them.
+  real bound() const { return heap_.size() < k_ ? bound_ : heap_.front(); }
+  void add(real distance) {
+    if (!(distance <= bound())) return;
+    heap_.push_back(distance), std::push_heap(heap_.begin(), heap_.end());
+    if (heap_.size() > k_) std::pop_heap(heap_.begin(), heap_.end()), heap_.pop_back();
+  }
+
+ private:
+  std::size_t k_;
+  real bound_;
+  std::vector<real> heap_;
+};
+
+/// On a host that is worth it: with a bound nearly all walks end at a root. A device has asked all points by the time this would take.
+template <class On>
+struct nearest_sample {
+  template <class PartView, class Clouds>
+  static void lower(const On&, const model_view<PartView>&, std::span<const Eigen::Isometry3d>, const Clouds&, std::size_t, std::vector<real>&) {}
+};
+
+template <>
+struct nearest_sample<host> {
+  /// Lowers `bounds`, one a part, to where k points are for certain, if so many are found.
+  template <class PartView, class Clouds>
+  static void lower(const host& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
+                    std::vector<real>& bounds) {
+    host_workers workers(on);
+    std::vector<least_distances> found;
+    for (const real bound : bounds) found.emplace_back(k, bound);
+    frames::cloud_frame frame;
+    std::vector<extent> boxes;
+    frames::for_each_turn(frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn&) {
+      boxes.assign((source.size() + scan::tile_points - 1) / scan::tile_points, {});
+      workers.for_pieces(boxes.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) boxes[n] = box_of_tile(source, frame.origin, n);
+      });
+      workers.for_pieces(model.size(), 1, [&](std::size_t part, std::size_t) {
+        with_vectors([&] { ask(source, frame, boxes, model, std::uint32_t(part), 4 * k + 4096, found[part]); });
+      });
+    });
+    for (std::size_t part = 0; part < bounds.size(); ++part) bounds[part] = found[part].bound();
+  }
+
+ private:
+  template <point_source S>
+  static extent box_of_tile(const S& source, vec3 origin, std::size_t n) {
+    const std::size_t begin = n * scan::tile_points;
+    extent box;
+    scan::tally uncounted;
+    if (begin + scan::tile_points <= source.size() && scan::survey(source, begin, box, uncounted)) return {box.lower - origin, box.upper - origin};
+    scan::tile t;
+    t.load(source, begin, std::min(scan::tile_points, source.size() - begin), 1, uncounted);
+    t.subtract(origin);
+    return scan::box_of(t);
+  }
+
+  /// Tiles by how near they are to the part's ball, until none can be nearer, or enough points were asked.
+  template <point_source S, class PartView>
+  static void ask(const S& source, const frames::cloud_frame& frame, const std::vector<extent>& boxes, const model_view<PartView>& model, std::uint32_t part,
+                  std::size_t most, least_distances& found) {
+    const frames::placement& place = frame.places[part];
+    const PartView& its = model.parts[part];
+    const any_depth walk{stack_need(model.depth, model.width)};
+    std::vector<std::pair<real, std::uint32_t>> order;
+    for (std::uint32_t n = 0; n < boxes.size(); ++n)
+      if (const real away = length_to(boxes[n], place.around.center) - place.around.radius; away <= found.bound()) order.emplace_back(away, n);
+    const auto later = [](const auto& a, const auto& b) { return a > b; };
+    std::make_heap(order.begin(), order.end(), later);
+    for (std::size_t asked = 0; !order.empty() && asked < most;) {
+      std::pop_heap(order.begin(), order.end(), later);
+      const auto [away, n] = order.back();
+      order.pop_back();
+      if (!(away <= found.bound())) return;
+      for (std::size_t i = std::size_t(n) * scan::tile_points, end = std::min(source.size(), i + scan::tile_points); i < end; ++i) {
+        const sample s = source[i];
+        if (!s.valid() || !frames::may_reach(place.around, found.bound(), s.position - frame.origin)) continue;
+        ++asked;
+        const vec3 q = place.part_from_cloud(s.position - frame.origin);
+        if constexpr (scan::has_interior<PartView>)
+          if (its.interior.inside(q)) {
+            found.add(0);
+            continue;
+          }
+        nearest near{found.bound()};
+        walk(its.tree, q, near);
+        if (near.best != nearest::none) found.add(near.within);
+      }
+    }
+  }
+  /// Of no points infinity.
+  static real length_to(const extent& box, vec3 p) {
+    const auto beyond = [](real low, real high, real x) { return max(max(low - x, x - high), 0); };
+    if (!(box.lower.x <= box.upper.x)) return infinity;
+    return length({beyond(box.lower.x, box.upper.x, p.x), beyond(box.lower.y, box.upper.y, p.y), beyond(box.lower.z, box.upper.z, p.z)});
+  }
+};
+
+}  // namespace clearance::pairwise
