@@ -14,6 +14,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <set>
 
 using namespace clearance;
 
@@ -75,9 +76,11 @@ int run(const query_options& asked) {
                                           " frames (one row would hold for all)");
   std::vector<Eigen::Isometry3d> waypoints;
   if (!asked.recording.plan.empty()) waypoints = placed_rows(asked, robot, read_rows(asked, robot.description, asked.recording.plan), asked.recording.plan);
+  std::set<std::string> names;
   const auto load = [&](std::size_t k) {
     shown.show("frame " + std::to_string(k + 1) + '/' + std::to_string(frames.size()));
-    observation frame = observe(frames[k]);
+    if (!asked.recording.merge) names.clear();  // the line says which frame it is
+    observation frame = observe(frames[k], names);
     print(frame.notes, shown);
     return frame;
   };
