@@ -4,9 +4,10 @@
 using namespace clearance;
 
 void asked_clouds::load(const query_options& asked, progress& shown, std::vector<std::string>& notes) {
+  std::set<std::string> names;
   for (const cloud_options& from : asked.clouds) {
     shown.show("reading " + from.file);
-    files.push_back(observe(from));
+    files.push_back(observe(from, names));
     notes.insert(notes.end(), files.back().notes.begin(), files.back().notes.end());
   }
 }

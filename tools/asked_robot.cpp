@@ -2,6 +2,7 @@
 #include "asked_robot.hpp"
 
 #include "command_line.hpp"
+#include "kept_packings.hpp"
 #include "robot_bodies.hpp"
 
 #include <clearance/io/mesh.hpp>
@@ -142,6 +143,7 @@ std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const as
 
 std::vector<body> make_bodies(const query_options& asked, const asked_robot& robot, progress& shown,
                               std::vector<std::string>& notes) {
+  if (asked.model == model_kind::spheres) check_kept(body_options_of(asked).cache, !asked.cache.empty(), notes);
   std::vector<io::packed_part> given;
   if (!asked.packing.empty()) given = io::within_memory(asked.packing, [&] { return io::load_spheres(asked.packing); });
   const auto spheres_of = assigned(given, robot.description, asked);

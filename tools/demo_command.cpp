@@ -3,6 +3,8 @@
 #include "backends.hpp"
 #include "command_line.hpp"
 #include "demo_scene.hpp"
+#include "kept_packings.hpp"
+#include "messages.hpp"
 #include "robot_bodies.hpp"
 #include "stopwatch.hpp"
 
@@ -77,8 +79,11 @@ int run(const demo_settings& settings) {
   }
   body_account account;
   const body_options how{.pack = {.count = count}, .both = true, .cache = chosen_cache(settings.no_cache, settings.cache)};
+  std::vector<std::string> notes;
+  check_kept(how.cache, !settings.cache.empty(), notes);
   const std::vector<body> bodies = make_bodies(sources, how, shown, account);
   shown.clear();
+  say_notes(notes);
   const double seconds = clock.lap();
 
   std::size_t spheres = 0;

@@ -70,7 +70,7 @@ distances_written write_distances(const query_options& asked, const asked_clouds
 }
 
 io::scene_points drawn(const query_options& asked, const observation& cloud, const seen_points& seen, const point_distances* found, std::size_t first) {
-  io::scene_points made{.name = cloud.from.file, .points = {}, .pose = seen.pose};
+  io::scene_points made{.name = cloud.name, .points = {}, .pose = seen.pose};
   std::visit(
       [&](const auto& source) {
         for (std::size_t i = 0; i < source.size(); ++i) {

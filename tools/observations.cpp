@@ -29,9 +29,11 @@ void check_made(const cloud_options& from, std::uint64_t points, std::uint64_t e
 
 std::uint64_t observation::size() const { return image() ? image()->pixels.size() : points()->points.size(); }
 
-observation observe(const cloud_options& from) {
+observation observe(const cloud_options& from, std::set<std::string>& taken) {
   observation made;
   made.from = from;
+  made.name = from.file;
+  for (int k = 2; !taken.insert(made.name).second; ++k) made.name = from.file + " (" + std::to_string(k) + ')';
   if (from.is_image()) {
     made.data = io::load_png(from.file, from.limits);
     check_made(from, made.size(), sizeof(std::uint16_t), "pixels");

@@ -9,11 +9,14 @@
 #include <clearance/points/masked.hpp>
 
 #include <map>
+#include <set>
+#include <string>
 #include <variant>
 
 /// One loaded --cloud.
 struct observation {
   cloud_options from;
+  std::string name;  // in the answer: that of the file; "c.xyz (2)" where it is there again
   std::variant<clearance::io::cloud, clearance::io::depth_frame> data;
   std::uint64_t zeros = 0;  // records that are (0,0,0) and were taken for missing, so that they are NaN in `data`
   std::vector<std::string> notes;
@@ -45,5 +48,5 @@ struct observation {
   std::uint64_t hidden_ = 0;
 };
 
-/// Reads the file. Throws if it is damaged.
-observation observe(const cloud_options& from);
+/// Reads the file. Throws if it is damaged. `taken`: the names of others, and of this one afterwards.
+observation observe(const cloud_options& from, std::set<std::string>& taken);

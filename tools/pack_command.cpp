@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "command_line.hpp"
 #include "json_text.hpp"
+#include "kept_packings.hpp"
 #include "messages.hpp"
 #include "robot_bodies.hpp"
 
@@ -182,7 +183,8 @@ int run(const pack_settings& asked) {
   progress shown;
   shown.show("reading " + asked.input);
   io::files_read inputs;
-  const subject what = io::within_memory(asked.input, [&] { return load(asked); });
+  subject what = io::within_memory(asked.input, [&] { return load(asked); });
+  check_kept(chosen_cache(asked.no_cache, asked.cache), !asked.cache.empty(), what.notes);
   for (const std::string& file : asked.out) io::check_output(file, inputs);
   const packed_subject made = fill(what, asked, shown);
   for (const std::string& file : asked.out) {

@@ -68,7 +68,7 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
     scene.clouds.push_back(drawn(*report.asked, clouds.files[i], clouds.seen[i], distances, first));
     first += clouds.files[i].size();
     if (!clouds.hidden.empty() && !clouds.hidden[i].empty())  // what is filtered out is seen, in grey
-      scene.clouds.push_back({.name = clouds.files[i].from.file + " (the robot's own)",
+      scene.clouds.push_back({.name = clouds.files[i].name + " (the robot's own)",
                               .points = clouds.hidden[i],
                               .pose = clouds.seen[i].pose,
                               .paint = {0.55f, 0.55f, 0.55f, 1}});

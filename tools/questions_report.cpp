@@ -11,7 +11,7 @@ namespace {
 
 /// Who and where a point of a zone is.
 json place(const query_report& report, std::uint32_t cloud, std::uint32_t point) {
-  return {{"cloud", (*report.clouds)[cloud].from.file}, {"point", point}};
+  return {{"cloud", (*report.clouds)[cloud].name}, {"point", point}};
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ json support_of(const query_report& report) {
 std::string support_text(const query_report& report) {
   const supported_distance& s = *report.support;
   const auto named = [&](std::uint32_t cloud, std::uint32_t point, std::uint32_t part) {
-    const std::string of = report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[cloud].from.file) : "";
+    const std::string of = report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[cloud].name) : "";
     return text("point %u", point) + of + " and part " + io::printable((*report.bodies)[part].name);
   };
   const std::string enough = text("%u points within %g m", report.asked->support->min_points, report.asked->support->radius);
@@ -138,7 +138,7 @@ std::string support_text(const query_report& report) {
 
 std::string zones_text(const query_report& report) {
   const auto named = [&](std::uint32_t cloud, std::uint32_t point) {
-    const std::string of = report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[cloud].from.file) : "";
+    const std::string of = report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[cloud].name) : "";
     return text("point %u", point) + of;
   };
   std::string out = "\nzones" + (report.asked->min_points > 1 ? text(" (fewer than %zu points do not count)", report.asked->min_points) : "") + '\n';
@@ -168,7 +168,7 @@ std::string nearest_text(const query_report& report) {
       if (pair.point == none) break;
       out += "  " + (listed++ == 0 ? name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') : std::string(28, ' '));
       out += text("%.6f m, certainly at least %.6f m: point %u", double(pair.distance), double(report.nearest->certain.lower(pair.distance)), pair.point);
-      out += (report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[pair.cloud].from.file) : "") + '\n';
+      out += (report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[pair.cloud].name) : "") + '\n';
     }
     if (listed == 0) out += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') + "none\n";
   }

@@ -49,6 +49,19 @@ std::vector<std::string> columns(const std::string& file, std::string_view line,
   return names;
 }
 
+/// What is named like a frame and left out would renumber those behind it.
+void check_frame(const std::string& file) {
+  std::error_code failed;
+  const fs::file_status there = fs::status(file, failed);
+  if (fs::is_regular_file(there)) return;
+  const bool linked = fs::is_symlink(fs::symlink_status(file, failed));
+  const char* const what = fs::is_directory(there)                ? "is a folder"
+                           : !fs::exists(there) && linked         ? "is a link to what is not there"
+                           : fs::exists(there)                    ? "is no regular file"
+                                                                  : "cannot be read";
+  io::refuse(file, std::string(what) + ", but is named like a frame of the recording");
+}
+
 }  // namespace
 
 std::vector<std::string> list_frames(const std::string& where) {
@@ -56,8 +69,9 @@ std::vector<std::string> list_frames(const std::string& where) {
   if (fs::is_directory(where)) {
     for (const fs::directory_entry& entry : fs::directory_iterator(where)) {
       const std::string end = io::extension(entry.path().string());
-      const bool known = end == ".pcd" || end == ".ply" || end == ".xyz" || end == ".txt" || end == ".png";
-      if (known && entry.is_regular_file()) files.push_back(entry.path().string());
+      if (end != ".pcd" && end != ".ply" && end != ".xyz" && end != ".txt" && end != ".png") continue;
+      files.push_back(entry.path().string());
+      check_frame(files.back());
     }
     std::sort(files.begin(), files.end());
     if (files.empty()) io::refuse(where, "has no frame: no file .pcd, .ply, .xyz, .txt or .png");

@@ -26,7 +26,7 @@ std::string to_json(const frame_report& report) {
 std::string to_json(const query_report& report) {
   const min_distance_result& r = report.found.result;
   const bool any = r.state != state::no_data;
-  const auto cloud_name = [&](std::uint32_t cloud) { return (*report.clouds)[cloud].from.file; };
+  const auto cloud_name = [&](std::uint32_t cloud) { return (*report.clouds)[cloud].name; };
   json out = witness(r, any ? &(*report.clouds)[r.cloud] : nullptr, r.point, *report.bodies);
   out["parts"] = json::array();
   for (std::size_t k = 0; k < report.bodies->size(); ++k) {
@@ -65,7 +65,7 @@ std::string to_json(const query_report& report) {
                         {"blue_at", report.distances->blue_at}};
   out["clouds"] = json::array();
   for (const observation& cloud : *report.clouds) {
-    json one = {{"file", cloud.from.file}, {"points", cloud.size()}, {"viewpoint", nullptr}};
+    json one = {{"file", cloud.from.file}, {"name", cloud.name}, {"points", cloud.size()}, {"viewpoint", nullptr}};
     if (cloud.points() && cloud.points()->viewpoint) {
       const auto& [t, q] = *cloud.points()->viewpoint;
       one["viewpoint"] = {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
@@ -92,7 +92,7 @@ std::string to_text(const query_report& report) {
                                   : report.filter && report.filter->counts.own != 0 ? "free, of the points that are not hidden"
                                                                                     : "free");
     out += text("distance  %.6f m; to the solid certainly %.6f to %.6f m\n", double(r.distance), double(r.lower), double(r.upper));
-    out += "cloud     " + io::printable(cloud.from.file) + text(", point %u", r.point);
+    out += "cloud     " + io::printable(cloud.name) + text(", point %u", r.point);
     if (const auto at = pixel(cloud, r.point)) out += text(", pixel %llu,%llu", (unsigned long long)at->first, (unsigned long long)at->second);
     out += text("\npoint     %.6f %.6f %.6f\n", r.at.x, r.at.y, r.at.z);
     out += "part      " + io::printable(part.name);
@@ -122,7 +122,7 @@ std::string to_text(const query_report& report) {
     const std::string name = io::printable(made.name);
     out += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ');
     out += m.point == none ? "         -" : text("%10.6f m, point %u", double(m.distance), m.point);
-    if (m.point != none && report.clouds->size() > 1) out += " of " + io::printable((*report.clouds)[m.cloud].from.file);
+    if (m.point != none && report.clouds->size() > 1) out += " of " + io::printable((*report.clouds)[m.cloud].name);
     if (asked.model == model_kind::spheres) out += text(", gap %.4f m", made.packed.gap);
     if (const attached_thing* held = report.robot->held_as(k)) out += ", held by link " + io::printable(held->from.link);
     if (made.closed.caps.loops != 0) out += text(", %u holes closed (%.2g m2)", made.closed.caps.loops, made.closed.caps.area);

@@ -23,7 +23,7 @@ json witness(const min_distance_result& r, const observation* cloud, std::uint32
   out["distance"] = given(any, or_null(r.distance));
   out["lower"] = given(any, or_null(r.lower));
   out["upper"] = given(any, or_null(r.upper));
-  out["cloud"] = near ? json(cloud->from.file) : json(nullptr);
+  out["cloud"] = near ? json(cloud->name) : json(nullptr);
   out["point"] = given(near, point);
   out["pixel"] = nullptr;
   if (near)

@@ -14,6 +14,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <set>
 
 using namespace clearance;
 
@@ -79,9 +80,11 @@ int run(const query_options& asked) {
     to_come = read_rows(asked, robot.description, asked.recording.plan);
     waypoints.emplace(asked, robot, to_come, asked.recording.plan);
   }
+  std::set<std::string> names;
   const auto load = [&](std::size_t k) {
     shown.show("frame " + std::to_string(k + 1) + '/' + std::to_string(frames.size()));
-    observation frame = observe(frames[k]);
+    if (!asked.recording.merge) names.clear();  // the line says which frame it is
+    observation frame = observe(frames[k], names);
     print(frame.notes, shown);
     return frame;
   };

@@ -1,21 +1,46 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Strict readers of point clouds and depth images. A cloud is (points, viewpoint or None); coordinates may be NaN or inf."""
 
+import re
 import struct
 import zlib
 
 import ply
-from strict import Unknown, demand, lines_of, number, numbers, uncommented, whole, words_of
+from strict import Unknown, demand, lines_of, number, numbers, uncommented, whole, without_mark, words_of
+
+
+_thousands = re.compile(r"[-+]?\d{1,3}(,\d{3})+(\..*)?\Z", re.ASCII)
+
+
+def _one_number(word):
+    """May commas within a word, beside others in its line, be those of one number?"""
+    word = word.strip(",")
+    before, comma, after = word.partition(",")
+    if "," in after:
+        return bool(_thousands.match(word))
+    return comma != "" and not ("." in before and "." in after)
+
+
+def _fields(line):
+    """Words, empty ones between commas or semicolons among them. A separator at the end separates nothing."""
+    made = re.split(r"[ \t\v\f]*[,;][ \t\v\f]*|[ \t\v\f]+", line.strip(" \t\v\f"))
+    return made[:-1] if made[-1] == "" else made
 
 
 def read_xyz(data):
     points, usual = [], None
     for line in lines_of(data):
-        words = words_of(uncommented(line), " \t\v\f,;")
-        if words:
-            demand(len(words) >= 3 and usual in (None, len(words)), "a point of fewer than three numbers, or of more than the others")
-            usual = len(words)
-            points.append(tuple(number(word, finite=False) for word in words[:3]))
+        line = uncommented(line)
+        if line.startswith("//") or not words_of(line, " \t\v\f,;"):
+            continue
+        fields, chunks, seen = _fields(line), words_of(line, " \t\v\f;"), 0
+        several = len([chunk for chunk in chunks if chunk.strip(",")]) > 1
+        for chunk in chunks:
+            demand(seen >= 3 or not several or not _one_number(chunk), f"{chunk[:20]!r} may be one number or several")
+            seen += len(words_of(chunk, ","))
+        demand(len(fields) >= 3 and usual in (None, len(fields)), "a point of fewer than three numbers, or of more than the others")
+        usual = len(fields)
+        points.append(tuple(number(word, finite=False) for word in fields[:3]))
     return points, None
 
 
@@ -47,6 +72,7 @@ def _unpack_lzf(data, size):
 
 
 def read_pcd(data):
+    data = without_mark(data)
     known = ("VERSION", "FIELDS", "COLUMNS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "POINTS", "VIEWPOINT", "DATA")
     header, rest = {}, data
     while "DATA" not in header:
@@ -64,7 +90,7 @@ def read_pcd(data):
     demand(header.get("VERSION", [".7"])[0] in (".5", ".6", ".7", "0.5", "0.6", "0.7"), "an unknown version")
     for key in ("VERSION", "WIDTH", "HEIGHT", "POINTS", "DATA"):
         demand(len(header.get(key, "1")) == 1, f"{key} has more than one value")
-    names = header.get("FIELDS", [])
+    names = [name.lower() if name in ("X", "Y", "Z") else name for name in header.get("FIELDS", [])]
     for key in ("SIZE", "TYPE", "COUNT"):
         demand(len(header.get(key, names)) == len(names), f"{key} is not one a field")
     demand(all(names.count(axis) == 1 for axis in "xyz"), "no x, y or z")

@@ -49,9 +49,14 @@ def _processor(pid):
 def lay_out(case, folder):
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
+    for name in [*case.files, *case.links]:
+        os.makedirs(os.path.dirname(os.path.join(folder, name)), exist_ok=True)
     for name, data in case.files.items():
         with open(os.path.join(folder, name), "wb") as file:
             file.write(data)
+    for name, to in case.links.items():
+        path = os.path.join(folder, name)
+        os.mkfifo(path) if to is None else os.symlink(to, path) if to else os.mkdir(path)
 
 
 def run(binary, case, folder, seconds):

@@ -40,10 +40,11 @@ class Case:
     command: str  # query, run, plan, pack, info, demo
     options: list  # [name, value] in their order; value None for a flag; name "" for a word by itself
     files: dict  # name in the scratch folder: bytes
-    target: str  # which file is damaged, or "options"
+    target: str  # which file is damaged, or "options", or a folder "f/" of frames
     outputs: list = field(default_factory=list)  # files that the command may write
     file_limit: int = 0  # bytes a written file may have, as on a full disk; 0: no limit
     cpu: float = 20.0
+    links: dict = field(default_factory=dict)  # name: what a link of that name leads to; "" for a folder, None for a pipe
     believes: bool = True  # False: the damaged file carries a certificate of its own, so its bracket may be anything
 
     def words(self):
@@ -357,18 +358,28 @@ def _plan(case):
     return [_frame(robot, row, options.base, options.sensors, carriers, case.files) for row in rows]
 
 
+def _listed(case, where):
+    """The files of the frames, in their order."""
+    if where in case.files:
+        listed = [os.path.normpath(name) for name in (line.strip(" \t") for line in lines_of(case.files[where])) if name]
+    else:
+        endings = (".pcd", ".ply", ".xyz", ".txt", ".png")
+        held = sorted(name for name in [*case.files, *case.links] if os.path.dirname(name) == where and os.path.splitext(name)[1].lower() in endings)
+        listed = [os.path.join(where, case.links[name] or "") if name in case.links else name for name in held]
+    demand(listed and all(name in case.files for name in listed), "a frame that does not exist")
+    return listed
+
+
 def _run(case):
     options = _Options(case)
     robot = _robot(options, case.files)
-    for needed in ("--frames", "--trajectory"):
-        demand(needed in options.one and options.one[needed] in case.files, f"no {needed}")
+    demand("--frames" in options.one, "no --frames")
+    demand("--trajectory" in options.one and options.one["--trajectory"] in case.files, "no --trajectory")
     rows = _rows(options, robot, options.one["--trajectory"], case.files)
     ahead = _rows(options, robot, options.one["--plan"], case.files) if "--plan" in options.one else []
-    listed = [line.strip(" \t") for line in lines_of(case.files[options.one["--frames"]])]
-    listed = [line for line in listed if line]
-    demand(listed and all(os.path.normpath(name) in case.files for name in listed), "a frame that does not exist")
+    listed = _listed(case, options.one["--frames"])
     demand(len(rows) in (1, len(listed)), "rows for other than the frames")
-    sensors = [dict(options.before, file=os.path.normpath(name)) for name in listed]
+    sensors = [dict(options.before, file=name) for name in listed]
     options.check_all(sensors)
     rows = rows if len(rows) > 1 else rows * len(listed)
     options.held(robot, case.files)

@@ -134,7 +134,7 @@ class Mesh:
                 edges[u, v] = True
                 parent[root(u)] = root(v)
         size = max((length(sub(v, base)) for v in parent), default=0)
-        return (volume > 1e-6 * size**3 and all((v, u) in edges for u, v in edges)
+        return (size < 1e100 and volume > 1e-6 * size**3 and all((v, u) in edges for u, v in edges)
                 and len({root(v) for v in list(parent)}) == 1)
 
     def surface(self, point):

@@ -2,13 +2,14 @@
 """Strict readers of meshes without a scene graph: each gives (vertices, faces)."""
 
 import math
-import re
 import struct
 
 import ply
 from geometry import cross, dot, length, sub
 from strict import Unknown, demand, lines_of, number, text_of, uncommented, whole, words_of
 
+_obj_names = ("g", "o", "usemtl", "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj")  # their words may end in a backslash
+_obj_more = ("surf", "curv", "curv2", "bsp", "bzp", "cdc", "cdp", "call", "csh")  # bring geometry that is not read
 _obj_words = set("""v vw vt vn vp f l p g o s usemtl mtllib usemap maplib mg bevel c_interp d_interp lod shadow_obj trace_obj cstype
 deg bmat step curv curv2 surf parm trim hole scrv sp end con ctech stech call csh bsp bzp cdc cdp res maxsize""".split())
 
@@ -19,15 +20,35 @@ def _vertex(words):
     return tuple(number(word) for word in words[:3])
 
 
+def _obj_statements(data):
+    """Words, and whether nothing follows. A backslash joins no line to a comment, and none that begins a statement to a name."""
+    lines = lines_of(data)
+    ended = lines[-1] == ""
+    lines = lines[:-1] if ended else lines
+    at = 0
+    while at < len(lines):
+        line, first = lines[at], words_of(lines[at])[:1]
+        at += 1
+        while line.endswith("\\") and at < len(lines) and uncommented(line) == line:
+            after = words_of(lines[at])
+            if first and first[0] in _obj_names and (not after or after[0].startswith("#") or after[0] in _obj_words):
+                break
+            line = line[:-1] + " " + lines[at]
+            at += 1
+        yield words_of(uncommented(line)), at == len(lines) and not ended
+
+
 def read_obj(data):
     demand(b"\0" not in data, "zero bytes")
-    text = re.sub(r"\\(\r\n|\n|\r)", " ", text_of(data))
-    vertices, faces = [], []
-    for line in lines_of(text.encode("latin-1")):
-        words = words_of(uncommented(line))
+    vertices, faces, whole_faces = [], [], 0
+    for words, last in _obj_statements(data):
         if not words:
             continue
-        demand(words[0] in _obj_words or not vertices, f"{words[0][:20]!r} is no statement")  # FCL's files begin with two counts
+        demand(words[0] not in _obj_more, f"{words[0]} is not read")
+        if words[0] not in _obj_words:  # FCL's files begin with two counts
+            demand(not vertices and len(words) < 3, f"{words[0][:20]!r} is no statement")
+            whole(words[0], 0, 2**64 - 1)
+            [number(word, finite=False) for word in words[1:]]
         if words[0] == "v":
             demand(len(words) in (4, 5, 7, 8), "a vertex of other than 3, 4, 6 or 7 numbers")
             vertices.append(_vertex(words[1:]))
@@ -41,10 +62,12 @@ def read_obj(data):
                 index = whole(parts[0], -(2**32), 2**32)
                 face.append(index - 1 if index > 0 else len(vertices) + index)
                 demand(index != 0 and face[-1] >= 0, "an index before the first")
-            demand(len(face) >= 3, "a face of fewer than three corners")
-            faces.append(face)
+            demand(face and (len(face) >= 3 or not last), "a face that is cut short")
+            whole_faces += len(face) >= 3
+            faces.append(face + [face[-1]] * (3 - len(face)))  # an edge is a triangle without area
         elif words[0] in ("vn", "vt", "vp", "s", "l", "p"):
             demand(not _obj_words & set(words[1:]), "two statements in one line")
+    demand(whole_faces or not faces, "no face of three corners")
     return vertices, faces
 
 

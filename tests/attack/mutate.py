@@ -4,6 +4,7 @@ not decided here, but by reading the file anew (expect.py)."""
 
 import copy
 import json
+import os
 import re
 import struct
 
@@ -119,11 +120,12 @@ def line(rng, data):
     elif kind == 2:
         lines[at], lines[other] = lines[other], lines[at]
     elif kind == 3:
-        lines.insert(at, rng.choice([b"", b" ", b"# a comment", b"comment x", b"\0", b"0 0 0", b"x" * 3000, b"\xef\xbb\xbf"]))
+        lines.insert(at, rng.choice([b"", b" ", b"# a comment", b"comment x", b"\0", b"0 0 0", b"x" * 3000, b"\xef\xbb\xbf", b"# C:\\", b"usemtl a\\", b"f 1 2",
+                                     b"surf 0 1 0 1 1 2 3 4", b"call x.obj", b"element more 1\nproperty list uchar int vertex_indices"]))
     elif kind == 4 and at + 1 < len(lines):
         lines[at:at + 2] = [lines[at] + b" " + lines[at + 1]]
     else:
-        lines[at] = lines[at].replace(b" ", b"\n", 1) if rng.random() < 0.5 else lines[at] + rng.choice([b" 1", b" x", b"\\", b"\t", b" #x"])
+        lines[at] = lines[at].replace(b" ", b"\n", 1) if rng.random() < 0.5 else lines[at] + rng.choice([b" 1", b" x", b"\\", b"\t", b" #x", b" # C:\\", b","])
     return b"\n".join(lines)
 
 
@@ -200,6 +202,16 @@ def xml(rng, data):
 
 
 XML = [xml, xml, xml, xml, number, number, line]
+
+
+def asset(rng, data):
+    """A unit or an axis of its own for a part of a COLLADA file."""
+    found = list(re.finditer(rb"<(library_geometries|geometry|source|library_visual_scenes|visual_scene|node)\b[^>/]*>", data))
+    if not found:
+        return number(rng, data)
+    stated = rng.choice([b'<unit meter="10"/>', b'<unit meter="0.01"/>', b"<unit/>", b'<unit meter="0"/>', b"<up_axis>Y_UP</up_axis>", b"<up_axis>Z_UP</up_axis>", b""])
+    at = rng.choice(found).end()
+    return data[:at] + b"<asset>" + stated + b"</asset>" + data[at:]
 
 
 # ---- binary glTF ----
@@ -293,7 +305,7 @@ def ist(rng, data):
 
 STL = [word4, word4, word4]
 KINDS = {
-    "urdf": XML * 3 + BYTES, "dae": XML * 3 + BYTES, "glb": GLB * 2 + BYTES, "png": [png] * 16 + BYTES, "ist": [ist] * 8 + BYTES,
+    "urdf": XML * 3 + BYTES, "dae": (XML + [asset]) * 3 + BYTES, "glb": GLB * 2 + BYTES, "png": [png] * 16 + BYTES, "ist": [ist] * 8 + BYTES,
     "stl binary": STL * 3 + BYTES, "ply mesh binary": HEADER + STL + BYTES, "ply cloud binary": HEADER + STL + BYTES,
     "pcd binary": HEADER + STL + BYTES, "pcd compressed": HEADER + STL + BYTES, "pack": TEXT + STL,
 }
@@ -351,12 +363,31 @@ def options(rng, case):
             ["--threads", "1e3"], ["--threads", "1024"], ["--threads", "1025"], ["--between", None]]))
 
 
+def folder(rng, case):
+    """One file more or less among frames, or what is none."""
+    held = sorted(name for name in case.files if name.startswith(case.target))
+    name = case.target + rng.choice(["0a.xyz", "1b.pcd", "9.txt", "a.png", "A.PLY", "b.md", "c"])
+    kind = rng.randrange(5)
+    if kind == 0:
+        del case.files[rng.choice(held)]
+    elif kind == 1:
+        case.files[name] = case.files[rng.choice(held)]
+    elif kind == 2:
+        at = rng.choice(held)
+        case.links[at] = rng.choice(["nothing.xyz", "", None, ".", "..", os.path.basename(at)])
+        del case.files[at]
+    elif name not in case.files:
+        case.links[name] = rng.choice(["nothing.xyz", "", None, ".", os.path.basename(rng.choice(held))])
+
+
 def mutated(rng, case):
     """A damaged copy of a case."""
     made = copy.copy(case)
-    made.options, made.files = copy.deepcopy(case.options), dict(case.files)
-    for _ in range(rng.choice([1, 1, 1, 1, 2, 3])):
-        if made.target == "options":
+    made.options, made.files, made.links = copy.deepcopy(case.options), dict(case.files), dict(case.links)
+    for _ in range(1 if made.target.endswith("/") else rng.choice([1, 1, 1, 1, 2, 3])):
+        if made.target.endswith("/"):
+            folder(rng, made)
+        elif made.target == "options":
             if made.options:
                 options(rng, made)
         else:

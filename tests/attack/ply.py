@@ -4,7 +4,7 @@
 import math
 import struct
 
-from strict import Unknown, demand, lines_of, number, text_of, whole, words_of
+from strict import Unknown, demand, lines_of, number, text_of, whole, without_mark, words_of
 
 _types = {"char": "b", "int8": "b", "uchar": "B", "uint8": "B", "short": "h", "int16": "h", "ushort": "H", "uint16": "H",
           "int": "i", "int32": "i", "uint": "I", "uint32": "I", "float": "f", "float32": "f", "double": "d", "float64": "d"}
@@ -12,15 +12,16 @@ _types = {"char": "b", "int8": "b", "uchar": "B", "uint8": "B", "short": "h", "i
 
 def _header(data):
     """(format, elements, bytes after the header); an element is (name, count, properties), a property (name, type, count type)."""
-    demand(data[:3] == b"ply", "no PLY file")
+    data = without_mark(data)
+    demand(data[:3] in (b"ply", b"PLY"), "no PLY file")
     end = data.find(b"end_header")
     demand(end >= 0, "no end_header")
     lines = lines_of(data[:end])
-    demand(lines[0].rstrip(" \t") == "ply" and lines[-1].strip(" \t") == "", "a damaged line in the header")
+    demand(lines[0].rstrip(" \t").lower() == "ply" and lines[-1].strip(" \t") == "", "a damaged line in the header")
     form, elements = None, []
     for line in lines[1:-1]:
         word = words_of(line)
-        if not word or word[0] in ("comment", "obj_info"):
+        if not word or word[0] in ("comment", "obj_info") or word[:2] == ["Created", "by"]:  # an old Blender's
             continue
         if word[0] == "format":
             demand(form is None and len(word) == 3 and word[2] == "1.0", "a damaged format line")
@@ -132,11 +133,28 @@ def read_mesh(data):
     vertices = _points(elements)
     demand(all(math.isfinite(c) for v in vertices for c in v), "a vertex that is not finite")
     faces = []
-    if "face" in elements:
-        properties, records = elements["face"]
+    for name, (properties, records) in elements.items():
         lists = [p[0] for p in properties if p[2] and p[0] in ("vertex_indices", "vertex_index")]
+        if name not in ("face", "tristrips"):
+            demand(not lists or not records, f"faces in the element {name[:20]!r}")
+            continue
         demand(len(lists) == 1, "faces without one list of vertices")
-        faces = [r[lists[0]] for r in records]
-    if any(isinstance(i, float) for face in faces for i in face):
-        raise Unknown("indices that are floats")
+        found = [r[lists[0]] for r in records]
+        if any(isinstance(i, float) for face in found for i in face):
+            raise Unknown("indices that are floats")
+        faces += found if name == "face" else [face for strips in found for face in _strips(strips)]
     return vertices, faces
+
+
+def _strips(indices):
+    """Triangles of strips, each ended by -1; every second one is turned round."""
+    demand(len(indices) >= 3, "strips of fewer than three vertices")
+    strips, faces = [[]], []
+    for i in indices:
+        strips[-1].append(i) if i != -1 else strips.append([])
+    for strip in strips:
+        demand(len(strip) not in (1, 2), "a strip of one vertex or two")
+        for k in range(2, len(strip)):
+            a, b, c = strip[k - 2:k + 1]
+            faces.append([b, a, c] if k % 2 else [a, b, c])
+    return faces

@@ -40,6 +40,11 @@ _TABLE = {
     "mimic-inf": ("query --robot mimic-inf.urdf --joint 1=3 --cloud one.xyz --model triangles --json", "refused"),
     "yamll": ("info yamll.yaml --json", "refused"),
 }
+_TABLE_INSIDE = {  # ../shared/data/inside: what other formats say than was understood
+    "plate": ("query --robot plate.urdf --cloud p-plate.xyz --model triangles --json", "answered"),
+    "comma": ("query --robot r.urdf --cloud comma.xyz --model triangles --json", "refused"),
+    **{name: (f"query --robot {name}.urdf --cloud p-{name}.xyz --model triangles --json", "refused") for name in ("surf", "node", "multi")},
+}
 
 
 def _sizes():
@@ -137,17 +142,18 @@ def _questions():
 
 def cases(data):
     """[(name, case, what is right or None), ...]; those with files of their own everywhere, the others where the data is."""
-    return [(name, case, "manners") for name, case in (*_sizes(), *_questions())] + _recorded(os.path.join(data, "attack") if data else "")
+    return [(name, case, "manners") for name, case in (*_sizes(), *_questions())] + _recorded(data and os.path.join(data, "attack"), _TABLE) + [
+        ("inside-" + name, case, right) for name, case, right in _recorded(data and os.path.join(data, "inside"), _TABLE_INSIDE)]
 
 
-def _recorded(folder):
+def _recorded(folder, table):
     made, held = [], {}
     if not os.path.isdir(folder):
         return []
     for name in sorted(os.listdir(folder)):
         with open(os.path.join(folder, name), "rb") as file:
             held[name] = file.read()
-    for name, (line, right) in _TABLE.items():
+    for name, (line, right) in table.items():
         command, *words = shlex.split(line)
         options = []
         while words:

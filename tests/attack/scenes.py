@@ -147,6 +147,13 @@ class _Collada:
         unit = asset.one("unit") if asset else None
         metres = number(unit.attributes.get("meter", "1")) if unit else 1.0
         demand(metres > 0, "a unit that is no length")
+        axis = asset.one("up_axis") if asset else None
+        axis = axis.text.strip() if axis else "Y_UP"
+        for library in self.root.all("library_geometries", "library_visual_scenes"):
+            for own in [e.one("asset") for e in library.walk() if e.one("asset")]:
+                stated, up = own.one("unit"), own.one("up_axis")
+                demand(stated is None or number(stated.attributes.get("meter", "1")) == metres, "another unit for a part of the file")
+                demand(up is None or up.text.strip() == axis, "another up axis for a part of the file")
         for node in shown.all("node"):
             self.node(node, _scaled(metres), [])
         demand(self.made, "no triangles")

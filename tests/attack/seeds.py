@@ -3,6 +3,7 @@
 
 import os
 import pathlib
+import re
 
 import packings
 import writers as w
@@ -82,7 +83,13 @@ def _mesh_cases():
             ("obj", "m.obj", w.obj(quads)), ("off", "m.off", w.off(mesh)), ("off", "m.off", w.off(quads)),
             ("off", "m.off", w.off(mesh, "COFF", (255, 0, 7, 255), (0.5, 0, 1))), ("off", "m.off", w.off(quads, "NOFF", (0, 0, 1), (3,))),
             ("ply mesh ascii", "m.ply", w.ply_mesh(quads)), ("ply mesh binary", "m.ply", w.ply_mesh(mesh, "binary_little_endian")),
-            ("ply mesh binary", "m.ply", w.ply_mesh(mesh, "binary_big_endian")), ("dae", "m.dae", w.dae(mesh)), ("glb", "m.glb", w.glb(mesh))]
+            ("ply mesh binary", "m.ply", w.ply_mesh(mesh, "binary_big_endian")), ("dae", "m.dae", w.dae(mesh)), ("glb", "m.glb", w.glb(mesh)),
+            ("ply mesh ascii", "m.ply", w.ply_strips()), ("ply mesh binary", "m.ply", w.ply_strips("binary_little_endian"))]
+    mark, assets = b"\xef\xbb\xbf", b'<asset><unit meter="0.01"/><up_axis>Z_UP</up_axis></asset>'
+    named = w.obj(quads).replace(b"vn 0 0 1", b"# from C:\\\nusemtl a\\\nvn 0 \\\n0 1\nf 1 2", 1)
+    made += [("obj", "m.obj", named), ("obj", "m.obj", mark + w.obj(mesh)), ("off", "m.off", mark + w.off(mesh)), ("stl ascii", "m.stl", mark + w.stl_text(mesh)),
+             ("ply mesh ascii", "m.ply", mark + w.ply_mesh(mesh)), ("dae", "m.dae", mark + w.dae(mesh)),
+             ("dae", "m.dae", re.sub(rb'(<library_geometries>|<geometry [^>]*>|<visual_scene [^>]*>|<node [^>]*>)', rb"\1" + assets, w.dae(mesh)))]
     for form, name, data in made:
         robot = _urdf(_link("a", _small) + _link("b", f'<mesh filename="{name}"/>'), _fixed)
         for cloud in _clouds.values():
@@ -99,7 +106,10 @@ def _cloud_cases():
                 ("ply cloud ascii", "c.ply", w.ply_cloud(cloud)), ("ply cloud ascii", "c.ply", w.ply_cloud(cloud, kind="double")),
                 ("ply cloud binary", "c.ply", w.ply_cloud(cloud, little)), ("ply cloud binary", "c.ply", w.ply_cloud(cloud, big, "double")),
                 ("pcd ascii", "c.pcd", w.pcd(cloud)), ("pcd binary", "c.pcd", w.pcd(cloud, "binary")),
-                ("pcd binary", "c.pcd", w.pcd(cloud, "binary", "d")), ("pcd compressed", "c.pcd", w.pcd(cloud, "binary_compressed"))]
+                ("pcd binary", "c.pcd", w.pcd(cloud, "binary", "d")), ("pcd compressed", "c.pcd", w.pcd(cloud, "binary_compressed")),
+                ("xyz", "c.xyz", w.xyz(cloud).replace(b" ", b", ").replace(b"\n", b", 7\n")), ("xyz", "c.txt", b"//X Y Z\n" + w.xyz(cloud).replace(b" ", b";")),
+                ("pcd ascii", "c.pcd", w.pcd(cloud).replace(b"x y z", b"X Y Z")), ("pcd binary", "c.pcd", w.pcd(cloud, "binary") + bytes(3000) + b"\n"),
+                ("pcd ascii", "c.pcd", b"\xef\xbb\xbf" + w.pcd(cloud)), ("ply cloud ascii", "c.ply", b"\xef\xbb\xbf" + w.ply_cloud(cloud))]
         for form, name, data in made:
             yield _query(form, {"r.urdf": _two_boxes, name: data}, name, cloud=name)
         far = [(500000.0 + 0.001 * i, 5000000.0, 3.0) for i in range(12)] + cloud
@@ -133,6 +143,9 @@ def _recording_cases():
             files = {"r.urdf": _arm, "t.csv": rows, "frames.txt": b"0.xyz\n1.xyz\n2.xyz\n", **frames}
             yield Case("recording", "run", [["--robot", "r.urdf"], ["--frames", "frames.txt"], ["--trajectory", "t.csv"], ["--model", "triangles"],
                                             *more], files, target)
+    folder = {"r.urdf": _arm, "t.csv": rows, **{"f/" + name: data for name, data in frames.items()}}
+    for more in ([], [["--merge", None]], [["--csv", None]]):
+        yield Case("recording", "run", [["--robot", "r.urdf"], ["--frames", "f"], ["--trajectory", "t.csv"], ["--model", "triangles"], *more], folder, "f/")
 
 
 def _plan_cases():

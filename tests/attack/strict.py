@@ -44,9 +44,14 @@ def whole(word, low=0, high=2**32 - 1):
     return int(word)
 
 
+def without_mark(data):
+    """Without the byte order mark that some editors put first."""
+    return data.removeprefix(b"\xef\xbb\xbf")
+
+
 def text_of(data):
-    """Bytes as text, one character a byte, without the mark that some editors put first."""
-    return data.removeprefix(b"\xef\xbb\xbf").decode("latin-1")
+    """Bytes as text, one character a byte, without the mark."""
+    return without_mark(data).decode("latin-1")
 
 
 def lines_of(data):

@@ -61,6 +61,17 @@ def ply_mesh(mesh, form="ascii"):
     return head.encode() + data + b"".join(struct.pack(f"{order}B{len(f)}i", len(f), *f) for f in mesh[1])
 
 
+def ply_strips(form="ascii", size=(0.2, 0.3, 0.4)):
+    """A box as triangle strips: four sides in one, top and bottom each."""
+    vertices, _ = box(*size)
+    strips = [0, 4, 1, 5, 3, 7, 2, 6, 0, 4, -1, 0, 1, 2, 3, -1, 4, 6, 5, 7, -1]
+    head = f"ply\nformat {form} 1.0\nelement vertex {len(vertices)}\nproperty float x\nproperty float y\nproperty float z\n"
+    head += "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+    if form == "ascii":
+        return (head + "\n".join(_row(v) for v in vertices) + f"\n{_row((len(strips), *strips))}\n").encode()
+    return head.encode() + b"".join(struct.pack("<3f", *v) for v in vertices) + struct.pack(f"<{len(strips) + 1}i", len(strips), *strips)
+
+
 def dae(mesh):
     """In centimetres; a polylist and triangles; the box stands at a node within a node."""
     values = " ".join(_row(100 * c for c in v) for v in mesh[0])

@@ -163,3 +163,24 @@ TEST_CASE("real damaged PLY files are read or refused", "[data]") {
   CHECK(io::load_ply(folder + "trimesh/points_emptyface.ply").points.size() == 1024);
   CHECK(io::load_ply(folder + "trimesh/empty.ply").points.empty());
 }
+
+TEST_CASE("decimal commas, thousands and empty coordinates of a text cloud are refused with the line, separators are not") {
+  for (const char* line : {"0,5 0,2 0,1", "0,5;0,2;0,1", "0,5\t0,2\t0,1", "0,5, 0,2, 0,1", "0,5; 0,2; 0,1", "-0,5 0 1", "0 0,2 1", "0 1 0,2",
+                           "1,5e3 2 3", "1,234.5 2,345.6 3,456.7", "1.234,5 2.345,6 3.456,7", "500,000 5,000,000.0 3", "1,000;2,000;3,000",
+                           "1,5 2,5 3,5 255", "0,5;0,2;0,1;7", "0,5 0,2"}) {
+    INFO(line);
+    contains(refused(".xyz", "1 2 3\n" + std::string(line) + "\n"), ":2: \"");
+    contains(refused(".txt", std::string(line) + " # one\n"), "may be one number or several");
+  }
+  for (const char* line : {",1,2,3", "1,,2,3", "1,2,,3", "1;;2;3", ";1;2;3", "1, ,2,3", "1,2, ,3", "1 , , 2 3"})
+    contains(refused(".xyz", std::string(line) + "\n"), ":1: nothing stands for ");
+  for (const char* line : {"1,2,3", "1, 2, 3", "1 ,2 ,3", "1 , 2 , 3", "1;2;3", "1; 2; 3", "1\t2\t3", "1 2 3", "1,2,3,", "1,2,3 4", "1,2,3;4",
+                           "1,2,3,,4", "1,2,3, ,4", "1 2 3 a,b", "1,2,3,4,5", "1.0,2.0, 3.0", "1.0, 2.0,3.0", "1;2;3;0,5", "//X Y Z\n1 2 3",
+                           " 1 2 3 ", "1 2 3;"}) {
+    INFO(line);
+    const io::cloud c = read(".xyz", std::string(line) + "\n");
+    REQUIRE(c.points.size() == 1);
+    CHECK(c.points[0] == Eigen::Vector3d(1, 2, 3));
+  }
+  contains(refused(".xyz", "1,2,3,4\n1,2,3,\n"), ":2: a point of 3 words");
+}

@@ -163,6 +163,27 @@ TEST_CASE("a COLLADA file's unit counts, its up axis does not, and a mirrored no
   CHECK(twice.triangles.size() == 2);
 }
 
+TEST_CASE("a COLLADA file has one unit and one up axis, or is refused, wherever another is stated") {
+  const robot_folder folder;
+  const auto with = [&](const std::string& before, const std::string& own) {
+    std::string text = dae("<unit meter=\"0.01\"/><up_axis>Z_UP</up_axis>", one_node);
+    const std::size_t at = text.find(before);
+    REQUIRE(at != text.npos);
+    text.insert(text.find('>', at) + 1, "<asset><created>2026</created>" + own + "</asset>");
+    return sentence([&] { load_mesh(folder.put("a.dae", text)); });
+  };
+  for (const char* place : {"<library_geometries", "<geometry ", "<source ", "<library_visual_scenes", "<visual_scene ", "<node "}) {
+    INFO(place);
+    for (const char* same : {"", "<unit meter=\"0.01\"/>", "<unit meter=\"1e-2\" name=\"cm\"/>", "<up_axis> Z_UP </up_axis>"})
+      CHECK(with(place, same) == "");
+    CHECK(says(with(place, "<unit meter=\"10\"/>"), "has a unit of 10 m of its own, the file's is 0.01 m"));
+    CHECK(says(with(place, "<unit/>"), "has a unit of 1 m of its own"));
+    CHECK(says(with(place, "<up_axis>Y_UP</up_axis>"), "has an up axis \"Y_UP\" of its own"));
+    CHECK(says(with(place, "<unit meter=\"nan\"/>"), "not one finite number"));
+    CHECK_FALSE(with(place, "<unit meter=\"0.01\"/></asset><asset><unit meter=\"10\"/>").empty());
+  }
+}
+
 TEST_CASE("damaged meshes are refused in one sentence that names the file") {
   const robot_folder folder;
   const auto refusal = [&](const std::string& name, const std::string& bytes) {

@@ -187,3 +187,21 @@ TEST_CASE("every real PCD file is read, with the number of invalid points that i
   const io::cloud octants = io::load_pcd(folder + "small/octants.pcd");
   CHECK(std::abs(octants.points.front().z()) <= 9);
 }
+
+TEST_CASE("PCD fields in capitals, a mark before the header, and a page that is filled and then ends a line are a PCD file") {
+  const auto points = read(plain("WIDTH 2\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 6\n")).points;
+  CHECK(read(header("X Y Z", "4 4 4", "F F F", "1 1 1", "WIDTH 2\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 6\n")).points == points);
+  CHECK(read("\xEF\xBB\xBF" + plain("WIDTH 2\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 6\n")).points == points);
+  says(refused(header("x y z X", "4 4 4 4", "F F F F", "1 1 1 1", "WIDTH 0\nDATA ascii\n")), "more than one field x");
+  for (const std::string encoding : {"binary", "binary_compressed"}) {
+    const std::string whole = sample_file(encoding), file = whole.substr(0, whole.find_last_not_of('\0') + 1);
+    const std::string zeros(encoding == "binary" ? 3000 : 3901, '\0');
+    for (const std::string& end : {std::string("\n"), std::string("\r\n"), zeros, zeros + "\n", zeros + "\r\n", "\n" + zeros, "\r\n" + zeros}) {
+      INFO(encoding << ' ' << end.size());
+      CHECK(read(file + end).points.size() == 3);
+    }
+    for (const std::string& end : {"\n" + zeros + "\n", zeros + "\n" + zeros, zeros + "\n\n", zeros + "x", "\n\n", std::string(4096, '\0'),
+                                   std::string(4096, '\0') + "\n"})
+      says(refused(file + end), "bytes follow the last record");
+  }
+}

@@ -262,3 +262,52 @@ TEST_CASE("the PLY files of the attack are read or refused as they should be", "
   for (const char* bad : {"ply-neg.ply", "ply-int-shift.ply", "ply-count-low.ply"})
     CHECK_FALSE(refusal([&] { io::load_ply(folder + bad); }).empty());
 }
+
+TEST_CASE("triangle strips of a PLY file are triangles that face the same way, and -1 begins a new strip") {
+  for (const char* format : formats)
+    for (const char* type : {"int", "short", "char"}) {
+      const auto strips = [&](const std::vector<std::vector<double>>& lists) {
+        ply_writer out{.format = format};
+        out.header({"element vertex 6", "property float x", "property float y", "property float z",
+                    "element tristrips " + std::to_string(lists.size()), "property list int " + std::string(type) + " vertex_indices"});
+        for (int i = 0; i < 6; ++i) {
+          for (const double v : {i / 2, i % 2, 0}) out.put(v, "float");
+          out.end();
+        }
+        for (const auto& list : lists) {
+          out.put(double(list.size()), "int");
+          for (const double v : list) out.put(v, type);
+          out.end();
+        }
+        return out.bytes;
+      };
+      const auto mesh = io::read_ply_mesh(strips({{0, 1, 2, 3, 4, -1, 5, 4, 3, -1}, {0, 1, 2, -1, -1, 1, 3, 2, 4}}), "made.ply");
+      CHECK(mesh.corners == std::vector<std::uint32_t>{0, 1, 2, 2, 1, 3, 2, 3, 4, 5, 4, 3, 0, 1, 2, 1, 3, 2, 2, 3, 4});
+      CHECK(mesh.ends.size() == 7);
+      for (const std::vector<double>& bad : {std::vector<double>{0, 1, 2, -1, 3, 4}, {0, 1, -1, 2, 3, 4}, {0, -1, 2, 3, 4}, {0, 1}, {0, 1, 6}, {0, 1, -2}, {}})
+        CHECK_FALSE(refusal([&] { io::read_ply_mesh(strips({bad}), "made.ply"); }).empty());
+    }
+}
+
+TEST_CASE("PLY faces in an element that is not known are refused, and what some writers get wrong in the header is not") {
+  const std::string vertices = "property float x\nproperty float y\nproperty float z\n", three = "0 0 0\n1 0 0\n0 1 0\n";
+  const std::string list = "property list uchar int vertex_indices\n";
+  const auto with = [&](const std::string& elements, const std::string& records) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\n" + vertices + "element face 1\n" + list + elements + "end_header\n" + three + "3 0 1 2\n" + records;
+  };
+  for (const char* name : {"multi_face", "faces", "polygon", "cell", "range_grid"})
+    for (const char* indices : {"vertex_indices", "vertex_index"}) {
+      const std::string more = "element " + std::string(name) + " 1\nproperty list uchar int " + indices + "\n";
+      const std::string said = refusal([&] { io::read_ply_mesh(with(more, "3 0 2 1\n"), "made.ply"); });
+      INFO(said);
+      CHECK(said.find("made.ply: has the element \"" + std::string(name) + "\"") == 0);
+      CHECK(io::read_ply(with(more, "3 0 2 1\n"), "made.ply").points.size() == 3);  // a cloud is what it was
+    }
+  CHECK(io::read_ply_mesh(with("element none 0\n" + list, ""), "made.ply").ends.size() == 1);
+  CHECK(io::read_ply_mesh(with("element edge 1\nproperty int vertex1\nproperty int vertex2\n", "0 1\n"), "made.ply").ends.size() == 1);
+  const std::string good = with("", "");
+  for (const std::string& head : {std::string("PLY\n"), std::string("ply\nCreated by Blender3D 247 - www.blender.org, source file: \n")})
+    CHECK(io::read_ply_mesh(head + good.substr(4), "made.ply").ends.size() == 1);
+  CHECK_FALSE(refusal([&] { io::read_ply_mesh("Ply" + good.substr(3), "made.ply"); }).empty());
+  CHECK_FALSE(refusal([&] { io::read_ply_mesh("ply\nCreated on a day\n" + good.substr(4), "made.ply"); }).empty());
+}

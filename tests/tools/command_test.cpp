@@ -150,6 +150,29 @@ TEST_CASE("poses, intrinsics, scale and range before the first cloud hold for al
   refuses(common + "--zero-is-missing --cloud " + first.path, "--zero-is-missing: is for point clouds, and there is none");
 }
 
+TEST_CASE("one file that is given twice can be told apart in every answer") {
+  const scene s;
+  const scratch_file cloud(".xyz", "0 0 1.0\n");
+  const std::string second = cloud.path + " (2)", third = cloud.path + " (3)";
+  // The camera is where the file says, 1 m and 0.3 m lower: the second is the nearest to the tool, the third to the base.
+  const std::string ask = " --model triangles --backend host --cloud " + cloud.path + " --cloud " + cloud.path + " --camera-pose 0,0,-0.3,0,0,0,1 --cloud " +
+                          cloud.path + " --camera-pose 0,0,-0.75,0,0,0,1 ";
+  const auto j = parsed(run_command(s.robot + ask + "--json --zones 0.2,5 --nearest 3 --min-support 2@0.1"));
+  CHECK(j.at("cloud") == second);
+  CHECK(j.at("parts").at(0).at("cloud") == third);
+  CHECK(j.at("parts").at(0).at("zones").at(0).at("nearest").at("cloud") == third);
+  CHECK(j.at("parts").at(0).at("zones").at(1).at("first").at("cloud") == cloud.path);
+  CHECK(j.at("parts").at(1).at("nearest").at(0).at("cloud") == second);
+  CHECK(j.at("support").at("nearest_isolated").at("cloud") == second);
+  for (int k = 0; k < 3; ++k) CHECK(j.at("clouds").at(k).at("file") == cloud.path);
+  CHECK(j.at("clouds").at(2).at("name") == third);
+  const std::string text = run_command(s.robot + ask).out;
+  CHECK(text.find("cloud     " + second + ", point 0\n") != text.npos);
+  const scratch_file rows(".csv", "slide\n0\n");
+  for (const std::string more : {"", "--csv"})
+    CHECK(run_command("plan --robot " + s.urdf.path + " --configurations " + rows.path + ask + more).out.find(second) != text.npos);
+}
+
 TEST_CASE("a camera on a link moves with the joint") {
   const scene s;
   const scratch_file depth(".png", png(0, 300));

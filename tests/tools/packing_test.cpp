@@ -125,6 +125,26 @@ TEST_CASE("a robot is packed once, and a damaged cache is packed anew") {
   CHECK(cached(pack, where) == "11");  // repaired by the query
 }
 
+TEST_CASE("a cache that can keep nothing says so: one that is named is refused, the usual one is a note") {
+  const scene s;
+  const robot_folder place;
+  const std::string file = place.put("file", "no folder").string(), fresh = (place.path / "a/b").string();
+  const std::string pack = "pack " + s.urdf + " --spheres 20", query = s.ask + " --spheres 20";
+  for (const std::string& ask : {pack, query, std::string("demo --spheres 3")}) {
+    refuses(ask + " --cache " + file, "--cache: " + file + " is no folder, and none can be made");
+    refuses(ask + " --cache " + file + "/in", "is no folder, and none can be made");
+    const outcome usual = run_command(ask, file);
+    INFO(usual.err);
+    CHECK(usual.code == 0);
+    CHECK(usual.err.starts_with("note: " + file + ": cannot be written to, so new packings are not kept"));
+    CHECK(run_command(ask + " --no-cache", file).err.empty());
+  }
+  CHECK(parsed(run_command(query, file)).at("notes").size() == 1);
+  CHECK(run_command(pack + " --cache " + fresh).err.empty());  // it is made
+  CHECK(std::distance(std::filesystem::directory_iterator(fresh), std::filesystem::directory_iterator()) == 2);
+  CHECK(run_command(s.ask + " --model triangles", file).err.empty());  // nothing is packed
+}
+
 TEST_CASE("commands at the same time share a cache") {
   const scene s;
   const robot_folder cache;

@@ -6,6 +6,8 @@
 
 #include <clearance/io/xml.hpp>
 
+#include <sys/stat.h>
+
 #include <sstream>
 
 namespace {
@@ -211,6 +213,44 @@ TEST_CASE("what is wrong with a recording is one sentence and exit code 1") {
   CHECK(o.err.find("2.xyz:1: ") != std::string::npos);
   CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
   refuses(r.run() + " --merge", "2.xyz:1: ");
+}
+
+TEST_CASE("what is named like a frame in a folder, and is no file, is refused: left out it would renumber those behind it") {
+  const recording r;
+  CHECK(run_command(r.run()).code == 0);
+  const fs::path odd = r.folder / "1b.xyz";
+  fs::create_symlink(r.folder / "nothing.xyz", odd);
+  refuses(r.run(), "1b.xyz: is a link to what is not there, but is named like a frame");
+  fs::remove(odd);
+  fs::create_directory(odd);
+  refuses(r.run(), "1b.xyz: is a folder, but is named like a frame");
+  fs::remove(odd);
+  fs::create_symlink(r.folder, odd);
+  refuses(r.run(), "1b.xyz: is a folder, but is named like a frame");
+  fs::remove(odd);
+  fs::create_symlink(odd, odd);
+  refuses(r.run(), "1b.xyz: ");
+  fs::remove(odd);
+  REQUIRE(::mkfifo(odd.c_str(), 0600) == 0);
+  refuses(r.run(), "1b.xyz: is no regular file, but is named like a frame");
+  fs::remove(odd);
+  fs::create_directory(r.folder / "old");  // named like nothing
+  REQUIRE(::mkfifo((r.folder / "pipe").c_str(), 0600) == 0);
+  CHECK(lines(run_command(r.run())).size() == 3);
+  fs::rename(r.folder / "2.xyz", r.folder / "old" / "2.xyz");
+  fs::create_symlink("old/2.xyz", r.folder / "2.xyz");  // a link to a frame is one
+  CHECK(lines(run_command(r.run())).size() == 3);
+}
+
+TEST_CASE("a frame that is listed twice and merged is told apart") {
+  const recording r;
+  const scratch_file row(".csv", "turn,slide\n0,0\n0,0.3\n");
+  r.put("list", "3.xyz\n3.xyz\n");
+  // The camera is on the slide: the second time the frame's points are 0.3 m higher, beside the tool.
+  const auto all = lines(run_command(r.run((r.folder / "list").string(), row.path) + " --merge --camera-link tool"));
+  REQUIRE(all.size() == 2);
+  CHECK(all[1].at("cloud") == r.frame(2) + " (2)");
+  CHECK(all[1].at("file") == r.frame(2));
 }
 
 TEST_CASE("a trajectory may begin with a byte order mark, end in blank lines, and end its lines anyhow") {

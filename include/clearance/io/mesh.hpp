@@ -23,7 +23,7 @@ inline std::string mesh_format(const std::filesystem::path& path, std::string_vi
   for (const char* known : {"stl", "obj", "ply", "off", "dae", "glb"})
     if (ending == std::string(".") + known) return known;
   if (!ending.empty()) refuse(path.string(), "meshes are read from .stl, .obj, .ply, .off, .dae and .glb files");
-  if (bytes.starts_with("ply")) return "ply";
+  if (bytes.starts_with("ply") || bytes.starts_with("PLY")) return "ply";
   if (bytes.starts_with("OFF")) return "off";
   if (bytes.starts_with("glTF")) return "glb";
   return "stl";
@@ -44,9 +44,9 @@ inline triangle_mesh load_mesh(const std::filesystem::path& path, const mesh_lim
         refuse(file, "is longer than the " + std::to_string(limits.bytes) +
                          " bytes that the limit leaves (mesh_limits::bytes)");
     }
-    const std::string bytes = read_bytes(file), format = mesh_format(path, bytes);
-    polygon_mesh mesh = format == "obj"   ? read_obj(bytes, file)
-                        : format == "off" ? read_off(bytes, file)
+    const std::string bytes = read_bytes(file), format = mesh_format(path, without_mark(bytes));
+    polygon_mesh mesh = format == "obj"   ? read_obj(without_mark(bytes), file)
+                        : format == "off" ? read_off(without_mark(bytes), file)
                         : format == "ply" ? read_ply_mesh(bytes, file)
                         : format == "stl" ? read_stl(bytes, file)
                         : format == "dae" ? read_dae(bytes, file, limits)

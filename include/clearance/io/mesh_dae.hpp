@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -52,7 +53,12 @@ class dae_reader {
     if (!instance) root_.in(*shown).refuse("has no visual scene");
     const auto visual = root_.in(scenes_.find(root_.in(*instance), "url"));
     visual.only({"id", "name"}, {"asset", "node", "evaluate_scene", "extra"});
-    const Eigen::Affine3d metres(Eigen::Scaling(unit()));
+    const double metre = unit(root_, 1);
+    const std::string axis = up(root_, "Y_UP");
+    const Eigen::Affine3d metres(Eigen::Scaling(metre));
+    for (const auto& library : root_.element.children)
+      if (library.name == "library_geometries" || library.name == "library_nodes" || library.name == "library_visual_scenes")
+        check_assets(root_.in(library), metre, axis);
     for (const xml_element* node : dae_children(visual.element, "node")) walk(visual.in(*node), metres, 1);
     for (const auto& [geometry, mesh] : meshes_)
       if (!mesh) root_.in(*geometry).refuse("has no place in the scene, so it would be lost");
@@ -60,17 +66,42 @@ class dae_reader {
   }
 
  private:
-  double unit() const {
-    const xml_element* asset = root_.child("asset");
-    if (!asset) return 1;
-    root_.in(*asset).only({}, {"contributor", "coverage", "created", "keywords", "modified", "revision", "subject", "title",
-                               "unit", "up_axis", "extra"});
-    const xml_element* unit = root_.in(*asset).child("unit");
-    if (!unit) return 1;
-    root_.in(*unit).only({"meter", "name"}, {});
-    const double metres = root_.in(*unit).number_or("meter", 1);
-    if (!(metres > 0)) root_.in(*unit).refuse("of " + std::to_string(metres) + " metres is no length");
+  /// Metres of the unit that an element's <asset> states.
+  static double unit(const xml_place& of, double otherwise) {
+    const xml_element* asset = of.child("asset");
+    if (!asset) return otherwise;
+    of.in(*asset).only({}, {"contributor", "coverage", "created", "keywords", "modified", "revision", "subject", "title",
+                            "unit", "up_axis", "extra"});
+    const xml_element* unit = of.in(*asset).child("unit");
+    if (!unit) return otherwise;
+    of.in(*unit).only({"meter", "name"}, {});
+    const double metres = of.in(*unit).number_or("meter", 1);
+    if (!(metres > 0)) of.in(*unit).refuse("of " + std::to_string(metres) + " metres is no length");
     return metres;
+  }
+
+  /// Where "up" is, by an element's <asset>.
+  static std::string up(const xml_place& of, const std::string& otherwise) {
+    const xml_element* asset = of.child("asset");
+    const xml_element* axis = asset ? of.in(*asset).child("up_axis") : nullptr;
+    if (!axis) return otherwise;
+    std::string_view rest = axis->text;
+    return std::string(take_word(rest, " \t\r\n"));
+  }
+
+  /// Refuses a unit or an up axis that holds for a part of the file alone: other readers take the file's for all of it.
+  static void check_assets(const xml_place& of, double metres, const std::string& axis) {
+    if (const double own = unit(of, metres); own != metres)
+      of.refuse("has a unit of " + spelt(own) + " m of its own, the file's is " + spelt(metres) + " m");
+    if (const std::string own = up(of, axis); own != axis)
+      of.refuse("has an up axis " + io::quoted(own) + " of its own, the file's is " + io::quoted(axis));
+    for (const auto& child : of.element.children) check_assets(of.in(child), metres, axis);
+  }
+
+  static std::string spelt(double metres) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", metres);
+    return text;
   }
 
   void add_node(const xml_element& node) {

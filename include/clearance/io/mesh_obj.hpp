@@ -8,6 +8,7 @@
 #include <clearance/io/mesh_polygons.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -32,8 +33,13 @@ inline Eigen::Vector3d take_vertex(std::string_view& line, const std::string& fi
 /// How many words are left of a line, up to a comment. All must be numbers, "nan" too, or it ends with a sentence.
 inline std::size_t numbers_left(std::string_view line, const std::string& file, std::size_t at) {
   std::size_t count = 0;
-  for (auto word = take_word(line); !word.empty() && word.front() != '#'; word = take_word(line), ++count)
-    if (!number<double>(word)) refuse(file, quoted(word) + " is not a number", at);
+  for (auto word = take_word(line); !word.empty() && word.front() != '#'; word = take_word(line)) {
+    ++count;
+    const std::size_t comment = word.find('#');  // of a colour "0.5#red"; that in "1.#IND" is part of what is no number
+    const bool ends = comment != word.npos && std::isdigit(static_cast<unsigned char>(word[comment - 1]));
+    if (!number<double>(ends ? word.substr(0, comment) : word)) refuse(file, quoted(word) + " is not a number", at);
+    if (ends) break;
+  }
   return count;
 }
 
@@ -44,7 +50,8 @@ inline bool obj_statement(std::string_view word) {
         "o",        "s",        "usemtl",     "mtllib",    "usemap", "maplib", "mg",     "bevel", "lod",
         "c_interp", "d_interp", "shadow_obj", "trace_obj", "cstype", "deg",    "bmat",   "step",  "curv",
         "curv2",    "surf",     "parm",       "trim",      "hole",   "scrv",   "sp",     "end",   "con",
-        "ctech",    "stech",    "call",       "csh",       "bsp",    "bzp",    "cdc",    "cdp",   "res"})
+        "ctech",    "stech",    "call",       "csh",       "bsp",    "bzp",    "cdc",    "cdp",   "res",
+        "maxsize"})
     if (word == known) return true;
   return false;
 }
@@ -69,57 +76,116 @@ inline bool obj_of_numbers(std::string_view key) {
   return key == "vn" || key == "vt" || key == "vp" || key == "s" || key == "l" || key == "p";
 }
 
-/// Vertices and faces of a Wavefront OBJ file; normals, materials, groups, lines and points are passed over, and so is
-/// what stands before the first vertex. A later line that is no statement may be what is left of a face: an error.
-inline polygon_mesh read_obj(std::string_view rest, const std::string& file) {
-  polygon_mesh mesh;
-  if (rest.find('\0') != rest.npos) refuse(file, "is not an OBJ file: it has zero bytes, so it is not plain text");
-  std::uint32_t largest = 0;
-  std::size_t largest_at = 0;
-  std::string joined;
-  for (std::size_t at = 1; !rest.empty(); ++at) {
-    const std::size_t first = at;
-    std::string_view line = take_line(rest);
-    if (line.ends_with('\\')) {  // goes on in the next line
-      joined.clear();
-      for (; line.ends_with('\\') && !rest.empty(); ++at, line = take_line(rest))
-        joined.append(line.substr(0, line.size() - 1)).push_back(' ');
-      joined.append(line);
-      line = joined;
-    }
+/// One whose words are names or paths, which may end in a backslash.
+inline bool obj_of_names(std::string_view key) {
+  for (const std::string_view known : {"g", "o", "usemtl", "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj"})
+    if (key == known) return true;
+  return false;
+}
+
+/// One that brings geometry which this reader would pass over: free-form curves and surfaces, and other files.
+inline bool obj_of_more(std::string_view key) {
+  for (const std::string_view known : {"surf", "curv", "curv2", "bsp", "bzp", "cdc", "cdp", "call", "csh"})
+    if (key == known) return true;
+  return false;
+}
+
+/// Takes the next statement off `rest`: a line, and those that a backslash at the end joins to it, by way of `joined`.
+/// In a comment a backslash joins nothing, and after a name only what begins no statement. `at` counts lines.
+inline std::string_view take_obj_statement(std::string_view& rest, std::string& joined, std::size_t& at) {
+  std::string_view line = take_line(rest), start = line;
+  ++at;
+  const bool names = obj_of_names(take_word(start));
+  const auto goes_on = [&](std::string_view end) {
+    if (!end.ends_with('\\') || rest.empty() || without_comment(end).size() < end.size()) return false;
+    std::string_view next = rest;
+    next = take_line(next);
+    const std::string_view first = take_word(next);
+    return !names || !(first.empty() || first.front() == '#' || obj_statement(first));
+  };
+  if (!goes_on(line)) return line;
+  joined.clear();
+  for (; goes_on(line); ++at, line = take_line(rest)) joined.append(line.substr(0, line.size() - 1)).push_back(' ');
+  return joined.append(line);
+}
+
+/// What an OBJ file says so far.
+class obj_reader {
+ public:
+  explicit obj_reader(const std::string& file) : file_(file) {}
+
+  /// A statement that begins in line `at`; `last`: nothing follows, not even a line end.
+  void take(std::string_view line, std::size_t at, bool last) {
     const std::string_view key = take_word(line);
     if (key == "v") {
-      mesh.vertices.push_back(take_vertex(line, file, first));
-      const std::size_t more = numbers_left(line, file, first);  // a weight, a colour, or both
+      made_.vertices.push_back(take_vertex(line, file_, at));
+      const std::size_t more = numbers_left(line, file_, at);  // a weight, a colour, or both
       if (more != 0 && more != 1 && more != 3 && more != 4)
-        refuse(file, "a vertex of " + std::to_string(3 + more) + " numbers", first);
+        refuse(file_, "a vertex of " + std::to_string(3 + more) + " numbers", at);
     } else if (key == "f") {
-      const std::size_t begin = mesh.corners.size();
-      for (auto word = take_word(line); !word.empty() && word.front() != '#'; word = take_word(line)) {
-        const auto given = obj_corner(word);
-        const std::int64_t count = std::int64_t(mesh.vertices.size());
-        const std::int64_t index = !given       ? 0
-                                   : *given < 0 ? *given + count + 1
-                                                : *given;  // from 1; negative: from the end
-        if (index < 1 || index > std::int64_t(UINT32_MAX))
-          refuse(file, "\"" + std::string(word.substr(0, 40)) + "\" is no vertex of a face", first);
-        if (index > largest) largest = std::uint32_t(index), largest_at = first;
-        mesh.corners.push_back(std::uint32_t(index - 1));
-      }
-      if (mesh.corners.size() < begin + 3) refuse(file, "a face has fewer than three vertices", first);
-      mesh.ends.push_back(mesh.corners.size());
+      take_face(line, at, last);
     } else if (obj_of_numbers(key)) {
       for (auto word = take_word(line); !word.empty() && word.front() != '#'; word = take_word(line))
-        if (obj_statement(word)) refuse(file, quoted(word) + " begins a second statement in the line", first);
-    } else if (!mesh.vertices.empty() && !key.empty() && key.front() != '#' && !obj_statement(key)) {
-      refuse(file, quoted(key) + " begins no statement of an OBJ file", first);
+        if (obj_statement(word)) refuse(file_, quoted(word) + " begins a second statement in the line", at);
+    } else if (obj_of_more(key)) {
+      refuse(file_, quoted(key) + " brings geometry that is not supported: polygons alone are read", at);
+    } else if (!key.empty() && key.front() != '#' && !obj_statement(key)) {
+      // Some files begin with their counts.
+      const bool counts = made_.vertices.empty() && number<std::uint64_t>(key) && numbers_left(line, file_, at) < 2;
+      if (!counts) refuse(file_, quoted(key) + " begins no statement of an OBJ file", at);
     }
   }
-  if (largest > mesh.vertices.size())
-    refuse(file,
-           "a face has vertex " + std::to_string(largest) + ", the file has " + std::to_string(mesh.vertices.size()),
-           largest_at);
-  return mesh;
+
+  polygon_mesh finish() {
+    if (largest_ > made_.vertices.size())
+      refuse(file_, "a face has vertex " + std::to_string(largest_) + ", the file has " +
+                        std::to_string(made_.vertices.size()), largest_at_);
+    if (short_at_ != 0 && !any_) refuse(file_, "a face has fewer than three vertices, and so has every other", short_at_);
+    return std::move(made_);
+  }
+
+ private:
+  void take_face(std::string_view line, std::size_t at, bool last) {
+    const std::size_t begin = made_.corners.size();
+    for (auto word = take_word(line); !word.empty() && word.front() != '#'; word = take_word(line)) {
+      const auto given = obj_corner(word);
+      const std::int64_t count = std::int64_t(made_.vertices.size());
+      const std::int64_t index = !given       ? 0
+                                 : *given < 0 ? *given + count + 1
+                                              : *given;  // from 1; negative: from the end
+      if (index < 1 || index > std::int64_t(UINT32_MAX)) refuse(file_, quoted(word) + " is no vertex of a face", at);
+      if (index > largest_) largest_ = std::uint32_t(index), largest_at_ = at;
+      made_.corners.push_back(std::uint32_t(index - 1));
+    }
+    const std::size_t corners = made_.corners.size() - begin;
+    if (corners == 0 || (corners < 3 && last)) refuse(file_, "a face has fewer than three vertices", at);
+    any_ = any_ || corners > 2;
+    if (corners < 3) short_at_ = at;
+    // Modellers write edges as faces of two: a triangle without area is the same.
+    made_.corners.resize(begin + std::max<std::size_t>(corners, 3), made_.corners.back());
+    made_.ends.push_back(made_.corners.size());
+  }
+
+  const std::string& file_;
+  polygon_mesh made_;
+  std::uint32_t largest_ = 0;
+  std::size_t largest_at_ = 0, short_at_ = 0;  // lines
+  bool any_ = false;                           // a face of three corners or more
+};
+
+/// Vertices and faces of a Wavefront OBJ file; normals, materials, groups, lines and points are passed over, and so are
+/// counts before the first vertex. A face of one or two corners is a triangle without area. A line that is no statement
+/// may be what is left of a face: an error, as are free-form surfaces.
+inline polygon_mesh read_obj(std::string_view rest, const std::string& file) {
+  if (rest.find('\0') != rest.npos) refuse(file, "is not an OBJ file: it has zero bytes, so it is not plain text");
+  obj_reader reader(file);
+  std::string joined;
+  for (std::size_t lines = 0; !rest.empty();) {
+    const std::size_t first = lines + 1;
+    const std::string_view all = rest, statement = take_obj_statement(rest, joined, lines);
+    reader.take(statement, first, rest.empty() && !all.ends_with('\n') && !all.ends_with('\r'));
+  }
+  return reader.finish();
 }
 
 }  // namespace clearance::io

@@ -8,25 +8,45 @@ namespace clearance::io {
 
 namespace detail {
 
-inline bool lists_corners(const ply_element& element, const ply_property& p) {
-  return element.name == "face" && p.count && (p.name == "vertex_indices" || p.name == "vertex_index");
+inline bool names_vertices(const ply_property& p) {
+  return p.count && (p.name == "vertex_indices" || p.name == "vertex_index");
 }
+inline bool holds_faces(const ply_element& element) { return element.name == "face" || element.name == "tristrips"; }
 
 /// Refuses faces without corners, and geometry that this reader would pass over.
 inline void check_ply_faces(const ply_header& header, const std::string& file) {
   for (const auto& element : header.elements) {
-    if (element.name == "tristrips" && element.count > 0) refuse(file, "has triangle strips, which are not supported");
-    if (element.name != "face") continue;
-    const auto is_list = [&](const ply_property& p) { return lists_corners(element, p); };
-    const auto list = std::ranges::find_if(element.properties, is_list);
-    if (std::ranges::count_if(element.properties, is_list) != 1 || !is_whole(list->type))
-      refuse(file, "PLY faces need one list vertex_indices of a whole type");
+    const auto list = std::ranges::find_if(element.properties, names_vertices);
+    const auto lists = std::ranges::count_if(element.properties, names_vertices);
+    if (!holds_faces(element) && lists > 0 && element.count > 0)
+      refuse(file, "has the element " + io::quoted(element.name) + " with " + io::quoted(list->name) +
+                       ", which is not known: faces are read from \"face\" and \"tristrips\"");
+    if (!holds_faces(element)) continue;
+    if (lists != 1 || !is_whole(list->type)) refuse(file, "PLY faces need one list vertex_indices of a whole type");
   }
+}
+
+/// Adds the faces of triangle strips; -1 ends one. Every second triangle of a strip is turned round. False if a strip has
+/// one vertex or two.
+inline bool add_strips(polygon_mesh& mesh, const std::vector<double>& listed) {
+  std::size_t begin = 0;  // of the strip
+  for (std::size_t i = 0; i <= listed.size(); ++i) {
+    if (i == listed.size() || listed[i] == -1) {
+      if (i - begin == 1 || i - begin == 2) return false;
+      begin = i + 1;
+    } else if (i >= begin + 2) {
+      const std::size_t odd = (i - begin) % 2;
+      for (const std::size_t k : {i - 2 + odd, i - 1 - odd, i}) mesh.corners.push_back(std::uint32_t(listed[k]));
+      mesh.ends.push_back(mesh.corners.size());
+    }
+  }
+  return true;
 }
 
 }  // namespace detail
 
-/// Vertices, in double, and faces of a PLY file; other elements and properties are checked and passed over.
+/// Vertices, in double, and faces of a PLY file, of which triangle strips are some; other elements and properties are
+/// checked and passed over.
 inline polygon_mesh read_ply_mesh(std::string_view rest, const std::string& file) {
   const ply_header header = take_ply_header(rest, file);
   detail::check_ply_faces(header, file);
@@ -42,17 +62,21 @@ inline polygon_mesh read_ply_mesh(std::string_view rest, const std::string& file
           refuse(file, at.record() + " has a coordinate that is not finite", at.line());
       },
       [&](const ply_element& element, const ply_property& p, const ply_values& at, const std::vector<double>& listed) {
-        if (!detail::lists_corners(element, p)) return;
-        if (listed.size() < 3) refuse(file, at.record() + " has fewer than three vertices", at.line());
+        if (!detail::holds_faces(element) || !detail::names_vertices(p)) return;
+        const bool strips = element.name == "tristrips";
+        const auto too_few = [&] { refuse(file, at.record() + " has fewer than three vertices", at.line()); };
+        if (listed.size() < 3) too_few();
         for (const double index : listed) {
+          if (strips && index == -1) continue;
           if (!(index >= 0 && index < double(count)))
             refuse(file,
                    at.record() + " has vertex " + std::to_string((long long)index) + ", the file has " +
                        std::to_string(count),
                    at.line());
-          mesh.corners.push_back(std::uint32_t(index));
+          if (!strips) mesh.corners.push_back(std::uint32_t(index));
         }
-        mesh.ends.push_back(mesh.corners.size());
+        if (!strips) mesh.ends.push_back(mesh.corners.size());
+        if (strips && !detail::add_strips(mesh, listed)) too_few();
       });
   return mesh;
 }

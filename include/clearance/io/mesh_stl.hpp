@@ -92,13 +92,14 @@ inline polygon_mesh read_binary_stl(std::string_view bytes, std::uint64_t count,
 
 /// All triangles of an STL file of either kind, which must be whole.
 inline polygon_mesh read_stl(std::string_view bytes, const std::string& file) {
-  const std::string_view start = bytes.substr(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
+  const std::string_view text = without_mark(bytes);
+  const std::string_view start = text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
   const bool says_solid = start.starts_with("solid") || start.starts_with("SOLID") || start.starts_with("Solid");
   const std::uint64_t count =
       bytes.size() < 84 ? 0 : byte_reader(bytes.substr(80, 4), file).take<std::uint32_t>();
   if (bytes.size() >= 84 && bytes.size() == 84 + 50 * count)  // even where the header says "solid"
     return read_binary_stl(bytes, count, file);
-  if (says_solid && bytes.find('\0') == bytes.npos) return read_ascii_stl(bytes, file);
+  if (says_solid && bytes.find('\0') == bytes.npos) return read_ascii_stl(text, file);
   if (bytes.size() < 84) refuse(file, "is shorter than the 84 bytes that begin a binary STL file");
   refuse(file, "as a binary STL file of " + std::to_string(count) + " triangles it would have " +
                    std::to_string(84 + 50 * count) + " bytes, but it has " + std::to_string(bytes.size()));

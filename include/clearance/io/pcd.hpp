@@ -85,10 +85,14 @@ inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_h
   return points;
 }
 
-/// Refuses data that POINTS does not count: more than a line end, or the zeros that some writers fill a page with.
+/// Refuses data that POINTS does not count: more than the zeros that some writers fill a page with, and a line end before or
+/// behind them.
 inline void check_pcd_end(std::string_view rest, const pcd_header& header, const std::string& file) {
-  const bool padding = rest.size() < 4096 && rest.find_first_not_of('\0') == rest.npos;
-  if (!padding && rest != "\n" && rest != "\r\n")
+  std::string_view zeros = rest;
+  for (const std::string_view end : {"\r\n", "\n"})
+    if (zeros.size() == rest.size() && zeros.ends_with(end)) zeros.remove_suffix(end.size());
+    else if (zeros.size() == rest.size() && zeros.starts_with(end)) zeros.remove_prefix(end.size());
+  if (zeros.size() >= 4096 || zeros.find_first_not_of('\0') != zeros.npos)
     refuse(file, "POINTS says " + std::to_string(header.points) + ", but " + std::to_string(rest.size()) +
                      " bytes follow the last record");
 }

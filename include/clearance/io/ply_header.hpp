@@ -82,12 +82,13 @@ inline void take_ply_property(ply_header& header, const std::vector<std::string_
 /// Takes the header off `rest`; what is left is the data.
 inline ply_header take_ply_header(std::string_view& rest, const std::string& file) {
   ply_header header;
-  const std::string_view all = rest;
-  if (take_line(rest) != "ply") refuse(file, "is not a PLY file");
+  const std::string_view all = rest = without_mark(rest);
+  if (const auto first = take_line(rest); first != "ply" && first != "PLY") refuse(file, "is not a PLY file");
   for (header.lines = 1; !rest.empty();) {
     const auto line = words(take_line(rest));
     ++header.lines;
     if (line.empty() || line[0] == "comment" || line[0] == "obj_info") continue;
+    if (line.size() > 1 && line[0] == "Created" && line[1] == "by") continue;  // an old Blender forgot the "comment"
     if (line[0] == "format") {
       using enum ply_header::encoding;
       const std::string_view name = line.size() == 3 ? line[1] : "";

@@ -32,25 +32,27 @@ inline std::optional<struct ::stat> check_target(const std::string& file) {
 
 namespace detail {
 
-/// A new file in the folder of `file` under a name that nobody can foresee; gone again unless it is put in place.
+/// A new file in the folder of `file`, without a name until it is put in place, so that whatever ends the program leaves
+/// nothing. Where the system has no such files, it has a name that nobody can foresee, and loses it at the end.
 class file_beside {
  public:
   file_beside(const std::string& file, ::mode_t mode) : file_(file) {
     const std::size_t slash = file.rfind('/');
     folder_ = slash == file.npos ? "." : file.substr(0, slash + 1);
-    std::random_device random;
-    for (int tries = 0; at_ < 0; ++tries) {
-      name_ = (slash == file.npos ? "" : folder_) + ".clearance-";
-      for (int k = 0; k < 4; ++k) name_ += std::to_string(random());
-      at_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
-      if (at_ < 0 && (errno != EEXIST || tries > 9)) fail("a new file beside it cannot be made");
-    }
+    before_ = (slash == file.npos ? "" : folder_) + ".clearance-";
+    at_ = ::open(folder_.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, mode);
+    if (at_ >= 0 && ::access(itself().c_str(), F_OK) != 0) ::close(std::exchange(at_, -1));  // it could get no name
+    if (at_ < 0)
+      under_new_name([&](const char* name) {
+        at_ = ::open(name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+        return at_ >= 0;
+      });
   }
   file_beside(const file_beside&) = delete;
   file_beside& operator=(const file_beside&) = delete;
   ~file_beside() {
     if (at_ >= 0) ::close(at_);
-    if (!placed_) ::unlink(name_.c_str());
+    if (!name_.empty()) ::unlink(name_.c_str());
   }
 
   void allow(::mode_t mode) {
@@ -66,9 +68,13 @@ class file_beside {
   }
   void put_in_place() {
     if (::fsync(at_) != 0) fail("");
+    if (name_.empty() && !link_to(file_.c_str())) {  // there is an older one, which only a rename replaces
+      if (errno != EEXIST) fail("the new file cannot take its place");
+      under_new_name([&](const char* name) { return link_to(name); });
+    }
     if (::close(std::exchange(at_, -1)) != 0) fail("");
-    if (::rename(name_.c_str(), file_.c_str()) != 0) fail("the new file cannot take its place");
-    placed_ = true;
+    if (!name_.empty() && ::rename(name_.c_str(), file_.c_str()) != 0) fail("the new file cannot take its place");
+    name_.clear();
     if (const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); folder >= 0) {
       ::fsync(folder);  // so that a crash now does not lose the name; not every file system can
       ::close(folder);
@@ -76,15 +82,34 @@ class file_beside {
   }
 
  private:
+  std::string itself() const { return "/proc/self/fd/" + std::to_string(at_); }
+  bool link_to(const char* name) const {
+    return ::linkat(AT_FDCWD, itself().c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
+  }
+
+  /// Makes it `name_`, one that is not taken.
+  template <class Make>
+  void under_new_name(Make make) {
+    std::random_device random;
+    for (int tries = 0;; ++tries) {
+      std::string name = before_;
+      for (int k = 0; k < 4; ++k) name += std::to_string(random());
+      if (make(name.c_str())) {
+        name_ = std::move(name);
+        return;
+      }
+      if (errno != EEXIST || tries > 9) fail("a new file beside it cannot be made");
+    }
+  }
+
   [[noreturn]] void fail(const std::string& what) const {
     const std::string why = std::strerror(errno);
     refuse(file_, "cannot be written" + (what.empty() ? ": " + why : ": " + what + " (" + why + ")"));
   }
 
   const std::string& file_;
-  std::string folder_, name_;
+  std::string folder_, before_, name_;  // its name, while it has one that is not its place
   int at_ = -1;
-  bool placed_ = false;
 };
 
 }  // namespace detail

@@ -7,29 +7,80 @@
 
 namespace clearance::io {
 
+namespace detail {
+
+/// Is this a number whose digits are in threes: 1,234 or 5,000,000.5?
+inline bool in_thousands(std::string_view word) {
+  if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
+  for (std::size_t group = 0;; ++group) {
+    const std::size_t digits = std::min(word.find_first_not_of("0123456789"), word.size());
+    if (group == 0 ? digits < 1 || digits > 3 : digits != 3) return false;
+    word.remove_prefix(digits);
+    if (!word.starts_with(',')) return group > 0 && (word.empty() || word.starts_with('.'));
+    word.remove_prefix(1);
+  }
+}
+
+/// May a word with commas, beside others in its line, be one number? Not if it is two that both have points.
+inline bool comma_of_one_number(std::string_view word) {
+  word.remove_prefix(std::min(word.find_first_not_of(','), word.size()));
+  while (word.ends_with(',')) word.remove_suffix(1);
+  const std::size_t first = word.find(','), last = word.rfind(',');
+  if (first == word.npos) return false;
+  if (first < last) return in_thousands(word);
+  return word.find('.') > first || word.rfind('.') < first;
+}
+
+/// Refuses a line of which the x, y and z depend on who reads it.
+inline void check_xyz_commas(std::string_view line, const std::string& file, std::size_t at) {
+  constexpr std::string_view others = " \t\r\v\f;";
+  std::size_t numbers = 0;
+  for (auto word = take_word(line, others); numbers < 3 && !word.empty(); word = take_word(line, others)) {
+    if ((numbers > 0 || line.find_first_not_of(" \t\r\v\f;,") != line.npos) && comma_of_one_number(word))
+      refuse(file, quoted(word) + " may be one number or several (decimal commas? write points)", at);
+    for (std::string_view rest = word; !take_word(rest, ",").empty();) ++numbers;
+  }
+}
+
+/// Takes the next value of a line, which may be empty between commas or semicolons; nothing at the line's end.
+inline std::optional<std::string_view> take_field(std::string_view& line) {
+  constexpr std::string_view blanks = " \t\r\v\f";
+  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+  if (line.empty()) return std::nullopt;
+  const std::string_view field = line.substr(0, line.find_first_of(" \t\r\v\f,;"));
+  line.remove_prefix(field.size());
+  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+  if (line.starts_with(',') || line.starts_with(';')) line.remove_prefix(1);
+  return field;
+}
+
+}  // namespace detail
+
 /// Reads a text file with a point on each line: x y z in metres, then anything, in as many words on every line: two
 /// lines that became one are refused. Blanks, tabs, commas and semicolons separate; a word that starts with # starts a
-/// comment; "nan" keeps a record's place. Throws std::runtime_error naming file and line.
+/// comment, and so does a line with //; "nan" keeps a record's place. Throws std::runtime_error naming file and line, also
+/// for decimal commas and for a coordinate that is empty.
 inline cloud load_xyz(const std::string& file, const read_limits& limits = {}) {
-  constexpr std::string_view separators = " \t\r\v\f,;";
   const std::string bytes = read_bytes(file, limits);
   std::string_view rest = without_mark(bytes);
   std::vector<Eigen::Vector3d> points;
   std::size_t usual = 0;  // words of a line
   for (std::size_t at = 1; !rest.empty(); ++at) {
     std::string_view line = take_line(rest);
-    line = without_comment(line, separators);
-    std::string_view word = take_word(line, separators);
-    if (word.empty()) continue;
+    line = without_comment(line, " \t\r\v\f,;");
+    if (line.starts_with("//") || line.find_first_not_of(" \t\r\v\f,;") == line.npos) continue;
+    detail::check_xyz_commas(line, file, at);
     Eigen::Vector3d p;
-    for (int axis = 0; axis < 3; word = take_word(line, separators), ++axis) {
-      if (word.empty()) refuse(file, "a point needs three numbers, here are " + std::to_string(axis), at);
-      const auto value = number<double>(word);
-      if (!value) refuse(file, quoted(word) + " is not a number", at);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto word = detail::take_field(line);
+      if (!word) refuse(file, "a point needs three numbers, here are " + std::to_string(axis), at);
+      if (word->empty()) refuse(file, std::string("nothing stands for ") + "xyz"[axis] + " between separators", at);
+      const auto value = number<double>(*word);
+      if (!value) refuse(file, quoted(*word) + " is not a number", at);
       p[axis] = *value;
     }
     std::size_t count = 3;
-    for (; !word.empty(); word = take_word(line, separators)) ++count;
+    while (detail::take_field(line)) ++count;
     if (points.empty()) usual = count;
     if (count != usual)
       refuse(file, "a point of " + std::to_string(count) + " words, the lines before have " + std::to_string(usual),

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A file that is being written has no name before it is whole.
+#include "io/robot_folder.hpp"
+#include "support/catch.hpp"
+
+#include <clearance/io/write_file.hpp>
+
+#include <sys/wait.h>
+
+#include <csignal>
+
+using namespace clearance;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::size_t files(const robot_folder& folder) {
+  return std::size_t(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()));
+}
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Can files without a name be made here, and get one?
+bool nameless(const robot_folder& folder) {
+  const int at = ::open(folder.path.c_str(), O_WRONLY | O_TMPFILE, 0600);
+  if (at >= 0) ::close(at);
+  return at >= 0 && fs::exists("/proc/self/fd");
+}
+
+}  // namespace
+
+TEST_CASE("whatever ends a program that writes a file leaves nothing, and the file as it was") {
+  const robot_folder folder;
+  if (!nameless(folder)) {
+    WARN("SKIPPED: no file without a name can be made in " << folder.path);
+    return;
+  }
+  for (const bool there : {false, true}) {
+    const std::string file = (folder.path / (there ? "old" : "new")).string();
+    if (there) folder.put("old", "old");
+    const std::size_t before = files(folder);
+    {
+      io::detail::file_beside made(file, 0600);
+      made.write("half");
+      CHECK(files(folder) == before);
+    }
+    CHECK(files(folder) == before);
+    const ::pid_t child = ::fork();
+    if (child == 0) {
+      io::detail::file_beside made(file, 0600);
+      made.write("half");
+      std::raise(SIGKILL);
+    }
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    CHECK(WIFSIGNALED(status));
+    CHECK(files(folder) == before);
+    if (there) CHECK(content(file) == "old");
+    io::write_bytes(file, "whole");
+    CHECK(content(file) == "whole");
+    CHECK(files(folder) == before + !there);
+  }
+}
+
+TEST_CASE("a file that appears while another of its name is written is replaced, and a folder that does is not") {
+  const robot_folder folder;
+  const std::string file = (folder.path / "f").string();
+  {
+    io::detail::file_beside made(file, 0600);
+    made.write("mine");
+    folder.put("f", "another's");
+    made.put_in_place();
+  }
+  CHECK(content(file) == "mine");
+  fs::remove(file);
+  {
+    io::detail::file_beside made(file, 0600);
+    fs::create_directory(file);
+    CHECK(says(sentence([&] { made.put_in_place(); }), "cannot take its place"));
+  }
+  CHECK(files(folder) == 1);
+}
