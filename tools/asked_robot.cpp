@@ -117,7 +117,7 @@ asked_robot load_robot(const query_options& asked, std::vector<std::string>& not
 std::vector<Eigen::Isometry3d> all_links(const query_options& asked, const io::robot& robot, const std::vector<double>& joints) {
   return about_file(asked.robot, [&] {
     auto links = robot.kinematics().link_poses(joints, {asked.ignore_limits});
-    for (std::size_t k = 0; k < links.size(); ++k) links[k] = io::placed(asked.base, links[k], "link " + io::quoted(robot.kinematics().links()[k]));
+    for (std::size_t k = 0; k < links.size(); ++k) links[k] = io::carried(asked.base, links[k], "link " + io::quoted(robot.kinematics().links()[k]));
     return links;
   });
 }
@@ -132,7 +132,7 @@ std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const as
       rigid(poses.back(), ("link " + io::quoted(part.name) + when).c_str());
     }
     for (const attached_thing& thing : robot.held) {
-      poses.push_back(io::placed(links[thing.link], thing.from.pose, io::quoted(thing.name) + when));
+      poses.push_back(io::carried(links[thing.link], thing.from.pose, io::quoted(thing.name) + when));
       rigid(poses.back(), (io::quoted(thing.name) + when).c_str());
     }
     return poses;

@@ -46,9 +46,9 @@ observation observe(const cloud_options& from) {
 }
 
 Eigen::Isometry3d observation::world(const Eigen::Isometry3d& carrier) const {
-  const Eigen::Isometry3d camera = io::placed(carrier, from.pose, "the camera");
+  const Eigen::Isometry3d camera = io::carried(carrier, from.pose, "the camera");
   if (!from.use_viewpoint || !points()) return camera;
-  return io::placed(camera, pose("--use-viewpoint: " + from.file, points()->viewpoint->translation, points()->viewpoint->rotation), "the viewpoint");
+  return io::carried(camera, pose("--use-viewpoint: " + from.file, points()->viewpoint->translation, points()->viewpoint->rotation), "the viewpoint");
 }
 
 seen_points observation::seen(const Eigen::Isometry3d& carrier, poses_of robot) {

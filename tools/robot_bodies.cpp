@@ -2,6 +2,7 @@
 #include "robot_bodies.hpp"
 
 #include "command_line.hpp"
+#include "thin_body.hpp"
 
 #include <clearance/io/certify.hpp>
 
@@ -52,8 +53,10 @@ void fill(std::vector<body>& bodies, const std::vector<std::size_t>& which, cons
   for (std::size_t i = 0; i < which.size(); ++i) {
     auto& [packed, found] = packings[i];
     body& made = bodies[which[i]];
+    const std::string why = packed.reason();
+    if (packed.spheres.empty()) packed = spheres_along(mesh_solid(made.closed), wanted.count);
     if (packed.spheres.empty())
-      refuse(made.name, std::invalid_argument("no sphere fits inside: " + packed.reason()));
+      refuse(made.name, std::invalid_argument("no sphere fits inside: " + why));
     made.packed = std::move(packed);
     account.cached[which[i]] = found;
     ++(found ? account.from_cache : account.packed);

@@ -45,7 +45,7 @@ class motion {
     const std::string& link = asked_.recording.camera.link;
     if (link.empty()) return Eigen::Isometry3d::Identity();
     return about_file(asked_.robot, [&] {
-      return io::placed(asked_.base, robot_.description.link_pose(link, row(frame), {asked_.ignore_limits}), "link " + io::quoted(link));
+      return io::carried(asked_.base, robot_.description.link_pose(link, row(frame), {asked_.ignore_limits}), "link " + io::quoted(link));
     });
   }
 

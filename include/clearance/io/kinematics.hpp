@@ -52,7 +52,7 @@ struct joint_options {
 
 /// `outer` * `inner`, such as a base and a link of it. Throws std::invalid_argument if their ways are so long, and cancel so well, that double
 /// loses what no bracket covers; `who` is what is put there.
-inline Eigen::Isometry3d placed(const Eigen::Isometry3d& outer, const Eigen::Isometry3d& inner, const std::string& who) {
+inline Eigen::Isometry3d carried(const Eigen::Isometry3d& outer, const Eigen::Isometry3d& inner, const std::string& who) {
   const Eigen::Isometry3d made = outer * inner;
   chain_rounding rounding;
   rounding.turned();
