@@ -249,6 +249,7 @@ TEST_CASE("package names are looked up where given, then above the URDF, then in
   ::unsetenv("AMENT_PREFIX_PATH");
 
   CHECK(corner(urdf("ws/alpha/urdf/r.urdf", "package:///alpha/meshes/t.obj")) == 1);
+  CHECK(corner(urdf("ws/alpha/urdf/r.urdf", "model://alpha/meshes/t.obj")) == 1);
   CHECK(says(sentence([&] { load_robot(urdf("ws/tau/urdf/r.urdf", "package://tau_description/meshes/u.obj")); }), "--package tau_description=FOLDER"));
   folder.put("ws/tau/meshes/u.obj", triangle);
   CHECK(says(sentence([&] { load_robot(folder.path / "ws/tau/urdf/r.urdf"); }), "--package tau_description=" + (folder.path / "ws/tau").string() + " would do"));

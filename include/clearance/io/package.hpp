@@ -81,7 +81,7 @@ inline std::filesystem::path guess_package(const std::filesystem::path& inside, 
   return {};
 }
 
-/// The file that a URDF means by package://name/path, file:///path, or a path from the URDF's own folder. Throws
+/// The file that a URDF means by package://name/path, model://name/path (the same, by the name of a simulator), file:///path, or a path from the URDF's own folder. Throws
 /// std::runtime_error if the package is nowhere, or if the scheme is another.
 inline std::filesystem::path resolve_uri(const std::string& uri, const std::filesystem::path& urdf,
                                          const std::map<std::string, std::filesystem::path>& packages) {
@@ -89,9 +89,9 @@ inline std::filesystem::path resolve_uri(const std::string& uri, const std::file
   if (uri.empty()) refuse(urdf.string(), "a mesh has an empty file name");
   if (scheme == uri.npos) return urdf.parent_path() / uri;
   if (uri.starts_with("file:///")) return uri.substr(7);
-  if (!uri.starts_with("package://"))
-    refuse(urdf.string(), io::quoted(uri) + " is none of package://name/path, file:///path and a relative path");
-  std::string_view rest = std::string_view(uri).substr(10);
+  if (!uri.starts_with("package://") && !uri.starts_with("model://"))
+    refuse(urdf.string(), io::quoted(uri) + " is none of package://name/path, model://name/path, file:///path and a relative path");
+  std::string_view rest = std::string_view(uri).substr(scheme + 3);
   rest.remove_prefix(std::min(rest.find_first_not_of('/'), rest.size()));  // package:///name is meant as package://name
   const std::string name(rest.substr(0, rest.find('/')));
   const std::string inside(rest.substr(std::min(name.size() + 1, rest.size())));

@@ -54,7 +54,9 @@ class robot_reader {
     try {
       added = std::visit([&](const auto& geometry) { return make(geometry); }, shape.geometry);
     } catch (const std::runtime_error& error) {
-      refuse(file_, owner + error.what(), shape.line);
+      std::string why = error.what();
+      if (const std::string named = sentence(file_, 200) + ": "; why.starts_with(named)) why.erase(0, named.size());
+      refuse(file_, owner + why, shape.line);
     }
     const std::uint64_t triangles = added.mesh.triangles.size();
     if (triangles > left_.triangles)
