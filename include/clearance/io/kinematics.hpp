@@ -56,7 +56,7 @@ inline Eigen::Isometry3d carried(const Eigen::Isometry3d& outer, const Eigen::Is
   const Eigen::Isometry3d made = outer * inner;
   chain_rounding rounding;
   rounding.turned();
-  rounding.step(inner.translation().norm(), made.translation().norm());
+  rounding.step(2 * inner.translation().norm(), made.translation().norm());
   if (made.matrix().allFinite() && !rounding.covered(made.translation().norm()))
     throw std::invalid_argument(who + " is put there by ways that cancel, and double loses up to " + std::to_string(1e3 * rounding.lost) + " mm of them");
   return made;
@@ -155,11 +155,13 @@ class kinematic_tree {
       const joint& by = joints_[j];
       poses[child] = poses[parent] * by.origin;
       rounding[child] = rounding[parent];
-      rounding[child].step(by.origin.translation().norm(), poses[child].translation().norm());
-      rounding[child].turned();
+      rounding[child].step(at(poses[parent].translation()), at(by.origin.translation()), at(poses[child].translation()),
+                           by.origin.translation().norm());
+      if (by.kind == joint_kind::revolute || by.kind == joint_kind::continuous || by.origin.linear() != Eigen::Matrix3d::Identity()) rounding[child].turned();
       if (by.kind == joint_kind::prismatic) {
+        const position before = at(poses[child].translation());
         poses[child].translate(value[j] * by.axis);
-        rounding[child].step(std::abs(value[j]), poses[child].translation().norm());
+        rounding[child].step(before, at(value[j] * by.axis), at(poses[child].translation()), std::abs(value[j]));
       }
       if (by.kind == joint_kind::revolute || by.kind == joint_kind::continuous)
         poses[child].rotate(Eigen::AngleAxisd(value[j], by.axis));
@@ -173,6 +175,8 @@ class kinematic_tree {
   }
 
  private:
+  static position at(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
   struct step {
     std::size_t joint, parent, child;
   };

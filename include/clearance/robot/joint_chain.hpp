@@ -47,15 +47,22 @@ struct joint_chain_view {
   CLEARANCE_HD world_transform pose(const double* q, std::uint32_t part) const {
     world_transform below;
     chain_rounding rounding;
-    rounding.turned();
     const auto on = [&](const world_transform& above) {
-      const double way = chain_rounding::most(below.translation());
+      const position way = below.translation();
       below = above * below;
-      rounding.step(way, chain_rounding::most(below.translation()));
+      rounding.turn = 0;
+      if (above.m[0][0] != 1 || above.m[1][1] != 1 || above.m[2][2] != 1) rounding.turned();
+      rounding.step(way, above.translation(), below.translation(), chain_rounding::most(way));
     };
     for (std::uint32_t link = link_of_part[part]; link != none; link = links[link].parent) {
-      const world_transform step = from_link(links[link], q);
-      if (links[link].slides) rounding.step(chain_rounding::most(step.translation()) + chain_rounding::most(links[link].origin.translation()), 0);
+      const chain_link& by = links[link];
+      const world_transform step = from_link(by, q);
+      rounding.turn = 0;
+      if (by.slides) {
+        const double shift = fma(by.factor, q[by.value], by.offset);
+        if (by.origin.m[0][0] != 1 || by.origin.m[1][1] != 1 || by.origin.m[2][2] != 1) rounding.turned();
+        rounding.step(by.origin.translation(), {shift * by.axis.x, shift * by.axis.y, shift * by.axis.z}, step.translation(), shift < 0 ? -shift : shift);
+      }
       on(step);
     }
     on(base);
