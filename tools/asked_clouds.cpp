@@ -16,7 +16,7 @@ void asked_clouds::place(const query_options& asked, const io::robot& robot, con
   for (observation& cloud : files) {
     Eigen::Isometry3d carrier = Eigen::Isometry3d::Identity();
     if (const auto& link = cloud.from.link; !link.empty())
-      carrier = asked.base * about_file(asked.robot, [&] { return robot.link_pose(link, joints, {asked.ignore_limits}); });
+      carrier = about_file(asked.robot, [&] { return io::carried(asked.base, robot.link_pose(link, joints, {asked.ignore_limits}), "link " + io::quoted(link)); });
     carriers.push_back(carrier);
     seen.push_back(about_file(cloud.from.file, [&] {
       const seen_points made = cloud.seen(carrier, poses);

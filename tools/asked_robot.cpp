@@ -109,6 +109,7 @@ asked_robot load_robot(const query_options& asked, std::vector<std::string>& not
   options.geometry = asked.visual.value_or(false) ? io::robot_geometry::visual : io::robot_geometry::collision;
   for (const auto& [name, folder] : asked.packages) options.packages[name] = folder;
   options.exclude_links = asked.excluded;
+  options.strict = asked.strict;
   options.limits = asked.limits;
   asked_robot made{io::within_memory(asked.robot, [&] { return about_file(asked.robot, [&] { return io::load_robot(asked.robot, options); }); }), {}};
   notes.insert(notes.end(), made.description.notes().begin(), made.description.notes().end());
@@ -119,7 +120,7 @@ asked_robot load_robot(const query_options& asked, std::vector<std::string>& not
 std::vector<Eigen::Isometry3d> all_links(const query_options& asked, const io::robot& robot, const std::vector<double>& joints) {
   return about_file(asked.robot, [&] {
     auto links = robot.kinematics().link_poses(joints, {asked.ignore_limits});
-    for (Eigen::Isometry3d& link : links) link = asked.base * link;
+    for (std::size_t k = 0; k < links.size(); ++k) links[k] = io::carried(asked.base, links[k], "link " + io::quoted(robot.kinematics().links()[k]));
     return links;
   });
 }
@@ -134,7 +135,7 @@ std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const as
       rigid(poses.back(), ("link " + io::quoted(part.name) + when).c_str());
     }
     for (const attached_thing& thing : robot.held) {
-      poses.push_back(links[thing.link] * thing.from.pose);
+      poses.push_back(io::carried(links[thing.link], thing.from.pose, io::quoted(thing.name) + when));
       rigid(poses.back(), (io::quoted(thing.name) + when).c_str());
     }
     return poses;

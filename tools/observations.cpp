@@ -4,6 +4,7 @@
 #include "command_line.hpp"
 
 #include <clearance/io/cloud_file.hpp>
+#include <clearance/io/kinematics.hpp>
 #include <clearance/io/png.hpp>
 
 #include <algorithm>
@@ -66,9 +67,9 @@ observation observe(const cloud_options& from, std::set<std::string>& taken) {
 }
 
 Eigen::Isometry3d observation::world(const Eigen::Isometry3d& carrier) const {
-  const Eigen::Isometry3d placed = carrier * from.pose;
-  if (!from.use_viewpoint || !points()) return placed;
-  return placed * pose("--use-viewpoint: " + from.file, points()->viewpoint->translation, points()->viewpoint->rotation);
+  const Eigen::Isometry3d camera = io::carried(carrier, from.pose, "the camera");
+  if (!from.use_viewpoint || !points()) return camera;
+  return io::carried(camera, pose("--use-viewpoint: " + from.file, points()->viewpoint->translation, points()->viewpoint->rotation), "the viewpoint");
 }
 
 seen_points observation::seen(const Eigen::Isometry3d& carrier, poses_of robot) {

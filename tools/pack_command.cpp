@@ -22,7 +22,7 @@ namespace {
 struct pack_settings {
   std::string input, spheres, gap, radius, seconds, seed, geometry, cache, joints, backend = "host";
   std::vector<std::string> out, packages, mesh_limits, excluded;
-  bool overlap = false, no_cache = false, json = false;
+  bool overlap = false, strict = false, no_cache = false, json = false;
 };
 
 /// What is packed: the links of a robot, or a mesh alone.
@@ -46,7 +46,7 @@ subject load(const pack_settings& asked) {
   subject made;
   if (!ends(asked.input, ".urdf")) {
     for (const auto& [option, given] : {std::pair{"--geometry", !asked.geometry.empty()}, {"--package", !asked.packages.empty()},
-                                        {"--exclude-link", !asked.excluded.empty()}, {"--joints", !asked.joints.empty()}})
+                                        {"--exclude-link", !asked.excluded.empty()}, {"--joints", !asked.joints.empty()}, {"--strict", asked.strict}})
       if (given) throw usage_error(option, "is for robots, and " + asked.input + " is none by its name");
     made.parts.push_back({.name = std::filesystem::path(asked.input).stem().string(),
                           .mesh = io::load_mesh(asked.input, limits_of(asked.mesh_limits))});
@@ -61,6 +61,7 @@ subject load(const pack_settings& asked) {
     options.packages[name] = folder;
   }
   options.exclude_links = asked.excluded;
+  options.strict = asked.strict;
   options.limits = limits_of(asked.mesh_limits);
   const io::robot robot = io::load_robot(asked.input, options);
   const auto& tree = robot.kinematics();
@@ -234,6 +235,7 @@ subcommand add_pack(CLI::App& app) {
   one("--cache", asked->cache, "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
   one("--backend", asked->backend, "host (default) or device: sooner, but other spheres than those that query and run make and keep");
   one("--geometry", asked->geometry, "Of a robot: visual or collision (default)");
+  sub->add_flag("--strict", asked->strict, "Refuse of the robot's description what would get a note");
   sub->add_option("--package", asked->packages, "name=DIR: where package://name/ is");
   sub->add_option("--mesh-limit", asked->mesh_limits, mesh_limit_says());
   sub->add_option("--exclude-link", asked->excluded, "Leave out this link");

@@ -43,7 +43,7 @@ struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames, trajectory, unfolded;
   std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, support_limit, svg, deadline, nearest;
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges;
-  bool ignore_limits = false, json = false, no_cache = false, merge = false, csv = false, gradient = false, shard = false, is_signed = false, between = false;
+  bool ignore_limits = false, strict = false, json = false, no_cache = false, merge = false, csv = false, gradient = false, shard = false, is_signed = false, between = false;
 };
 
 /// Sets one per-cloud option, as it was given on the command line.
@@ -249,6 +249,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   }
   if (!o.joints.empty() && !o.joint.empty()) throw usage_error("--joints", "cannot be mixed with --joint");
   o.ignore_limits = raw.ignore_limits;
+  o.strict = raw.strict;
   if (!raw.geometry.empty()) o.visual = choice("--geometry", raw.geometry, {"collision", "visual"}) == 1;
   for (const auto& text : raw.packages) o.packages.push_back(assignment("--package", text, "name=DIR"));
   o.limits = limits_of(raw.mesh_limits);
@@ -310,6 +311,7 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   }
   app.add_flag("--ignore-limits", raw->ignore_limits, "Accept joint positions outside their limits");
   one("--geometry", raw->geometry, "visual or collision (default; visual where a link has no collision)");
+  app.add_flag("--strict", raw->strict, "Refuse of the robot's description what would get a note");
   app.add_option("--package", raw->packages, "name=DIR: where package://name/ is");
   app.add_option("--mesh-limit", raw->mesh_limits, mesh_limit_says());
   one("--base-pose", raw->base, "x,y,z,qx,qy,qz,qw: world-from-base (m; default: the base is at the world's origin)");

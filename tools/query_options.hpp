@@ -66,7 +66,7 @@ struct query_options {
   std::string robot;
   std::vector<double> joints;                          // in the file's order; empty: not given
   std::vector<std::pair<std::string, double>> joint;   // by name
-  bool ignore_limits = false;
+  bool ignore_limits = false, strict = false;
   std::optional<bool> visual;                          // --geometry
   std::vector<std::pair<std::string, std::string>> packages;
   clearance::io::mesh_limits limits;

@@ -44,7 +44,7 @@ void take(body& made, const io::packed_part& given, progress& shown, body_accoun
 void line(body& made, std::size_t count, progress& shown) {
   shown.show("lining " + made.name);
   const mesh_solid solid = mesh_solid::of_surface(made.closed);
-  const double radius = 1e-4 * solid.bounds().diagonal().norm();
+  const double radius = 1e-6 * solid.bounds().diagonal().norm();
   std::vector<inner_sphere> spheres;
   for (const Eigen::Vector3d& p : solid.surface_points(count)) spheres.push_back({{real(p.x()), real(p.y()), real(p.z())}, real(radius)});
   take(made, io::certify(solid, io::uncertified(std::move(spheres))));

@@ -45,7 +45,9 @@ class motion {
   Eigen::Isometry3d carrier(std::size_t frame) const {
     const std::string& link = asked_.recording.camera.link;
     if (link.empty()) return Eigen::Isometry3d::Identity();
-    return asked_.base * about_file(asked_.robot, [&] { return robot_.description.link_pose(link, row(frame), {asked_.ignore_limits}); });
+    return about_file(asked_.robot, [&] {
+      return io::carried(asked_.base, robot_.description.link_pose(link, row(frame), {asked_.ignore_limits}), "link " + io::quoted(link));
+    });
   }
 
  private:

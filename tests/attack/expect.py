@@ -13,7 +13,7 @@ import robots
 from geometry import IDENTITY, apply, compose, distance_range, inverse, quaternion
 from strict import Unknown, demand, lines_of, number, text_of, whole
 
-FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache", "--json", "--merge", "--allow-overlap", "--csv", "--gradient", "--between"}
+FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache", "--json", "--merge", "--allow-overlap", "--csv", "--gradient", "--between", "--strict"}
 PER_CLOUD = {"--camera-pose", "--camera-link", "--intrinsics", "--depth-scale", "--range", "--use-viewpoint", "--zero-is-missing"}
 SINGLE = {
     "query": {"--robot", "--joints", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend",
@@ -30,7 +30,7 @@ SINGLE = {
 _of_robots = {"--package", "--exclude-link", "--mesh-limit", "--attach", "--attach-pose"}
 MANY = {"query": {"--joint", "--cloud"} | _of_robots, "plan": {"--joint", "--cloud"} | _of_robots, "run": {"--joint"} | _of_robots,
         "pack": {"--out", "--package", "--exclude-link", "--mesh-limit"}, "demo": set(), "info": set()}
-OWN_FLAGS = {"pack": {"--no-cache", "--json", "--allow-overlap"}, "demo": {"--no-cache"}, "info": {"--json"}}
+OWN_FLAGS = {"pack": {"--strict", "--no-cache", "--json", "--allow-overlap"}, "demo": {"--no-cache"}, "info": {"--json"}}
 FAR = 1e18  # metres; the square of what is beyond it is no float, and it may count as not finite
 
 

@@ -10,6 +10,7 @@ import struct
 
 import packings
 import writers
+import urdf_words
 import xml_tree
 from strict import Invalid, Unknown
 
@@ -305,7 +306,7 @@ def ist(rng, data):
 
 STL = [word4, word4, word4]
 KINDS = {
-    "urdf": XML * 3 + BYTES, "dae": (XML + [asset]) * 3 + BYTES, "glb": GLB * 2 + BYTES, "png": [png] * 16 + BYTES, "ist": [ist] * 8 + BYTES,
+    "urdf": XML * 3 + [urdf_words.damage] * 12 + BYTES, "dae": (XML + [asset]) * 3 + BYTES, "glb": GLB * 2 + BYTES, "png": [png] * 16 + BYTES, "ist": [ist] * 8 + BYTES,
     "stl binary": STL * 3 + BYTES, "ply mesh binary": HEADER + STL + BYTES, "ply cloud binary": HEADER + STL + BYTES,
     "pcd binary": HEADER + STL + BYTES, "pcd compressed": HEADER + STL + BYTES, "pack": TEXT + STL,
 }
@@ -349,7 +350,7 @@ def options(rng, case):
             ["--check", ""], ["--base-pose", ""], ["--joints", ""], ["--camera-link", ""], ["--packing", ""], ["--scene", ""], ["--range", ""], ["--model", ""],
             ["--volume", ""], ["--exclude-link", ""], ["--package", ""], ["--joint", ""], ["--cache", ""], ["--geometry", ""], ["--spheres", ""],
             ["--backend", ""], ["--mesh-limit", ""], ["--mesh-limit", "nodes=5"], ["--unfold-limit", ""], ["--check", "nan"], ["--range", "1,1"], ["--range", "0,inf"], ["--joint", "turn=0.5"], ["--joint", "slide=0.5"],
-            ["--package", "x=."], ["--cloud", "d.xyz"], ["--ignore-limits", None], ["--zero-is-missing", None], ["--use-viewpoint", None],
+            ["--package", "x=."], ["--cloud", "d.xyz"], ["--ignore-limits", None], ["--zero-is-missing", None], ["--use-viewpoint", None], ["--strict", None],
             ["--exclude-link", "b"], ["--zones", ""], ["--zones", "0.2,0.1"], ["--zones", "0.1,0.2"], ["--min-points", ""], ["--min-points", "0"], ["--distances", ""],
             ["--distances", "p.ply"], ["--distances", "p.xyz"], ["--d-max", ""], ["--d-max", "-1"], ["--d-max", "0.2"], ["--plan", ""], ["--plan", "t.csv"],
             ["--configurations", ""], ["--csv", None], ["--check", "-1"], ["--check", "1e300"], ["--spheres", "4294967297"],

@@ -10,15 +10,53 @@ import xml_tree
 from geometry import IDENTITY, Mesh, Shape, apply, compose, determinant, roll_pitch_yaw, rotation
 from strict import Invalid, demand, number, numbers
 
-_known = {"origin": "xyz rpy", "box": "size", "sphere": "radius", "cylinder": "radius length", "capsule": "radius length",
-          "mesh": "filename scale", "axis": "xyz", "limit": "lower upper effort velocity", "mimic": "joint multiplier offset"}
+# Attributes and children that decide where a body is. What is nearly one of them must not be passed over.
+_attributes = {"origin": "xyz rpy", "box": "size", "sphere": "radius", "cylinder": "radius length", "capsule": "radius length",
+               "mesh": "filename scale", "axis": "xyz", "limit": "lower upper", "mimic": "joint multiplier offset"}
+_shapes = ("box", "sphere", "cylinder", "capsule", "mesh")
+_parts = "visual collision geometry"
+_children = {"robot": "link joint", "link": _parts, "visual": "origin geometry", "collision": "origin geometry", "geometry": " ".join(_shapes),
+             "joint": "origin parent child axis limit mimic " + _parts}
 _fields = {"box": ("size", 3), "sphere": ("radius", 1), "cylinder": ("radius length", 1), "capsule": ("radius length", 1)}
 
 
 def _lengths(element, names, count):
     values = [v for name in names.split() for v in numbers(element.get(name), count)]
-    demand(all(v > 0 for v in values), "a length that is not above 0")
+    demand(all(v >= 0 for v in values), "a length below 0")
     return values
+
+
+def _edits(a, b):
+    """Letters put in, left out, changed or swapped with the next."""
+    rows = [list(range(len(b) + 1))]
+    for i, x in enumerate(a):
+        row = [i + 1]
+        for j, y in enumerate(b):
+            row.append(min(rows[-1][j + 1] + 1, row[j] + 1, rows[-1][j] + (x != y)))
+            if i and j and x == b[j - 1] and a[i - 1] == y:
+                row[-1] = min(row[-1], rows[-2][j - 1] + 1)
+        rows.append(row)
+    return rows[-1][-1]
+
+
+def _misspelt(name, words):
+    """Whether a name is nearly, but not quite, one of the words: docs/io.md says when."""
+    own = [name.lower(), name.lower().split(":")[-1]]
+    return any(_edits(form[:40], word) <= (1 if len(word) <= 4 else 2) for form in own for word in words.split() if name != word)
+
+
+def _check_words(element, uris, known=True):
+    """Nothing that matters is misspelt, and nothing is xacro's. Only where URDF knows an element its words are judged."""
+    uris = dict(uris, **{k[6:]: v for k, v in element.attributes.items() if k.startswith("xmlns:")})
+    prefix = element.name.partition(":")[0] if ":" in element.name else ""
+    demand("xacro" not in uris.get(prefix, prefix).lower(), "xacro")
+    for name in element.attributes if known else ():
+        words = _attributes.get(element.name, "")
+        demand(name in words.split() or not _misspelt(name, words), f"an attribute {name[:20]!r} of <{element.name}>")
+    for child in element.children:
+        words = _children.get(element.name, "")
+        demand(not known or child.name in words.split() or not _misspelt(child.name, words), f"<{child.name[:20]}> in <{element.name}>")
+        _check_words(child, uris, known and (child.name in words.split() or child.name in _attributes))
 
 
 def _origin(element):
@@ -40,14 +78,11 @@ def load_mesh(name, files):
 
 def _body(element, files):
     """The body of a <visual> or <collision>, in the link's frame."""
-    for child in element.children:
-        demand(child.name in ("origin", "geometry", "material", "name", "verbose", "contact_coefficients"), f"<{child.name}>")
-    pose, kinds = _origin(element), element.need("geometry").children
+    pose, kinds = _origin(element), element.need("geometry").all(*_shapes)
     demand(len(kinds) == 1, "a geometry of other than one shape")
     shape = kinds[0]
     if shape.name in _fields:
         return Shape(shape.name, _lengths(shape, *_fields[shape.name]), pose)
-    demand(shape.name == "mesh", f"a geometry <{shape.name}>")
     scale = numbers(shape.attributes.get("scale", "1 1 1"), 3)
     demand(all(scale), "a scale of 0")
     sized = (tuple(tuple(v * s for v, s in zip(row, scale)) for row in pose[0]), pose[1])
@@ -59,9 +94,6 @@ def _body(element, files):
 class Joint:
     def __init__(self, element):
         self.name, self.kind = element.get("name"), element.get("type")
-        for child in element.children:
-            demand(child.name in ("origin", "parent", "child", "axis", "limit", "mimic", "dynamics", "calibration",
-                                  "safety_controller"), f"<{child.name}> in a joint")
         demand(self.kind in ("fixed", "revolute", "continuous", "prismatic"), f"a joint of type {self.kind[:20]!r}")
         self.origin = _origin(element)
         self.parent, self.child = element.need("parent").get("link"), element.need("child").get("link")
@@ -73,8 +105,9 @@ class Joint:
             demand(limit is not None, "a joint without limits")
             self.low, self.high = (number(limit.attributes.get(side, "0")) for side in ("lower", "upper"))
             for needed in ("effort", "velocity"):
-                number(limit.get(needed))
-            demand(self.low <= self.high, "limits that exclude all")
+                number(limit.attributes.get(needed, "0"))
+            if self.low > self.high:  # noted, and none
+                self.low, self.high = -math.inf, math.inf
         elif limit is not None:
             for value in limit.attributes.values():
                 number(value)
@@ -101,10 +134,8 @@ class Robot:
     def __init__(self, data, files, visual=False, excluded=()):
         root = xml_tree.parse(data)
         demand(root.name == "robot" and "name" in root.attributes, "no <robot> with a name")
-        for e in root.walk():  # a misspelt attribute would leave its default in silence
-            demand(not e.name.startswith("xacro:"), "xacro")
-            demand(e.name not in _known or set(e.attributes) <= set(_known[e.name].split()), f"an unknown attribute of <{e.name}>")
-        self.links, self.bodies, self.notes = [], {}, 0
+        _check_words(root, {})
+        self.links, self.bodies = [], {}
         for link in root.all("link"):
             name = link.get("name")
             demand(name not in self.links, "a link twice")
@@ -115,12 +146,15 @@ class Robot:
             used = found[first] or found[second]
             if used and name not in excluded:
                 self.bodies[name] = used
-                self.notes += not found[first]
         demand(all(name in self.links for name in excluded), "no link of that name to exclude")
         demand(self.bodies, "no link has geometry")
         self.joints = [Joint(e) for e in root.all("joint")]
         self.by_name = {joint.name: joint for joint in self.joints}
         demand(len(self.by_name) == len(self.joints), "a joint twice")
+        for joint in self.joints:  # one that follows a joint of another file moves by itself; a misspelt name is refused
+            if joint.leader is not None and joint.leader not in self.by_name:
+                demand(all(_edits(joint.leader[:200], other) > 1 for other in self.by_name if other != joint.name), "a leader that is misspelt")
+                joint.leader = None
         self.above = {joint.child: joint for joint in self.joints}
         demand(len(self.above) == len(self.joints) == len(self.links) - 1, "the joints make no tree")
         demand(all(j.parent in self.links and j.child in self.links for j in self.joints), "a joint of an unknown link")

@@ -70,6 +70,33 @@ TEST_CASE("A hundred thousand links may hang, and follow, one on another") {
   CHECK(poses[0].matrix() == tree.link_poses(q)[last[0]].matrix());
 }
 
+TEST_CASE("Ways that cancel are refused where double loses more of them than a bracket covers") {
+  const auto chain = [](double there, double back) {
+    clearance::chain_link first, second;
+    first.origin.m[0][3] = there;
+    second.origin.m[0][3] = back, second.origin.m[1][3] = 0.1, second.parent = 0, second.value = 0, second.slides = true;
+    return joint_chain<>({first, second}, {1}, {{"slide", {}}});
+  };
+  const auto refused = [](const joint_chain<>& c, double q) {
+    const double values[] = {q};
+    CHECK(std::isnan(c.view().pose(values, 0).m[0][0]) == [&] {
+      try {
+        return c.poses(values).empty();
+      } catch (const std::invalid_argument& e) {
+        return std::string(e.what()).find("ways that cancel") != std::string::npos;
+      }
+    }());
+    return std::isnan(c.view().pose(values, 0).m[0][0]);
+  };
+  CHECK(refused(chain(1e13, -1e13 + 0.3), 0));
+  CHECK(refused(chain(1e13, 0), -1e13 + 0.3));
+  CHECK(refused(chain(0.3, 1e12), -1e12));
+  CHECK_FALSE(refused(chain(1e13, 0), 0.3));
+  CHECK_FALSE(refused(chain(5e6, 0.1), 0.3));
+  CHECK_FALSE(refused(chain(100.1, -100.3), 0.3));  // as a long gantry
+  CHECK_FALSE(refused(chain(0.1, 0.2), 0.3));
+}
+
 TEST_CASE("What is no joint vector is refused, by configuration and joint") {
   joint shoulder, elbow;
   shoulder.name = "shoulder", shoulder.parent = "base", shoulder.child = "upper", shoulder.lower = -1, shoulder.upper = 1;

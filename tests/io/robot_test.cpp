@@ -152,7 +152,7 @@ TEST_CASE("a part is all shapes of one link, each at its origin, and links witho
   CHECK(r.parts()[0].name == "z_arm");  // the file's order, not the alphabet's
   CHECK(r.parts()[1].name == "a_hand");
   REQUIRE(r.notes().size() == 1);
-  CHECK(says(r.notes()[0], "\"a_hand\" has no collision"));
+  CHECK(says(r.notes()[0], "\"a_hand\": has no collision"));
   CHECK(r.parts()[1].used == io::robot_geometry::visual);
   CHECK(r.parts()[0].tessellation_error == 0);
   CHECK(r.parts()[1].tessellation_error > 0);
@@ -238,7 +238,7 @@ TEST_CASE("package names are looked up where given, then above the URDF, then in
   CHECK(corner(urdf("ws/other_name/urdf/deep/r.urdf", "package://beta/t.obj")) == 3);
 
   const auto gamma = urdf("x/r.urdf", "package://gamma/t.obj");
-  CHECK(says(sentence([&] { load_robot(gamma); }), "ROS_PACKAGE_PATH"));
+  CHECK(says(sentence([&] { load_robot(gamma); }), "--package gamma="));
   folder.put("prefix/share/gamma/t.obj", sized(5));
   ::setenv("AMENT_PREFIX_PATH", (std::string("/nowhere:") + (folder.path / "prefix").string()).c_str(), 1);
   CHECK(corner(gamma) == 5);
@@ -248,6 +248,11 @@ TEST_CASE("package names are looked up where given, then above the URDF, then in
   ::unsetenv("ROS_PACKAGE_PATH");
   ::unsetenv("AMENT_PREFIX_PATH");
 
+  CHECK(corner(urdf("ws/alpha/urdf/r.urdf", "package:///alpha/meshes/t.obj")) == 1);
+  CHECK(corner(urdf("ws/alpha/urdf/r.urdf", "model://alpha/meshes/t.obj")) == 1);
+  CHECK(says(sentence([&] { load_robot(urdf("ws/tau/urdf/r.urdf", "package://tau_description/meshes/u.obj")); }), "--package tau_description=FOLDER"));
+  folder.put("ws/tau/meshes/u.obj", triangle);
+  CHECK(says(sentence([&] { load_robot(folder.path / "ws/tau/urdf/r.urdf"); }), "--package tau_description=" + (folder.path / "ws/tau").string() + " would do"));
   CHECK(corner(urdf("x/f.urdf", "file://" + (folder.path / "ros/gamma/t.obj").string())) == 4);
   CHECK(corner(urdf("x/a.urdf", (folder.path / "ros/gamma/t.obj").string())) == 4);
   CHECK(corner(urdf("x/p.urdf", "../ros/gamma/t.obj")) == 4);
@@ -280,7 +285,7 @@ TEST_CASE("a bad robot file is refused in one sentence with its name") {
   CHECK(says(refusal("<robot name=\"r\">" + deep), "elements inside one another"));
   CHECK(says(refusal(robot("")), "no link"));
   CHECK(says(refusal(robot(a_link("a"))), "no link has geometry"));
-  CHECK(says(refusal(robot(a_link("a", collision(box)) + "<xacro:arm/>")), "xacro"));
+  CHECK(says(refusal(robot(a_link("a", collision(box)) + "<xacro:arm/>")), "expand it with xacro"));
   CHECK_FALSE(refusal(robot(a_link("a", collision(box)) + a_link("a"))).empty());
   CHECK_FALSE(refusal(robot(a_link("a", collision(box)) + a_link("b"))).empty());
   CHECK_FALSE(refusal(robot(a_link("a", collision(box)) + joint("j", "fixed", "a", "b"))).empty());
@@ -299,9 +304,9 @@ TEST_CASE("a bad robot file is refused in one sentence with its name") {
   CHECK_FALSE(refusal(robot(a_link("a", collision(box, "<origin xyz=\"0 1e999 0\"/>")))).empty());
   CHECK_FALSE(refusal(robot(a_link("a", collision(box, "<origin xyz=\"0 0\"/>")))).empty());
   CHECK_FALSE(refusal(robot(a_link("a", "<collision/>"))).empty());
-  CHECK(says(refusal(robot(a_link("a", collision("<box size=\"1 0 1\"/>")))), "side that is not above 0"));
-  CHECK(says(refusal(robot(a_link("a", collision("<sphere radius=\"-1\"/>")))), "radius that is not above 0"));
-  CHECK(says(refusal(robot(a_link("a", collision("<cylinder radius=\"1\" length=\"0\"/>")))), "length that is not above 0"));
+  CHECK(says(refusal(robot(a_link("a", collision("<box size=\"1 -1 1\"/>")))), "side below 0"));
+  CHECK(says(refusal(robot(a_link("a", collision("<sphere radius=\"-1\"/>")))), "radius below 0"));
+  CHECK(says(refusal(robot(a_link("a", collision("<cylinder radius=\"1\" length=\"-1e-9\"/>")))), "length below 0"));
   CHECK(says(refusal(robot(a_link("a", collision(mesh("t.obj", "scale=\"1 0 1\""))))), "scale"));
   CHECK(says(sentence([&] { load_robot(folder.put("r.urdf", robot(a_link("a", collision(mesh("gone.stl")))))); }),
              "gone.stl"));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/ground/chain_rounding.hpp>
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -47,6 +49,18 @@ struct joint_drive {
 struct joint_options {
   bool ignore_limits = false;
 };
+
+/// `outer` * `inner`, such as a base and a link of it. Throws std::invalid_argument if their ways are so long, and cancel so well, that double
+/// loses what no bracket covers; `who` is what is put there.
+inline Eigen::Isometry3d carried(const Eigen::Isometry3d& outer, const Eigen::Isometry3d& inner, const std::string& who) {
+  const Eigen::Isometry3d made = outer * inner;
+  chain_rounding rounding;
+  rounding.turned();
+  rounding.step(2 * inner.translation().norm(), made.translation().norm());
+  if (made.matrix().allFinite() && !rounding.covered(made.translation().norm()))
+    throw std::invalid_argument(who + " is put there by ways that cancel, and double loses up to " + std::to_string(1e3 * rounding.lost) + " mm of them");
+  return made;
+}
 
 /// Links joined to a tree. A configuration is one value for each movable joint that follows no other, in the order in
 /// which the joints were given. Joints that follow another do so beyond their own limits too.
@@ -118,7 +132,8 @@ class kinematic_tree {
   }
 
   /// base-from-link for every link, composed in double. Throws std::invalid_argument if there are too many or too few
-  /// values, or if one is not finite or beyond its limits, or puts a link where no number can say.
+  /// values, or if one is not finite or beyond its limits, or puts a link where no number can say, or by ways that are so long and
+  /// cancel so well that double loses what no bracket covers.
   std::vector<Eigen::Isometry3d> link_poses(std::span<const double> q, joint_options options = {}) const {
     if (q.size() != size())
       throw std::invalid_argument("the robot has " + std::to_string(size()) + " movable joints, here are " +
@@ -135,19 +150,33 @@ class kinematic_tree {
                                     "\" to a value that is not finite");
     }
     std::vector<Eigen::Isometry3d> poses(links_.size(), Eigen::Isometry3d::Identity());
+    std::vector<chain_rounding> rounding(links_.size());
     for (const auto& [j, parent, child] : steps_) {
       const joint& by = joints_[j];
       poses[child] = poses[parent] * by.origin;
-      if (by.kind == joint_kind::prismatic) poses[child].translate(value[j] * by.axis);
+      rounding[child] = rounding[parent];
+      rounding[child].step(at(poses[parent].translation()), at(by.origin.translation()), at(poses[child].translation()),
+                           by.origin.translation().norm());
+      if (by.kind == joint_kind::revolute || by.kind == joint_kind::continuous || by.origin.linear() != Eigen::Matrix3d::Identity()) rounding[child].turned();
+      if (by.kind == joint_kind::prismatic) {
+        const position before = at(poses[child].translation());
+        poses[child].translate(value[j] * by.axis);
+        rounding[child].step(before, at(value[j] * by.axis), at(poses[child].translation()), std::abs(value[j]));
+      }
       if (by.kind == joint_kind::revolute || by.kind == joint_kind::continuous)
         poses[child].rotate(Eigen::AngleAxisd(value[j], by.axis));
       if (!poses[child].matrix().allFinite())
         throw std::invalid_argument("joint \"" + by.name + "\" puts its link beyond what a number can hold");
+      if (!rounding[child].covered(poses[child].translation().norm()))
+        throw std::invalid_argument("joint \"" + by.name + "\" puts its link there by ways that cancel, and double loses up to " +
+                                    std::to_string(1e3 * rounding[child].lost) + " mm of them");
     }
     return poses;
   }
 
  private:
+  static position at(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
   struct step {
     std::size_t joint, parent, child;
   };

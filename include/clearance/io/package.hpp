@@ -67,7 +67,21 @@ inline std::vector<std::filesystem::path> find_package(const std::string& name, 
   return found;
 }
 
-/// The file that a URDF means by package://name/path, file:///path, or a path from the URDF's own folder. Throws
+/// The folder at, above or beside a URDF that has this path in it, as the package would; empty if there is none.
+inline std::filesystem::path guess_package(const std::filesystem::path& inside, const std::filesystem::path& urdf) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  fs::path above = fs::weakly_canonical(fs::absolute(urdf), failed).parent_path();
+  for (int levels = 0; levels < 4 && above != above.root_path(); ++levels, above = above.parent_path()) {
+    if (fs::exists(above / inside, failed)) return above;
+    int seen = 0;
+    for (fs::directory_iterator at(above, failed), end; !failed && at != end && ++seen <= 1000; at.increment(failed))
+      if (at->is_directory(failed) && fs::exists(at->path() / inside, failed)) return at->path();
+  }
+  return {};
+}
+
+/// The file that a URDF means by package://name/path, model://name/path (the same, by the name of a simulator), file:///path, or a path from the URDF's own folder. Throws
 /// std::runtime_error if the package is nowhere, or if the scheme is another.
 inline std::filesystem::path resolve_uri(const std::string& uri, const std::filesystem::path& urdf,
                                          const std::map<std::string, std::filesystem::path>& packages) {
@@ -75,18 +89,22 @@ inline std::filesystem::path resolve_uri(const std::string& uri, const std::file
   if (uri.empty()) refuse(urdf.string(), "a mesh has an empty file name");
   if (scheme == uri.npos) return urdf.parent_path() / uri;
   if (uri.starts_with("file:///")) return uri.substr(7);
-  if (!uri.starts_with("package://"))
-    refuse(urdf.string(), io::quoted(uri) + " is none of package://name/path, file:///path and a relative path");
-  const std::string name = uri.substr(10, uri.find('/', 10) - 10);
-  const std::string inside = uri.size() > 11 + name.size() ? uri.substr(11 + name.size()) : "";
+  if (!uri.starts_with("package://") && !uri.starts_with("model://"))
+    refuse(urdf.string(), io::quoted(uri) + " is none of package://name/path, model://name/path, file:///path and a relative path");
+  std::string_view rest = std::string_view(uri).substr(scheme + 3);
+  rest.remove_prefix(std::min(rest.find_first_not_of('/'), rest.size()));  // package:///name is meant as package://name
+  const std::string name(rest.substr(0, rest.find('/')));
+  const std::string inside(rest.substr(std::min(name.size() + 1, rest.size())));
   if (name.empty() || inside.empty()) refuse(urdf.string(), io::quoted(uri) + " names no file in a package");
   const auto folders = find_package(name, urdf, packages);
   std::error_code failed;
   for (const auto& folder : folders)
     if (std::filesystem::exists(folder / inside, failed)) return folder / inside;
   if (!folders.empty()) return folders.front() / inside;  // whoever opens it says that it is missing
-  refuse(urdf.string(), "the package of " + io::quoted(uri) +
-                            " is neither given, nor a folder above, nor in ROS_PACKAGE_PATH or AMENT_PREFIX_PATH");
+  const std::string likely = guess_package(inside, urdf).string();
+  refuse(urdf.string(), "the package " + io::quoted(name) + " is not found: --package " + sentence(name, 60) + "=" +
+                            (likely.empty() ? "FOLDER says where it is, as do ROS_PACKAGE_PATH and AMENT_PREFIX_PATH"
+                                            : sentence(likely, 120) + " would do, where " + sentence(inside, 60) + " is"));
 }
 
 }  // namespace clearance::io

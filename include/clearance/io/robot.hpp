@@ -48,7 +48,7 @@ class robot {
 /// std::runtime_error if a file is damaged or missing, std::invalid_argument if a link to exclude does not exist.
 inline robot load_robot(const std::filesystem::path& urdf, const robot_options& options = {}) {
   if (!(options.tessellation > 0)) throw std::invalid_argument("the tessellation error must be above 0");
-  const urdf_file file = within_memory(urdf.string(), [&] { return read_urdf(urdf.string(), options.limits); });
+  urdf_file file = within_memory(urdf.string(), [&] { return read_urdf(urdf.string(), options.limits, options.strict); });
   for (const auto& name : options.exclude_links)
     if (std::none_of(file.links.begin(), file.links.end(), [&](const auto& link) { return link.name == name; }))
       throw std::invalid_argument("the robot has no link " + io::quoted(name) + " to exclude");
@@ -64,26 +64,28 @@ inline robot load_robot(const std::filesystem::path& urdf, const robot_options& 
   for (const urdf_link& link : file.links)
     if (asked(link)) round += std::size_t(std::ranges::count_if(shapes(link), &urdf_shape::round));
   std::vector<robot_part> parts;
-  std::vector<std::string> notes;
   robot_reader reader(urdf, options, round);
   for (const urdf_link& link : file.links) {
     if (!asked(link)) continue;
     robot_part part{link.name, {}, 0, options.geometry, file.tree.link(link.name)};
     if (part.used == robot_geometry::collision && link.collision.empty()) {
       part.used = robot_geometry::visual;
-      notes.push_back("link \"" + part.name + "\" has no collision geometry: its visual is used");
+      file.notes.add("has no collision geometry, and its visual is used", "link " + io::quoted(part.name));
     } else if (part.used == robot_geometry::visual && link.visual.empty()) {
       part.used = robot_geometry::collision;
-      notes.push_back("link \"" + part.name + "\" has no visual geometry: its collision is used");
+      file.notes.add("has no visual geometry, and its collision is used", "link " + io::quoted(part.name));
     }
-    for (const urdf_shape& shape : shapes(link))
+    for (const urdf_shape& shape : shapes(link)) {
+      if (shape.flat())
+        file.notes.add("has a shape without volume (a side, radius or length is 0), which is taken as 0.002 mm thick", "link " + io::quoted(part.name), shape.line);
       within_memory(urdf.string(), [&] { reader.add(part, shape); });
+    }
     parts.push_back(std::move(part));
   }
   if (parts.empty())
     refuse(urdf.string(),
            options.exclude_links.empty() ? "no link has geometry" : "no link that is not excluded has geometry");
-  return {file.name, file.tree, std::move(parts), std::move(notes)};
+  return {file.name, file.tree, std::move(parts), file.notes.sentences()};
 }
 
 }  // namespace clearance::io

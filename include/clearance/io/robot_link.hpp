@@ -25,6 +25,7 @@ struct robot_options {
   double tessellation = 1e-4;  // metres; round shapes become meshes no farther from them,
   std::uint32_t shape_triangles = 8000;  // except where one would need more triangles than this,
   std::uint32_t all_shape_triangles = 400'000;  // or more than its share of these
+  bool strict = false;                   // what would be noted is refused
   mesh_limits limits{};                  // of the description and all its meshes together
 };
 
@@ -53,7 +54,9 @@ class robot_reader {
     try {
       added = std::visit([&](const auto& geometry) { return make(geometry); }, shape.geometry);
     } catch (const std::runtime_error& error) {
-      refuse(file_, owner + error.what(), shape.line);
+      std::string why = error.what();
+      if (const std::string named = sentence(file_, 200) + ": "; why.starts_with(named)) why.erase(0, named.size());
+      refuse(file_, owner + why, shape.line);
     }
     const std::uint64_t triangles = added.mesh.triangles.size();
     if (triangles > left_.triangles)
@@ -76,15 +79,30 @@ class robot_reader {
   }
 
  private:
-  tessellation make(const urdf_box& box) const { return tessellate_box(box.size); }
-  tessellation make(const urdf_sphere& s) const {
-    return tessellate_sphere(s.radius, options_.tessellation, each_);
+  /// Half the thickness of what has none, metres: a solid then, which is so much larger, and says so.
+  static constexpr double least = 1e-6;
+
+  static tessellation thick(tessellation made, std::ptrdiff_t ways) {
+    made.error += least * std::sqrt(double(ways));
+    return made;
   }
+
+  tessellation make(const urdf_box& box) const {
+    Eigen::Vector3d size = box.size;
+    for (double& side : size)
+      if (side == 0) side = 2 * least;
+    return thick(tessellate_box(size), (box.size.array() == 0).count());
+  }
+  tessellation make(const urdf_sphere& s) const { return thick(tessellate_sphere(s.radius > 0 ? s.radius : least, options_.tessellation, each_), s.radius == 0); }
   tessellation make(const urdf_cylinder& c) const {
-    return tessellate_cylinder(c.radius, c.length, options_.tessellation, each_);
+    return thick(tessellate_cylinder(c.radius > 0 ? c.radius : least, c.length > 0 ? c.length : 2 * least, options_.tessellation, each_),
+                 (c.radius == 0) + (c.length == 0));
   }
   tessellation make(const urdf_capsule& c) const {
-    return tessellate_capsule(c.radius, c.length, options_.tessellation, each_);
+    const double radius = c.radius > 0 ? c.radius : least;
+    return thick(c.length > 0 ? tessellate_capsule(radius, c.length, options_.tessellation, each_)
+                              : tessellate_sphere(radius, options_.tessellation, each_),
+                 c.radius == 0);
   }
   tessellation make(const urdf_mesh& mesh) {
     const auto file = resolve_uri(mesh.uri, urdf_, options_.packages);

@@ -5,6 +5,7 @@
 
 #include <clearance/io/kinematics.hpp>
 #include <clearance/io/urdf_link.hpp>
+#include <clearance/io/urdf_words.hpp>
 
 #include <limits>
 #include <string>
@@ -13,24 +14,22 @@
 
 namespace clearance::io {
 
-/// The links of a file, in its order, and its joints as a tree.
+/// The links of a file, in its order, its joints as a tree, and what was passed over.
 struct urdf_file {
   std::string name;
   std::vector<urdf_link> links;
   kinematic_tree tree;
+  note_tally notes;
 };
 
-inline joint read_urdf_joint(const xml_place& at) {
+inline joint read_urdf_joint(const xml_place& at, note_tally& notes) {
   joint made;
   made.name = urdf_name(at);
   const std::string owner = "joint " + io::quoted(made.name);
   const xml_place here{at.element, at.file, owner};
-  here.only({"name", "type"}, {"origin", "parent", "child", "axis", "limit", "mimic", "dynamics", "calibration",
-                               "safety_controller", "disable_collision"});
   const auto link = [&](const char* which) {
     const xml_element* element = here.child(which);
     if (!element) here.refuse("has no <" + std::string(which) + ">");
-    here.in(*element).only({"link"}, {});
     return urdf_name(here.in(*element), "link");
   };
   made.parent = link("parent");
@@ -48,7 +47,6 @@ inline joint read_urdf_joint(const xml_place& at) {
   else if (type != "fixed")
     here.refuse("has the unknown type " + io::quoted(type));
   if (const xml_element* axis = here.child("axis"); axis && made.kind != joint_kind::fixed) {
-    here.in(*axis).only({"xyz"}, {});
     const auto xyz = here.in(*axis).numbers<3>("xyz");
     made.axis << xyz[0], xyz[1], xyz[2];
   }
@@ -56,77 +54,75 @@ inline joint read_urdf_joint(const xml_place& at) {
   if (made.kind == joint_kind::revolute || made.kind == joint_kind::prismatic) {
     if (!limit) here.refuse("has no <limit>, which a " + type + " joint needs");
     const xml_place at_limit = here.in(*limit);
-    at_limit.only({"lower", "upper", "effort", "velocity", "acceleration", "deceleration", "jerk"}, {});
     made.lower = at_limit.number_or("lower", 0);  // what URDF says of one that is left out
     made.upper = at_limit.number_or("upper", 0);
+    if (made.lower > made.upper) {
+      notes.add("has a lower limit above its upper limit, and is taken to have none", owner, limit->line);
+      made.lower = -std::numeric_limits<double>::infinity(), made.upper = std::numeric_limits<double>::infinity();
+    }
   }
   if (const xml_element* mimicked = here.child("mimic"); mimicked && made.kind != joint_kind::fixed) {
     const xml_place follow = here.in(*mimicked);
-    follow.only({"joint", "multiplier", "offset"}, {});
     made.follows = mimic{urdf_name(follow, "joint"), follow.number_or("multiplier", 1), follow.number_or("offset", 0)};
   }
   return made;
 }
 
-/// Whether a link, a joint or a shape is hidden somewhere in an element.
-inline bool holds_urdf(const xml_element& element) {
-  for (const char* word : {"link", "joint", "visual", "collision", "geometry", "parent", "child"})
-    if (element.name == word) return true;
-  return std::ranges::any_of(element.children, holds_urdf);
+/// A joint that follows one of another file is one that moves by itself: where it is, that file says, and a user must.
+/// What is nearly the name of a joint here is that, misspelt.
+inline void free_followers(std::vector<joint>& joints, const std::vector<const xml_element*>& at, const std::string& file, note_tally& notes) {
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (!joints[i].follows) continue;
+    const std::string& leader = joints[i].follows->joint;
+    if (std::ranges::find(joints, leader, &joint::name) != joints.end()) continue;
+    const std::string who = "joint " + io::quoted(joints[i].name);
+    for (const joint& other : joints)
+      if (&other != &joints[i] && edit_distance(other.name, leader) == 1)
+        refuse(file, who + ": follows " + io::quoted(leader) + ", which is not in this file (" + io::quoted(other.name) + "?)", at[i]->line);
+    joints[i].follows.reset();
+    notes.add("follows a joint that is not in this file, and takes a value of its own", who, at[i]->line);
+  }
 }
 
-/// How many elements of a shape are anywhere in an element, other vocabularies apart.
-inline std::size_t shape_elements(const xml_element& element) {
-  if (element.name.find(':') != element.name.npos) return 0;
-  std::size_t count = element.name == "visual" || element.name == "collision" || element.name == "geometry";
-  for (const auto& child : element.children) count += shape_elements(child);
-  return count;
-}
-
-/// What was read is counted against what is there: a shape inside another element would be lost without a word.
-inline void check_shapes(const xml_place& at, std::size_t read) {
-  if (const std::size_t there = shape_elements(at.element); there != 2 * read)  // each has its geometry
-    at.refuse("has " + std::to_string(there) + " elements <visual>, <collision> and <geometry> in it, but " +
-              std::to_string(2 * read) + " where they belong");
-}
-
-inline void refuse_xacro(const xml_element& element, const std::string& file) {
-  if (element.name.starts_with("xacro:")) refuse(file, "has xacro in it: expand it with xacro first", element.line);
-  for (const auto& child : element.children) refuse_xacro(child, file);
+/// Where the XML declaration begins, if blanks are before it; else 0. XML has nothing there, people have empty lines.
+inline std::size_t declaration_after_blanks(std::string_view text) {
+  const std::size_t mark = text.size() - without_mark(text).size(), begin = text.find_first_not_of(" \t\r\n", mark);
+  return begin != text.npos && begin > mark && text.substr(begin).starts_with("<?xml ") ? begin : 0;
 }
 
 /// Reads a URDF file; links and joints keep its order. Throws std::runtime_error with the file's name, the line, and
 /// the link or joint, if anything in it that says where geometry is cannot be read, is missing or is not known.
-inline urdf_file read_urdf(const std::string& file, const mesh_limits& limits = {}) {
+/// `strict`: what would be noted is refused.
+inline urdf_file read_urdf(const std::string& file, const mesh_limits& limits = {}, bool strict = false) {
   const std::string text = read_bytes(file, {.piped = limits.bytes});
   if (text.size() > limits.bytes)
     refuse(file, "is longer than the limit of " + std::to_string(limits.bytes) + " bytes (mesh_limits::bytes)");
-  const xml_element root = read_xml(text, file, limits);
+  const std::size_t begin = declaration_after_blanks(text);
+  const xml_element root = read_xml(std::string_view(text).substr(begin), file, limits, xml_prefixes::any);
   if (root.name != "robot") refuse(file, "is not a URDF file: it has no element robot", root.line);
-  refuse_xacro(root, file);
-  const xml_place robot{root, file, ""};
-  robot.no_text();
   urdf_file made;
-  made.name = urdf_name(robot);
+  made.notes = note_tally(file, strict);
+  if (begin > 0) made.notes.add("stand before the XML declaration, and are passed over", "blanks", 1);
+  urdf_judge(file, made.notes).judge(root);
+  const xml_place robot{root, file, ""};
+  if (root.attribute("name"))
+    made.name = urdf_name(robot);
+  else
+    made.notes.add("has no name", "<robot>", root.line);
   std::vector<std::string> names;
   std::vector<joint> joints;
+  std::vector<const xml_element*> joints_at;
   for (const auto& child : root.children) {
-    const xml_place at = robot.in(child);
     if (child.name == "link") {
-      made.links.push_back(read_urdf_link(at));
-      check_shapes({child, file, "link " + io::quoted(made.links.back().name)},
-                   made.links.back().visual.size() + made.links.back().collision.size());
+      made.links.push_back(read_urdf_link(robot.in(child)));
       names.push_back(made.links.back().name);
     } else if (child.name == "joint") {
-      joints.push_back(read_urdf_joint(at));
-      check_shapes({child, file, "joint " + io::quoted(joints.back().name)}, 0);
-    } else if (child.name == "transmission" || child.name == "sensor" || child.name == "ros2_control") {
-      check_shapes(at, 0);
-    } else if (child.name != "gazebo" && child.name.find(':') == child.name.npos && holds_urdf(child)) {
-      at.refuse("is not known, and has a part of a robot in it");
+      joints.push_back(read_urdf_joint(robot.in(child), made.notes));
+      joints_at.push_back(&child);
     }
   }
   if (names.empty()) refuse(file, "is no valid URDF: it has no link");
+  free_followers(joints, joints_at, file, made.notes);
   try {
     made.tree = kinematic_tree(std::move(names), std::move(joints));
   } catch (const std::invalid_argument& error) {

@@ -36,6 +36,14 @@ struct urdf_shape {
   Eigen::Isometry3d origin;  // link-from-shape
   std::size_t line;          // of its geometry
 
+  /// A point, a segment or a plate: a side, radius or length is 0.
+  bool flat() const {
+    if (const auto* box = std::get_if<urdf_box>(&geometry)) return (box->size.array() == 0).any();
+    if (const auto* sphere = std::get_if<urdf_sphere>(&geometry)) return sphere->radius == 0;
+    if (const auto* cylinder = std::get_if<urdf_cylinder>(&geometry)) return cylinder->radius == 0 || cylinder->length == 0;
+    const auto* capsule = std::get_if<urdf_capsule>(&geometry);
+    return capsule && capsule->radius == 0;
+  }
   /// Becomes triangles that are not quite it.
   bool round() const { return !std::holds_alternative<urdf_box>(geometry) && !std::holds_alternative<urdf_mesh>(geometry); }
 };
@@ -63,7 +71,6 @@ inline Eigen::Isometry3d urdf_origin(const xml_place& around) {
   const xml_element* element = around.child("origin");
   if (!element) return pose;
   const xml_place origin = around.in(*element);
-  origin.only({"xyz", "rpy"}, {});
   if (element->attribute("xyz")) {
     const auto xyz = origin.numbers<3>("xyz");
     pose.translation() << xyz[0], xyz[1], xyz[2];
@@ -79,33 +86,32 @@ inline Eigen::Isometry3d urdf_origin(const xml_place& around) {
 }
 
 inline urdf_geometry read_urdf_geometry(const xml_place& around) {
-  around.only({"name"}, {"box", "sphere", "cylinder", "capsule", "mesh"});
-  if (around.element.children.size() != 1)
-    around.refuse("has " + std::to_string(around.element.children.size()) + " shapes, not one");
-  const xml_place shape = around.in(around.element.children.front());
+  const xml_element* only = nullptr;
+  std::size_t count = 0;
+  for (const auto& child : around.element.children)
+    for (const char* known : {"box", "sphere", "cylinder", "capsule", "mesh"})
+      if (child.name == known) only = &child, ++count;
+  if (count == 0 && around.element.children.size() == 1) around.in(around.element.children.front()).refuse("is no shape of URDF");
+  if (count != 1) around.refuse("has " + std::to_string(count) + " shapes, not one");
+  const xml_place shape = around.in(*only);
   const std::string& kind = shape.element.name;
   const auto length = [&](double value, const char* what) {
-    if (!(value > 0)) shape.refuse("has a " + std::string(what) + " that is not above 0");
+    if (!(value >= 0)) shape.refuse("has a " + std::string(what) + " below 0");
     return value;
   };
   if (kind == "box") {
-    shape.only({"size"}, {});
     const auto size = shape.numbers<3>("size");
     return urdf_box{{length(size[0], "side"), length(size[1], "side"), length(size[2], "side")}};
   }
   if (kind == "sphere") {
-    shape.only({"radius"}, {});
     return urdf_sphere{length(shape.numbers<1>("radius")[0], "radius")};
   }
   if (kind == "cylinder" || kind == "capsule") {
-    shape.only({"radius", "length"}, {});
     const double radius = length(shape.numbers<1>("radius")[0], "radius");
     const double along = length(shape.numbers<1>("length")[0], "length");
     if (kind == "cylinder") return urdf_cylinder{radius, along};
     return urdf_capsule{radius, along};
   }
-  if (kind != "mesh") shape.refuse("is no shape of URDF");
-  shape.only({"filename", "scale"}, {});
   urdf_mesh mesh{shape.attribute("filename"), {1, 1, 1}};
   if (mesh.uri.empty() || mesh.uri.find('\0') != mesh.uri.npos) shape.refuse("has an empty file name");
   if (shape.element.attribute("scale")) {
@@ -120,11 +126,9 @@ inline urdf_link read_urdf_link(const xml_place& at) {
   urdf_link made{urdf_name(at), {}, {}};
   const std::string owner = "link " + io::quoted(made.name);
   const xml_place link{at.element, at.file, owner};
-  link.only({"name", "type"}, {"inertial", "visual", "collision", "contact", "self_collision_checking", "sensor"});
   for (const auto& child : link.element.children) {
     if (child.name != "visual" && child.name != "collision") continue;
     const xml_place shape = link.in(child);
-    shape.only({"name", "group"}, {"origin", "geometry", "material", "contact_coefficients", "verbose"});
     const xml_element* geometry = shape.child("geometry");
     if (!geometry) shape.refuse("has no geometry");
     (child.name == "visual" ? made.visual : made.collision)

@@ -32,13 +32,21 @@ struct xml_element {
       if (key == wanted) return &value;
     return nullptr;
   }
+  /// Of the same content, wherever it stands.
+  bool same(const xml_element& other) const {
+    return name == other.name && text == other.text && attributes == other.attributes &&
+           std::ranges::equal(children, other.children, [](const auto& a, const auto& b) { return a.same(b); });
+  }
 };
+
+/// Whether a name may have a prefix that no xmlns declares. By the standard it may; other readers of a format may not mind.
+enum class xml_prefixes { declared, any };
 
 /// Reads one document. What is not well-formed, declares a document type (and so entities), or goes beyond the limits
 /// is refused.
 class xml_reader {
  public:
-  xml_reader(const std::string& file, const mesh_limits& limits) : file_(file), limits_(limits) {}
+  xml_reader(const std::string& file, const mesh_limits& limits, xml_prefixes prefixes) : file_(file), limits_(limits), prefixes_(prefixes) {}
 
   xml_element read(std::string_view bytes) {
     const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), &XML_ParserFree);
@@ -102,15 +110,16 @@ class xml_reader {
   /// Names of other vocabularies have a prefix that is declared; a damaged name has one by chance.
   void check_prefix(const std::string& name, const xml_element& here) const {
     const std::size_t colon = name.find(':');
-    if (colon == name.npos || name.starts_with("xml:") || name.starts_with("xmlns:")) return;
+    if (prefixes_ == xml_prefixes::any || colon == name.npos || name.starts_with("xml:") || name.starts_with("xmlns:")) return;
     const std::string declared = "xmlns:" + name.substr(0, colon);
     if (!here.attribute(declared) &&
         std::ranges::none_of(open_, [&](const xml_element* around) { return around->attribute(declared); }))
-      throw "uses a prefix that is not declared (xacro must be expanded first)";
+      throw "uses a prefix that is not declared";
   }
 
   const std::string& file_;
   const mesh_limits& limits_;
+  const xml_prefixes prefixes_;
   XML_Parser parser_ = nullptr;
   xml_element above_;
   std::vector<xml_element*> open_{&above_};
@@ -119,8 +128,9 @@ class xml_reader {
   const char* why_ = nullptr;
 };
 
-inline xml_element read_xml(std::string_view bytes, const std::string& file, const mesh_limits& limits = {}) {
-  return xml_reader(file, limits).read(bytes);
+inline xml_element read_xml(std::string_view bytes, const std::string& file, const mesh_limits& limits = {},
+                            xml_prefixes prefixes = xml_prefixes::declared) {
+  return xml_reader(file, limits, prefixes).read(bytes);
 }
 
 /// An element with what a sentence about it says: its file, and in which link, joint or geometry it is.
@@ -151,11 +161,14 @@ struct xml_place {
       refuse("has text in it: " + io::quoted(std::string_view(element.text).substr(at, 40)));
   }
 
-  /// The child of that name, null if there is none; two are an error.
+  /// The child of that name, null if there is none; two that differ are an error.
   const xml_element* child(std::string_view name) const {
     const xml_element* found = nullptr;
-    for (const auto& each : element.children)
-      if (each.name == name && std::exchange(found, &each)) in(each).refuse("is there twice");
+    for (const auto& each : element.children) {
+      if (each.name != name) continue;
+      if (found && !each.same(*found)) in(each).refuse("is there twice");
+      found = &each;
+    }
     return found;
   }
   const std::string& attribute(std::string_view name) const {

@@ -3,6 +3,7 @@
 // From joint vectors to poses of parts, on any backend, with the same bits: forward kinematics for many configurations.
 
 #include <clearance/backend/host.hpp>
+#include <clearance/ground/chain_rounding.hpp>
 #include <clearance/ground/pose.hpp>
 #include <clearance/ground/sine.hpp>
 #include <clearance/result.hpp>
@@ -41,12 +42,31 @@ struct joint_chain_view {
     return true;
   }
 
-  /// World-from-part; of joint vectors that are not allowed all numbers are NaN, which no question takes for a pose.
+  /// World-from-part; of joint vectors that are not allowed, or that put it by ways that cancel as no bracket covers, all numbers are NaN,
+  /// which no question takes for a pose.
   CLEARANCE_HD world_transform pose(const double* q, std::uint32_t part) const {
     world_transform below;
-    for (std::uint32_t link = link_of_part[part]; link != none; link = links[link].parent) below = from_link(links[link], q) * below;
-    below = base * below;
-    if (!allows(q))
+    chain_rounding rounding;
+    const auto on = [&](const world_transform& above) {
+      const position way = below.translation();
+      below = above * below;
+      rounding.turn = 0;
+      if (above.m[0][0] != 1 || above.m[1][1] != 1 || above.m[2][2] != 1) rounding.turned();
+      rounding.step(way, above.translation(), below.translation(), chain_rounding::most(way));
+    };
+    for (std::uint32_t link = link_of_part[part]; link != none; link = links[link].parent) {
+      const chain_link& by = links[link];
+      const world_transform step = from_link(by, q);
+      rounding.turn = 0;
+      if (by.slides) {
+        const double shift = fma(by.factor, q[by.value], by.offset);
+        if (by.origin.m[0][0] != 1 || by.origin.m[1][1] != 1 || by.origin.m[2][2] != 1) rounding.turned();
+        rounding.step(by.origin.translation(), {shift * by.axis.x, shift * by.axis.y, shift * by.axis.z}, step.translation(), shift < 0 ? -shift : shift);
+      }
+      on(step);
+    }
+    on(base);
+    if (!allows(q) || !rounding.covered(chain_rounding::least(below.translation())))
       for (auto& row : below.m)
         for (double& x : row) x = double(not_a_number);
     return below;
@@ -124,7 +144,8 @@ class joint_chain {
   }
 
   /// How many configurations `q` is: one number a value, one configuration after another. Throws std::invalid_argument if they are not
-  /// whole, or a number is not finite, or outside its range, or turns a link by more than 2^30 rad.
+  /// whole, or a number is not finite, or outside its range, or turns a link by more than 2^30 rad, or puts a part by ways that cancel so that
+  /// double loses what no bracket covers.
   std::size_t count(std::span<const double> q) const {
     if (q.size() % values_.size() != 0)
       throw std::invalid_argument("clearance: " + std::to_string(q.size()) + " numbers are no whole joint vectors of " + std::to_string(values_.size()));
@@ -139,6 +160,7 @@ class joint_chain {
         if (link.value != none && !link.slides && !(std::abs(fma(link.factor, q[first + link.value], link.offset)) <= 0x1p30))
           throw std::invalid_argument("clearance: configuration " + std::to_string(first / values_.size()) + ": joint \"" + values_[link.value].name +
                                       "\" turns a link by more than 2^30 rad");
+    check_ways(q);
     return q.size() / values_.size();
   }
 
@@ -154,6 +176,24 @@ class joint_chain {
   }
 
  private:
+  /// Ordinary robots are far from it, whatever the ways: only others are followed joint by joint.
+  void check_ways(std::span<const double> q) const {
+    double origins = chain_rounding::most(world_transform(base_).translation());
+    for (const chain_link& link : links_) origins += chain_rounding::most(link.origin.translation());
+    const double each = double(links_.size() + 1) * 64 * 0x1p-53;
+    for (std::size_t first = 0; first < q.size(); first += values_.size()) {
+      double ways = origins;
+      for (const chain_link& link : links_)
+        if (link.value != none && link.slides) ways += 2 * std::abs(fma(link.factor, q[first + link.value], link.offset));
+      if (each * ways <= 1e-9) continue;
+      joint_chain_view here{links_.data(), of_part_.data(), nullptr, std::uint32_t(parts()), 0, world_transform(base_)};
+      for (std::uint32_t part = 0; part < parts(); ++part)
+        if (const world_transform pose = here.pose(q.data() + first, part); !(pose.m[0][3] - pose.m[0][3] == 0))
+          throw std::invalid_argument("clearance: configuration " + std::to_string(first / values_.size()) + " puts part " + std::to_string(part) +
+                                      " by ways that cancel, and double loses more of them than a bracket covers");
+    }
+  }
+
   void check() const {
     const auto refuse = [](const std::string& why) { throw std::invalid_argument("clearance: a joint chain " + why); };
     if (values_.empty()) refuse("has no joint that moves");

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace clearance::io {
+
+inline std::string lower_case(std::string_view word) {
+  std::string made(word);
+  for (char& c : made) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return made;
+}
+
+/// How many letters are to be put in, left out, changed, or swapped with their neighbour to make one word the other.
+inline std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i)
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+/// Whether a word may be another one misspelt: two letters are wrong, one in a word of four letters or fewer; capitals do not count.
+inline bool near_word(std::string_view word, std::string_view known) {
+  const std::size_t wrong = known.size() > 4 ? 2 : 1;
+  return word.size() <= known.size() + wrong && known.size() <= word.size() + wrong &&
+         edit_distance(lower_case(word), lower_case(known)) <= wrong;
+}
+
+}  // namespace clearance::io

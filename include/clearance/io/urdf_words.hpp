@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What may stand where in a URDF file, and what becomes of all else: refused is what may change the answer, noted what cannot.
+
+#include <clearance/io/near_word.hpp>
+#include <clearance/io/note_tally.hpp>
+#include <clearance/io/xml.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace clearance::io {
+
+/// What an element may hold. Words between blanks.
+struct urdf_words {
+  std::string_view element;
+  std::string_view attributes, attributes_unused;  ///< Read; defined, but of no use here.
+  std::string_view children, children_unused;      ///< The same of elements. No shape may be in those of no use.
+  std::string_view children_noted = {};            ///< Others that are often there, whatever they look like; a bare <geometry> may be in them.
+  std::string_view watched = {};                   ///< Would change the answer if they meant what they say: refused, attribute or element.
+  bool places = false;                             ///< It says where something is, or how large: nothing near its words passes.
+};
+
+inline constexpr std::string_view placing = "pose transform translation rotation position orientation quaternion quat quat_xyzw wxyz";
+
+inline constexpr urdf_words urdf_vocabulary[] = {
+    {"robot", "name", "version", "link joint", "material transmission gazebo sensor ros2_control", "", "include macro robot"},
+    {"link", "name", "type", "visual collision", "inertial contact sensor", "self_collision_checking collision_checking self_filter origin", "include"},
+    {"visual", "", "name group", "origin geometry", "material contact_coefficients verbose", "", placing},
+    {"collision", "", "name group", "origin geometry", "material contact_coefficients verbose", "", placing},
+    {"geometry", "", "name", "box sphere cylinder capsule mesh", "", "", "origin scale"},
+    {"origin", "xyz rpy", "", "", "", "", "pose quat quat_xyzw quaternion wxyz rotation translation position orientation x y z roll pitch yaw", true},
+    {"box", "size", "", "", "", "", "origin", true},
+    {"sphere", "radius", "", "", "", "", "origin", true},
+    {"cylinder", "radius length", "", "", "", "", "origin", true},
+    {"capsule", "radius length", "", "", "", "", "origin", true},
+    {"mesh", "filename scale", "", "", "", "", "origin", true},
+    {"joint", "name type", "", "origin parent child axis limit mimic", "dynamics calibration safety_controller disable_collision", "", placing},
+    {"parent", "link", "", "", "", "", "origin", true},
+    {"child", "link", "", "", "", "", "origin", true},
+    {"axis", "xyz", "", "", "", "", "origin", true},
+    {"limit", "lower upper", "effort velocity acceleration deceleration jerk", "", ""},
+    {"mimic", "joint multiplier offset", "", "", ""},
+};
+/// Refused where they do not belong, wherever that is.
+inline constexpr std::string_view urdf_parts = "link joint visual collision geometry";
+/// Of these an element has one.
+inline constexpr std::string_view urdf_single = "origin geometry parent child axis limit mimic";
+/// An element whose name has one of these in it may hide geometry that is meant.
+inline constexpr std::string_view urdf_shapely = "visual collision geometry";
+
+/// The first of the words for which `holds`, or nothing.
+template <class Holds>
+std::string_view first_word(std::string_view words, Holds holds) {
+  for (std::string_view word; !(word = take_word(words, " ")).empty();)
+    if (holds(word)) return word;
+  return {};
+}
+inline bool has_word(std::string_view words, std::string_view wanted) {
+  return !first_word(words, [&](std::string_view word) { return word == wanted; }).empty();
+}
+
+inline std::string_view local_name(std::string_view name) { return name.substr(name.find(':') + 1); }
+
+/// Which of the words a name may be, misspelt or with a prefix before it.
+inline std::string_view meant_by(std::string_view name, std::string_view words) {
+  return first_word(words, [&](std::string_view word) { return near_word(name, word) || near_word(local_name(name), word); });
+}
+
+/// Whether there is an element of one of these names in another, at any depth.
+inline bool holds_any(const xml_element& element, std::string_view words) {
+  return std::ranges::any_of(element.children, [&](const xml_element& child) {
+    return has_word(words, local_name(child.name)) || holds_any(child, words);
+  });
+}
+/// Whether a link or joint is in an element, and not only the name of one.
+inline bool holds_robot(const xml_element& element) {
+  return std::ranges::any_of(element.children, [](const xml_element& child) {
+    const auto has = [&](const char* name) { return std::ranges::any_of(child.children, [&](const auto& e) { return e.name == name; }); };
+    return child.name == "link" || (child.name == "joint" && has("parent") && has("child")) || holds_robot(child);
+  });
+}
+
+/// Judges a whole file by its words, before anything in it is read.
+class urdf_judge {
+ public:
+  urdf_judge(const std::string& file, note_tally& notes) : file_(file), notes_(notes) {}
+
+  void judge(const xml_element& robot) {
+    open_ = {&robot};
+    enter({robot, file_, ""}, true);
+  }
+
+ private:
+  /// `known`: it stands where URDF has it.
+  void enter(const xml_place& at, bool known) {
+    const auto words = std::ranges::find(urdf_vocabulary, at.element.name, &urdf_words::element);
+    const bool judged = known && words != std::end(urdf_vocabulary);
+    if (judged) {
+      attributes(at, *words);
+      text(at, words->places);
+    }
+    for (const xml_element& child : at.element.children) {
+      const std::string* name = child.attribute("name");
+      const bool part = at.owner.empty() && name && (child.name == "link" || child.name == "joint");
+      open_.push_back(&child);
+      refuse_xacro(child);
+      const xml_place inner{child, file_, part ? child.name + " " + io::quoted(*name) : at.owner};
+      const bool read = judged && element(at, inner, *words);
+      if (read && has_word(urdf_single, child.name) && std::any_of(at.element.children.data(), &child, [&](const auto& e) { return e.name == child.name; }))
+        note(inner, "is there twice, the same both times");  // else it is refused where it is read
+      enter(inner, read);
+      open_.pop_back();
+    }
+  }
+
+  void attributes(const xml_place& at, const urdf_words& words) {
+    for (const auto& [name, value] : at.element.attributes) {
+      if (has_word(words.attributes, name) || has_word(words.attributes_unused, name) || name == "xmlns" || name.starts_with("xmlns:") ||
+          name.starts_with("xml:"))
+        continue;
+      // What must be there is missed where it is misspelt.
+      const auto matters = [](std::string_view word) { return word != "name" && word != "type"; };
+      const std::string_view meant = first_word(words.attributes, [&](std::string_view word) {
+        return matters(word) && (!meant_by(name, word).empty() || (words.places && lower_case(name).find(word) != name.npos));
+      });
+      if (!meant.empty() || has_word(words.watched, lower_case(local_name(name))))
+        at.refuse("has an attribute " + io::quoted(name) + ", which is not known" + (meant.empty() ? "" : " (" + std::string(meant) + "?)"));
+      if (!of_others(name)) note(at, "has an attribute " + io::quoted(name) + ", which is not known, and is passed over");
+    }
+  }
+
+  /// Whether a child is one to read; notes it, or refuses it, if it is not known.
+  bool element(const xml_place& at, const xml_place& child, const urdf_words& words) {
+    const std::string& name = child.element.name;
+    if (has_word(words.children, name)) return true;
+    if (has_word(words.children_unused, name)) {
+      if (name != "gazebo" && holds_any(child.element, urdf_shapely)) child.refuse("has a shape in it, which belongs elsewhere");
+      return false;
+    }
+    const bool shapes = holds_any(child.element, "visual collision geometry box sphere cylinder capsule mesh");
+    const std::string where = "is not known in <" + at.element.name + ">";
+    if (has_word(words.children_noted, name)) {
+      if (holds_any(child.element, "visual collision")) child.refuse("has a shape in it, which belongs elsewhere");
+    } else {
+      std::string_view meant = meant_by(name, words.children);
+      if (meant.empty()) meant = meant_by(name, urdf_parts);
+      if (meant.empty()) meant = first_word(words.attributes, [&](auto word) { return word != "name" && word != "type" && !meant_by(name, word).empty(); });
+      if (meant.empty() && shapes)
+        meant = first_word(urdf_shapely, [&](std::string_view word) { return lower_case(name).find(word) != name.npos; });
+      if (!meant.empty()) child.refuse(where + (meant == name ? "" : " (" + std::string(meant) + "?)"));
+      if (has_word(words.watched, lower_case(local_name(name)))) child.refuse(where + ", and may change the answer");
+      if (holds_robot(child.element)) child.refuse(where + ", and has a part of a robot in it");
+      if (of_others(name) && !shapes) return false;
+    }
+    note(child, where + ", and is passed over" + (shapes ? ": the geometry in it is not used" : ""));
+    return false;
+  }
+
+  /// Beside elements it is a remark, unless it was one of them.
+  void text(const xml_place& at, bool places) {
+    const std::string& all = at.element.text;
+    const auto begin = all.find_first_not_of(" \t\r\n");
+    if (begin == all.npos) return;
+    std::string bare;
+    for (const char c : all)
+      if (std::string_view(" \t\r\n").find(c) == std::string_view::npos) bare += c;
+    const bool element = bare.find("=\"") != bare.npos || bare.find("='") != bare.npos || bare.find('<') != bare.npos || bare.find("!--") != bare.npos;
+    if (places || element) at.no_text();
+    note(at, "has text in it, which is passed over");
+  }
+
+  void note(const xml_place& at, const std::string& what) {
+    notes_.add("<" + at.element.name.substr(0, 60) + "> " + what, at.owner.empty() ? "line " + std::to_string(at.element.line) : at.owner, at.element.line);
+  }
+
+  /// The vocabulary that a name's prefix stands for: nothing if that is not declared.
+  std::optional<std::string_view> vocabulary(std::string_view name) const {
+    const std::string declared = "xmlns:" + std::string(name.substr(0, name.find(':')));
+    for (auto at = open_.rbegin(); at != open_.rend(); ++at)
+      if (const std::string* found = (*at)->attribute(declared)) return *found;
+    return {};
+  }
+  /// A name of a vocabulary that is declared is not ours to judge.
+  bool of_others(std::string_view name) const { return name.find(':') != name.npos && vocabulary(name); }
+
+  void refuse_xacro(const xml_element& element) const {
+    if (element.name.find(':') == element.name.npos) return;
+    const auto of = vocabulary(element.name);
+    if (element.name.starts_with("xacro:") || (of && lower_case(*of).find("xacro") != of->npos))
+      refuse(file_, "has xacro in it: expand it with xacro first", element.line);
+  }
+
+  const std::string& file_;
+  note_tally& notes_;
+  std::vector<const xml_element*> open_;  // from the root to where we are
+};
+
+}  // namespace clearance::io
