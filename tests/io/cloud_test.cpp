@@ -172,7 +172,7 @@ TEST_CASE("decimal commas, thousands and empty coordinates of a text cloud are r
     contains(refused(".xyz", "1 2 3\n" + std::string(line) + "\n"), ":2: \"");
     contains(refused(".txt", std::string(line) + " # one\n"), "may be one number or several");
   }
-  for (const char* line : {",1,2,3", "1,,2,3", "1,2,,3", "1;;2;3", ";1;2;3", "1, ,2,3", "1,2, ,3", "1 , , 2 3"})
+  for (const char* line : {",1,2,3", "1,,2,3", "1,2,,3", "1;;2;3", ";1;2;3", "1; ;2;3", "1;2; ;3", "1 , , 2 3"})
     contains(refused(".xyz", std::string(line) + "\n"), ":1: nothing stands for ");
   for (const char* line : {"1,2,3", "1, 2, 3", "1 ,2 ,3", "1 , 2 , 3", "1;2;3", "1; 2; 3", "1\t2\t3", "1 2 3", "1,2,3,", "1,2,3 4", "1,2,3;4",
                            "1,2,3,,4", "1,2,3, ,4", "1 2 3 a,b", "1,2,3,4,5", "1.0,2.0, 3.0", "1.0, 2.0,3.0", "1;2;3;0,5", "//X Y Z\n1 2 3",

@@ -163,6 +163,17 @@ TEST_CASE("a COLLADA file's unit counts, its up axis does not, and a mirrored no
   CHECK(twice.triangles.size() == 2);
 }
 
+TEST_CASE("a normal of an STL text may be no number as old runtimes spell it, a vertex may not") {
+  const robot_folder folder;
+  for (const std::string spelt : {"nan", "-nan(ind)", "-1.#IND", "1.#QNAN00", "-1.#INF"}) {
+    std::string normal = ascii_stl, vertex = ascii_stl;
+    normal.replace(normal.find("0 0 1"), 5, spelt + " " + spelt + " 0");
+    vertex.replace(vertex.find("1e0"), 3, spelt);
+    CHECK(load_mesh(folder.put("n.stl", normal)).triangles.size() == 1);
+    CHECK_FALSE(sentence([&] { load_mesh(folder.put("v.stl", vertex)); }).empty());
+  }
+}
+
 TEST_CASE("a COLLADA file has one unit and one up axis, or is refused, wherever another is stated") {
   const robot_folder folder;
   const auto with = [&](const std::string& before, const std::string& own) {

@@ -39,7 +39,8 @@ TEST_CASE("a backslash ends no comment and no name of an OBJ file, and joins the
         CHECK(mesh.triangles.back() == std::array<std::uint32_t, 3>{0, 2, 3});
       }
     CHECK(file.mesh(with(square + "f 1 \\\n2 \\\n3\ng a \\\n b \\\n c\nf 1 3\\\n 4\n")).triangles.size() == 2);
-    CHECK(file.mesh(with("v 0 \\\n0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 \\")).triangles.size() == 1);
+    CHECK(file.mesh(with("v 0 \\\n0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3")).triangles.size() == 1);
+    CHECK(says(file.refusal(with("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 \\")), ":4: "));  // cut short
     // A face that a lost line end joins to the next one is still none, and a line's number is that of its first.
     CHECK(says(file.refusal(with(square + "f 1 2 3 \\\nf 1 3 4\n")), ":5: \"f\" is no vertex"));
     CHECK(says(file.refusal(with(square + "f 1 \\\n2 \\\n3\nf 1 2 9\n")), ":8: a face has vertex 9"));

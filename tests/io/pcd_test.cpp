@@ -200,7 +200,7 @@ TEST_CASE("PCD fields in capitals, a mark before the header, and a page that is 
       INFO(encoding << ' ' << end.size());
       CHECK(read(file + end).points.size() == 3);
     }
-    for (const std::string& end : {"\n" + zeros + "\n", zeros + "\n" + zeros, zeros + "\n\n", zeros + "x", "\n\n", std::string(4096, '\0'),
+    for (const std::string& end : {"\n" + zeros + "\n", zeros + "\n" + zeros, zeros + "\n\n", zeros + "x", std::string("\n\n"), std::string(4096, '\0'),
                                    std::string(4096, '\0') + "\n"})
       says(refused(file + end), "bytes follow the last record");
   }

@@ -244,9 +244,9 @@ TEST_CASE("what is named like a frame in a folder, and is no file, is refused: l
 
 TEST_CASE("a frame that is listed twice and merged is told apart") {
   const recording r;
-  const scratch_file row(".csv", "turn,slide\n0,0\n0,0.3\n");
+  const scratch_file row(".csv", "turn,slide\n0,0.3\n0,0\n");
   r.put("list", "3.xyz\n3.xyz\n");
-  // The camera is on the slide: the second time the frame's points are 0.3 m higher, beside the tool.
+  // The camera is on the slide: the second time the frame's points are 0.3 m lower, beside the tool.
   const auto all = lines(run_command(r.run((r.folder / "list").string(), row.path) + " --merge --camera-link tool"));
   REQUIRE(all.size() == 2);
   CHECK(all[1].at("cloud") == r.frame(2) + " (2)");

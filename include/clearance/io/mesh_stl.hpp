@@ -31,13 +31,14 @@ inline polygon_mesh read_ascii_stl(std::string_view rest, const std::string& fil
                  (got.empty() ? "but the file ends" : "found " + io::quoted(got)),
              at);
   };
-  const auto three_numbers = [&] {
+  const auto three_numbers = [&](bool normal) {
     Eigen::Vector3d v;
     for (double& x : v) {
       const std::string word = next();
       const auto value = number<double>(word);
-      if (!value) refuse(file, "expected a number, found " + io::quoted(word), at);
-      x = *value;
+      const bool none = normal && word.find(".#") != word.npos;  // "-1.#IND", of old runtimes
+      if (!value && !none) refuse(file, "expected a number, found " + io::quoted(word), at);
+      x = value.value_or(0);
     }
     return v;
   };
@@ -51,13 +52,13 @@ inline polygon_mesh read_ascii_stl(std::string_view rest, const std::string& fil
                    (word.empty() ? "but the file ends" : "found " + io::quoted(word)),
                at);
       expect("normal");
-      three_numbers();  // a normal, which may be anything
+      three_numbers(true);  // which may be anything
       expect("outer");
       expect("loop");
       for (int i = 0; i < 3; ++i) {
         expect("vertex");
         mesh.corners.push_back(std::uint32_t(mesh.vertices.size()));
-        mesh.vertices.push_back(three_numbers());
+        mesh.vertices.push_back(three_numbers(false));
         if (!mesh.vertices.back().allFinite()) refuse(file, "a vertex has a coordinate that is not finite", at);
       }
       mesh.ends.push_back(mesh.corners.size());
