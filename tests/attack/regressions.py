@@ -121,9 +121,9 @@ def _questions():
         yield name, Case("regression", "query", query + [more], files, "")
     rows = b"s\n" + b"".join(f"{k / 400}\n".encode() for k in range(200))
     rng = random.Random(7)
-    cell = [tuple(v + rng.random() * 1e-6 for v in at) for at in ((1.1, 0.3, 0.2), (1.1, 0, 0)) for _ in range(200_000)]
+    cell = [tuple(v + rng.random() * 1e-6 for v in at) for at in ((1.1, 0.3, 0.2), (1.1, 0, 0)) for _ in range(30_000)]
     head = f"FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nWIDTH {len(cell)}\nHEIGHT 1\nDATA binary\n".encode()
-    crowds = {"equal.pcd": _zeros_pcd(2_000_000), "cell.pcd": head + b"".join(struct.pack("<3d", *p) for p in cell), "c.png": _flat_png(2000)}
+    crowds = {"equal.pcd": _zeros_pcd(2_000_000), "cell.pcd": head + b"".join(struct.pack("<3d", *p) for p in cell), "c.png": _flat_png(400)}
     for cloud, data in crowds.items():
         for model in ("spheres", "triangles"):
             plan = [["--robot", "r.urdf"], ["--cloud", cloud], ["--camera-pose", "0,0,0,0,0,0,1" if cloud == "cell.pcd" else "1.1,0.3,0.2,0,0,0,1"],
