@@ -140,7 +140,6 @@ class Robot:
             name = link.get("name")
             demand(name not in self.links, "a link twice")
             self.links.append(name)
-            self._inertial(link)
             found = {kind: [_body(e, files) for e in link.all(kind)] for kind in ("collision", "visual")}
             first, second = ("visual", "collision") if visual else ("collision", "visual")
             used = found[first] or found[second]
@@ -165,16 +164,6 @@ class Robot:
         self.movable = [j for j in self.joints if j.kind != "fixed" and j.leader is None]
         for joint in self.joints:
             self.value(joint, {})
-
-    @staticmethod
-    def _inertial(link):
-        inertial = link.one("inertial")
-        if inertial is None:
-            return
-        _origin(inertial)
-        number(inertial.need("mass").get("value"))
-        for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"):
-            number(inertial.need("inertia").get(name))
 
     def value(self, joint, given):
         if joint.leader is None:
