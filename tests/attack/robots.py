@@ -133,14 +133,13 @@ class Robot:
 
     def __init__(self, data, files, visual=False, excluded=()):
         root = xml_tree.parse(data)
-        demand(root.name == "robot" and "name" in root.attributes, "no <robot> with a name")
+        demand(root.name == "robot", "no <robot>")  # its name says nothing of where it is
         _check_words(root, {})
         self.links, self.bodies = [], {}
         for link in root.all("link"):
             name = link.get("name")
             demand(name not in self.links, "a link twice")
             self.links.append(name)
-            self._inertial(link)
             found = {kind: [_body(e, files) for e in link.all(kind)] for kind in ("collision", "visual")}
             first, second = ("visual", "collision") if visual else ("collision", "visual")
             used = found[first] or found[second]
@@ -165,16 +164,6 @@ class Robot:
         self.movable = [j for j in self.joints if j.kind != "fixed" and j.leader is None]
         for joint in self.joints:
             self.value(joint, {})
-
-    @staticmethod
-    def _inertial(link):
-        inertial = link.one("inertial")
-        if inertial is None:
-            return
-        _origin(inertial)
-        number(inertial.need("mass").get("value"))
-        for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"):
-            number(inertial.need("inertia").get(name))
 
     def value(self, joint, given):
         if joint.leader is None:

@@ -15,11 +15,14 @@ class Element:
         return [child for child in self.children if child.name in names]
 
     def one(self, name):
-        """The only child of that name, or None; Invalid if there are several."""
+        """The only child of that name, or None; Invalid if there are several that differ."""
         found = self.all(name)
-        if len(found) > 1:
+        if any(other.content() != found[0].content() for other in found[1:]):
             raise Invalid(f"<{self.name}> has several <{name}>")
         return found[0] if found else None
+
+    def content(self):
+        return self.name, self.text, self.attributes, [child.content() for child in self.children]
 
     def need(self, name):
         found = self.one(name)

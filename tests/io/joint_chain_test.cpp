@@ -74,7 +74,7 @@ TEST_CASE("Ways that cancel are refused where double loses more of them than a b
   const auto chain = [](double there, double back) {
     clearance::chain_link first, second;
     first.origin.m[0][3] = there;
-    second.origin.m[0][3] = back, second.origin.m[1][3] = 0.1, second.parent = 0, second.value = 0, second.slides = true;
+    second.origin.m[0][3] = back, second.origin.m[1][3] = 0.1, second.parent = 0, second.value = 0, second.factor = 1, second.slides = true;
     return joint_chain<>({first, second}, {1}, {{"slide", {}}});
   };
   const auto refused = [](const joint_chain<>& c, double q) {
