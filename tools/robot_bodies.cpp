@@ -4,6 +4,7 @@
 #include "command_line.hpp"
 
 #include <clearance/io/certify.hpp>
+#include <clearance/io/note_tally.hpp>
 
 #include <tbb/parallel_for.h>
 
@@ -50,13 +51,6 @@ void line(body& made, std::size_t count, progress& shown) {
   take(made, io::certify(solid, io::uncertified(std::move(spheres))));
 }
 
-/// "3 links (a, b, c)": the first few names of many.
-std::string named(const std::vector<std::string>& names) {
-  std::string all = std::to_string(names.size()) + (names.size() == 1 ? " link (" : " links (");
-  for (std::size_t k = 0; k < std::min<std::size_t>(names.size(), 3); ++k) all += (k > 0 ? ", " : "") + io::sentence(names[k], 40);
-  return all + (names.size() > 3 ? ", ...)" : ")");
-}
-
 std::string mm(double metres) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2g mm", 1e3 * metres);
@@ -65,18 +59,21 @@ std::string mm(double metres) {
 
 /// Notes about what the links enclose, one of each kind.
 void note_insides(const std::vector<body>& bodies, const std::vector<std::string>& lined, body_account& account) {
-  std::vector<std::string> flooded, sheets;
+  const auto is_lined = [&](const body& b) { return std::ranges::find(lined, b.name) != lined.end(); };
   double unsure = 0, gap = 0;
   for (const body& b : bodies) {
-    if (b.closed.inside == inside_by::flood) flooded.push_back(b.name), unsure = std::max(unsure, b.closed.tolerance);
-    if (b.closed.loaded != 0 && b.closed.inside == inside_by::nothing) sheets.push_back(b.name);
-    if (std::ranges::find(lined, b.name) != lined.end()) gap = std::max(gap, b.packed.gap);
+    if (b.closed.inside == inside_by::flood) unsure = std::max(unsure, b.closed.tolerance);
+    if (is_lined(b)) gap = std::max(gap, b.packed.gap);
   }
-  if (!flooded.empty())
-    account.notes.push_back(named(flooded) + " are no clean solids: what they enclose was found on a grid, and is uncertain within " + mm(unsure) +
-                            " of their surfaces");
-  if (!sheets.empty()) account.notes.push_back(named(sheets) + " enclose nothing, so no point is inside them");
-  if (!lined.empty()) account.notes.push_back(named(lined) + " have no room for inner spheres: small ones along the surface stand for them, to within " + mm(gap));
+  io::note_tally notes;
+  for (const body& b : bodies) {
+    const std::string who = "link " + io::quoted(b.name);
+    if (b.closed.inside == inside_by::flood)
+      notes.add("is no clean solid: what it encloses was found on a grid, and is uncertain within " + mm(unsure) + " of its surface", who);
+    if (b.closed.loaded != 0 && b.closed.inside == inside_by::nothing) notes.add("encloses nothing, so no point is inside it", who);
+    if (is_lined(b)) notes.add("has no room for inner spheres: small ones along its surface stand for it, to within " + mm(gap), who);
+  }
+  account.notes = notes.sentences();
 }
 
 /// Closes the meshes beside one another.

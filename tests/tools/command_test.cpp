@@ -58,7 +58,7 @@ TEST_CASE("clearance query finds the nearest point, its part and its bracket") {
   CHECK(j.at("volume") == "obb");
   CHECK(j.at("backend").is_string());
   for (const char* key : {"load", "pack", "build", "upload", "query"}) CHECK(j.at("seconds").at(key).get<double>() >= 0);
-  CHECK(o.err.find("link \"tool\" has no collision geometry") != std::string::npos);
+  CHECK(o.err.find("link \"tool\": has no collision geometry") != std::string::npos);
 
   const outcome text = run_command(s.ask + " --model triangles");
   CHECK(text.code == 0);

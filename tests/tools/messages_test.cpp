@@ -179,7 +179,7 @@ TEST_CASE("a refusal is one short printable line that names its file, whatever i
 TEST_CASE("what is wrong with a robot is said of its file and its link or joint") {
   const scratch_file cloud(".xyz", "3 0.1 0.1\n");
   for (const std::string& name : xml_names()) {
-    const scratch_file urdf(".urdf", robot("a", name)), flat(".urdf", robot(name, "j", "1 1 0"));
+    const scratch_file urdf(".urdf", robot("a", name)), flat(".urdf", robot(name, "j", "1 1 -1"));
     const std::string ask = "query --model triangles --backend host --cloud " + cloud.path + " --robot ";
     names_it(ask + urdf.path + " --joints 3", urdf.path);
     names_it(ask + urdf.path + " --joint nothing=1", urdf.path);

@@ -211,13 +211,14 @@ TEST_CASE("files of spheres that are damaged, foreign or of something else are o
       {put("no.yml", "a: {b: [}"), "is no YAML"},
       {put("other.yml", "a: 1\n"), "has no collision_spheres"},
       {put("list.yml", "collision_spheres: {tool: [{center: [0, 0], radius: 1}]}"), "has no center of three numbers"},
-      {s.cloud, "spheres are read from .ist, .csv, .yaml and .yml files"},
   };
   for (const auto& each : cases) {
     refuses("info " + each.file, each.sentence);
     refuses(s.ask + " --packing " + each.file, each.sentence);
   }
-  refuses("info " + s.folder.path.string(), "spheres are read from");
+  refuses("info " + s.cloud, "meshes are read from ");
+  refuses(s.ask + " --packing " + s.cloud, "spheres are read from .ist, .csv, .yaml and .yml files");
+  refuses("info " + s.folder.path.string(), "is a folder, not a file");
   std::filesystem::create_directories(s.path("folder.ist"));
   refuses("info " + s.path("folder.ist"), "is a folder, not a file");
   const std::string stranger = put("stranger.yml", "collision_spheres: {eye: [{center: [0, 0, 0], radius: 1}]}");

@@ -121,8 +121,8 @@ class urdf_judge {
       if (has_word(words.attributes, name) || has_word(words.attributes_unused, name) || name == "xmlns" || name.starts_with("xmlns:") ||
           name.starts_with("xml:"))
         continue;
-      // What must be there is missed where it is misspelt.
-      const auto matters = [](std::string_view word) { return word != "name" && word != "type"; };
+      // What must be there is missed where it is misspelt; what is there as well was not meant (a limit's "power" is no "lower").
+      const auto matters = [&](std::string_view word) { return word != "name" && word != "type" && (words.places || !at.element.attribute(word)); };
       const std::string_view meant = first_word(words.attributes, [&](std::string_view word) {
         return matters(word) && (!meant_by(name, word).empty() || (words.places && lower_case(name).find(word) != name.npos));
       });

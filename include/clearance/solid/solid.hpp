@@ -19,8 +19,8 @@ namespace clearance {
 ///      between two points by at most their distance.
 /// Law: `inside(p)` is the same for all points that no surface separates.
 ///
-/// Optional: `tolerance()`, metres from the surface within which `inside` may be wrong; `volume()` in cubic metres, for the fill ratio; `surface_points(count)`, evenly spread over the surface, for
-/// mean gaps; `corners()`, where gaps tend to be largest; `distance(p, within)`, quicker where a larger distance than `within`
+/// Optional: `tolerance()`, metres from the surface within which `inside` may be wrong; `volume()` in cubic metres, for the
+/// fill ratio; `surface_points(count)`, evenly spread over the surface, for mean gaps; `corners()`, where gaps tend to be largest; `distance(p, within)`, quicker where a larger distance than `within`
 /// need not be known; `view()`, a `solid_view` to ask instead; `on(backend)`, to be packed elsewhere than on a host.
 template <class S>
 concept solid = requires(const S s, Eigen::Vector3d p) {
