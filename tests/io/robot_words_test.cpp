@@ -82,16 +82,6 @@ TEST_CASE("what URDF does not define and cannot change the answer is passed over
   }
 }
 
-TEST_CASE("a word that is like one which is there as well was not meant for it") {
-  const std::string slide = R"(<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
-    <link name="b"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
-    <joint name="j" type="prismatic"><parent link="a"/><child link="b"/><limit upper="1" power="3")";
-  const std::string end = "/></joint></robot>";
-  const words_robot r;
-  CHECK(r.load(slide + " lower=\"-1\"" + end).kinematics().movable(0).lower == -1);
-  CHECK(r.refusal(slide + end).find("(lower?)") != std::string::npos);
-}
-
 TEST_CASE("geometry in an element that URDF does not define is noted as not used") {
   const words_robot read;
   for (const std::string at : {"robot", "link", "collision", "joint"})

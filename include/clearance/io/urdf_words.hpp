@@ -41,7 +41,7 @@ inline constexpr urdf_words urdf_vocabulary[] = {
     {"parent", "link", "", "", "", "", "origin", true},
     {"child", "link", "", "", "", "", "origin", true},
     {"axis", "xyz", "", "", "", "", "origin", true},
-    {"limit", "lower upper", "effort velocity acceleration deceleration jerk", "", ""},
+    {"limit", "lower upper", "effort velocity acceleration deceleration jerk power", "", ""},
     {"mimic", "joint multiplier offset", "", "", ""},
 };
 /// Refused where they do not belong, wherever that is.
@@ -121,8 +121,8 @@ class urdf_judge {
       if (has_word(words.attributes, name) || has_word(words.attributes_unused, name) || name == "xmlns" || name.starts_with("xmlns:") ||
           name.starts_with("xml:"))
         continue;
-      // What must be there is missed where it is misspelt; what is there as well was not meant (a limit's "power" is no "lower").
-      const auto matters = [&](std::string_view word) { return word != "name" && word != "type" && (words.places || !at.element.attribute(word)); };
+      // What must be there is missed where it is misspelt.
+      const auto matters = [](std::string_view word) { return word != "name" && word != "type"; };
       const std::string_view meant = first_word(words.attributes, [&](std::string_view word) {
         return matters(word) && (!meant_by(name, word).empty() || (words.places && lower_case(name).find(word) != name.npos));
       });
