@@ -2,7 +2,9 @@
 #pragma once
 // How near the k nearest points of each part are at most, before all points are asked: from those that are likely to be near.
 
+#include <clearance/backend/host.hpp>
 #include <clearance/frame/clouds.hpp>
+#include <clearance/ground/vectors.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/tile_scan.hpp>
