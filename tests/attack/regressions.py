@@ -116,7 +116,7 @@ def _questions():
     camera = [["--intrinsics", "525,525,319.5,239.5"], ["--camera-pose", "0.3,0.3,-0.5,0,0,0,1"]]
     query = [["--robot", "r.urdf"], ["--cloud", "c.png"], *camera, ["--spheres", "50"], ["--no-cache", None], ["--threads", "1"], ["--json", None]]
     files = {"r.urdf": _many(46), "c.png": frame}
-    for name, more in (("nearest-50", ["--nearest", "50"]), ("nearest-most", ["--nearest", "20000"]), ("support-above-all", ["--min-support", "1000000@10"]),
+    for name, more in (("nearest-50", ["--nearest", "50"]), ("nearest-many", ["--nearest", "200"]), ("support-above-all", ["--min-support", "1000000@10"]),
                        ("support-nearly-all", ["--min-support", "300000@10"]), ("support-part", ["--min-support", "200000@0.4"])):
         yield name, Case("regression", "query", query + [more], files, "")
     rows = b"s\n" + b"".join(f"{k / 400}\n".encode() for k in range(200))
@@ -125,7 +125,7 @@ def _questions():
     head = f"FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nWIDTH {len(cell)}\nHEIGHT 1\nDATA binary\n".encode()
     crowds = {"equal.pcd": _zeros_pcd(2_000_000), "cell.pcd": head + b"".join(struct.pack("<3d", *p) for p in cell), "c.png": _flat_png(400)}
     for cloud, data in crowds.items():
-        for model in ("spheres", "triangles"):
+        for model in ("spheres", "triangles") if cloud != "c.png" else ("spheres",):  # so many nearly equal points take triangles longer
             plan = [["--robot", "r.urdf"], ["--cloud", cloud], ["--camera-pose", "0,0,0,0,0,0,1" if cloud == "cell.pcd" else "1.1,0.3,0.2,0,0,0,1"],
                     ["--configurations", "q.csv"], ["--threads", "1"], ["--model", model]]
             plan += [["--intrinsics", "1e9,1e9,0,0"]] if cloud == "c.png" else []
