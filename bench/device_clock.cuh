@@ -19,14 +19,16 @@ __global__ void spin_kernel() {
     return ns;
   };
   const unsigned long long start = now();
-  while (now() - start < 200000) {}
+  while (now() - start < 200000) {
+  }
 }
 
 template <bool Dummy = true>
 __global__ void empty_kernel() {}
 
 /// CUDA events around what is enqueued on the default stream. On an idle device the time includes the host's, from the
-/// first event to the launch; queued behind other work, it is the device's alone, which still starts and ends each kernel.
+/// first event to the launch; queued behind other work, it is the device's alone, which still starts and ends each
+/// kernel.
 class device_clock {
  public:
   explicit device_clock(bool queued = false) : queued_(queued) {
@@ -62,7 +64,8 @@ class device_clock {
 template <bool Dummy = true>
 __global__ void read_kernel(const float4* from, std::size_t count, float* never) {
   float least = 0;
-  for (std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x; i < count; i += std::size_t(gridDim.x) * blockDim.x) {
+  for (std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x; i < count;
+       i += std::size_t(gridDim.x) * blockDim.x) {
     const float4 f = from[i];
     least = fminf(least, fminf(fminf(f.x, f.y), fminf(f.z, f.w)));
   }

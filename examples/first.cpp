@@ -20,7 +20,8 @@ int main() {
   const auto part = clearance::make_part(clearance::build<clearance::sphere>(link));  // once
   const auto r = clearance::min_distance(cpu, part, pose, cloud);                     // in every frame
 
-  std::printf("%s: %.4f m from sphere %u to point %u\n", clearance::to_string(r.state), r.distance, r.primitive, r.point);
+  std::printf("%s: %.4f m from sphere %u to point %u\n", clearance::to_string(r.state), r.distance, r.primitive,
+              r.point);
   std::printf("nearest on the robot: (%.3f, %.3f, %.3f)\n", r.nearest.x, r.nearest.y, r.nearest.z);
   return r.point == 1 && r.lower > 0.149f && r.upper < 0.151f ? 0 : 1;
 }

@@ -12,11 +12,15 @@ void asked_clouds::load(const query_options& asked, progress& shown, std::vector
   }
 }
 
-void asked_clouds::place(const query_options& asked, const io::robot& robot, const std::vector<double>& joints, poses_of poses) {
+void asked_clouds::place(const query_options& asked, const io::robot& robot, const std::vector<double>& joints,
+                         poses_of poses) {
   for (observation& cloud : files) {
     Eigen::Isometry3d carrier = Eigen::Isometry3d::Identity();
     if (const auto& link = cloud.from.link; !link.empty())
-      carrier = about_file(asked.robot, [&] { return io::carried(asked.base, robot.link_pose(link, joints, {asked.ignore_limits}), "link " + io::quoted(link)); });
+      carrier = about_file(asked.robot, [&] {
+        return io::carried(asked.base, robot.link_pose(link, joints, {asked.ignore_limits}),
+                           "link " + io::quoted(link));
+      });
     carriers.push_back(carrier);
     seen.push_back(about_file(cloud.from.file, [&] {
       const seen_points made = cloud.seen(carrier, poses);

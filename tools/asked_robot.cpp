@@ -61,7 +61,8 @@ std::string name_of(const attachment_options& from, const asked_robot& robot) {
   return name;
 }
 
-attached_thing load_attached(const query_options& asked, const attachment_options& from, const asked_robot& robot, std::vector<std::string>& notes) {
+attached_thing load_attached(const query_options& asked, const attachment_options& from, const asked_robot& robot,
+                             std::vector<std::string>& notes) {
   attached_thing made{.name = name_of(from, robot), .from = from, .link = 0, .mesh = {}, .spheres = {}};
   try {
     made.link = robot.description.kinematics().link(from.link);
@@ -72,22 +73,29 @@ attached_thing load_attached(const query_options& asked, const attachment_option
     made.mesh = io::load_mesh(from.file, asked.limits);
     return made;
   }
-  if (asked.model != model_kind::spheres) throw usage_error("--attach", from.file + " holds spheres, which are for --model spheres");
+  if (asked.model != model_kind::spheres)
+    throw usage_error("--attach", from.file + " holds spheres, which are for --model spheres");
   auto parts = io::within_memory(from.file, [&] { return io::load_spheres(from.file); });
-  if (parts.size() != 1) io::refuse(from.file, "holds the spheres of " + std::to_string(parts.size()) + " parts, and --attach takes those of one");
+  if (parts.size() != 1)
+    io::refuse(from.file,
+               "holds the spheres of " + std::to_string(parts.size()) + " parts, and --attach takes those of one");
   if (!std::isfinite(parts[0].spheres.gap)) {
     parts[0].spheres.gap = 0;  // nobody knows of a mesh that they stand for
-    notes.push_back(from.file + ": has no certificate, so its spheres themselves are taken for what link " + io::quoted(from.link) + " holds");
+    notes.push_back(from.file + ": has no certificate, so its spheres themselves are taken for what link " +
+                    io::quoted(from.link) + " holds");
   }
   made.spheres = std::move(parts[0]);
   return made;
 }
 
 body_options body_options_of(const query_options& asked) {
-  return {.model = asked.model, .pack = {.count = asked.spheres.value_or(pack_options{}.count)}, .cache = chosen_cache(asked.no_cache, asked.cache)};
+  return {.model = asked.model,
+          .pack = {.count = asked.spheres.value_or(pack_options{}.count)},
+          .cache = chosen_cache(asked.no_cache, asked.cache)};
 }
 
-body make_held(const query_options& asked, const attached_thing& thing, progress& shown, std::vector<std::string>& notes) {
+body make_held(const query_options& asked, const attached_thing& thing, progress& shown,
+               std::vector<std::string>& notes) {
   if (thing.spheres) return {thing.name, thing.spheres->spheres, {}, thing.spheres->tolerance};
   const body_source source{thing.name, &thing.mesh};
   body_account account;
@@ -97,7 +105,8 @@ body make_held(const query_options& asked, const attached_thing& thing, progress
     return made;
   } catch (const std::runtime_error& error) {  // it is known by its file, and is no link
     std::string why = error.what();
-    if (const std::string link = "link " + io::quoted(thing.name) + ": "; why.starts_with(link)) why.erase(0, link.size());
+    if (const std::string link = "link " + io::quoted(thing.name) + ": "; why.starts_with(link))
+      why.erase(0, link.size());
     io::refuse(thing.from.file, why);
   }
 }
@@ -111,16 +120,21 @@ asked_robot load_robot(const query_options& asked, std::vector<std::string>& not
   options.exclude_links = asked.excluded;
   options.strict = asked.strict;
   options.limits = asked.limits;
-  asked_robot made{io::within_memory(asked.robot, [&] { return about_file(asked.robot, [&] { return io::load_robot(asked.robot, options); }); }), {}};
+  asked_robot made{
+      io::within_memory(asked.robot,
+                        [&] { return about_file(asked.robot, [&] { return io::load_robot(asked.robot, options); }); }),
+      {}};
   notes.insert(notes.end(), made.description.notes().begin(), made.description.notes().end());
   for (const attachment_options& from : asked.attached) made.held.push_back(load_attached(asked, from, made, notes));
   return made;
 }
 
-std::vector<Eigen::Isometry3d> all_links(const query_options& asked, const io::robot& robot, const std::vector<double>& joints) {
+std::vector<Eigen::Isometry3d> all_links(const query_options& asked, const io::robot& robot,
+                                         const std::vector<double>& joints) {
   return about_file(asked.robot, [&] {
     auto links = robot.kinematics().link_poses(joints, {asked.ignore_limits});
-    for (std::size_t k = 0; k < links.size(); ++k) links[k] = io::carried(asked.base, links[k], "link " + io::quoted(robot.kinematics().links()[k]));
+    for (std::size_t k = 0; k < links.size(); ++k)
+      links[k] = io::carried(asked.base, links[k], "link " + io::quoted(robot.kinematics().links()[k]));
     return links;
   });
 }

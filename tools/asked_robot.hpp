@@ -40,14 +40,17 @@ struct asked_robot {
     return part < own ? nullptr : &held[part - own];
   }
   /// The number of the link that carries a part.
-  std::size_t link_of(std::size_t part) const { return held_as(part) ? held_as(part)->link : description.parts()[part].link; }
+  std::size_t link_of(std::size_t part) const {
+    return held_as(part) ? held_as(part)->link : description.parts()[part].link;
+  }
 };
 
 /// Reads all files. Notes are what a user should see.
 asked_robot load_robot(const query_options& asked, std::vector<std::string>& notes);
 
 /// The poses of all links, moved by the base.
-std::vector<Eigen::Isometry3d> all_links(const query_options& asked, const clearance::io::robot& robot, const std::vector<double>& joints);
+std::vector<Eigen::Isometry3d> all_links(const query_options& asked, const clearance::io::robot& robot,
+                                         const std::vector<double>& joints);
 
 /// The poses of all parts; throws if one of them is where no query can be. `when` says more of it.
 std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const asked_robot& robot,

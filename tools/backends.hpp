@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The only way from the command to what the library does on a backend: plain data in, plain data out, so that only the device's
-// translation units need nvcc.
+// The only way from the command to what the library does on a backend: plain data in, plain data out, so that only the
+// device's translation units need nvcc.
 
 #include <clearance/packing/packing.hpp>
 #include <clearance/points/depth_image.hpp>
@@ -43,7 +43,9 @@ inline const char* to_string(volume_kind kind) {
 }
 
 /// Of the trees that are the quickest for a model.
-inline volume_kind usual_volume(model_kind kind) { return kind == model_kind::spheres ? volume_kind::sphere : volume_kind::obb; }
+inline volume_kind usual_volume(model_kind kind) {
+  return kind == model_kind::spheres ? volume_kind::sphere : volume_kind::obb;
+}
 
 /// One rigid body: what its models are built from.
 struct body {
@@ -66,8 +68,8 @@ struct reply {
 
 using poses_of = std::span<const Eigen::Isometry3d>;
 
-/// A robot whose trees a backend holds, and the points that it was shown last. Each question is a translation unit of its own in
-/// questions/, so that they compile beside one another; a tree is built when it is first needed.
+/// A robot whose trees a backend holds, and the points that it was shown last. Each question is a translation unit of
+/// its own in questions/, so that they compile beside one another; a tree is built when it is first needed.
 class backend_robot {
  public:
   virtual ~backend_robot() = default;
@@ -92,14 +94,17 @@ class backend_robot {
   virtual clearance::self_filter_result own_points(poses_of poses, double padding) = 0;
   virtual clearance::supported_distance supported(poses_of poses, const clearance::support_options& options) = 0;
   /// Where the minima of least_per_part are.
-  virtual std::vector<clearance::part_witness> witnesses(poses_of poses, std::span<const clearance::part_minimum> minima) = 0;
-  /// `poses`: those of one configuration after another. It is prepared when it is first asked, and remembers where minima were.
+  virtual std::vector<clearance::part_witness> witnesses(poses_of poses,
+                                                         std::span<const clearance::part_minimum> minima) = 0;
+  /// `poses`: those of one configuration after another. It is prepared when it is first asked, and remembers where
+  /// minima were.
   virtual clearance::min_distances_result plan(poses_of poses, double d_max) = 0;
   /// How near the robot comes on each way.
   virtual std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
                                                                const clearance::motion_clearance_options& options) = 0;
 
-  // Seconds: what the last question took, and what trees have taken until now, to be made and to be where the backend reads them.
+  // Seconds: what the last question took, and what trees have taken until now, to be made and to be where the backend
+  // reads them.
   double query = 0, build = 0, upload = 0;
 };
 
@@ -113,7 +118,9 @@ struct asked_model {
 std::unique_ptr<backend_robot> robot_on_host(const asked_model& asked);
 /// Throws std::runtime_error if no device is compiled in.
 std::unique_ptr<backend_robot> robot_on_device(const asked_model& asked);
-inline std::unique_ptr<backend_robot> robot_on(bool device, const asked_model& asked) { return device ? robot_on_device(asked) : robot_on_host(asked); }
+inline std::unique_ptr<backend_robot> robot_on(bool device, const asked_model& asked) {
+  return device ? robot_on_device(asked) : robot_on_host(asked);
+}
 
 /// As clearance::pack, on the device; from any thread. Throws std::runtime_error if no device is compiled in.
 clearance::packing pack_on_device(const clearance::mesh_solid& solid, const clearance::pack_options& options);

@@ -16,7 +16,8 @@ namespace {
 
 constexpr double width = 960, height = 400, left = 80, right = width - 20, top = 50, bottom = height - 50;
 
-/// Text of an XML file: one printable line of UTF-8, without what means something there, and without the two characters that it may not hold.
+/// Text of an XML file: one printable line of UTF-8, without what means something there, and without the two characters
+/// that it may not hold.
 std::string escaped(const std::string& words) {
   std::string line = io::sentence(words, 80), out;
   for (const char* never : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
@@ -33,8 +34,12 @@ struct axes {
   double low, high, highest;  // metres; a few frames may be above `high`, up to `highest`
   std::size_t frames;
 
-  double x(double frame) const { return frames < 2 ? (left + right) / 2 : left + (right - left) * frame / double(frames - 1); }
-  double y(double metres) const { return std::clamp(bottom - (bottom - top) * ((metres - low) / (high - low)), top, bottom); }
+  double x(double frame) const {
+    return frames < 2 ? (left + right) / 2 : left + (right - left) * frame / double(frames - 1);
+  }
+  double y(double metres) const {
+    return std::clamp(bottom - (bottom - top) * ((metres - low) / (high - low)), top, bottom);
+  }
   std::string at(std::size_t frame, double metres) const { return text("%.2f %.2f", x(double(frame)), y(metres)); }
 };
 
@@ -45,8 +50,8 @@ double top_of(const min_distance_result& r) {
   return 0;
 }
 
-/// 0 and the margin are in sight, and what is nearer; what is far above all others is not, lest it flattens them: more than three times what
-/// nine of ten stay below.
+/// 0 and the margin are in sight, and what is nearer; what is far above all others is not, lest it flattens them: more
+/// than three times what nine of ten stay below.
 axes around(std::span<const min_distance_result> frames, std::optional<double> margin) {
   axes made{0, 0, 0, frames.size()};
   const auto hold = [&](double metres) {
@@ -72,7 +77,8 @@ axes around(std::span<const min_distance_result> frames, std::optional<double> m
 std::string marks(const axes& to, std::span<const min_distance_result> frames) {
   std::string out;
   for (std::size_t k = 0; k < frames.size(); ++k)
-    if (frames[k].state != state::no_data && top_of(frames[k]) > to.high) out += text("M %.2f %.2f l -4 7 h 8 Z\n", to.x(double(k)), top);
+    if (frames[k].state != state::no_data && top_of(frames[k]) > to.high)
+      out += text("M %.2f %.2f l -4 7 h 8 Z\n", to.x(double(k)), top);
   return out;
 }
 
@@ -90,17 +96,20 @@ std::string words(double x, double y, const char* anchor, const std::string& say
 
 std::string grid(const axes& to) {
   std::string out;
-  const double step = step_of(to.high - to.low), frame_step = std::max(1.0, step_of(double(std::max<std::size_t>(to.frames, 2) - 1)));
+  const double step = step_of(to.high - to.low),
+               frame_step = std::max(1.0, step_of(double(std::max<std::size_t>(to.frames, 2) - 1)));
   for (double tick = std::ceil(to.low / step); tick * step <= to.high; ++tick)
     out += text("<path stroke=\"#ddd\" d=\"M %.2f %.2f H %.2f\"/>\n", left, to.y(tick * step), right) +
            words(left - 6, to.y(tick * step) + 4, "end", text("%g", tick * step + 0));  // no -0
-  for (double tick = 0; tick < double(to.frames); tick += frame_step) out += words(to.x(tick), bottom + 18, "middle", text("%g", tick));
+  for (double tick = 0; tick < double(to.frames); tick += frame_step)
+    out += words(to.x(tick), bottom + 18, "middle", text("%g", tick));
   return out + words((left + right) / 2, height - 12, "middle", "frame") + words(left - 6, top - 12, "end", "m");
 }
 
 }  // namespace
 
-std::string clearance_svg(std::span<const min_distance_result> frames, const std::string& name, std::optional<double> margin) {
+std::string clearance_svg(std::span<const min_distance_result> frames, const std::string& name,
+                          std::optional<double> margin) {
   const axes to = around(frames, margin);
   const std::string above = marks(to, frames);
   std::string band, line, alone, blind;
@@ -109,7 +118,8 @@ std::string clearance_svg(std::span<const min_distance_result> frames, const std
     for (end = begin; end < frames.size() && (frames[end].state != state::no_data) == known;) ++end;
     if (!known) {
       const double from = std::max(left, to.x(double(begin) - 0.5)), until = std::min(right, to.x(double(end) - 0.5));
-      blind += text("<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\"/>\n", from, top, std::max(until - from, 2.0), bottom - top);
+      blind += text("<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\"/>\n", from, top,
+                    std::max(until - from, 2.0), bottom - top);
       continue;
     }
     for (std::size_t k = begin; k < end; ++k) {
@@ -120,20 +130,33 @@ std::string clearance_svg(std::span<const min_distance_result> frames, const std
     band += "Z\n";
     if (end - begin == 1) alone += "M " + to.at(begin, frames[begin].distance) + " h 0\n";  // a round end is a dot
   }
-  std::string out = text("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" "
-                         "font-family=\"sans-serif\" font-size=\"12\" fill=\"none\">\n<title>Clearance in ",
-                         width, height) + escaped(name) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
-  out += "<g fill=\"#333\">\n" + words(left, 20, "start", "Clearance in " + escaped(name)) + grid(to) +
-         words(right, 20, "end", blind.empty() ? "distance, in its bracket" : "distance, in its bracket; red: no data") +
-         (above.empty() ? "" : words(right, top - 12, "end", text("triangles: above the picture, up to %.3g m", to.highest))) + "</g>\n";
+  std::string out =
+      text(
+          "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" "
+          "font-family=\"sans-serif\" font-size=\"12\" fill=\"none\">\n<title>Clearance in ",
+          width, height) +
+      escaped(name) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
+  out +=
+      "<g fill=\"#333\">\n" + words(left, 20, "start", "Clearance in " + escaped(name)) + grid(to) +
+      words(right, 20, "end", blind.empty() ? "distance, in its bracket" : "distance, in its bracket; red: no data") +
+      (above.empty() ? ""
+                     : words(right, top - 12, "end", text("triangles: above the picture, up to %.3g m", to.highest))) +
+      "</g>\n";
   if (!blind.empty()) out += "<g fill=\"#d33\" fill-opacity=\"0.35\">\n" + blind + "</g>\n";
   if (!line.empty())
-    out += "<path id=\"bracket\" fill=\"#48c\" fill-opacity=\"0.35\" stroke=\"#48c\" stroke-opacity=\"0.6\" stroke-width=\"0.5\" d=\"" + band +
-           "\"/>\n<path id=\"distance\" stroke=\"#136\" stroke-width=\"1.5\" stroke-linecap=\"round\" stroke-linejoin=\"round\" d=\"" + line + "\"/>\n";
-  if (!alone.empty()) out += "<path id=\"alone\" stroke=\"#136\" stroke-width=\"5\" stroke-linecap=\"round\" d=\"" + alone + "\"/>\n";
+    out +=
+        "<path id=\"bracket\" fill=\"#48c\" fill-opacity=\"0.35\" stroke=\"#48c\" stroke-opacity=\"0.6\" "
+        "stroke-width=\"0.5\" d=\"" +
+        band +
+        "\"/>\n<path id=\"distance\" stroke=\"#136\" stroke-width=\"1.5\" stroke-linecap=\"round\" "
+        "stroke-linejoin=\"round\" d=\"" +
+        line + "\"/>\n";
+  if (!alone.empty())
+    out += "<path id=\"alone\" stroke=\"#136\" stroke-width=\"5\" stroke-linecap=\"round\" d=\"" + alone + "\"/>\n";
   if (!above.empty()) out += "<path id=\"above\" fill=\"#136\" d=\"" + above + "\"/>\n";
   if (margin)
-    out += text("<path id=\"margin\" stroke=\"#d33\" stroke-dasharray=\"6 4\" d=\"M %.2f %.2f H %.2f\"/>\n", left, to.y(*margin), right) +
+    out += text("<path id=\"margin\" stroke=\"#d33\" stroke-dasharray=\"6 4\" d=\"M %.2f %.2f H %.2f\"/>\n", left,
+                to.y(*margin), right) +
            "<g fill=\"#d33\">\n" + words(right, to.y(*margin) - 4, "end", text("margin %g m", *margin)) + "</g>\n";
   return out + "</svg>\n";
 }

@@ -29,8 +29,8 @@ std::vector<double> numbers(const std::string& option, const std::string& text, 
                             const std::string& what, bool infinite) {
   auto values = numbers(option, text, infinite);
   if (values.size() != count)
-    throw usage_error(option, "needs " + std::to_string(count) + " numbers, " + what + "; here are " +
-                                  std::to_string(values.size()));
+    throw usage_error(
+        option, "needs " + std::to_string(count) + " numbers, " + what + "; here are " + std::to_string(values.size()));
   return values;
 }
 
@@ -72,7 +72,7 @@ namespace {
 
 struct named_limit {
   const char* name;
-  std::uint64_t clearance::io::mesh_limits::*value;
+  std::uint64_t clearance::io::mesh_limits::* value;
 };
 constexpr named_limit mesh_limit_names[] = {{"bytes", &clearance::io::mesh_limits::bytes},
                                             {"triangles", &clearance::io::mesh_limits::triangles},
@@ -121,6 +121,7 @@ std::pair<std::string, std::string> assignment(const std::string& option, const 
 
 bool is_device(const std::string& backend) {
   if (choice("--backend", backend, {"host", "device"}) == 0) return false;
-  if (const device_state gpu = find_device(); !gpu.present) throw usage_error("--backend", "device is not possible: " + gpu.says);
+  if (const device_state gpu = find_device(); !gpu.present)
+    throw usage_error("--backend", "device is not possible: " + gpu.says);
   return true;
 }

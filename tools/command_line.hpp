@@ -29,7 +29,8 @@ inline std::string without_prefix(std::string why) { return why.starts_with("cle
 
 /// What --help says of them.
 inline constexpr const char* exit_codes =
-    "Exit codes: 0 done; 1 an error, wrong usage included; 2 --check fails, or points are in the first of --zones; 3 no valid point.";
+    "Exit codes: 0 done; 1 an error, wrong usage included; 2 --check fails, or points are in the first of --zones; 3 "
+    "no valid point.";
 
 /// A subcommand: its options are filled in when `run` is called; what it returns is the exit code.
 using subcommand = std::function<int()>;
@@ -62,7 +63,8 @@ clearance::io::mesh_limits limits_of(const std::vector<std::string>& given);
 std::string mesh_limit_says();
 
 /// Two words, split at the first '='; a refusal names the form that they should have.
-std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text, const char* form = "name=value");
+std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text,
+                                               const char* form = "name=value");
 
 /// Is it --backend device? Throws if there is none.
 bool is_device(const std::string& backend);

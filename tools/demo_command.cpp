@@ -31,7 +31,9 @@ struct demo_row {
   double query;  // seconds
 };
 
-depth_image<std::uint16_t> image_of(const demo_scene& world) { return {world.depth.data(), world.width, world.height, world.camera}; }
+depth_image<std::uint16_t> image_of(const demo_scene& world) {
+  return {world.depth.data(), world.width, world.height, world.camera};
+}
 
 void draw(const demo_scene& world, const demo_row& row, const std::string& file) {
   io::scene scene;
@@ -45,7 +47,8 @@ void draw(const demo_scene& world, const demo_row& row, const std::string& file)
   for (std::size_t i = 0; i < image.size(); ++i)
     if (const sample s = image[i]; s.valid()) points.push_back(s.position);
   scene.clouds.push_back({.name = "depth", .points = std::move(points), .pose = world.world_from_camera});
-  scene.segments.push_back({.name = "witness", .from = {r.nearest.x, r.nearest.y, r.nearest.z}, .to = {r.at.x, r.at.y, r.at.z}});
+  scene.segments.push_back(
+      {.name = "witness", .from = {r.nearest.x, r.nearest.y, r.nearest.z}, .to = {r.at.x, r.at.y, r.at.z}});
   io::save_scene(scene, file);
 }
 
@@ -54,8 +57,8 @@ void print(const demo_row& row, const std::vector<body>& bodies) {
   const std::string part = r.part == none ? "-" : bodies[r.part].name;
   const std::string pixel = std::to_string(r.point % 640) + ',' + std::to_string(r.point / 640);
   std::printf("%-8s %-10s %-7s %10.6f  %.6f to %.6f  %-8s %-12s %9u  %10.3f\n", row.on_device ? "device" : "host",
-              to_string(row.asked.model), to_string(row.asked.volume), double(r.distance), double(r.lower), double(r.upper),
-              pixel.c_str(), part.c_str(), r.primitive, 1e3 * row.query);
+              to_string(row.asked.model), to_string(row.asked.volume), double(r.distance), double(r.lower),
+              double(r.upper), pixel.c_str(), part.c_str(), r.primitive, 1e3 * row.query);
 }
 
 bool same_witness(const min_distance_result& a, const min_distance_result& b) {
@@ -78,7 +81,8 @@ int run(const demo_settings& settings) {
     poses.push_back(part.pose);
   }
   body_account account;
-  const body_options how{.pack = {.count = count}, .both = true, .cache = chosen_cache(settings.no_cache, settings.cache)};
+  const body_options how{
+      .pack = {.count = count}, .both = true, .cache = chosen_cache(settings.no_cache, settings.cache)};
   std::vector<std::string> notes;
   check_kept(how.cache, !settings.cache.empty(), notes);
   const std::vector<body> bodies = make_bodies(sources, how, shown, account);
@@ -89,11 +93,13 @@ int run(const demo_settings& settings) {
   std::size_t spheres = 0;
   double gap = 0;
   for (const body& b : bodies) spheres += b.packed.spheres.size(), gap = std::max(gap, b.packed.gap);
-  std::printf("An arm of %zu parts: %zu triangles, %zu inner spheres (gap at most %.2f mm), made in %.1f s%s.\n", bodies.size(),
-              triangles, spheres, 1e3 * gap, seconds, account.packed == 0 ? " from those that were kept" : "");
-  std::printf("A depth frame of %ux%u pixels from the camera on its hand. Device: %s.\n\n", world.width, world.height, gpu.says.c_str());
-  std::printf("%-8s %-10s %-7s %10s  %-20s  %-8s %-12s %9s  %10s\n", "backend", "model", "volume", "distance m", "certainly m", "pixel",
-              "part", "primitive", "time ms");
+  std::printf("An arm of %zu parts: %zu triangles, %zu inner spheres (gap at most %.2f mm), made in %.1f s%s.\n",
+              bodies.size(), triangles, spheres, 1e3 * gap, seconds,
+              account.packed == 0 ? " from those that were kept" : "");
+  std::printf("A depth frame of %ux%u pixels from the camera on its hand. Device: %s.\n\n", world.width, world.height,
+              gpu.says.c_str());
+  std::printf("%-8s %-10s %-7s %10s  %-20s  %-8s %-12s %9s  %10s\n", "backend", "model", "volume", "distance m",
+              "certainly m", "pixel", "part", "primitive", "time ms");
 
   std::vector<demo_row> rows;
   for (const bool on_device : {false, true}) {
@@ -109,7 +115,8 @@ int run(const demo_settings& settings) {
       }
   }
   const min_distance_result& first = rows.front().found.result;
-  std::printf("\n%llu pixels seen, %llu valid. State: %s.\n", (unsigned long long)first.seen, (unsigned long long)first.valid, to_string(first.state));
+  std::printf("\n%llu pixels seen, %llu valid. State: %s.\n", (unsigned long long)first.seen,
+              (unsigned long long)first.valid, to_string(first.state));
 
   bool agree = true;
   double lower = 0, upper = infinity;
@@ -120,7 +127,8 @@ int run(const demo_settings& settings) {
       if (other.asked.model == row.asked.model && !same_witness(other.found.result, row.found.result)) agree = false;
   }
   const bool meet = lower <= upper && first.state != state::no_data;
-  std::printf("Witnesses within a model %s. Brackets %s.\n", agree ? "are the same" : "DIFFER", meet ? "meet" : "DO NOT MEET");
+  std::printf("Witnesses within a model %s. Brackets %s.\n", agree ? "are the same" : "DIFFER",
+              meet ? "meet" : "DO NOT MEET");
   if (!settings.scene.empty()) draw(world, rows.front(), settings.scene);
   std::fflush(stdout);
   return agree && meet ? 0 : 1;

@@ -20,11 +20,14 @@ device_state find_device() {
   int count = 0;
   const cudaError_t failed = cudaGetDeviceCount(&count);
   if (failed != cudaSuccess || count == 0)
-    return {true, false, std::string("there is no CUDA device (") + (failed != cudaSuccess ? cudaGetErrorString(failed) : "none found") + ')'};
+    return {true, false,
+            std::string("there is no CUDA device (") +
+                (failed != cudaSuccess ? cudaGetErrorString(failed) : "none found") + ')'};
   cudaDeviceProp properties{};
   if (const cudaError_t why = cudaGetDeviceProperties(&properties, 0); why != cudaSuccess)
     return {true, false, std::string("the CUDA device does not answer (") + cudaGetErrorString(why) + ')'};
-  const std::string name = std::string(properties.name) + " (sm_" + std::to_string(properties.major) + std::to_string(properties.minor) + ')';
+  const std::string name = std::string(properties.name) + " (sm_" + std::to_string(properties.major) +
+                           std::to_string(properties.minor) + ')';
   cudaFuncAttributes attributes{};
   if (const cudaError_t why = cudaFuncGetAttributes(&attributes, probe<0>); why != cudaSuccess) {
     cudaGetLastError();  // it is answered; the next call shall not see it

@@ -12,6 +12,8 @@ constexpr const char* without = "this clearance was built without CUDA";
 
 std::unique_ptr<backend_robot> robot_on_device(const asked_model&) { throw std::runtime_error(without); }
 
-clearance::packing pack_on_device(const clearance::mesh_solid&, const clearance::pack_options&) { throw std::runtime_error(without); }
+clearance::packing pack_on_device(const clearance::mesh_solid&, const clearance::pack_options&) {
+  throw std::runtime_error(without);
+}
 
 device_state find_device() { return {false, false, without}; }

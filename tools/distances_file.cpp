@@ -20,7 +20,8 @@ namespace {
 /// The points of all clouds that count, in pieces that memory has room for.
 class distance_pieces {
  public:
-  distance_pieces(const asked_clouds& clouds, const point_distances& found, double blue) : clouds_(clouds), found_(found), blue_(blue) {}
+  distance_pieces(const asked_clouds& clouds, const point_distances& found, double blue)
+      : clouds_(clouds), found_(found), blue_(blue) {}
 
   io::ply_piece operator()() {
     std::vector<Eigen::Vector3d> positions;
@@ -39,14 +40,20 @@ class distance_pieces {
         positions.push_back(placed[i - begin_]);
         distance.push_back(d);
         red.push_back(byte(shown.red)), green.push_back(byte(shown.green)), blue.push_back(byte(shown.blue));
-        cloud.push_back(std::uint32_t(cloud_)), point.push_back(std::uint32_t(i)), part.push_back(std::int32_t(found_.part[first_ + i]));  // none: -1
+        cloud.push_back(std::uint32_t(cloud_)), point.push_back(std::uint32_t(i)),
+            part.push_back(std::int32_t(found_.part[first_ + i]));  // none: -1
       }
       begin_ = end;
       if (end == clouds_.files[cloud_].size()) begin_ = 0, first_ += end, ++cloud_;
     }
     return {std::move(positions),
-            {{"red", std::move(red)}, {"green", std::move(green)}, {"blue", std::move(blue)}, {"distance", std::move(distance)},
-             {"cloud", std::move(cloud)}, {"point", std::move(point)}, {"part", std::move(part)}}};
+            {{"red", std::move(red)},
+             {"green", std::move(green)},
+             {"blue", std::move(blue)},
+             {"distance", std::move(distance)},
+             {"cloud", std::move(cloud)},
+             {"point", std::move(point)},
+             {"part", std::move(part)}}};
   }
 
  private:
@@ -55,21 +62,26 @@ class distance_pieces {
   const asked_clouds& clouds_;
   const point_distances& found_;
   double blue_;
-  std::size_t cloud_ = 0, begin_ = 0, first_ = 0;  // the next record of a cloud, and the number of the cloud's first among all
+  std::size_t cloud_ = 0, begin_ = 0,
+              first_ = 0;  // the next record of a cloud, and the number of the cloud's first among all
 };
 
 }  // namespace
 
-distances_written write_distances(const query_options& asked, const asked_clouds& clouds, const point_distances& found) {
+distances_written write_distances(const query_options& asked, const asked_clouds& clouds,
+                                  const point_distances& found) {
   distances_written made{.blue_at = blue_at(asked)};
   for (const real d : found.distance) ++(std::isnan(d) ? made.left_out : made.points), made.beyond += std::isinf(d);
   char says[200];
-  std::snprintf(says, sizeof says, "distance in metres, inf beyond %g m; red at 0 m and inside, blue at %g m and beyond", asked.d_max, made.blue_at);
+  std::snprintf(says, sizeof says,
+                "distance in metres, inf beyond %g m; red at 0 m and inside, blue at %g m and beyond", asked.d_max,
+                made.blue_at);
   io::save_ply_pieces(asked.distances, made.points, distance_pieces(clouds, found, made.blue_at), says);
   return made;
 }
 
-io::scene_points drawn(const query_options& asked, const observation& cloud, const seen_points& seen, const point_distances* found, std::size_t first) {
+io::scene_points drawn(const query_options& asked, const observation& cloud, const seen_points& seen,
+                       const point_distances* found, std::size_t first) {
   io::scene_points made{.name = cloud.name, .points = {}, .pose = seen.pose};
   std::visit(
       [&](const auto& source) {

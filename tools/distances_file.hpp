@@ -15,9 +15,10 @@ struct distances_written {
 };
 
 /// Writes the points of all clouds that count to --distances, whole or not at all.
-distances_written write_distances(const query_options& asked, const asked_clouds& clouds, const clearance::point_distances& found);
+distances_written write_distances(const query_options& asked, const asked_clouds& clouds,
+                                  const clearance::point_distances& found);
 
-/// A cloud's points that count, as a scene shows them; with the colours of their distances, where those are known. `first`: the number
-/// of the cloud's first point among all clouds' points.
+/// A cloud's points that count, as a scene shows them; with the colours of their distances, where those are known.
+/// `first`: the number of the cloud's first point among all clouds' points.
 clearance::io::scene_points drawn(const query_options& asked, const observation& cloud, const seen_points& seen,
                                   const clearance::point_distances* found, std::size_t first);

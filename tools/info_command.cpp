@@ -11,9 +11,9 @@
 #include <clearance/io/robot.hpp>
 #include <clearance/io/spheres_file.hpp>
 
+#include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 #include <Eigen/Core>
-#include <tbb/global_control.h>
 
 #include <iostream>
 
@@ -27,7 +27,8 @@ json or_null(double value) { return std::isfinite(value) ? json(value) : json(nu
 int describe(const std::string& file, bool as_json) {
   const auto parts = clearance::io::within_memory(file, [&] { return clearance::io::load_spheres(file); });
   json out = {{"file", file}, {"parts", json::array()}};
-  std::string text = clearance::io::printable(file) + ": " + std::to_string(parts.size()) + (parts.size() == 1 ? " part\n" : " parts\n");
+  std::string text = clearance::io::printable(file) + ": " + std::to_string(parts.size()) +
+                     (parts.size() == 1 ? " part\n" : " parts\n");
   for (const auto& part : parts) {
     const clearance::packing& p = part.spheres;
     const bool certified = std::isfinite(p.gap);
@@ -44,11 +45,13 @@ int describe(const std::string& file, bool as_json) {
                             {"seconds", certified ? json(p.seconds) : json(nullptr)},
                             {"solid", part.solid ? json(part.solid.hex()) : json(nullptr)}});
     char line[256];
-    std::snprintf(line, sizeof line, "%zu spheres, radii %.6f to %.6f m, ", p.spheres.size(), p.radius_min, p.radius_max);
+    std::snprintf(line, sizeof line, "%zu spheres, radii %.6f to %.6f m, ", p.spheres.size(), p.radius_min,
+                  p.radius_max);
     const std::string name = clearance::io::printable(part.name);
     text += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') + line;
     if (certified)
-      std::snprintf(line, sizeof line, "gap at most %.6f m (95 %% %.6f, mean %.6f), fill %.4f", p.gap, p.gap_p95, p.gap_mean, p.fill);
+      std::snprintf(line, sizeof line, "gap at most %.6f m (95 %% %.6f, mean %.6f), fill %.4f", p.gap, p.gap_p95,
+                    p.gap_mean, p.fill);
     text += certified ? line : "no certificate";
     if (part.solid) text += ", of mesh " + part.solid.hex().substr(0, 12);
     text += '\n';
@@ -82,7 +85,8 @@ int describe_solids(const std::string& file, const std::vector<std::string>& pac
   notes.insert(notes.end(), account.notes.begin(), account.notes.end());
   say_notes(notes);
   json out = {{"file", file}, {"parts", json::array()}};
-  std::string text = clearance::io::printable(file) + ": " + std::to_string(bodies.size()) + (bodies.size() == 1 ? " part\n" : " parts\n");
+  std::string text = clearance::io::printable(file) + ": " + std::to_string(bodies.size()) +
+                     (bodies.size() == 1 ? " part\n" : " parts\n");
   for (const body& b : bodies) {
     const double tolerance = b.tolerance + b.closed.tolerance;
     out["parts"].push_back({{"name", b.name},
@@ -92,8 +96,8 @@ int describe_solids(const std::string& file, const std::vector<std::string>& pac
                             {"tolerance", tolerance},
                             {"caps", {{"loops", b.closed.caps.loops}, {"area", b.closed.caps.area}}}});
     char line[256];
-    std::snprintf(line, sizeof line, "%u triangles, inside by %s, %u holes closed, to within %.6f m\n", b.closed.loaded, to_string(b.closed.inside),
-                  b.closed.caps.loops, tolerance);
+    std::snprintf(line, sizeof line, "%u triangles, inside by %s, %u holes closed, to within %.6f m\n", b.closed.loaded,
+                  to_string(b.closed.inside), b.closed.caps.loops, tolerance);
     const std::string name = clearance::io::printable(b.name);
     text += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') + line;
   }
@@ -104,8 +108,10 @@ int describe_solids(const std::string& file, const std::vector<std::string>& pac
 }  // namespace
 
 subcommand add_info(CLI::App& app) {
-  CLI::App* sub = app.add_subcommand("info", "What this clearance was built with and runs on; what is in a file of spheres; or how it is known what a "
-                                             "robot's parts, or a mesh, enclose");
+  CLI::App* sub = app.add_subcommand(
+      "info",
+      "What this clearance was built with and runs on; what is in a file of spheres; or how it is known what a "
+      "robot's parts, or a mesh, enclose");
   struct settings {
     std::string file;
     std::vector<std::string> packages;
@@ -117,28 +123,35 @@ subcommand add_info(CLI::App& app) {
   sub->add_flag("--json", asked->json, "Print one JSON object");
   return [asked] {
     const bool spheres = !clearance::io::spheres_format(asked->file).empty();
-    if (spheres && !asked->packages.empty()) throw usage_error("--package", "is for robots, and " + asked->file + " is none by its name");
+    if (spheres && !asked->packages.empty())
+      throw usage_error("--package", "is for robots, and " + asked->file + " is none by its name");
     if (spheres) return describe(asked->file, asked->json);
-    if (!asked->file.empty()) return clearance::io::within_memory(asked->file, [&] { return describe_solids(asked->file, asked->packages, asked->json); });
-    const std::string version = std::to_string(CLEARANCE_VERSION_MAJOR) + '.' + std::to_string(CLEARANCE_VERSION_MINOR) + '.' +
-                                std::to_string(CLEARANCE_VERSION_PATCH);
+    if (!asked->file.empty())
+      return clearance::io::within_memory(asked->file,
+                                          [&] { return describe_solids(asked->file, asked->packages, asked->json); });
+    const std::string version = std::to_string(CLEARANCE_VERSION_MAJOR) + '.' +
+                                std::to_string(CLEARANCE_VERSION_MINOR) + '.' + std::to_string(CLEARANCE_VERSION_PATCH);
     const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     const device_state gpu = find_device();
     const std::string cache = clearance::io::packing_cache::usual_folder().string();
     if (asked->json) {
-      const json out = {{"version", version}, {"compiler", __VERSION__}, {"threads", threads},
-                                          {"cuda", gpu.compiled}, {"device", gpu.present ? json(gpu.says) : nullptr},
-                                          {"backend", gpu.present ? "device" : "host"},
+      const json out = {{"version", version},
+                        {"compiler", __VERSION__},
+                        {"threads", threads},
+                        {"cuda", gpu.compiled},
+                        {"device", gpu.present ? json(gpu.says) : nullptr},
+                        {"backend", gpu.present ? "device" : "host"},
                         {"cache", cache.empty() ? json(nullptr) : json(cache)}};
       std::cout << json_text(out, 2);
       return 0;
     }
-    std::cout << "clearance " << version << ", compiled by " << __VERSION__ << '\n'
-              << "host    " << threads << " threads\n"
-              << "device  " << (gpu.present ? gpu.says : "none: " + gpu.says) << '\n'
-              << "reads   robots: URDF; meshes: STL, OBJ, PLY, OFF, DAE, GLB; clouds: PCD, PLY, XYZ; depth: 16-bit PNG\n"
-              << "writes  scenes: GLB\n"
-              << "both    spheres: IST, YAML, CSV; kept in " << (cache.empty() ? "no cache" : cache) << '\n';
+    std::cout
+        << "clearance " << version << ", compiled by " << __VERSION__ << '\n'
+        << "host    " << threads << " threads\n"
+        << "device  " << (gpu.present ? gpu.says : "none: " + gpu.says) << '\n'
+        << "reads   robots: URDF; meshes: STL, OBJ, PLY, OFF, DAE, GLB; clouds: PCD, PLY, XYZ; depth: 16-bit PNG\n"
+        << "writes  scenes: GLB\n"
+        << "both    spheres: IST, YAML, CSV; kept in " << (cache.empty() ? "no cache" : cache) << '\n';
     return 0;
   };
 }

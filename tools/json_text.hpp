@@ -5,7 +5,8 @@
 
 #include <string>
 
-/// JSON as the command prints it: ASCII, with U+FFFD for bytes that are no UTF-8, and a line end. An indent of -1: one line.
+/// JSON as the command prints it: ASCII, with U+FFFD for bytes that are no UTF-8, and a line end. An indent of -1: one
+/// line.
 inline std::string json_text(const nlohmann::ordered_json& value, int indent) {
   return value.dump(indent, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }

@@ -14,7 +14,10 @@ void check_kept(const io::packing_cache& cache, bool named, std::vector<std::str
   const std::string folder = cache.folder().string();
   const bool there = std::filesystem::is_directory(cache.folder(), unknown);
   if (named && !there)
-    throw usage_error("--cache", folder + " is no folder, and none can be made: " + (failed ? failed.message() : unknown.message()));
+    throw usage_error(
+        "--cache", folder + " is no folder, and none can be made: " + (failed ? failed.message() : unknown.message()));
   if (!there || ::access(folder.c_str(), W_OK | X_OK) != 0)
-    notes.push_back(folder + ": cannot be written to, so new packings are not kept (--cache names another folder, --no-cache none)");
+    notes.push_back(
+        folder +
+        ": cannot be written to, so new packings are not kept (--cache names another folder, --no-cache none)");
 }

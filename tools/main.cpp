@@ -25,9 +25,11 @@ constexpr int failure = 1;
 
 bool blank(std::string_view text) { return text.find_first_not_of(" \t\r\n\v\f") == text.npos; }
 
-/// The words of the command line as CLI11 wants them. It would drop an empty value, take the next option for the value of
-/// "--cache=", and "-.5" for an option: so every option that takes a value is handed to it in one word, "--option=value",
-/// and has one. A flag has none; CLI11 would take "--flag=false", or a number, for how often it is given.
+/// The words of the command line as CLI11 wants them. It would drop an empty value, take the next option for the value
+/// of
+/// "--cache=", and "-.5" for an option: so every option that takes a value is handed to it in one word,
+/// "--option=value", and has one. A flag has none; CLI11 would take "--flag=false", or a number, for how often it is
+/// given.
 std::vector<std::string> checked_words(int argc, char** argv, const CLI::App& app) {
   std::vector<std::string> words;
   const CLI::App* sub = nullptr;
@@ -38,7 +40,8 @@ std::vector<std::string> checked_words(int argc, char** argv, const CLI::App& ap
       if (!sub && each->check_name(word)) sub = each;
     const std::string name = word.substr(0, word.find('='));
     const CLI::Option* option = word.starts_with("--") ? (sub ? sub : &app)->get_option_no_throw(name) : nullptr;
-    if (option && option->get_expected_max() == 0 && name.size() < word.size()) throw usage_error(name, "takes no value");
+    if (option && option->get_expected_max() == 0 && name.size() < word.size())
+      throw usage_error(name, "takes no value");
     if (option && option->get_expected_max() > 0) {
       if (name.size() == word.size() && i + 1 < argc) {
         const std::string_view next = argv[i + 1];
@@ -64,7 +67,9 @@ void take_one_value_each(CLI::App& app) {
 void add_threads(CLI::App& app, std::string& threads) {
   for (CLI::App* sub : app.get_subcommands({}))
     if (!sub->check_name("info"))
-      sub->add_option("--threads", threads, "How many threads of the CPU may work, 1 to 1024 (default: as many as it has); no answer depends on it");
+      sub->add_option(
+          "--threads", threads,
+          "How many threads of the CPU may work, 1 to 1024 (default: as many as it has); no answer depends on it");
 }
 
 /// CLI11 would only say that a subcommand is missing.
@@ -89,7 +94,8 @@ int finish(int code) {
   return !std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) ? fail("the output cannot be written") : code;
 }
 
-/// Files that are opened later must not become what is closed now, and a file that grows too large is an error, no signal.
+/// Files that are opened later must not become what is closed now, and a file that grows too large is an error, no
+/// signal.
 void hold_streams() {
   std::signal(SIGXFSZ, SIG_IGN);
   for (int stream = 0; stream < 3; ++stream)
@@ -116,7 +122,8 @@ int main(int argc, char** argv) {
     check_subcommand(argc, argv, app);
     app.parse(words);
     std::optional<tbb::global_control> at_most;
-    if (!threads.empty()) at_most.emplace(tbb::global_control::max_allowed_parallelism, whole_number("--threads", threads, 1024));
+    if (!threads.empty())
+      at_most.emplace(tbb::global_control::max_allowed_parallelism, whole_number("--threads", threads, 1024));
     for (std::size_t i = 0; i < run.size(); ++i) {
       if (!app.get_subcommands({}).at(i)->parsed()) continue;
       return finish(run[i]());

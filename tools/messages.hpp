@@ -10,7 +10,8 @@
 
 /// On stderr, as "word: text".
 inline void say(const std::string& word, const std::string& text) {
-  const std::string line = word + ": " + clearance::io::sentence(text, clearance::io::longest_sentence - word.size() - 2) + '\n';
+  const std::string line =
+      word + ": " + clearance::io::sentence(text, clearance::io::longest_sentence - word.size() - 2) + '\n';
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 

@@ -20,10 +20,12 @@ void check_made(const cloud_options& from, std::uint64_t points, std::uint64_t e
   constexpr std::uint64_t times = 64;  // of the file: what is not packed stays far below
   std::error_code none;
   const auto size = std::filesystem::file_size(from.file, none);
-  const std::uint64_t made = points * (from.bytes_each + each), most = std::max(from.limits.unfolded, none ? 0 : times * size);
+  const std::uint64_t made = points * (from.bytes_each + each),
+                      most = std::max(from.limits.unfolded, none ? 0 : times * size);
   if (made > most)
-    io::refuse(from.file, "has " + std::to_string(points) + ' ' + what + ", of which " + io::mebibytes(made) + " would be made here, more than the limit of " +
-                              io::mebibytes(most) + " (--unfold-limit MiB raises it)");
+    io::refuse(from.file, "has " + std::to_string(points) + ' ' + what + ", of which " + io::mebibytes(made) +
+                              " would be made here, more than the limit of " + io::mebibytes(most) +
+                              " (--unfold-limit MiB raises it)");
 }
 
 }  // namespace
@@ -57,8 +59,9 @@ observation observe(const cloud_options& from, std::set<std::string>& taken) {
     const auto& [t, q] = *cloud.viewpoint;
     if (t != Eigen::Vector3d::Zero() || q.coeffs() != Eigen::Quaterniond::Identity().coeffs()) {
       char says[256];
-      std::snprintf(says, sizeof says, ": VIEWPOINT x,y,z,qx,qy,qz,qw %g,%g,%g,%g,%g,%g,%g is not applied; --use-viewpoint does so",
-                    t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+      std::snprintf(says, sizeof says,
+                    ": VIEWPOINT x,y,z,qx,qy,qz,qw %g,%g,%g,%g,%g,%g,%g is not applied; --use-viewpoint does so", t.x(),
+                    t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
       made.notes.push_back(from.file + says);
     }
   }
@@ -69,7 +72,9 @@ observation observe(const cloud_options& from, std::set<std::string>& taken) {
 Eigen::Isometry3d observation::world(const Eigen::Isometry3d& carrier) const {
   const Eigen::Isometry3d camera = io::carried(carrier, from.pose, "the camera");
   if (!from.use_viewpoint || !points()) return camera;
-  return io::carried(camera, pose("--use-viewpoint: " + from.file, points()->viewpoint->translation, points()->viewpoint->rotation), "the viewpoint");
+  return io::carried(
+      camera, pose("--use-viewpoint: " + from.file, points()->viewpoint->translation, points()->viewpoint->rotation),
+      "the viewpoint");
 }
 
 seen_points observation::seen(const Eigen::Isometry3d& carrier, poses_of robot) {
@@ -88,7 +93,8 @@ seen_points observation::seen(const Eigen::Isometry3d& carrier, poses_of robot) 
   return {source, pose};
 }
 
-std::vector<Eigen::Vector3d> observation::in_world(const Eigen::Isometry3d& carrier, const seen_points& seen, std::size_t begin, std::size_t end) const {
+std::vector<Eigen::Vector3d> observation::in_world(const Eigen::Isometry3d& carrier, const seen_points& seen,
+                                                   std::size_t begin, std::size_t end) const {
   std::vector<Eigen::Vector3d> at;
   if (points()) {  // in the file's doubles
     const Eigen::Isometry3d placed = world(carrier);

@@ -28,11 +28,14 @@ struct observation {
   /// World-from-cloud. `carrier`: world-from-link of the link that --camera-link names, else the identity.
   Eigen::Isometry3d world(const Eigen::Isometry3d& carrier) const;
 
-  /// What the query reads, in memory of this object; `robot`: where the parts will be, roughly, so that floats are fine there.
+  /// What the query reads, in memory of this object; `robot`: where the parts will be, roughly, so that floats are fine
+  /// there.
   seen_points seen(const Eigen::Isometry3d& carrier, poses_of robot);
 
-  /// Where its points of numbers begin to end - 1 are in the world; of those that do not count, anywhere. `seen`: what seen(carrier, ...) gave.
-  std::vector<Eigen::Vector3d> in_world(const Eigen::Isometry3d& carrier, const seen_points& seen, std::size_t begin, std::size_t end) const;
+  /// Where its points of numbers begin to end - 1 are in the world; of those that do not count, anywhere. `seen`: what
+  /// seen(carrier, ...) gave.
+  std::vector<Eigen::Vector3d> in_world(const Eigen::Isometry3d& carrier, const seen_points& seen, std::size_t begin,
+                                        std::size_t end) const;
 
   /// Takes points out of what seen() gave: those that are labelled as the robot's own. Where they were, in that frame.
   std::vector<clearance::vec3> hide(std::span<const clearance::point_label> labels, const seen_points& seen);

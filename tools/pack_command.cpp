@@ -45,8 +45,11 @@ bool ends(const std::string& file, const char* ending) { return std::filesystem:
 subject load(const pack_settings& asked) {
   subject made;
   if (!ends(asked.input, ".urdf")) {
-    for (const auto& [option, given] : {std::pair{"--geometry", !asked.geometry.empty()}, {"--package", !asked.packages.empty()},
-                                        {"--exclude-link", !asked.excluded.empty()}, {"--joints", !asked.joints.empty()}, {"--strict", asked.strict}})
+    for (const auto& [option, given] : {std::pair{"--geometry", !asked.geometry.empty()},
+                                        {"--package", !asked.packages.empty()},
+                                        {"--exclude-link", !asked.excluded.empty()},
+                                        {"--joints", !asked.joints.empty()},
+                                        {"--strict", asked.strict}})
       if (given) throw usage_error(option, "is for robots, and " + asked.input + " is none by its name");
     made.parts.push_back({.name = std::filesystem::path(asked.input).stem().string(),
                           .mesh = io::load_mesh(asked.input, limits_of(asked.mesh_limits))});
@@ -55,7 +58,8 @@ subject load(const pack_settings& asked) {
   }
   made.robot = true;
   io::robot_options options;
-  if (!asked.geometry.empty() && choice("--geometry", asked.geometry, {"collision", "visual"}) == 1) options.geometry = io::robot_geometry::visual;
+  if (!asked.geometry.empty() && choice("--geometry", asked.geometry, {"collision", "visual"}) == 1)
+    options.geometry = io::robot_geometry::visual;
   for (const auto& text : asked.packages) {
     const auto [name, folder] = assignment("--package", text, "name=DIR");
     options.packages[name] = folder;
@@ -67,7 +71,8 @@ subject load(const pack_settings& asked) {
   const auto& tree = robot.kinematics();
   const auto joints = asked.joints.empty() ? tree.configuration({}, {}) : numbers("--joints", asked.joints);
   if (joints.size() != tree.size())
-    throw usage_error("--joints", "the robot has " + std::to_string(tree.size()) + " movable joints, here are " + std::to_string(joints.size()) + " values");
+    throw usage_error("--joints", "the robot has " + std::to_string(tree.size()) + " movable joints, here are " +
+                                      std::to_string(joints.size()) + " values");
   made.poses = robot.poses(joints);
   made.parts = robot.parts();
   made.notes = robot.notes();
@@ -118,7 +123,11 @@ void write(const std::string& file, const subject& what, const packed_subject& m
   }
   std::vector<io::packed_part> parts;
   for (const body& b : made.bodies)
-    parts.push_back({.name = b.name, .spheres = b.packed, .tolerance = b.tolerance, .solid = io::digest_of(b.closed), .recipe = {}});
+    parts.push_back({.name = b.name,
+                     .spheres = b.packed,
+                     .tolerance = b.tolerance,
+                     .solid = io::digest_of(b.closed),
+                     .recipe = {}});
   io::save_spheres(parts, file);
 }
 
@@ -152,9 +161,12 @@ std::string text(const char* format, auto... values) {
 
 void print_one(const body& b, bool cached) {
   const packing& p = b.packed;
-  std::cout << text("spheres   %zu, radii %.6f to %.6f m\nfill      %.4f of the volume\n", p.spheres.size(), p.radius_min, p.radius_max, p.fill)
-            << text("gap       %.6f m at most; over the surface 95 %% within %.6f m, mean %.6f m\n", p.gap, p.gap_p95, p.gap_mean)
-            << text("caps      %u holes closed, %.3g m2\n", b.closed.caps.loops, b.closed.caps.area) << "stopped   " << p.reason() << '\n'
+  std::cout << text("spheres   %zu, radii %.6f to %.6f m\nfill      %.4f of the volume\n", p.spheres.size(),
+                    p.radius_min, p.radius_max, p.fill)
+            << text("gap       %.6f m at most; over the surface 95 %% within %.6f m, mean %.6f m\n", p.gap, p.gap_p95,
+                    p.gap_mean)
+            << text("caps      %u holes closed, %.3g m2\n", b.closed.caps.loops, b.closed.caps.area) << "stopped   "
+            << p.reason() << '\n'
             << text("seconds   %.3f%s\n", p.seconds, cached ? ", when it was packed; this is from the cache" : "");
 }
 
@@ -167,13 +179,16 @@ void print_all(const packed_subject& made) {
   for (std::size_t k = 0; k < made.bodies.size(); ++k) {
     const packing& p = made.bodies[k].packed;
     std::cout << name(io::printable(made.bodies[k].name))
-              << text("  %7zu  %.3f       %6.2f %6.2f %6.2f  %6.2f-%-7.2f  %5u  %7.2f%s\n", p.spheres.size(), p.fill, 1e3 * p.gap_mean, 1e3 * p.gap_p95,
-                      1e3 * p.gap, 1e3 * p.radius_min, 1e3 * p.radius_max, made.bodies[k].closed.caps.loops, p.seconds, made.cached[k] ? " (cached)" : "");
+              << text("  %7zu  %.3f       %6.2f %6.2f %6.2f  %6.2f-%-7.2f  %5u  %7.2f%s\n", p.spheres.size(), p.fill,
+                      1e3 * p.gap_mean, 1e3 * p.gap_p95, 1e3 * p.gap, 1e3 * p.radius_min, 1e3 * p.radius_max,
+                      made.bodies[k].closed.caps.loops, p.seconds, made.cached[k] ? " (cached)" : "");
     const double n = double(made.bodies.size());
     fill += p.fill / n, mean += p.gap_mean / n, p95 += p.gap_p95 / n, most = std::max(most, p.gap);
     cached += made.cached[k], spheres += p.spheres.size();
   }
-  std::cout << name("all") << text("  %7zu  %.3f       %6.2f %6.2f %6.2f  %24s%7.2f\n", spheres, fill, 1e3 * mean, 1e3 * p95, 1e3 * most, "", made.seconds);
+  std::cout << name("all")
+            << text("  %7zu  %.3f       %6.2f %6.2f %6.2f  %24s%7.2f\n", spheres, fill, 1e3 * mean, 1e3 * p95,
+                    1e3 * most, "", made.seconds);
   if (cached > 0) std::cout << cached << " of " << made.bodies.size() << " were in the cache\n";
 }
 
@@ -220,20 +235,25 @@ int run(const pack_settings& asked) {
 subcommand add_pack(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("pack", "Fill a mesh, or the links of a robot, with inner spheres");
   auto asked = std::make_shared<pack_settings>();
-  const auto one = [&](const std::string& name, std::string& to, const std::string& says) { return sub->add_option(name, to, says); };
+  const auto one = [&](const std::string& name, std::string& to, const std::string& says) {
+    return sub->add_option(name, to, says);
+  };
   one("INPUT", asked->input, "A mesh (.stl .obj .ply .off .dae .glb) or a robot (.urdf)")->required();
   one("--spheres", asked->spheres, "How many per part; fewer if no more fit")->required();
-  sub->add_option("--out", asked->out,
-                  "Write to this file; may be repeated. .ist: spheres with their certificates; .yaml: as for cuRobo; .csv:\n"
-                  "x,y,z,r of one part; .glb: a picture with spheres, transparent mesh and a node for each level of the tree");
+  sub->add_option(
+      "--out", asked->out,
+      "Write to this file; may be repeated. .ist: spheres with their certificates; .yaml: as for cuRobo; .csv:\n"
+      "x,y,z,r of one part; .glb: a picture with spheres, transparent mesh and a node for each level of the tree");
   one("--gap", asked->gap, "Stop once no point is farther from the spheres than this, m");
   one("--smallest-radius", asked->radius, "Stop where only smaller spheres fit, m");
   one("--seconds", asked->seconds, "Stop after about so many seconds per part");
   one("--seed", asked->seed, "Another of many equally good packings: a whole number");
   sub->add_flag("--allow-overlap", asked->overlap, "Spheres may overlap: fewer do for the same gap");
   sub->add_flag("--no-cache", asked->no_cache, "Pack anew, and keep nothing");
-  one("--cache", asked->cache, "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
-  one("--backend", asked->backend, "host (default) or device: sooner, but other spheres than those that query and run make and keep");
+  one("--cache", asked->cache,
+      "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
+  one("--backend", asked->backend,
+      "host (default) or device: sooner, but other spheres than those that query and run make and keep");
   one("--geometry", asked->geometry, "Of a robot: visual or collision (default)");
   sub->add_flag("--strict", asked->strict, "Refuse of the robot's description what would get a note");
   sub->add_option("--package", asked->packages, "name=DIR: where package://name/ is");

@@ -16,9 +16,11 @@ using namespace clearance;
 namespace {
 
 /// From each row to the next, every joint at constant speed.
-std::vector<io::joint_motion> ways_between(const query_options& asked, const asked_robot& robot, const std::vector<std::vector<double>>& rows) {
+std::vector<io::joint_motion> ways_between(const query_options& asked, const asked_robot& robot,
+                                           const std::vector<std::vector<double>>& rows) {
   std::vector<io::joint_motion> ways;
-  for (std::size_t k = 1; k < rows.size(); ++k) ways.emplace_back(robot.description, rows[k - 1], rows[k], io::joint_options{asked.ignore_limits}, asked.base);
+  for (std::size_t k = 1; k < rows.size(); ++k)
+    ways.emplace_back(robot.description, rows[k - 1], rows[k], io::joint_options{asked.ignore_limits}, asked.base);
   return ways;
 }
 
@@ -46,7 +48,8 @@ int run(const query_options& asked) {
   if (asked.between) {
     shown.show("asking about the ways between them");
     // With a margin no more than what decides; without, to a centimetre.
-    const motion_clearance_options options{.tolerance = asked.margin ? double(infinity) : 0.01, .margin = asked.margin.value_or(0)};
+    const motion_clearance_options options{.tolerance = asked.margin ? double(infinity) : 0.01,
+                                           .margin = asked.margin.value_or(0)};
     report.ways = there->ways(ways_between(asked, robot, rows), options);
     report.query += there->query;
   }
@@ -55,10 +58,12 @@ int run(const query_options& asked) {
   shown.clear();
   if (asked.csv && asked.margin) {
     const auto first = report.first_below();
-    notes.push_back(asked.configurations + (first ? ": row " + std::to_string(*first) + " is the first whose lower end is not above the margin"
-                                                  : ": every row's lower end is above the margin"));
+    notes.push_back(asked.configurations +
+                    (first ? ": row " + std::to_string(*first) + " is the first whose lower end is not above the margin"
+                           : ": every row's lower end is above the margin"));
     if (const auto way = report.first_way_below())
-      notes.push_back(asked.configurations + ": on the way from row " + std::to_string(*way) + " to the next the margin may be fallen below");
+      notes.push_back(asked.configurations + ": on the way from row " + std::to_string(*way) +
+                      " to the next the margin may be fallen below");
   }
   say_notes(notes);
   std::cout << (asked.csv ? to_csv(report) : to_json(report));
@@ -68,6 +73,7 @@ int run(const query_options& asked) {
 }  // namespace
 
 subcommand add_plan(CLI::App& app) {
-  CLI::App* sub = app.add_subcommand("plan", "The least distance of many configurations, such as those of a planned path");
+  CLI::App* sub =
+      app.add_subcommand("plan", "The least distance of many configurations, such as those of a planned path");
   return [options = add_query_options(*sub, asking::plan)] { return run(options()); };
 }

@@ -16,10 +16,15 @@ json way_of(const plan_report& report, std::size_t k) {
   const motion_clearance_result& way = report.ways[k];
   const bool any = way.state != state::no_data;
   const auto given = [&](json value) { return any ? value : json(nullptr); };
-  return {{"state", to_string(way.state)}, {"lower", given(or_null(way.lower))}, {"upper", given(or_null(way.upper))}, {"time", given(or_null(way.time))},
-          {"from", given(way.from)},       {"to", given(way.to)},
+  return {{"state", to_string(way.state)},
+          {"lower", given(or_null(way.lower))},
+          {"upper", given(or_null(way.upper))},
+          {"time", given(or_null(way.time))},
+          {"from", given(way.from)},
+          {"to", given(way.to)},
           {"part", any && way.part != none ? json((*report.bodies)[way.part].name) : json(nullptr)},
-          {"queries", way.queries},        {"settled", way.settled}};
+          {"queries", way.queries},
+          {"settled", way.settled}};
 }
 
 std::optional<std::size_t> plan_report::first_below() const {
@@ -37,15 +42,19 @@ json outcome_of(const plan_report& report) {
   const auto& all = report.found.of;
   const auto least = std::ranges::min_element(all, {}, [](const min_distance_result& r) { return r.distance; });
   const bool any = !report.blind() && std::isfinite(least->distance);
-  json out = {{"rows", all.size()}, {"least", any ? json(least->distance) : json(nullptr)}, {"at", any ? json(least - all.begin()) : json(nullptr)}};
+  json out = {{"rows", all.size()},
+              {"least", any ? json(least->distance) : json(nullptr)},
+              {"at", any ? json(least - all.begin()) : json(nullptr)}};
   if (report.asked->margin) {
     const auto first = report.first_below();
     out["first_below"] = first ? json(*first) : json(nullptr);
   }
   if (!report.asked->between) return out;
-  const auto worst = std::ranges::min_element(report.ways, {}, [](const motion_clearance_result& way) { return way.lower; });
+  const auto worst =
+      std::ranges::min_element(report.ways, {}, [](const motion_clearance_result& way) { return way.lower; });
   const bool some = !report.blind() && worst != report.ways.end();
-  out["ways"] = {{"least_lower", some ? or_null(worst->lower) : json(nullptr)}, {"at", some ? json(worst - report.ways.begin()) : json(nullptr)}};
+  out["ways"] = {{"least_lower", some ? or_null(worst->lower) : json(nullptr)},
+                 {"at", some ? json(worst - report.ways.begin()) : json(nullptr)}};
   if (report.asked->margin) {
     const auto first = report.first_way_below();
     out["ways"]["first_below"] = first ? json(*first) : json(nullptr);
@@ -69,6 +78,10 @@ std::string to_json(const plan_report& report) {
   last["points"] = counts(all);
   last["model"] = to_string(report.asked->model);
   last["backend"] = report.asked->on_device ? "device" : "host";
-  last["seconds"] = {{"load", report.load}, {"pack", report.pack}, {"build", report.build}, {"upload", report.upload}, {"query", report.query}};
+  last["seconds"] = {{"load", report.load},
+                     {"pack", report.pack},
+                     {"build", report.build},
+                     {"upload", report.upload},
+                     {"query", report.query}};
   return out + json_text(last, -1);
 }

@@ -5,9 +5,9 @@
 
 #include <clearance/io/sentence.hpp>
 
+#include <unistd.h>
 #include <cstdio>
 #include <string>
-#include <unistd.h>
 
 /// One line on a terminal that is written again and again, and is gone at the end. Silent in a pipe.
 class progress {

@@ -25,14 +25,15 @@ std::vector<double> configuration(const query_options& asked, const io::kinemati
     if (asked.joints.size() == tree.size()) return asked.joints;
     std::string names;
     for (std::size_t i = 0; i < tree.size(); ++i) names += (i ? "," : "") + tree.movable(i).name;
-    throw usage_error("--joints", "the robot has " + std::to_string(tree.size()) + " movable joints (" + names + "), here are " +
-                                      std::to_string(asked.joints.size()) + " values");
+    throw usage_error("--joints", "the robot has " + std::to_string(tree.size()) + " movable joints (" + names +
+                                      "), here are " + std::to_string(asked.joints.size()) + " values");
   }
   return tree.configuration({asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits});
 }
 
 /// How the distances of all parts change.
-std::vector<part_gradient> gradients(const query_options& asked, const asked_robot& robot, const std::vector<double>& joints, poses_of poses,
+std::vector<part_gradient> gradients(const query_options& asked, const asked_robot& robot,
+                                     const std::vector<double>& joints, poses_of poses,
                                      std::span<const part_witness> witnesses) {
   const io::kinematic_tree& tree = robot.description.kinematics();
   const std::vector<Eigen::Isometry3d> links = all_links(asked, robot.description, joints);
@@ -44,7 +45,8 @@ std::vector<part_gradient> gradients(const query_options& asked, const asked_rob
   return all;
 }
 
-void draw(const query_report& report, const asked_robot& robot, poses_of poses, const asked_clouds& clouds, const point_distances* distances) {
+void draw(const query_report& report, const asked_robot& robot, poses_of poses, const asked_clouds& clouds,
+          const point_distances* distances) {
   io::scene scene;
   const min_distance_result& r = report.found.result;
   // A glTF file holds floats: a scene far away is drawn around its robot.
@@ -55,7 +57,8 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
     const attached_thing* held = robot.held_as(k);
     if (held && held->spheres) {
       scene.balls.push_back({.name = held->name, .balls = {}, .pose = poses[k]});
-      for (const inner_sphere& s : held->spheres->spheres.spheres) scene.balls.back().balls.push_back({s.center, s.radius});
+      for (const inner_sphere& s : held->spheres->spheres.spheres)
+        scene.balls.back().balls.push_back({s.center, s.radius});
       if (r.part == k) scene.balls.back().paint = nearest;
       continue;
     }
@@ -74,7 +77,8 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
                               .paint = {0.55f, 0.55f, 0.55f, 1}});
   }
   if (r.state != state::no_data)
-    scene.segments.push_back({.name = "witness", .from = {r.nearest.x, r.nearest.y, r.nearest.z}, .to = {r.at.x, r.at.y, r.at.z}});
+    scene.segments.push_back(
+        {.name = "witness", .from = {r.nearest.x, r.nearest.y, r.nearest.z}, .to = {r.at.x, r.at.y, r.at.z}});
   io::save_scene(scene, report.asked->scene);
 }
 
@@ -82,9 +86,10 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
 void note_hidden(const query_options& asked, std::vector<std::string>& notes) {
   const auto note = [&](const char* option, double metres) {
     if (metres <= *asked.self_filter)
-      notes.push_back(text("%s %g: points that are certainly so near, an obstacle's too, are hidden by --self-filter %g; "
-                           "only uncertain ones lead to exit code 2",
-                           option, metres, *asked.self_filter));
+      notes.push_back(
+          text("%s %g: points that are certainly so near, an obstacle's too, are hidden by --self-filter %g; "
+               "only uncertain ones lead to exit code 2",
+               option, metres, *asked.self_filter));
   };
   if (asked.margin) note("--check", *asked.margin);
   if (!asked.zones.empty()) note("--zones", asked.zones[0]);
@@ -132,19 +137,24 @@ int run(const query_options& asked, all_ranks* ranks) {
     clouds.hide(report.filter->labels);
     report.upload += there->see(clouds.seen);
   }
-  const auto ask = [&] { return asked.deadline ? there->least_by(poses, *asked.deadline / 1000) : there->least_per_part(poses, 1); };
+  const auto ask = [&] {
+    return asked.deadline ? there->least_by(poses, *asked.deadline / 1000) : there->least_per_part(poses, 1);
+  };
   report.found = ranks ? ranks->together(ask, poses, seen, asked.model == model_kind::triangles) : ask();
   if (!speaks) return 0;
   report.query = there->query;
-  if (!asked.zones.empty()) report.zones = there->zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
+  if (!asked.zones.empty())
+    report.zones = there->zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
   if (asked.nearest != 0) {
     std::size_t points = 1;  // of more there is no list
     for (const observation& cloud : clouds.files) points += cloud.size();
     report.nearest = there->nearest(poses, std::min(asked.nearest, points), asked.d_max);
   }
-  if (asked.support) 
-    report.support = there->supported(poses, {.min_points = asked.support->min_points, .radius = asked.support->radius, .most = asked.support->most});
-  if (asked.gradient) report.gradients = gradients(asked, robot, joints, poses, there->witnesses(poses, report.found.parts));
+  if (asked.support)
+    report.support = there->supported(
+        poses, {.min_points = asked.support->min_points, .radius = asked.support->radius, .most = asked.support->most});
+  if (asked.gradient)
+    report.gradients = gradients(asked, robot, joints, poses, there->witnesses(poses, report.found.parts));
   std::optional<point_distances> distances;
   if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max, asked.is_signed);
   report.build = there->build;

@@ -16,22 +16,26 @@
 bool cloud_options::is_image() const { return clearance::io::extension(file) == ".png"; }
 
 void cloud_options::check(const std::string& option) const {
-  if (is_image() && !camera) throw usage_error(option, file + " is a depth image, which needs --intrinsics fx,fy,cx,cy");
+  if (is_image() && !camera)
+    throw usage_error(option, file + " is a depth image, which needs --intrinsics fx,fy,cx,cy");
 }
 
 namespace {
 
 constexpr std::size_t most_listed = std::size_t(1) << 20;  // as the library's, of --nearest and --support-limit
 
-constexpr std::string_view for_images[] = {"--intrinsics", "--depth-scale"}, for_clouds[] = {"--use-viewpoint", "--zero-is-missing"};
+constexpr std::string_view for_images[] = {"--intrinsics", "--depth-scale"},
+                           for_clouds[] = {"--use-viewpoint", "--zero-is-missing"};
 
 }  // namespace
 
 void check_all_clouds(const cloud_options& all, const std::vector<cloud_options>& clouds) {
   const auto images = std::size_t(std::ranges::count_if(clouds, &cloud_options::is_image));
   for (const std::string& option : all.given) {
-    if (images == 0 && std::ranges::count(for_images, option)) throw usage_error(option, "is for depth images, and there is none");
-    if (images == clouds.size() && std::ranges::count(for_clouds, option)) throw usage_error(option, "is for point clouds, and there is none");
+    if (images == 0 && std::ranges::count(for_images, option))
+      throw usage_error(option, "is for depth images, and there is none");
+    if (images == clouds.size() && std::ranges::count(for_clouds, option))
+      throw usage_error(option, "is for point clouds, and there is none");
   }
 }
 
@@ -40,10 +44,13 @@ namespace {
 using texts = std::vector<std::string>;
 
 struct raw_options {
-  std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames, trajectory, unfolded;
-  std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, support_limit, svg, deadline, nearest;
+  std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames,
+      trajectory, unfolded;
+  std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, support_limit, svg,
+      deadline, nearest;
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges;
-  bool ignore_limits = false, strict = false, json = false, no_cache = false, merge = false, csv = false, gradient = false, shard = false, is_signed = false, between = false;
+  bool ignore_limits = false, strict = false, json = false, no_cache = false, merge = false, csv = false,
+       gradient = false, shard = false, is_signed = false, between = false;
 };
 
 /// Sets one per-cloud option, as it was given on the command line.
@@ -78,7 +85,8 @@ void set(cloud_options& cloud, const std::string& option, const std::string& tex
 std::vector<std::pair<std::string, std::string>> in_order(const CLI::App& app) {
   std::vector<std::pair<std::string, std::string>> all;
   std::map<const CLI::Option*, std::size_t> taken;
-  for (const CLI::Option* option : app.parse_order()) all.emplace_back(option->get_name(), option->results().at(taken[option]++));
+  for (const CLI::Option* option : app.parse_order())
+    all.emplace_back(option->get_name(), option->results().at(taken[option]++));
   return all;
 }
 
@@ -131,7 +139,8 @@ double length(const std::string& option, const std::string& text) {
 
 support_asked support_of(const std::string& option, const std::string& text) {
   const std::size_t at = text.find('@');
-  if (at == text.npos) throw usage_error(option, clearance::io::quoted(text) + " is not of the form N@RADIUS, such as 3@0.02");
+  if (at == text.npos)
+    throw usage_error(option, clearance::io::quoted(text) + " is not of the form N@RADIUS, such as 3@0.02");
   const std::size_t points = whole_number(option, text.substr(0, at));
   if (points < 2) throw usage_error(option, "needs at least 2 points: one alone always confirms itself");
   return {.min_points = std::uint32_t(points), .radius = length(option, text.substr(at + 1))};
@@ -153,19 +162,21 @@ void check_alone(const std::string& option, const query_options& o) {
                                                  {"--nearest", o.nearest != 0},
                                                  {"--gradient", o.gradient}};
   for (const auto& [other, asked] : others)
-    if (asked) throw usage_error(option, std::string("is for the least distance alone, and cannot be mixed with ") + other);
+    if (asked)
+      throw usage_error(option, std::string("is for the least distance alone, and cannot be mixed with ") + other);
 }
 
 /// How the least distance is asked for: until when, and by whom.
 void read_deadline(const raw_options& raw, query_options& o) {
   if (!raw.deadline.empty()) {
     const double milliseconds = number("--deadline", raw.deadline);
-    if (!(milliseconds >= 0 && milliseconds <= 1e9)) throw usage_error("--deadline", "must be from 0 to 1e9 (milliseconds)");
+    if (!(milliseconds >= 0 && milliseconds <= 1e9))
+      throw usage_error("--deadline", "must be from 0 to 1e9 (milliseconds)");
     o.deadline = milliseconds + 0.0;  // no -0
     check_alone("--deadline", o);
     if (o.volume != usual_volume(o.model))
-      throw usage_error("--volume", std::string("cannot be ") + to_string(o.volume) + " with --deadline, which has " + to_string(usual_volume(o.model)) +
-                                        " for --model " + to_string(o.model));
+      throw usage_error("--volume", std::string("cannot be ") + to_string(o.volume) + " with --deadline, which has " +
+                                        to_string(usual_volume(o.model)) + " for --model " + to_string(o.model));
   }
   o.shard = raw.shard;
   if (!o.shard) return;
@@ -175,8 +186,10 @@ void read_deadline(const raw_options& raw, query_options& o) {
 
 /// Throws if something is said about spheres, and there are none.
 void check_model(const query_options& o) {
-  const std::pair<const char*, bool> of_spheres[] = {
-      {"--packing", !o.packing.empty()}, {"--spheres", o.spheres.has_value()}, {"--cache", !o.cache.empty()}, {"--no-cache", o.no_cache}};
+  const std::pair<const char*, bool> of_spheres[] = {{"--packing", !o.packing.empty()},
+                                                     {"--spheres", o.spheres.has_value()},
+                                                     {"--cache", !o.cache.empty()},
+                                                     {"--no-cache", o.no_cache}};
   for (const auto& [option, given] : of_spheres)
     if (given && o.model != model_kind::spheres) throw usage_error(option, "is for --model spheres");
 }
@@ -185,7 +198,8 @@ void check_model(const query_options& o) {
 void read_questions(const raw_options& raw, query_options& o) {
   if (!raw.check.empty()) {
     o.margin = number("--check", raw.check) + 0.0;  // no -0
-    if (!(*o.margin >= 0)) throw usage_error("--check", "must not be negative (metres): the lower end is 0 in a collision, too");
+    if (!(*o.margin >= 0))
+      throw usage_error("--check", "must not be negative (metres): the lower end is 0 in a collision, too");
   }
   if (!raw.zones.empty()) o.zones = thresholds("--zones", raw.zones);
   if (!raw.min_points.empty()) {
@@ -210,7 +224,8 @@ void read_questions(const raw_options& raw, query_options& o) {
   o.configurations = raw.configurations;
   o.csv = raw.csv;
   o.between = raw.between;
-  if (o.between && !o.attached.empty()) throw usage_error("--between", "cannot be mixed with --attach: how what is held moves is not bounded yet");
+  if (o.between && !o.attached.empty())
+    throw usage_error("--between", "cannot be mixed with --attach: how what is held moves is not bounded yet");
   o.recording.plan = raw.plan;
   o.recording.svg = raw.svg;
   if (!raw.svg.empty() && clearance::io::extension(raw.svg) != ".svg")
@@ -219,7 +234,8 @@ void read_questions(const raw_options& raw, query_options& o) {
     o.d_max = number("--d-max", raw.d_max);
     if (!(o.d_max > 0)) throw usage_error("--d-max", "must be above 0 (metres)");
     if (!(o.d_max >= 1e-30 && o.d_max <= 1e30)) throw usage_error("--d-max", "must be from 1e-30 to 1e30 (metres)");
-    if (o.distances.empty() && o.nearest == 0 && o.configurations.empty()) throw usage_error("--d-max", "is for --distances and --nearest");
+    if (o.distances.empty() && o.nearest == 0 && o.configurations.empty())
+      throw usage_error("--d-max", "is for --distances and --nearest");
     if (!o.configurations.empty() && o.margin && !(o.d_max > *o.margin))
       throw usage_error("--d-max", "must be above the margin of --check, or nothing could pass");
   }
@@ -228,10 +244,11 @@ void read_questions(const raw_options& raw, query_options& o) {
 /// What is made of each point by what is asked: bytes, or time that is worth as many.
 std::uint64_t bytes_each(const query_options& o) {
   std::uint64_t bytes = 16;
-  for (const bool asked : {!o.zones.empty(), o.nearest != 0, o.support.has_value(), o.self_filter.has_value(), o.model == model_kind::triangles})
+  for (const bool asked : {!o.zones.empty(), o.nearest != 0, o.support.has_value(), o.self_filter.has_value(),
+                           o.model == model_kind::triangles})
     if (asked) bytes += 16;
-  if (!o.distances.empty()) bytes += 64;                              // what is known, and a record of the file
-  if (!o.scene.empty()) bytes += 128;                                 // several copies of position and colour
+  if (!o.distances.empty()) bytes += 64;                                    // what is known, and a record of the file
+  if (!o.scene.empty()) bytes += 128;                                       // several copies of position and colour
   if (!o.configurations.empty() || !o.recording.plan.empty()) bytes += 80;  // a tree
   if (o.recording.merge) bytes += 64;
   return bytes;
@@ -254,7 +271,8 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   for (const auto& text : raw.packages) o.packages.push_back(assignment("--package", text, "name=DIR"));
   o.limits = limits_of(raw.mesh_limits);
   if (!raw.base.empty()) o.base = pose("--base-pose", raw.base);
-  if (!raw.unfolded.empty()) o.recording.camera.limits.unfolded = std::uint64_t(whole_number("--unfold-limit", raw.unfolded)) << 20;
+  if (!raw.unfolded.empty())
+    o.recording.camera.limits.unfolded = std::uint64_t(whole_number("--unfold-limit", raw.unfolded)) << 20;
   o.clouds = clouds_of(app, o.recording.camera);
   o.attached = attached_of(app);
   o.recording.frames = raw.frames;
@@ -291,19 +309,26 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   one("--robot", raw->robot, "Robot description, URDF")->required();
   if (recorded) {
     one("--frames", raw->frames,
-        "Point clouds (.pcd .ply .xyz .txt) or 16-bit depth images (.png): a folder, in the order of their names, or a text file with one path per "
-        "line, relative to that file")->required();
+        "Point clouds (.pcd .ply .xyz .txt) or 16-bit depth images (.png): a folder, in the order of their names, or a "
+        "text file with one path per "
+        "line, relative to that file")
+        ->required();
     one("--trajectory", raw->trajectory,
-        "CSV: a line with the names of the joints, then one row per frame, or one row for all (rad, m); not needed if no joint is free");
+        "CSV: a line with the names of the joints, then one row per frame, or one row for all (rad, m); not needed if "
+        "no joint is free");
     app.add_flag("--merge", raw->merge,
-                 "Ask every frame about the clouds of all frames, merged in the world: each frame's cloud is put there by --camera-pose, with "
+                 "Ask every frame about the clouds of all frames, merged in the world: each frame's cloud is put there "
+                 "by --camera-pose, with "
                  "--camera-link by that link's pose in the frame's row of the trajectory");
     one("--plan", raw->plan,
-        "CSV as --trajectory: configurations to come, one a row; every frame says how near they are to its points, and with --check which is the "
+        "CSV as --trajectory: configurations to come, one a row; every frame says how near they are to its points, and "
+        "with --check which is the "
         "first that is too near");
     app.add_option("--joint", raw->joint, "name=value: a joint that has no column in the trajectory (and in the plan)");
   } else if (planned) {
-    one("--configurations", raw->configurations, "CSV: a line with the names of the joints, then one configuration a row (rad, m)")->required();
+    one("--configurations", raw->configurations,
+        "CSV: a line with the names of the joints, then one configuration a row (rad, m)")
+        ->required();
     app.add_option("--joint", raw->joint, "name=value: a joint that has no column");
   } else {
     one("--joints", raw->joints, "a,b,...: joint positions (rad, m) in the file's order of movable, non-mimic joints");
@@ -315,69 +340,103 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   app.add_option("--package", raw->packages, "name=DIR: where package://name/ is");
   app.add_option("--mesh-limit", raw->mesh_limits, mesh_limit_says());
   one("--base-pose", raw->base, "x,y,z,qx,qy,qz,qw: world-from-base (m; default: the base is at the world's origin)");
-  if (!recorded) app.add_option("--cloud", raw->clouds, "Point cloud (.pcd .ply .xyz) or 16-bit depth image (.png); may be repeated")->required();
-  app.add_option("--camera-pose", raw->poses, "x,y,z,qx,qy,qz,qw: world-from-cloud, or link-from-cloud with --camera-link");
-  app.add_option("--camera-link", raw->links, std::string("The link that carries the camera") + (planned ? ", where it is in the first configuration" : ""));
+  if (!recorded)
+    app.add_option("--cloud", raw->clouds, "Point cloud (.pcd .ply .xyz) or 16-bit depth image (.png); may be repeated")
+        ->required();
+  app.add_option("--camera-pose", raw->poses,
+                 "x,y,z,qx,qy,qz,qw: world-from-cloud, or link-from-cloud with --camera-link");
+  app.add_option(
+      "--camera-link", raw->links,
+      std::string("The link that carries the camera") + (planned ? ", where it is in the first configuration" : ""));
   app.add_option("--intrinsics", raw->cameras, "fx,fy,cx,cy of a depth image, pixels");
   app.add_option("--depth-scale", raw->scales, "Metres per unit of a depth image (default 0.001)");
-  app.add_option("--range", raw->ranges, "near,far: other points do not count (m; along z for images, else from the sensor)");
-  one("--unfold-limit", raw->unfolded, "MiB that one compressed cloud or image may become, with all that is made of its points or pixels here (default 1024)");
+  app.add_option("--range", raw->ranges,
+                 "near,far: other points do not count (m; along z for images, else from the sensor)");
+  one("--unfold-limit", raw->unfolded,
+      "MiB that one compressed cloud or image may become, with all that is made of its points or pixels here (default "
+      "1024)");
   app.add_flag("--use-viewpoint")->description("Apply the VIEWPOINT of a PCD file");
   app.add_flag("--zero-is-missing")->description("(0,0,0) is no point");
   one("--model", raw->model, "spheres (default) or triangles");
-  if (!planned) one("--volume", raw->volume, "sphere, aabb or obb, for the least distance alone (default: sphere for spheres, obb for triangles)");
+  if (!planned)
+    one("--volume", raw->volume,
+        "sphere, aabb or obb, for the least distance alone (default: sphere for spheres, obb for triangles)");
   one("--spheres", raw->spheres, "Inner spheres per link that is packed (default 2048)");
   one("--packing", raw->packing, "The links' spheres: .ist (from clearance pack), .yaml as for cuRobo, .csv");
   app.add_flag("--no-cache", raw->no_cache, "Pack anew, and keep nothing");
-  one("--cache", raw->cache, "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
+  one("--cache", raw->cache,
+      "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
   app.add_option("--exclude-link", raw->excluded, "Leave out this link's geometry");
   app.add_option("--attach", raw->attached,
-                 "LINK=FILE: this link holds something, which counts as a part of the robot: a mesh, or spheres (.ist, .yaml, .csv); may be repeated");
-  app.add_option("--attach-pose", raw->attached_poses, "x,y,z,qx,qy,qz,qw: link-from-thing, of the --attach before it (m; default: the link's origin)");
+                 "LINK=FILE: this link holds something, which counts as a part of the robot: a mesh, or spheres (.ist, "
+                 ".yaml, .csv); may be repeated");
+  app.add_option("--attach-pose", raw->attached_poses,
+                 "x,y,z,qx,qy,qz,qw: link-from-thing, of the --attach before it (m; default: the link's origin)");
   one("--backend", raw->backend, "host or device (default: device where there is one)");
   one("--check", raw->check,
       std::string("Margin in m: exit code 2 unless the lower end of the bracket is above it") +
-          (recorded ? " in every frame, and for every row of --plan" : planned ? " in every configuration" : ""));
+          (recorded  ? " in every frame, and for every row of --plan"
+           : planned ? " in every configuration"
+                     : ""));
   const char* const of_clouds =
       "--camera-pose, --camera-link, --intrinsics, --depth-scale, --range, --use-viewpoint and --zero-is-missing hold\n"
       "for all clouds if given before the first --cloud, else for the --cloud before them.";
   if (planned) {
-    one("--d-max", raw->d_max, "Metres: configurations that are farther from every point are only said to be so, which is quicker");
+    one("--d-max", raw->d_max,
+        "Metres: configurations that are farther from every point are only said to be so, which is quicker");
     app.add_flag("--between", raw->between,
-                 "Judge also the way from each configuration to the next, every joint at constant speed: no point is nearer than its lower end at any time; "
+                 "Judge also the way from each configuration to the next, every joint at constant speed: no point is "
+                 "nearer than its lower end at any time; "
                  "--check is about the ways, too");
-    app.add_flag("--csv", raw->csv, "Print CSV; without it, one JSON object per configuration and a last one about all");
+    app.add_flag("--csv", raw->csv,
+                 "Print CSV; without it, one JSON object per configuration and a last one about all");
     app.footer(std::string(of_clouds) + "\nThe exit code is 3 without a valid point, also with --check.");
     return [raw, &app] { return read(app, *raw); };
   }
   if (recorded) {
     app.add_flag("--csv", raw->csv, "Print CSV, one row per frame; without it, one JSON object per frame");
-    one("--svg", raw->svg, "Write a picture to this .svg file once all frames are answered: the distance in every frame, in the band of its bracket");
-    app.footer("Prints one line per frame, a JSON object. latency_us is the time of the query alone, on the host's clock; a frame's points\n"
-               "are read before. The exit code is 3 if a frame has no valid point, also with --check.");
+    one("--svg", raw->svg,
+        "Write a picture to this .svg file once all frames are answered: the distance in every frame, in the band of "
+        "its bracket");
+    app.footer(
+        "Prints one line per frame, a JSON object. latency_us is the time of the query alone, on the host's clock; a "
+        "frame's points\n"
+        "are read before. The exit code is 3 if a frame has no valid point, also with --check.");
     return [raw, &app] { return read(app, *raw); };
   }
   app.add_flag("--json", raw->json, "Print one JSON object");
   one("--scene", raw->scene, "Write robot, clouds and witness to this .glb file; with --distances in their colours");
   one("--zones", raw->zones,
-      "a,b,... (m, ascending): how many points may be within these distances of each link, and which; exit code 2 if there are any in the first");
+      "a,b,... (m, ascending): how many points may be within these distances of each link, and which; exit code 2 if "
+      "there are any in the first");
   one("--min-points", raw->min_points, "A zone with fewer points counts as empty (default 1)");
   one("--distances", raw->distances,
-      "Write every valid point with its distance to this .ply file, in world coordinates; red at 0 m, blue at --d-max (or 1 m) and beyond");
-  app.add_flag("--signed", raw->is_signed, "With --distances and --model triangles: below 0 inside a closed mesh, by how deep; without it 0 there");
-  one("--nearest", raw->nearest, "How many points to list of each link, the nearest first, with what is certain of each");
-  one("--d-max", raw->d_max, "Metres: points farther than that are written as inf by --distances, and not listed by --nearest (default: none)");
+      "Write every valid point with its distance to this .ply file, in world coordinates; red at 0 m, blue at --d-max "
+      "(or 1 m) and beyond");
+  app.add_flag("--signed", raw->is_signed,
+               "With --distances and --model triangles: below 0 inside a closed mesh, by how deep; without it 0 there");
+  one("--nearest", raw->nearest,
+      "How many points to list of each link, the nearest first, with what is certain of each");
+  one("--d-max", raw->d_max,
+      "Metres: points farther than that are written as inf by --distances, and not listed by --nearest (default: "
+      "none)");
   one("--self-filter", raw->self_filter,
-      "Metres: hide the points that certainly are within that of the robot, or of what it holds, from all questions, --check among them; says how many "
+      "Metres: hide the points that certainly are within that of the robot, or of what it holds, from all questions, "
+      "--check among them; says how many "
       "they are; exit code 3 if none is left");
   one("--min-support", raw->min_support,
-      "N@RADIUS, such as 3@0.02: say also how far the nearest point is that has N points, itself among them, within RADIUS m; --check stays about all points");
-  one("--support-limit", raw->support_limit, "How many of the nearest points --min-support asks before it gives up (default 4096, at most 1048576)");
+      "N@RADIUS, such as 3@0.02: say also how far the nearest point is that has N points, itself among them, within "
+      "RADIUS m; --check stays about all points");
+  one("--support-limit", raw->support_limit,
+      "How many of the nearest points --min-support asks before it gives up (default 4096, at most 1048576)");
   app.add_flag("--gradient", raw->gradient,
-               "How each part's distance changes with its pose, and with the joints: m per m and m per rad of a twist at the part's origin");
+               "How each part's distance changes with its pose, and with the joints: m per m and m per rad of a twist "
+               "at the part's origin");
   one("--deadline", raw->deadline,
-      "Milliseconds for the least distance: what is known by then is the answer, with how many points are unseen, which may be anywhere; parts have none");
-  app.add_flag("--shard", raw->shard, "Under mpirun: each rank asks about its share of every cloud, and rank 0 prints the one answer");
+      "Milliseconds for the least distance: what is known by then is the answer, with how many points are unseen, "
+      "which may be anywhere; parts have none");
+  app.add_flag("--shard", raw->shard,
+               "Under mpirun: each rank asks about its share of every cloud, and rank 0 prints the one answer");
   app.footer(std::string(of_clouds) + '\n' + exit_codes);
   return [raw, &app] { return read(app, *raw); };
 }

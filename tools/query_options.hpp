@@ -22,13 +22,14 @@ class App;
 struct cloud_options {
   std::string file;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // world-from-cloud, or link-from-cloud
-  std::string link;                                         // empty: the world
+  std::string link;                                        // empty: the world
   std::optional<clearance::intrinsics> camera;
   double scale = 0.001;
   double nearest = 0, farthest = clearance::infinity;
   bool use_viewpoint = false, zero_is_missing = false;
   clearance::io::read_limits limits;
-  std::uint64_t bytes_each = 0;    // that are made of each point, in memory or in a file that is written; of which the limit is, too
+  std::uint64_t bytes_each =
+      0;  // that are made of each point, in memory or in a file that is written; of which the limit is, too
   std::vector<std::string> given;  // the options before the first --cloud, by name: of all clouds
 
   bool is_image() const;
@@ -64,10 +65,10 @@ struct recording_options {
 
 struct query_options {
   std::string robot;
-  std::vector<double> joints;                          // in the file's order; empty: not given
-  std::vector<std::pair<std::string, double>> joint;   // by name
+  std::vector<double> joints;                         // in the file's order; empty: not given
+  std::vector<std::pair<std::string, double>> joint;  // by name
   bool ignore_limits = false, strict = false;
-  std::optional<bool> visual;                          // --geometry
+  std::optional<bool> visual;  // --geometry
   std::vector<std::pair<std::string, std::string>> packages;
   clearance::io::mesh_limits limits;
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
@@ -84,21 +85,21 @@ struct query_options {
   std::optional<double> margin;
   bool json = false;
   std::string scene;
-  std::vector<double> zones;    // --zones: thresholds in metres, ascending; empty: nobody asks
-  std::size_t min_points = 1;   // of a zone that counts
-  std::string distances;        // --distances: a file; empty: nobody asks
-  bool is_signed = false;       // --signed: of --distances
-  std::size_t nearest = 0;      // --nearest: points to list of each part
+  std::vector<double> zones;   // --zones: thresholds in metres, ascending; empty: nobody asks
+  std::size_t min_points = 1;  // of a zone that counts
+  std::string distances;       // --distances: a file; empty: nobody asks
+  bool is_signed = false;      // --signed: of --distances
+  std::size_t nearest = 0;     // --nearest: points to list of each part
   double d_max = clearance::infinity;
   std::optional<double> self_filter;     // --self-filter: metres around the robot that are its own
   std::optional<support_asked> support;  // --min-support
   bool gradient = false;
   std::optional<double> deadline;  // --deadline: milliseconds for the least distance
   bool shard = false;              // --shard: one of the ranks that mpirun started
-  std::string configurations;   // of `clearance plan`
-  bool csv = false;             // of `clearance plan` and `clearance run`
-  bool between = false;         // of `clearance plan`
-  recording_options recording;  // of `clearance run`
+  std::string configurations;      // of `clearance plan`
+  bool csv = false;                // of `clearance plan` and `clearance run`
+  bool between = false;            // of `clearance plan`
+  recording_options recording;     // of `clearance run`
 };
 
 enum class asking { query, run, plan };

@@ -84,25 +84,32 @@ json filter_of(const query_report& report) {
 
 std::string filter_text(const query_report& report) {
   const auto own = (unsigned long long)report.filter->counts.own;
-  const std::string hidden = text("filter    %llu points are the robot's own (within %g m), and hidden; ", own, *report.asked->self_filter);
+  const std::string hidden =
+      text("filter    %llu points are the robot's own (within %g m), and hidden; ", own, *report.asked->self_filter);
   if (own != 0 && report.found.result.state == state::no_data) return hidden + "no valid point is left\n";
   return hidden + text("%llu may be, and are not hidden%s\n", (unsigned long long)report.filter->counts.uncertain,
                        nearest_is_uncertain(report) ? ", the nearest among them" : "");
 }
 
 /// With --check: is the nearest confirmed point certainly farther away than the margin?
-bool passes(const query_report& report) { return report.support->state != state::no_data && report.support->lower > *report.asked->margin; }
+bool passes(const query_report& report) {
+  return report.support->state != state::no_data && report.support->lower > *report.asked->margin;
+}
 
 json support_of(const query_report& report) {
   const supported_distance& s = *report.support;
   const bool any = s.point != none;
   const auto given = [](bool there, json value) { return there ? value : json(nullptr); };
-  json out = {{"min_points", report.asked->support->min_points}, {"radius", report.asked->support->radius}, {"state", to_string(s.state)},
-              {"distance", given(any, or_null(s.distance))}, {"lower", given(s.state != state::no_data, or_null(s.lower))}};
+  json out = {{"min_points", report.asked->support->min_points},
+              {"radius", report.asked->support->radius},
+              {"state", to_string(s.state)},
+              {"distance", given(any, or_null(s.distance))},
+              {"lower", given(s.state != state::no_data, or_null(s.lower))}};
   out.update(any ? place(report, s.cloud, s.point) : json{{"cloud", nullptr}, {"point", nullptr}});
   out["part"] = any ? json((*report.bodies)[s.part].name) : json(nullptr);
   out["primitive"] = given(any && s.primitive != none, s.primitive);
-  out["complete"] = !(s.state == state::possible && std::isnan(s.distance));  // false: only the nearest points were asked
+  out["complete"] =
+      !(s.state == state::possible && std::isnan(s.distance));  // false: only the nearest points were asked
   out["isolated"] = s.isolated;
   out["nearest_isolated"] = nullptr;
   if (s.isolated != 0) {
@@ -120,12 +127,13 @@ std::string support_text(const query_report& report) {
     const std::string of = report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[cloud].name) : "";
     return text("point %u", point) + of + " and part " + io::printable((*report.bodies)[part].name);
   };
-  const std::string enough = text("%u points within %g m", report.asked->support->min_points, report.asked->support->radius);
+  const std::string enough =
+      text("%u points within %g m", report.asked->support->min_points, report.asked->support->radius);
   std::string out = "support   ";
   if (s.state == state::no_data) return out + "nothing is known\n";
   if (s.point != none)
-    out += text("%.6f m, certainly at least %.6f m: the nearest point that has ", double(s.distance), double(s.lower)) + enough + ", " +
-           named(s.cloud, s.point, s.part);
+    out += text("%.6f m, certainly at least %.6f m: the nearest point that has ", double(s.distance), double(s.lower)) +
+           enough + ", " + named(s.cloud, s.point, s.part);
   else
     out += (std::isnan(s.distance) ? "none of the nearest points has " : "no point has ") + enough;
   out += text("; %llu %spoints are alone", (unsigned long long)s.isolated, s.point != none ? "nearer " : "");
@@ -141,7 +149,10 @@ std::string zones_text(const query_report& report) {
     const std::string of = report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[cloud].name) : "";
     return text("point %u", point) + of;
   };
-  std::string out = "\nzones" + (report.asked->min_points > 1 ? text(" (fewer than %zu points do not count)", report.asked->min_points) : "") + '\n';
+  std::string out =
+      "\nzones" +
+      (report.asked->min_points > 1 ? text(" (fewer than %zu points do not count)", report.asked->min_points) : "") +
+      '\n';
   for (std::size_t k = 0; k < report.bodies->size(); ++k) {
     const std::string name = io::printable((*report.bodies)[k].name);
     for (std::size_t z = 0; z < report.zones->per_part; ++z) {
@@ -149,8 +160,8 @@ std::string zones_text(const query_report& report) {
       out += "  " + (z == 0 ? name : "") + std::string(z > 0 ? 28 : name.size() < 28 ? 28 - name.size() : 1, ' ');
       out += text("%10g m, %8llu points", report.asked->zones[z], (unsigned long long)found.points);
       if (found.points != 0)
-        out += text(", nearest %.6f m, ", double(found.nearest)) + named(found.nearest_cloud, found.nearest_point) + "; first " +
-               named(found.first_cloud, found.first_point);
+        out += text(", nearest %.6f m, ", double(found.nearest)) + named(found.nearest_cloud, found.nearest_point) +
+               "; first " + named(found.first_cloud, found.first_point);
       out += '\n';
     }
   }
@@ -166,8 +177,10 @@ std::string nearest_text(const query_report& report) {
     std::size_t listed = 0;
     for (const pair_distance& pair : report.nearest->of(k)) {
       if (pair.point == none) break;
-      out += "  " + (listed++ == 0 ? name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') : std::string(28, ' '));
-      out += text("%.6f m, certainly at least %.6f m: point %u", double(pair.distance), double(report.nearest->certain.lower(pair.distance)), pair.point);
+      out += "  " +
+             (listed++ == 0 ? name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') : std::string(28, ' '));
+      out += text("%.6f m, certainly at least %.6f m: point %u", double(pair.distance),
+                  double(report.nearest->certain.lower(pair.distance)), pair.point);
       out += (report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[pair.cloud].name) : "") + '\n';
     }
     if (listed == 0) out += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') + "none\n";
@@ -177,7 +190,9 @@ std::string nearest_text(const query_report& report) {
 
 std::string gradients_text(const query_report& report) {
   const io::kinematic_tree& tree = report.robot->description.kinematics();
-  std::string out = "\ngradients (of each distance, by a twist of its part at its origin, in world axes: m/m and m/rad; and by joints: m/m or m/rad)\n";
+  std::string out =
+      "\ngradients (of each distance, by a twist of its part at its origin, in world axes: m/m and m/rad; and by "
+      "joints: m/m or m/rad)\n";
   for (std::size_t k = 0; k < report.bodies->size(); ++k) {
     const part_gradient& g = report.gradients[k];
     const std::string name = io::printable((*report.bodies)[k].name);
@@ -206,7 +221,8 @@ std::string deadline_text(const query_report& report) {
 /// What the zones say of the robot.
 std::string innermost_text(const query_report& report) {
   if (report.zones->counts.valid == 0) return "nothing is known, which counts as the first";
-  if (report.zones->counts.dropped[int(drop_reason::too_close)] != 0) return "something is too close to be measured, which counts as the first";
+  if (report.zones->counts.dropped[int(drop_reason::too_close)] != 0)
+    return "something is too close to be measured, which counts as the first";
   const std::size_t z = report.zones->innermost();
   return z < report.zones->per_part ? text("the innermost is within %g m", report.asked->zones[z]) : "all are empty";
 }
@@ -215,7 +231,9 @@ std::string innermost_text(const query_report& report) {
 
 void add_questions(const query_report& report, json& out) {
   if (report.asked->deadline)
-    out["deadline"] = {{"milliseconds", *report.asked->deadline}, {"unseen", report.found.unseen}, {"complete", report.found.unseen == 0}};
+    out["deadline"] = {{"milliseconds", *report.asked->deadline},
+                       {"unseen", report.found.unseen},
+                       {"complete", report.found.unseen == 0}};
   if (report.filter) out["filter"] = filter_of(report);
   if (report.zones) {
     const std::size_t z = report.zones->innermost();

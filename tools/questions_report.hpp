@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What the questions of `clearance query` beside the least distance have to say: zones, nearest points, the self filter, support, gradients;
-// and what a deadline has cost.
+// What the questions of `clearance query` beside the least distance have to say: zones, nearest points, the self
+// filter, support, gradients; and what a deadline has cost.
 
 #include "report.hpp"
 #include "report_json.hpp"

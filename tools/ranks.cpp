@@ -16,7 +16,7 @@ class mpi_ranks final : public all_ranks {
     int given = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);  // other threads only search
     std::atexit([] {                                                 // behind all that is said
-      MPI_Barrier(MPI_COMM_WORLD);                                   // mpirun ends all as soon as one has an exit code that is not 0
+      MPI_Barrier(MPI_COMM_WORLD);  // mpirun ends all as soon as one has an exit code that is not 0
       MPI_Finalize();
     });
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
@@ -35,9 +35,11 @@ class mpi_ranks final : public all_ranks {
     return clouds;
   }
 
-  reply together(const std::function<reply()>& ask, poses_of poses, const std::vector<seen_points>& share, bool solid) override {
+  reply together(const std::function<reply()>& ask, poses_of poses, const std::vector<seen_points>& share,
+                 bool solid) override {
     std::vector<std::variant<placed<point_span>, placed<depth_image<std::uint16_t>>>> mine;
-    for (const seen_points& cloud : share) std::visit([&](const auto& source) { mine.push_back(placed{source, cloud.pose}); }, cloud.points);
+    for (const seen_points& cloud : share)
+      std::visit([&](const auto& source) { mine.push_back(placed{source, cloud.pose}); }, cloud.points);
     meet({});
     mpi::question all(MPI_COMM_WORLD);
     all.agree(poses.size(), poses, mine);

@@ -3,4 +3,6 @@
 #include "command_line.hpp"
 #include "ranks.hpp"
 
-int on_all_ranks(const std::function<int(all_ranks&)>&) { throw usage_error("--shard", "this clearance was built without MPI"); }
+int on_all_ranks(const std::function<int(all_ranks&)>&) {
+  throw usage_error("--shard", "this clearance was built without MPI");
+}

@@ -55,10 +55,10 @@ void check_frame(const std::string& file) {
   const fs::file_status there = fs::status(file, failed);
   if (fs::is_regular_file(there)) return;
   const bool linked = fs::is_symlink(fs::symlink_status(file, failed));
-  const char* const what = fs::is_directory(there)                ? "is a folder"
-                           : !fs::exists(there) && linked         ? "is a link to what is not there"
-                           : fs::exists(there)                    ? "is no regular file"
-                                                                  : "cannot be read";
+  const char* const what = fs::is_directory(there)        ? "is a folder"
+                           : !fs::exists(there) && linked ? "is a link to what is not there"
+                           : fs::exists(there)            ? "is no regular file"
+                                                          : "cannot be read";
   io::refuse(file, std::string(what) + ", but is named like a frame of the recording");
 }
 
@@ -90,7 +90,8 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
   if (file.empty()) {
     for (std::size_t i = 0; i < tree.size(); ++i)
       if (const std::string& name = tree.movable(i).name; !fixed.contains(name))
-        throw usage_error("--trajectory", "is needed, because joint " + io::quoted(name) + " has no value (--joint name=value fixes it)");
+        throw usage_error("--trajectory", "is needed, because joint " + io::quoted(name) +
+                                              " has no value (--joint name=value fixes it)");
     return {tree.configuration(fixed, limits)};
   }
   const std::string bytes = io::read_bytes(file);
@@ -118,11 +119,13 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
   return rows;
 }
 
-std::vector<std::vector<double>> read_rows(const query_options& asked, const io::robot& robot, const std::string& file) {
+std::vector<std::vector<double>> read_rows(const query_options& asked, const io::robot& robot,
+                                           const std::string& file) {
   return read_trajectory(file, robot.kinematics(), {asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits});
 }
 
-placed_rows::placed_rows(const query_options& asked, const asked_robot& robot, const std::vector<std::vector<double>>& rows, const std::string& file)
+placed_rows::placed_rows(const query_options& asked, const asked_robot& robot,
+                         const std::vector<std::vector<double>>& rows, const std::string& file)
     : asked_(asked), robot_(robot), rows_(rows), file_(file) {
   constexpr std::size_t most = 1 << 20;  // poses
   rows_each_ = std::max<std::size_t>(1, most / (robot.description.parts().size() + robot.held.size()));
@@ -160,7 +163,8 @@ void merged_cloud::add(observation frame, const Eigen::Isometry3d& carrier) {
         for (std::size_t i = 0; i < source.size(); ++i) {
           const sample s = source[i];
           ++dropped_[int(s.dropped)];
-          const Eigen::Vector3d p = exact ? exact->points[i] : Eigen::Vector3d(s.position.x, s.position.y, s.position.z);
+          const Eigen::Vector3d p =
+              exact ? exact->points[i] : Eigen::Vector3d(s.position.x, s.position.y, s.position.z);
           points_.push_back(s.valid() ? world * p : Eigen::Vector3d::Constant(not_a_number));
         }
       },

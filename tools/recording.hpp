@@ -12,19 +12,22 @@
 /// The frames of a folder in the order of their names, or those that a text file lists, relative to it. At least one.
 std::vector<std::string> list_frames(const std::string& where);
 
-/// One configuration a row. Every movable joint has either a column or a value in `fixed`; if all are fixed, there is one
-/// row, and no file (an empty name) or one without columns.
+/// One configuration a row. Every movable joint has either a column or a value in `fixed`; if all are fixed, there is
+/// one row, and no file (an empty name) or one without columns.
 std::vector<std::vector<double>> read_trajectory(const std::string& file, const clearance::io::kinematic_tree& tree,
                                                  const std::map<std::string, double>& fixed,
                                                  clearance::io::joint_options limits);
 
 /// The same of what is asked, --joint among it.
-std::vector<std::vector<double>> read_rows(const query_options& asked, const clearance::io::robot& robot, const std::string& file);
+std::vector<std::vector<double>> read_rows(const query_options& asked, const clearance::io::robot& robot,
+                                           const std::string& file);
 
-/// The parts' poses in one row of a file after another, in blocks that memory has room for. All that is given must stay.
+/// The parts' poses in one row of a file after another, in blocks that memory has room for. All that is given must
+/// stay.
 class placed_rows {
  public:
-  placed_rows(const query_options& asked, const asked_robot& robot, const std::vector<std::vector<double>>& rows, const std::string& file);
+  placed_rows(const query_options& asked, const asked_robot& robot, const std::vector<std::vector<double>>& rows,
+              const std::string& file);
 
   /// Of the first block, and so nearly always all.
   poses_of first() const { return first_; }

@@ -17,7 +17,8 @@ std::string to_json(const frame_report& report) {
   if (report.plan) {
     json& plan = out["plan"] = outcome_of(*report.plan);
     plan["lower"] = json::array();
-    for (const min_distance_result& r : report.plan->found.of) plan["lower"].push_back(r.state == state::no_data ? json(nullptr) : or_null(r.lower));
+    for (const min_distance_result& r : report.plan->found.of)
+      plan["lower"].push_back(r.state == state::no_data ? json(nullptr) : or_null(r.lower));
     plan["latency_us"] = microseconds(report.plan->query);
   }
   return json_text(out, -1);
@@ -52,7 +53,11 @@ std::string to_json(const query_report& report) {
   out["model"] = to_string(report.asked->model);
   out["volume"] = to_string(report.asked->volume);
   out["backend"] = report.asked->on_device ? "device" : "host";
-  out["seconds"] = {{"load", report.load}, {"pack", report.pack}, {"build", report.build}, {"upload", report.upload}, {"query", report.query}};
+  out["seconds"] = {{"load", report.load},
+                    {"pack", report.pack},
+                    {"build", report.build},
+                    {"upload", report.upload},
+                    {"query", report.query}};
   if (report.asked->margin) out["check"] = {{"margin", *report.asked->margin}, {"passes", report.passes()}};
   add_questions(report, out);
   if (report.distances)
@@ -82,21 +87,26 @@ std::string to_text(const query_report& report) {
   const query_options& asked = *report.asked;
   std::string out;
   if (r.state == state::no_data) {
-    out += std::string("state     no data: ") + (report.found.unseen != 0 ? "no valid point was seen in time" : "there is no valid point") +
+    out += std::string("state     no data: ") +
+           (report.found.unseen != 0 ? "no valid point was seen in time" : "there is no valid point") +
            ", so nothing is known about the robot's surroundings\n";
   } else {
     const observation& cloud = (*report.clouds)[r.cloud];
     const body& part = (*report.bodies)[r.part];
-    out += text("state     %s\n", r.state == state::collision ? "collision: a point is certainly inside the robot"
+    out += text("state     %s\n", r.state == state::collision  ? "collision: a point is certainly inside the robot"
                                   : r.state == state::possible ? "possible: the bracket contains 0"
-                                  : report.filter && report.filter->counts.own != 0 ? "free, of the points that are not hidden"
-                                                                                    : "free");
-    out += text("distance  %.6f m; to the solid certainly %.6f to %.6f m\n", double(r.distance), double(r.lower), double(r.upper));
+                                  : report.filter && report.filter->counts.own != 0
+                                      ? "free, of the points that are not hidden"
+                                      : "free");
+    out += text("distance  %.6f m; to the solid certainly %.6f to %.6f m\n", double(r.distance), double(r.lower),
+                double(r.upper));
     out += "cloud     " + io::printable(cloud.name) + text(", point %u", r.point);
-    if (const auto at = pixel(cloud, r.point)) out += text(", pixel %llu,%llu", (unsigned long long)at->first, (unsigned long long)at->second);
+    if (const auto at = pixel(cloud, r.point))
+      out += text(", pixel %llu,%llu", (unsigned long long)at->first, (unsigned long long)at->second);
     out += text("\npoint     %.6f %.6f %.6f\n", r.at.x, r.at.y, r.at.z);
     out += "part      " + io::printable(part.name);
-    if (r.primitive != none) out += text(", %s %u", asked.model == model_kind::spheres ? "sphere" : "triangle", r.primitive);
+    if (r.primitive != none)
+      out += text(", %s %u", asked.model == model_kind::spheres ? "sphere" : "triangle", r.primitive);
     out += text("\nnearest   %.6f %.6f %.6f\n", r.nearest.x, r.nearest.y, r.nearest.z);
     if (!(r.normal == vec3{0, 0, 0}))
       out += text("normal    %.6f %.6f %.6f\n", double(r.normal.x), double(r.normal.y), double(r.normal.z));
@@ -104,16 +114,19 @@ std::string to_text(const query_report& report) {
   out += text("points    %llu seen, %llu valid", (unsigned long long)r.seen, (unsigned long long)r.valid);
   for (int k = 1; k < drop_reasons; ++k)
     if (r.dropped[k] != 0) out += text(", %llu %s", (unsigned long long)r.dropped[k], reasons[k]);
-  out += text("\nmodel     %s in %s, on the %s\n", to_string(asked.model), to_string(asked.volume), asked.on_device ? "device" : "host");
+  out += text("\nmodel     %s in %s, on the %s\n", to_string(asked.model), to_string(asked.volume),
+              asked.on_device ? "device" : "host");
   out += text("seconds   load %.3f, pack %.3f, build %.3f, upload %.3f, query %.6f\n", report.load, report.pack,
               report.build, report.upload, report.query);
   if (asked.margin)
-    out += text("check     lower end %s %g m: %s\n", report.passes() ? "above" : "not above", *asked.margin, report.passes() ? "passes" : "fails");
+    out += text("check     lower end %s %g m: %s\n", report.passes() ? "above" : "not above", *asked.margin,
+                report.passes() ? "passes" : "fails");
   out += questions_text(report);
   if (report.distances) {
     const distances_written& d = *report.distances;
-    out += "distances " + io::printable(asked.distances) + text(": %zu points, %zu left out, %zu beyond %g m; red at 0 m, blue at %g m\n", d.points,
-                                                               d.left_out, d.beyond, asked.d_max, d.blue_at);
+    out += "distances " + io::printable(asked.distances) +
+           text(": %zu points, %zu left out, %zu beyond %g m; red at 0 m, blue at %g m\n", d.points, d.left_out,
+                d.beyond, asked.d_max, d.blue_at);
   }
   out += "\nparts\n";
   for (std::size_t k = 0; k < report.bodies->size(); ++k) {
@@ -124,8 +137,10 @@ std::string to_text(const query_report& report) {
     out += m.point == none ? "         -" : text("%10.6f m, point %u", double(m.distance), m.point);
     if (m.point != none && report.clouds->size() > 1) out += " of " + io::printable((*report.clouds)[m.cloud].name);
     if (asked.model == model_kind::spheres) out += text(", gap %.4f m", made.packed.gap);
-    if (const attached_thing* held = report.robot->held_as(k)) out += ", held by link " + io::printable(held->from.link);
-    if (made.closed.caps.loops != 0) out += text(", %u holes closed (%.2g m2)", made.closed.caps.loops, made.closed.caps.area);
+    if (const attached_thing* held = report.robot->held_as(k))
+      out += ", held by link " + io::printable(held->from.link);
+    if (made.closed.caps.loops != 0)
+      out += text(", %u holes closed (%.2g m2)", made.closed.caps.loops, made.closed.caps.area);
     out += '\n';
   }
   return out + parts_text(report);

@@ -15,7 +15,8 @@
 #include <clearance/self_filter.hpp>
 #include <clearance/zones.hpp>
 
-/// How the least distance of a part changes with its twist, and with the robot's joints (not known where the former is not).
+/// How the least distance of a part changes with its twist, and with the robot's joints (not known where the former is
+/// not).
 struct part_gradient {
   clearance::pose_gradient of_pose;
   std::optional<Eigen::VectorXd> of_joints;
@@ -50,7 +51,8 @@ struct plan_report {
   std::vector<clearance::motion_clearance_result> ways = {};    // of --between: way k goes from row k to the next
   double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds
 
-  /// Of the first configuration whose lower end is not above the margin of --check; without a valid point that is the first of all.
+  /// Of the first configuration whose lower end is not above the margin of --check; without a valid point that is the
+  /// first of all.
   std::optional<std::size_t> first_below() const;
   /// Of the first way that may come nearer than that.
   std::optional<std::size_t> first_way_below() const;

@@ -14,8 +14,10 @@ json or_null(double value) { return std::isfinite(value) ? json(value) : json(nu
 
 double microseconds(double seconds) { return std::round(1e9 * seconds) / 1e3; }
 
-json witness(const min_distance_result& r, const observation* cloud, std::uint32_t point, const std::vector<body>& bodies) {
-  const bool any = r.state != state::no_data, near = cloud != nullptr;  // beyond a d_max there is a bracket, but no witness
+json witness(const min_distance_result& r, const observation* cloud, std::uint32_t point,
+             const std::vector<body>& bodies) {
+  const bool any = r.state != state::no_data,
+             near = cloud != nullptr;  // beyond a d_max there is a bracket, but no witness
   const auto given = [](bool there, json value) { return there ? value : json(nullptr); };
   const auto xyz = [](const position& p) { return json{p.x, p.y, p.z}; };
   json out;

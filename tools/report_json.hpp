@@ -12,7 +12,8 @@
 
 using json = nlohmann::ordered_json;  // keys in the order in which the manual names them
 
-inline constexpr const char* reasons[clearance::drop_reasons] = {"none", "not_finite", "missing", "saturated", "out_of_range", "masked", "too_close"};
+inline constexpr const char* reasons[clearance::drop_reasons] = {"none",         "not_finite", "missing",  "saturated",
+                                                                 "out_of_range", "masked",     "too_close"};
 
 /// The pixel of a point of an image.
 std::optional<std::pair<std::uint64_t, std::uint64_t>> pixel(const observation& cloud, std::uint32_t point);
@@ -21,7 +22,8 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> pixel(const observation& 
 json or_null(double value);
 
 /// State, distance, bracket and witness, which is `point` of `cloud` (null if there is none).
-json witness(const clearance::min_distance_result& r, const observation* cloud, std::uint32_t point, const std::vector<body>& bodies);
+json witness(const clearance::min_distance_result& r, const observation* cloud, std::uint32_t point,
+             const std::vector<body>& bodies);
 
 json counts(const clearance::min_distance_result& r);
 
@@ -36,5 +38,6 @@ const observation* cloud_of(const plan_report& report, const clearance::min_dist
 /// From row k to the next; `time` and `from` to `to` are between 0 and 1.
 json way_of(const plan_report& report, std::size_t k);
 
-/// How many configurations there are, the least distance of all, at which that is, and, with --check, the first that fails.
+/// How many configurations there are, the least distance of all, at which that is, and, with --check, the first that
+/// fails.
 json outcome_of(const plan_report& report);

@@ -47,7 +47,8 @@ void line(body& made, std::size_t count, progress& shown) {
   const mesh_solid solid = mesh_solid::of_surface(made.closed);
   const double radius = 1e-6 * solid.bounds().diagonal().norm();
   std::vector<inner_sphere> spheres;
-  for (const Eigen::Vector3d& p : solid.surface_points(count)) spheres.push_back({{real(p.x()), real(p.y()), real(p.z())}, real(radius)});
+  for (const Eigen::Vector3d& p : solid.surface_points(count))
+    spheres.push_back({{real(p.x()), real(p.y()), real(p.z())}, real(radius)});
   take(made, io::certify(solid, io::uncertified(std::move(spheres))));
 }
 
@@ -69,16 +70,21 @@ void note_insides(const std::vector<body>& bodies, const std::vector<std::string
   for (const body& b : bodies) {
     const std::string who = "link " + io::quoted(b.name);
     if (b.closed.inside == inside_by::flood)
-      notes.add("is no clean solid: what it encloses was found on a grid, and is uncertain within " + mm(unsure) + " of its surface", who);
-    if (b.closed.loaded != 0 && b.closed.inside == inside_by::nothing) notes.add("encloses nothing, so no point is inside it", who);
-    if (is_lined(b)) notes.add("has no room for inner spheres: small ones along its surface stand for it, to within " + mm(gap), who);
+      notes.add("is no clean solid: what it encloses was found on a grid, and is uncertain within " + mm(unsure) +
+                    " of its surface",
+                who);
+    if (b.closed.loaded != 0 && b.closed.inside == inside_by::nothing)
+      notes.add("encloses nothing, so no point is inside it", who);
+    if (is_lined(b))
+      notes.add("has no room for inner spheres: small ones along its surface stand for it, to within " + mm(gap), who);
   }
   account.notes = notes.sentences();
 }
 
 /// Closes the meshes beside one another.
 void close(const std::vector<body_source>& sources, std::vector<body>& made, progress& shown) {
-  shown.show(sources.size() == 1 ? "closing " + sources[0].name : "closing " + std::to_string(sources.size()) + " links");
+  shown.show(sources.size() == 1 ? "closing " + sources[0].name
+                                 : "closing " + std::to_string(sources.size()) + " links");
   std::vector<std::exception_ptr> wrong(sources.size());
   for (const body_source& source : sources) made.push_back({source.name, {}, {}, source.tolerance});
   tbb::parallel_for(std::size_t(0), sources.size(), [&](std::size_t k) {
@@ -96,14 +102,15 @@ void close(const std::vector<body_source>& sources, std::vector<body>& made, pro
 }
 
 /// Packs the bodies with these numbers, beside one another.
-void fill(std::vector<body>& bodies, const std::vector<std::size_t>& which, const body_options& options, progress& shown,
-          body_account& account, std::vector<std::string>& lined) {
+void fill(std::vector<body>& bodies, const std::vector<std::size_t>& which, const body_options& options,
+          progress& shown, body_account& account, std::vector<std::string>& lined) {
   pack_options wanted = options.pack;
   const std::string what = which.size() == 1 ? bodies[which[0]].name : std::to_string(which.size()) + " links";
   wanted.progress = [&](std::size_t done, std::size_t of) {
     shown.show("packing " + what + ' ' + std::to_string(done) + '/' + std::to_string(of));
   };
-  const auto closed = which | std::views::transform([&](std::size_t k) -> const closed_mesh& { return bodies[k].closed; });
+  const auto closed =
+      which | std::views::transform([&](std::size_t k) -> const closed_mesh& { return bodies[k].closed; });
   std::vector<io::cached_packing> packings;
   try {
     packings = options.on_device ? io::pack_cached(closed, wanted, options.cache, "device", pack_on_device)

@@ -11,8 +11,9 @@
 struct body_source {
   std::string name;
   const clearance::triangle_mesh* mesh;
-  double tolerance = 0;                            // how far the true surface may be from the mesh, m
-  const clearance::io::packed_part* given = nullptr;  // spheres of a file: taken if they are of this mesh, else proven anew
+  double tolerance = 0;  // how far the true surface may be from the mesh, m
+  const clearance::io::packed_part* given =
+      nullptr;  // spheres of a file: taken if they are of this mesh, else proven anew
 };
 
 struct body_options {

@@ -22,7 +22,7 @@ namespace {
 
 /// A file that will be read, and so must not be written.
 void note_file(const std::string& file) {
-  struct ::stat there {};
+  struct ::stat there{};
   if (::stat(file.c_str(), &there) == 0) io::files_read::note({there.st_dev, there.st_ino});
 }
 
@@ -46,7 +46,8 @@ class motion {
     const std::string& link = asked_.recording.camera.link;
     if (link.empty()) return Eigen::Isometry3d::Identity();
     return about_file(asked_.robot, [&] {
-      return io::carried(asked_.base, robot_.description.link_pose(link, row(frame), {asked_.ignore_limits}), "link " + io::quoted(link));
+      return io::carried(asked_.base, robot_.description.link_pose(link, row(frame), {asked_.ignore_limits}),
+                         "link " + io::quoted(link));
     });
   }
 
@@ -100,7 +101,8 @@ int run(const query_options& asked) {
     for (const cloud_options& each : frames) note_file(each.file);
     io::check_output(asked.recording.svg, inputs);
     const auto folder = std::filesystem::path(asked.recording.svg).parent_path();
-    if (!folder.empty() && !std::filesystem::is_directory(folder)) io::refuse(asked.recording.svg, "cannot be written: there is no such folder");
+    if (!folder.empty() && !std::filesystem::is_directory(folder))
+      io::refuse(asked.recording.svg, "cannot be written: there is no such folder");
   }
   const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
   print(notes, shown);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clouds that come in chunks: 10^8 points from pinned, pageable and mapped memory through the ring to one GPU, and on the host, against
-// what the copies, or reading, alone take. By the host's clock, medians. `first`: nothing is known of the cloud; `next`: its boxes are.
-// Every answer is compared with that about the whole cloud in memory, bit for bit.
+// Clouds that come in chunks: 10^8 points from pinned, pageable and mapped memory through the ring to one GPU, and on
+// the host, against what the copies, or reading, alone take. By the host's clock, medians. `first`: nothing is known of
+// the cloud; `next`: its boxes are. Every answer is compared with that about the whole cloud in memory, bit for bit.
 #include "device.cuh"
 #include "shell.hpp"
 
@@ -16,7 +16,8 @@
 namespace {
 
 using namespace bench;
-using clearance::chunked, clearance::device, clearance::host, clearance::in_memory, clearance::point_span, clearance::vec3;
+using clearance::chunked, clearance::device, clearance::host, clearance::in_memory, clearance::point_span,
+    clearance::vec3;
 
 /// Each point is one of the frame's, up to 3.5 mm off along each axis.
 const std::vector<vec3>& cloud(std::size_t count) {
@@ -28,7 +29,8 @@ const std::vector<vec3>& cloud(std::size_t count) {
   tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
     const std::uint64_t bits = point_bits(i)();
     const auto off = [bits](int shift) { return (float(bits >> shift & 0x1fffff) * 0x1p-20f - 1) * 0.0035f; };
-    points[i] = {frame[i % frame.size()].x + off(0), frame[i % frame.size()].y + off(21), frame[i % frame.size()].z + off(42)};
+    points[i] = {frame[i % frame.size()].x + off(0), frame[i % frame.size()].y + off(21),
+                 frame[i % frame.size()].z + off(42)};
   });
   return points;
 }
@@ -42,12 +44,15 @@ void same_bits(benchmark::State& state, const clearance::min_distance_result& r)
   static std::map<std::int64_t, clearance::min_distance_result> known;
   const scene& s = the_scene();
   const auto at = known.find(state.range(0));
-  const auto e = at != known.end() ? at->second
-                                   : clearance::min_distance(host{}, robot(), s.poses, point_span(cloud(std::size_t(state.range(0)))), s.world_from_camera);
+  const auto e = at != known.end()
+                     ? at->second
+                     : clearance::min_distance(host{}, robot(), s.poses, point_span(cloud(std::size_t(state.range(0)))),
+                                               s.world_from_camera);
   known[state.range(0)] = e;
   const auto equal = [](const auto& a, const auto& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
-  if (!(r.state == e.state && equal(r.distance, e.distance) && equal(r.lower, e.lower) && equal(r.upper, e.upper) && r.cloud == e.cloud && r.point == e.point &&
-        r.part == e.part && r.primitive == e.primitive && equal(r.at, e.at) && equal(r.nearest, e.nearest) && equal(r.normal, e.normal) && r.seen == e.seen &&
+  if (!(r.state == e.state && equal(r.distance, e.distance) && equal(r.lower, e.lower) && equal(r.upper, e.upper) &&
+        r.cloud == e.cloud && r.point == e.point && r.part == e.part && r.primitive == e.primitive &&
+        equal(r.at, e.at) && equal(r.nearest, e.nearest) && equal(r.normal, e.normal) && r.seen == e.seen &&
         r.valid == e.valid && equal(r.dropped, e.dropped)))
     state.SkipWithError("another answer than about the whole");
 }
@@ -59,9 +64,11 @@ void ask(benchmark::State& state, const On& on, C source, bool next) {
   clearance::chunked_query query(on, model);
   const scene& s = the_scene();
   clearance::min_distance_result r;
-  percentiles(state, 9, 2, [&](std::size_t) { r = query(s.poses, in_chunks, s.world_from_camera); }, [&] {
-    if (!next) in_chunks.forget();
-  });
+  percentiles(
+      state, 9, 2, [&](std::size_t) { r = query(s.poses, in_chunks, s.world_from_camera); },
+      [&] {
+        if (!next) in_chunks.forget();
+      });
   state.counters["loaded"] = double(query.loaded());
   same_bits(state, r);
 }
@@ -75,7 +82,8 @@ const clearance::pinned_buffer<vec3>& pinned_cloud(std::size_t count) {
     const auto& points = cloud(count);
     tbb::parallel_for(std::size_t(0), count / 65536 + 1, [&](std::size_t k) {
       const std::size_t from = k * 65536, to = std::min(count, from + 65536);
-      if (from < to) std::copy(points.begin() + std::ptrdiff_t(from), points.begin() + std::ptrdiff_t(to), memory.data() + from);
+      if (from < to)
+        std::copy(points.begin() + std::ptrdiff_t(from), points.begin() + std::ptrdiff_t(to), memory.data() + from);
     });
   }
   return memory;
@@ -96,19 +104,26 @@ void copy_alone(benchmark::State& state, bool from_pinned) {
   const auto count = std::size_t(state.range(0));
   const vec3* from = from_pinned ? pinned_cloud(count).data() : cloud(count).data();
   const clearance::device_buffer<vec3> there(count, 0);
-  percentiles(state, 9, 2, [&](std::size_t) {
-    clearance::check_cuda(cudaMemcpy(there.data(), from, count * sizeof(vec3), cudaMemcpyHostToDevice), "cudaMemcpy");
-  }, [] {});
+  percentiles(
+      state, 9, 2,
+      [&](std::size_t) {
+        clearance::check_cuda(cudaMemcpy(there.data(), from, count * sizeof(vec3), cudaMemcpyHostToDevice),
+                              "cudaMemcpy");
+      },
+      [] {});
 }
 
-void on_host(benchmark::State& state, bool next) { ask(state, host{}, in_memory{point_span(cloud(std::size_t(state.range(0))))}, next); }
+void on_host(benchmark::State& state, bool next) {
+  ask(state, host{}, in_memory{point_span(cloud(std::size_t(state.range(0))))}, next);
+}
 /// Not in chunks, and nothing is kept of it.
 void host_whole(benchmark::State& state) {
   const point_span points(cloud(std::size_t(state.range(0))));
   clearance::min_distance_query query(host{}, robot());
   const scene& s = the_scene();
   clearance::min_distance_result r;
-  percentiles(state, 9, 2, [&](std::size_t) { r = query(s.poses, points, s.world_from_camera); }, [&] { query.forget(); });
+  percentiles(
+      state, 9, 2, [&](std::size_t) { r = query(s.poses, points, s.world_from_camera); }, [&] { query.forget(); });
   same_bits(state, r);
 }
 /// The least that reading takes: every number is added up, by all threads.
@@ -138,7 +153,8 @@ struct scratch {
   explicit scratch(const std::vector<vec3>& points) {
     const char* folder = std::getenv("CLEARANCE_SCRATCH");
     path = std::string(folder != nullptr ? folder : "/tmp") + "/clearance_bench.raw";
-    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(points.data()), std::streamsize(points.size() * sizeof(vec3)));
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(points.data()), std::streamsize(points.size() * sizeof(vec3)));
   }
   ~scratch() { std::filesystem::remove(path); }
 };
@@ -152,10 +168,13 @@ void mapped(benchmark::State& state, const On& on, bool next) {
 /// A mapping of the file, new in every call, as a first question finds it.
 void mapped_reads(benchmark::State& state) {
   const scratch file(cloud(std::size_t(state.range(0))));
-  percentiles(state, 9, 2, [&](std::size_t) {
-    const auto there = clearance::io::map_points(file.path);
-    benchmark::DoNotOptimize(sum_of(there.source.points, there.source.count));
-  }, [] {});
+  percentiles(
+      state, 9, 2,
+      [&](std::size_t) {
+        const auto there = clearance::io::map_points(file.path);
+        benchmark::DoNotOptimize(sum_of(there.source.points, there.source.count));
+      },
+      [] {});
 }
 
 #define ONCE ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(1)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many configurations against one frame of 307,200 points on the CPU, the tree over the points included: at random, whole or as far
-// as 5 cm, and a trajectory that is watched from frame to frame. *each* asks for one after another by a prepared min_distance.
+// Many configurations against one frame of 307,200 points on the CPU, the tree over the points included: at random,
+// whole or as far as 5 cm, and a trajectory that is watched from frame to frame. *each* asks for one after another by a
+// prepared min_distance.
 #include "configurations.hpp"
 
 #include <clearance/min_distance_query.hpp>
@@ -45,7 +46,9 @@ void each_part(benchmark::State& state) {
   const clearance::host cpu{.threads = unsigned(state.range(0))};
   const auto poses = bench::random_configurations(std::size_t(state.range(1)));
   clearance::min_distances_result found;
-  for (auto _ : state) found.of = clearance::min_distances_per_part(cpu, spheres(), poses, placed{point_span(s.cloud), s.world_from_camera}).all;
+  for (auto _ : state)
+    found.of =
+        clearance::min_distances_per_part(cpu, spheres(), poses, placed{point_span(s.cloud), s.world_from_camera}).all;
   report(state, found);
 }
 
@@ -77,7 +80,8 @@ void each(benchmark::State& state) {
 }
 
 constexpr float all = clearance::infinity;
-#define TIMES(n) ->Args({1, n})->Args({2, n})->ArgNames({"threads", "configurations"})->UseRealTime()->Unit(benchmark::kMillisecond)
+#define TIMES(n) \
+  ->Args({1, n})->Args({2, n})->ArgNames({"threads", "configurations"})->UseRealTime()->Unit(benchmark::kMillisecond)
 BENCHMARK_CAPTURE(random, spheres, spheres, all) TIMES(1000);
 BENCHMARK_CAPTURE(random, spheres_within_5cm, spheres, 0.05f) TIMES(1000);
 BENCHMARK_CAPTURE(random, triangles, triangles, all) TIMES(1000);

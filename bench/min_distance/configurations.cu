@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many configurations against one frame of 307,200 points on a GPU, the points resident there, the tree over them and all witnesses
-// included: at random, whole or as far as 5 cm, and a trajectory of 500 waypoints that is watched from frame to frame. CUDA events,
-// behind other work; *states* asks only which are nearer than a margin, *image* has the frame as a depth image; *call* is one call as a
-// program makes it, by the host's clock, poses and results copied.
+// Many configurations against one frame of 307,200 points on a GPU, the points resident there, the tree over them and
+// all witnesses
+// included: at random, whole or as far as 5 cm, and a trajectory of 500 waypoints that is watched from frame to frame.
+// CUDA events, behind other work; *states* asks only which are nearer than a margin, *image* has the frame as a depth
+// image; *call* is one call as a program makes it, by the host's clock, poses and results copied.
 #include "configurations.hpp"
 #include "device.cuh"
 
@@ -22,8 +23,11 @@ auto triangles(const scene& s) { return triangle_model<clearance::aabb>(s).on(de
 
 void report(benchmark::State& state, const std::vector<clearance::min_distance_result>& found) {
   double free = 0, near = 0, sum = 0;
-  for (const auto& r : found) free += r.state == clearance::state::free, near += r.part != clearance::none, sum += r.part != clearance::none ? r.distance : 0;
-  state.counters["free"] = free, state.counters["minima"] = near, state.counters["mean_mm"] = near > 0 ? 1e3 * sum / near : 0;
+  for (const auto& r : found)
+    free += r.state == clearance::state::free, near += r.part != clearance::none,
+        sum += r.part != clearance::none ? r.distance : 0;
+  state.counters["free"] = free, state.counters["minima"] = near,
+  state.counters["mean_mm"] = near > 0 ? 1e3 * sum / near : 0;
 }
 
 /// What a frame enqueues, as a graph: a dozen kernels take the host longer than the device.
@@ -57,8 +61,8 @@ void report(benchmark::State& state, const std::vector<clearance::state>& found)
 
 /// `frames` are asked about in turn, by `enqueue(query, cloud)`.
 template <class Query, class Enqueue>
-void ask(benchmark::State& state, const device& gpu, Query& query, const std::vector<Eigen::Isometry3d>& poses, const std::vector<std::vector<vec3>>& frames,
-         bool warm, Enqueue ask_of) {
+void ask(benchmark::State& state, const device& gpu, Query& query, const std::vector<Eigen::Isometry3d>& poses,
+         const std::vector<std::vector<vec3>>& frames, bool warm, Enqueue ask_of) {
   query.place(poses);
   decltype(ask_of(query, placed{point_span()})) results = nullptr;
   std::vector<clearance::device_buffer<vec3>> there;
@@ -66,7 +70,8 @@ void ask(benchmark::State& state, const device& gpu, Query& query, const std::ve
   for (const auto& frame : frames) {
     there.push_back(gpu.copy_in(std::span<const vec3>(frame)));
     const auto enqueue = [&] {
-      results = ask_of(query, placed{point_span(there.back().data(), there.back().size()), the_scene().world_from_camera});
+      results =
+          ask_of(query, placed{point_span(there.back().data(), there.back().size()), the_scene().world_from_camera});
     };
     enqueue();  // once outside of a graph: it asks for memory
     gpu.wait();
@@ -84,12 +89,13 @@ void ask(benchmark::State& state, const device& gpu, Query& query, const std::ve
 }
 
 template <class Model>
-void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::Isometry3d>& poses, const std::vector<std::vector<vec3>>& frames, float d_max,
-         bool warm) {
+void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::Isometry3d>& poses,
+         const std::vector<std::vector<vec3>>& frames, float d_max, bool warm) {
   const clearance::own_stream stream(0);
   const device gpu = stream.on();
   clearance::min_distances_query query(gpu, model);
-  ask(state, gpu, query, poses, frames, warm, [d_max](auto& its, const auto& cloud) { return its.enqueue(cloud, {d_max}); });
+  ask(state, gpu, query, poses, frames, warm,
+      [d_max](auto& its, const auto& cloud) { return its.enqueue(cloud, {d_max}); });
 }
 
 template <class Make>
@@ -109,7 +115,8 @@ void states(benchmark::State& state, Make make, double margin) {
   ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
       [margin](auto& its, const auto& cloud) { return its.enqueue(cloud, margin); });
 }
-/// The frame as a depth image, whose tree needs no sort: nearly the same points. `Query` is asked by `enqueue(query, cloud)`.
+/// The frame as a depth image, whose tree needs no sort: nearly the same points. `Query` is asked by `enqueue(query,
+/// cloud)`.
 template <template <class, class> class Query, class Enqueue>
 void ask_image(benchmark::State& state, Enqueue enqueue) {
   if (no_device(state)) return;
@@ -126,15 +133,18 @@ void ask_image(benchmark::State& state, Enqueue enqueue) {
       [&](auto& its, const auto&) { return enqueue(its, placed{seen, s.world_from_camera}); });
 }
 void image(benchmark::State& state, float d_max) {
-  ask_image<clearance::min_distances_query>(state, [d_max](auto& its, const auto& cloud) { return its.enqueue(cloud, {d_max}); });
+  ask_image<clearance::min_distances_query>(
+      state, [d_max](auto& its, const auto& cloud) { return its.enqueue(cloud, {d_max}); });
 }
 void image_states(benchmark::State& state, double margin) {
-  ask_image<clearance::in_collisions_query>(state, [margin](auto& its, const auto& cloud) { return its.enqueue(cloud, margin); });
+  ask_image<clearance::in_collisions_query>(
+      state, [margin](auto& its, const auto& cloud) { return its.enqueue(cloud, margin); });
 }
 void monitor(benchmark::State& state, float d_max) {
   if (no_device(state)) return;
   const scene& s = the_scene();
-  ask(state, spheres(s), trajectory(std::size_t(state.range(0))), {next_frame(s.cloud, 1), next_frame(s.cloud, 2)}, d_max, true);
+  ask(state, spheres(s), trajectory(std::size_t(state.range(0))), {next_frame(s.cloud, 1), next_frame(s.cloud, 2)},
+      d_max, true);
 }
 
 /// Of points that are there already; waited for. `ask(gpu, model)` makes what is asked for `(poses, cloud)`.
@@ -159,7 +169,9 @@ void call(benchmark::State& state) {
 /// Each part's least distances, beside `call`'s one for all parts.
 void each_part(benchmark::State& state) {
   waited(state, [](const device& gpu, const auto& model) {
-    return [&](const auto& poses, const auto& cloud) { return clearance::min_distances_per_part(gpu, model, poses, cloud).all; };
+    return [&](const auto& poses, const auto& cloud) {
+      return clearance::min_distances_per_part(gpu, model, poses, cloud).all;
+    };
   });
 }
 

@@ -18,7 +18,8 @@ class moved_robot {
   /// `joints`: seven angles, in radians.
   std::vector<Eigen::Isometry3d> poses(const std::array<double, 7>& joints) const {
     if (!robot_.empty()) return robot_[0].poses(joints);
-    const Eigen::Isometry3d turn(Eigen::AngleAxisd(joints[0], Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(joints[1] / 4, Eigen::Vector3d::UnitY()));
+    const Eigen::Isometry3d turn(Eigen::AngleAxisd(joints[0], Eigen::Vector3d::UnitZ()) *
+                                 Eigen::AngleAxisd(joints[1] / 4, Eigen::Vector3d::UnitY()));
     std::vector<Eigen::Isometry3d> all;
     for (const auto& pose : scene_.poses) all.push_back(turn * pose);
     return all;
@@ -49,7 +50,8 @@ inline std::vector<Eigen::Isometry3d> trajectory(std::size_t count) {
   std::vector<Eigen::Isometry3d> all;
   for (std::size_t c = 0; c < count; ++c) {
     const double t = 2 * double(c) / double(count);
-    const auto poses = robot.poses({0.5 * std::sin(3 * t), 0.6 + 0.2 * std::sin(5 * t), 0.3 * t, -1.4 + 0.3 * std::sin(4 * t), 0, 0.5 + 0.4 * t, 0});
+    const auto poses = robot.poses({0.5 * std::sin(3 * t), 0.6 + 0.2 * std::sin(5 * t), 0.3 * t,
+                                    -1.4 + 0.3 * std::sin(4 * t), 0, 0.5 + 0.4 * t, 0});
     all.insert(all.end(), poses.begin(), poses.end());
   }
   return all;

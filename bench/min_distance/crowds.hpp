@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The scene's robot multiplied: many parts, robots far apart, very many spheres in one part. As many points as the frame.
+// The scene's robot multiplied: many parts, robots far apart, very many spheres in one part. As many points as the
+// frame.
 
 #include "scene.hpp"
 
 namespace bench {
 
-inline Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Eigen::Vector3d& by) { return Eigen::Translation3d(by) * pose; }
+inline Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Eigen::Vector3d& by) {
+  return Eigen::Translation3d(by) * pose;
+}
 
 /// Robots in a row behind the first, 64 parts in all.
 inline scene sixty_four_parts(const scene& one) {
@@ -49,7 +52,8 @@ inline scene one_large_part(const scene& one) {
         if (spheres.size() == 100000) break;
         const Eigen::Vector3f c = to * Eigen::Vector3f(b.center.x, b.center.y, b.center.z);
         b.center = {c.x(), c.y(), c.z()};
-        if (!first) b = {b.center + clearance::scaled(b.radius, {within(bits), within(bits), within(bits)}), b.radius / 2};
+        if (!first)
+          b = {b.center + clearance::scaled(b.radius, {within(bits), within(bits), within(bits)}), b.radius / 2};
         spheres.push_back(b);
       }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A least distance with a deadline, on a GPU with the points there or in host memory, and on the host: how much is seen, and how late it
-// is, by the host's clock. A deadline of 0 us stands for none: what all pieces take together.
+// A least distance with a deadline, on a GPU with the points there or in host memory, and on the host: how much is
+// seen, and how late it is, by the host's clock. A deadline of 0 us stands for none: what all pieces take together.
 #include "device.cuh"
 
 #include <clearance/min_distance_by.cuh>
@@ -11,7 +11,8 @@ namespace {
 using namespace bench;
 using clearance::device, clearance::vec3;
 
-/// 300 calls. Counters: `seen` of all points in the median call, and how many microseconds after the deadline calls came back.
+/// 300 calls. Counters: `seen` of all points in the median call, and how many microseconds after the deadline calls
+/// came back.
 template <class On, class Model>
 void ask(benchmark::State& state, const On& on, const Model& model, const clearance::point_span& points) {
   const scene& s = the_scene<false>();
@@ -30,10 +31,14 @@ void ask(benchmark::State& state, const On& on, const Model& model, const cleara
     }
   }
   for (auto* all : {&took, &late, &seen}) std::sort(all->begin(), all->end());
-  const auto at = [](const std::vector<double>& all, double part) { return all[std::size_t(part * double(all.size() - 1))]; };
+  const auto at = [](const std::vector<double>& all, double part) {
+    return all[std::size_t(part * double(all.size() - 1))];
+  };
   state.SetIterationTime(at(took, 0.5) * 1e-6);
   state.counters["seen"] = at(seen, 0.5);
-  if (us != 0) state.counters["late_us"] = at(late, 0.5), state.counters["late_p99_us"] = at(late, 0.99), state.counters["late_max_us"] = late.back();
+  if (us != 0)
+    state.counters["late_us"] = at(late, 0.5), state.counters["late_p99_us"] = at(late, 0.99),
+    state.counters["late_max_us"] = late.back();
 }
 
 enum where { there, pinned_here, here };
@@ -53,7 +58,8 @@ void on_device(benchmark::State& state, where memory) {
 }
 void on_host(benchmark::State& state) {
   static const auto model = triangle_model<clearance::aabb>(the_scene<false>());
-  ask(state, clearance::host{1}, model, clearance::point_span(repeated(the_scene<false>().cloud, std::size_t(state.range(0)))));
+  ask(state, clearance::host{1}, model,
+      clearance::point_span(repeated(the_scene<false>().cloud, std::size_t(state.range(0)))));
 }
 
 #define ONCE ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(1)->ArgNames({"points", "deadline_us"})

@@ -14,8 +14,8 @@
 
 namespace bench {
 
-/// The frame, repeated with 2 mm of noise until there are `count` points. Made once a frame and count, as it takes longer than
-/// what it is for.
+/// The frame, repeated with 2 mm of noise until there are `count` points. Made once a frame and count, as it takes
+/// longer than what it is for.
 inline const std::vector<clearance::vec3>& repeated(const std::vector<clearance::vec3>& frame, std::size_t count) {
   static std::map<std::pair<const clearance::vec3*, std::size_t>, std::vector<clearance::vec3>> made;
   std::vector<clearance::vec3>& points = made[{frame.data(), count}];
@@ -39,7 +39,8 @@ void percentiles(benchmark::State& state, std::size_t calls, std::size_t others,
       before();
       const auto start = std::chrono::steady_clock::now();
       call(k);
-      if (k >= others) us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
+      if (k >= others)
+        us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
     }
   }
   std::sort(us.begin(), us.end());

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What several GPUs of one process bring: clouds of up to a thousand million points that stay on them, frames of 300k points, and
-// clouds that come from pinned memory, on one GPU, on one named twice, and on two. By the host's clock, from the call to the answer
-// on the host; percentiles are counters, in microseconds. Every answer is compared with that of one GPU, bit for bit.
+// What several GPUs of one process bring: clouds of up to a thousand million points that stay on them, frames of 300k
+// points, and clouds that come from pinned memory, on one GPU, on one named twice, and on two. By the host's clock,
+// from the call to the answer on the host; percentiles are counters, in microseconds. Every answer is compared with
+// that of one GPU, bit for bit.
 #include "device.cuh"
 #include "shell.hpp"
 
@@ -21,7 +22,8 @@ const auto& robot() {
   return model;
 }
 
-/// Each point is one of the frame's, up to 3.5 mm off along each axis: as large a cloud as one likes, wherever it is made.
+/// Each point is one of the frame's, up to 3.5 mm off along each axis: as large a cloud as one likes, wherever it is
+/// made.
 struct repeated_frame {
   const vec3* frame;
   std::size_t frame_points, first;
@@ -54,7 +56,8 @@ struct resident {
     std::vector<point_span> pieces;
     const point_span whole(nullptr, count);
     for (std::size_t k = 0; k < on.size(); ++k) {
-      const std::size_t first = clearance::first_of_piece(whole, k, on.size()), end = clearance::first_of_piece(whole, k + 1, on.size());
+      const std::size_t first = clearance::first_of_piece(whole, k, on.size()),
+                        end = clearance::first_of_piece(whole, k + 1, on.size());
       memory.push_back(made(on.each()[k], first, end));
       pieces.emplace_back(memory.back().data(), end - first);
     }
@@ -82,9 +85,10 @@ void same_bits(benchmark::State& state, const clearance::min_distance_result& r)
   const auto [first, fresh] = known.emplace(state.range(0), r);
   const auto& e = first->second;
   const auto equal = [](const auto& a, const auto& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
-  const bool same = r.state == e.state && equal(r.distance, e.distance) && equal(r.lower, e.lower) && equal(r.upper, e.upper) &&
-                    r.cloud == e.cloud && r.point == e.point && r.part == e.part && r.primitive == e.primitive && equal(r.at, e.at) &&
-                    equal(r.nearest, e.nearest) && equal(r.normal, e.normal) && r.seen == e.seen && r.valid == e.valid && equal(r.dropped, e.dropped);
+  const bool same = r.state == e.state && equal(r.distance, e.distance) && equal(r.lower, e.lower) &&
+                    equal(r.upper, e.upper) && r.cloud == e.cloud && r.point == e.point && r.part == e.part &&
+                    r.primitive == e.primitive && equal(r.at, e.at) && equal(r.nearest, e.nearest) &&
+                    equal(r.normal, e.normal) && r.seen == e.seen && r.valid == e.valid && equal(r.dropped, e.dropped);
   if (!same) state.SkipWithError("another answer than before");
   state.counters["distance_mm"] = r.distance * 1e3;
 }
@@ -101,9 +105,11 @@ void stays(benchmark::State& state, which w, bool warm) {
   clearance::min_distance_query query(*on, model);
   const scene& s = the_scene();
   clearance::min_distance_result r;
-  percentiles(state, calls(count), 20, [&](std::size_t) { r = query(s.poses, *cloud.view, s.world_from_camera); }, [&] {
-    if (!warm) query.forget(), on->wait();
-  });
+  percentiles(
+      state, calls(count), 20, [&](std::size_t) { r = query(s.poses, *cloud.view, s.world_from_camera); },
+      [&] {
+        if (!warm) query.forget(), on->wait();
+      });
   same_bits(state, r);
 }
 
@@ -117,10 +123,14 @@ void one_device(benchmark::State& state, bool prepared) {
   clearance::min_distance_query query(gpu, model);
   const scene& s = the_scene();
   clearance::min_distance_result r;
-  percentiles(state, prepared ? calls(count) : 300, 20, [&](std::size_t) {
-    const point_span cloud(there.data(), count);
-    r = prepared ? query(s.poses, cloud, s.world_from_camera) : clearance::min_distance(gpu, model, s.poses, cloud, s.world_from_camera);
-  }, [] {});
+  percentiles(
+      state, prepared ? calls(count) : 300, 20,
+      [&](std::size_t) {
+        const point_span cloud(there.data(), count);
+        r = prepared ? query(s.poses, cloud, s.world_from_camera)
+                     : clearance::min_distance(gpu, model, s.poses, cloud, s.world_from_camera);
+      },
+      [] {});
   same_bits(state, r);
 }
 void one_call(benchmark::State& state, which w) {
@@ -131,7 +141,9 @@ void one_call(benchmark::State& state, which w) {
   const auto model = robot().on(*on);
   const scene& s = the_scene();
   clearance::min_distance_result r;
-  percentiles(state, 300, 20, [&](std::size_t) { r = clearance::min_distance(*on, model, s.poses, *cloud.view, s.world_from_camera); }, [] {});
+  percentiles(
+      state, 300, 20,
+      [&](std::size_t) { r = clearance::min_distance(*on, model, s.poses, *cloud.view, s.world_from_camera); }, [] {});
   same_bits(state, r);
 }
 
@@ -142,13 +154,17 @@ void read(benchmark::State& state, which w) {
   const auto count = std::size_t(state.range(0));
   const resident cloud(*on, count);
   const clearance::pinned_buffer<float> never(1, 0);
-  percentiles(state, calls(count), 20, [&](std::size_t) {
-    for (std::size_t k = 0; k < on->size(); ++k) {
-      const point_span piece = cloud.view->piece(k);
-      on->each()[k].launch(read_kernel<>, 264, 512, 0, reinterpret_cast<const float4*>(piece.points), piece.count * 3 / 4, never.data());
-    }
-    on->wait();
-  }, [] {});
+  percentiles(
+      state, calls(count), 20,
+      [&](std::size_t) {
+        for (std::size_t k = 0; k < on->size(); ++k) {
+          const point_span piece = cloud.view->piece(k);
+          on->each()[k].launch(read_kernel<>, 264, 512, 0, reinterpret_cast<const float4*>(piece.points),
+                               piece.count * 3 / 4, never.data());
+        }
+        on->wait();
+      },
+      [] {});
 }
 
 enum class from { pinned, pinned_copy_alone, first_device };
@@ -175,14 +191,20 @@ void comes(benchmark::State& state, which w, from where) {
     return same_bits(state, r);
   }
   std::vector<clearance::device_buffer<std::byte>> room;
-  for (std::size_t k = 0; k < on->size(); ++k) room.emplace_back(piece_of(cloud, k, on->size()).bytes().size(), on->each()[k].id);
-  percentiles(state, few, 3, [&](std::size_t) {
-    for (std::size_t k = 0; k < on->size(); ++k) {
-      const point_span piece = piece_of(cloud, k, on->size());
-      check_cuda(cudaMemcpyAsync(room[k].data(), piece.points, room[k].size(), cudaMemcpyDefault, on->each()[k].stream), "cudaMemcpyAsync");
-    }
-    on->wait();
-  }, [] {});
+  for (std::size_t k = 0; k < on->size(); ++k)
+    room.emplace_back(piece_of(cloud, k, on->size()).bytes().size(), on->each()[k].id);
+  percentiles(
+      state, few, 3,
+      [&](std::size_t) {
+        for (std::size_t k = 0; k < on->size(); ++k) {
+          const point_span piece = piece_of(cloud, k, on->size());
+          check_cuda(
+              cudaMemcpyAsync(room[k].data(), piece.points, room[k].size(), cudaMemcpyDefault, on->each()[k].stream),
+              "cudaMemcpyAsync");
+        }
+        on->wait();
+      },
+      [] {});
 }
 
 #define ONCE ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(1)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every point's own distance on the CPU: one frame of 307,200 pixels against the whole robot, as it comes or in random order, and its
-// part and primitive too.
+// Every point's own distance on the CPU: one frame of 307,200 pixels against the whole robot, as it comes or in random
+// order, and its part and primitive too.
 #include "scene.hpp"
 
 #include <clearance/distances.hpp>
@@ -26,7 +26,8 @@ void ask(benchmark::State& state, const Model& model, float d_max, bool which, o
   const clearance::placed cloud{clearance::point_span(points), s.world_from_camera};
   std::vector<float> distance(points.size());
   std::vector<std::uint32_t> part(which ? points.size() : 0), primitive(part.size());
-  const clearance::distances_out out{distance.data(), which ? part.data() : nullptr, which ? primitive.data() : nullptr};
+  const clearance::distances_out out{distance.data(), which ? part.data() : nullptr,
+                                     which ? primitive.data() : nullptr};
   clearance::point_counts counts;
   for (auto _ : state) clearance::distances_async(cpu, model, s.poses, cloud, out, &counts, d_max);
   double sum = 0;
@@ -55,7 +56,12 @@ constexpr float all = clearance::infinity;
 const int rows = [] {
   const auto add = [](const char* name, const auto& what, auto... how) {
     benchmark::RegisterBenchmark(name, [=](benchmark::State& state) { what(state, how...); })
-        ->Arg(1)->Arg(0)->ArgName("threads")->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+        ->Arg(1)
+        ->Arg(0)
+        ->ArgName("threads")
+        ->UseRealTime()
+        ->MeasureProcessCPUTime()
+        ->Unit(benchmark::kMillisecond);
   };
   add("spheres<sphere>", spheres<sphere>, all);
   add("spheres<sphere>, which", spheres<sphere>, all, true);

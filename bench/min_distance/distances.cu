@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every point's own distance on a GPU, the points resident there: cold, and warm with what was nearest in the last frame. CUDA
-// events, behind other work.
+// Every point's own distance on a GPU, the points resident there: cold, and warm with what was nearest in the last
+// frame. CUDA events, behind other work.
 #include "device.cuh"
 #include "shell.hpp"
 
@@ -19,8 +19,8 @@ using clearance::device, clearance::vec3;
 
 /// Two clouds in turn, so that a frame remembers another one; cold, each is the first.
 template <class Model, class Source>
-void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::Isometry3d>& poses, const Eigen::Isometry3d& pose, const Source& first,
-         const Source& second, float d_max, bool warm) {
+void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::Isometry3d>& poses,
+         const Eigen::Isometry3d& pose, const Source& first, const Source& second, float d_max, bool warm) {
   const device gpu;
   const auto there = model.on(gpu);
   clearance::distances_query query(gpu, there);
@@ -36,7 +36,8 @@ void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::I
       once.enqueue(poses, cloud, {out.data()}, d_max, counts.data(), clearance::minimum::as_it_is{});
   };
   frame(second);
-  for (bool odd = true; auto _ : state) state.SetIterationTime(clock.seconds([&] { frame((odd = !odd) ? second : first); }));
+  for (bool odd = true; auto _ : state)
+    state.SetIterationTime(clock.seconds([&] { frame((odd = !odd) ? second : first); }));
   frame(first);
   double sum = 0;
   std::size_t near = 0;
@@ -62,12 +63,16 @@ void frame(benchmark::State& state, Make make, const options& how) {
   const device gpu;
   const auto first = gpu.copy_in(std::span<const vec3>(points));
   const auto second = gpu.copy_in(std::span<const vec3>(twice).subspan(s.cloud.size()));
-  ask(state, make(s, how.build), s.poses, how.close ? close_camera() : s.world_from_camera, clearance::point_span(first.data(), count),
-      clearance::point_span(second.data(), count), how.d_max, how.warm);
+  ask(state, make(s, how.build), s.poses, how.close ? close_camera() : s.world_from_camera,
+      clearance::point_span(first.data(), count), clearance::point_span(second.data(), count), how.d_max, how.warm);
 }
 
-constexpr auto of_spheres = [](const scene& s, clearance::build_options build) { return sphere_model<clearance::sphere>(s, build); };
-constexpr auto of_triangles = [](const scene& s, clearance::build_options build) { return triangle_model<clearance::aabb>(s, build); };
+constexpr auto of_spheres = [](const scene& s, clearance::build_options build) {
+  return sphere_model<clearance::sphere>(s, build);
+};
+constexpr auto of_triangles = [](const scene& s, clearance::build_options build) {
+  return triangle_model<clearance::aabb>(s, build);
+};
 void spheres(benchmark::State& state, const options& how) { frame(state, of_spheres, how); }
 void triangles(benchmark::State& state, const options& how) { frame(state, of_triangles, how); }
 
@@ -83,14 +88,15 @@ void image(benchmark::State& state, Make make, const options& how) {
   const device gpu;
   const auto first = gpu.copy_in(std::span<const float>(depth)), second = gpu.copy_in(std::span<const float>(noisy));
   const clearance::intrinsics camera{525, 525, 320, 240};
-  ask(state, make(s, how.build), s.poses, how.close ? close_camera() : s.world_from_camera, clearance::depth_image(first.data(), 640, 480, camera),
-      clearance::depth_image(second.data(), 640, 480, camera), how.d_max, how.warm);
+  ask(state, make(s, how.build), s.poses, how.close ? close_camera() : s.world_from_camera,
+      clearance::depth_image(first.data(), 640, 480, camera), clearance::depth_image(second.data(), 640, 480, camera),
+      how.d_max, how.warm);
 }
 void spheres_image(benchmark::State& state, const options& how) { image(state, of_spheres, how); }
 void triangles_image(benchmark::State& state, const options& how) { image(state, of_triangles, how); }
 
-/// Points of the worst cloud there is, so that only what is nearer than their own distance counts; in random order, or as a sensor
-/// sees them: neighbours beside one another (along a Z-curve of 2 mm).
+/// Points of the worst cloud there is, so that only what is nearer than their own distance counts; in random order, or
+/// as a sensor sees them: neighbours beside one another (along a Z-curve of 2 mm).
 void shell(benchmark::State& state, bool ordered) {
   if (no_device(state)) return;
   const scene& s = the_scene();
@@ -105,8 +111,10 @@ void shell(benchmark::State& state, bool ordered) {
     auto points = gpu.copy_out(there);
     const auto place = [](vec3 p) {
       std::uint64_t code = 0;
-      const std::uint64_t x = std::uint64_t((p.x + 8) * 500), y = std::uint64_t((p.y + 8) * 500), z = std::uint64_t((p.z + 8) * 500);
-      for (int b = 0; b < 14; ++b) code |= (x >> b & 1) << 3 * b | (y >> b & 1) << (3 * b + 1) | (z >> b & 1) << (3 * b + 2);
+      const std::uint64_t x = std::uint64_t((p.x + 8) * 500), y = std::uint64_t((p.y + 8) * 500),
+                          z = std::uint64_t((p.z + 8) * 500);
+      for (int b = 0; b < 14; ++b)
+        code |= (x >> b & 1) << 3 * b | (y >> b & 1) << (3 * b + 1) | (z >> b & 1) << (3 * b + 2);
       return code;
     };
     std::ranges::sort(points, {}, place);
@@ -118,7 +126,8 @@ void shell(benchmark::State& state, bool ordered) {
 BENCHMARK_CAPTURE(shell, random, false)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
 BENCHMARK_CAPTURE(shell, ordered, true)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
 
-constexpr options cold{}, warm{.warm = true}, within_10cm{.d_max = 0.1f}, close_cold{.close = true}, close_warm{.warm = true, .close = true};
+constexpr options cold{}, warm{.warm = true}, within_10cm{.d_max = 0.1f}, close_cold{.close = true},
+    close_warm{.warm = true, .close = true};
 #define TIMES ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30)
 #define FRAMES ->Arg(307200)->Arg(5000000) TIMES
 BENCHMARK_CAPTURE(spheres, untruncated, cold) FRAMES;

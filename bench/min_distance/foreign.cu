@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is not ours on a GPU, beside what is: a binary tree linked by pointers, and points in records of 32 bytes. The robot and
-// the frame are those of min_distance.cu; times are of the device alone, behind other work.
+// What is not ours on a GPU, beside what is: a binary tree linked by pointers, and points in records of 32 bytes. The
+// robot and the frame are those of min_distance.cu; times are of the device alone, behind other work.
 #include "../../tests/support/linked_tree.hpp"
 #include "device.cuh"
 #include "scene_files.hpp"
@@ -60,7 +60,8 @@ void linked_tree(benchmark::State& state, bool cold) {
     parts.push_back({{nodes.back().data(), tree.view().depth()}, {}, part.facts});
   }
   const auto there = gpu.copy_in(std::span<const view>(parts));
-  ask(state, clearance::model_view<view>{there.data(), facts, depth, 2}, clearance::point_span(points.data(), points.size()), cold);
+  ask(state, clearance::model_view<view>{there.data(), facts, depth, 2},
+      clearance::point_span(points.data(), points.size()), cold);
 }
 
 void records(benchmark::State& state, bool cold) {
@@ -70,7 +71,9 @@ void records(benchmark::State& state, bool cold) {
   for (const auto& p : the_scene().cloud) wide.insert(wide.end(), {p.x, p.y, p.z, 0, 0, 0, 0, 0});
   const auto there = gpu.copy_in(std::span<const float>(wide));
   ask(state, ours().on(gpu),
-      clearance::strided_points<>{.data = reinterpret_cast<const std::byte*>(there.data()), .count = wide.size() / 8, .step = 32}, cold);
+      clearance::strided_points<>{
+          .data = reinterpret_cast<const std::byte*>(there.data()), .count = wide.size() / 8, .step = 32},
+      cold);
 }
 
 #define TIMED ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(200)->Repetitions(3)->ReportAggregatesOnly()

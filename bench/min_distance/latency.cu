@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a control loop sees: from points in pinned memory to the answer on the host, a new pose against points that stay,
-// frames back to back on one stream, and the worst cloud there is. Percentiles are counters, in microseconds.
+// What a control loop sees: from points in pinned memory to the answer on the host, a new pose against points that
+// stay, frames back to back on one stream, and the worst cloud there is. Percentiles are counters, in microseconds.
 #include "device.cuh"
 #include "shell.hpp"
 
@@ -34,7 +34,9 @@ void from_pinned(benchmark::State& state, const std::vector<T>& data, way by, st
       r = query(s.poses, make(source.data()), s.world_from_camera);
       return;
     }
-    clearance::check_cuda(cudaMemcpyAsync(there.data(), source.data(), data.size() * sizeof(T), cudaMemcpyHostToDevice, gpu.stream), "cudaMemcpyAsync");
+    clearance::check_cuda(
+        cudaMemcpyAsync(there.data(), source.data(), data.size() * sizeof(T), cudaMemcpyHostToDevice, gpu.stream),
+        "cudaMemcpyAsync");
     if (by == way::copied)
       r = query(s.poses, make(there.data()), s.world_from_camera);
     else
@@ -56,7 +58,8 @@ void pinned_depth(benchmark::State& state, way by) {
 void pinned_points(benchmark::State& state, way by) {
   if (no_device(state)) return;
   const auto& points = repeated(the_scene().cloud, std::size_t(state.range(0)));
-  from_pinned(state, points, by, points.size() > 1000000 ? 300 : 10000, [&](const vec3* p) { return clearance::point_span(p, points.size()); });
+  from_pinned(state, points, by, points.size() > 1000000 ? 300 : 10000,
+              [&](const vec3* p) { return clearance::point_span(p, points.size()); });
 }
 
 /// 1 kHz haptics: points stay where they are, the robot has moved a little.
@@ -70,7 +73,9 @@ void new_pose(benchmark::State& state) {
   const clearance::point_span view(there.data(), s.cloud.size());
   auto poses = s.poses;
   percentiles(state, 100000, [&](std::size_t k) {
-    for (std::size_t part = 0; part < poses.size(); ++part) poses[part].translation() = s.poses[part].translation() + Eigen::Vector3d(0, 0, 0.01 * std::sin(0.01 * double(k)));
+    for (std::size_t part = 0; part < poses.size(); ++part)
+      poses[part].translation() =
+          s.poses[part].translation() + Eigen::Vector3d(0, 0, 0.01 * std::sin(0.01 * double(k)));
     benchmark::DoNotOptimize(query(poses, view, s.world_from_camera));
   });
 }
@@ -88,7 +93,10 @@ void back_to_back(benchmark::State& state) {
   const device_clock clock;
   for (auto _ : state)
     state.SetIterationTime(clock.seconds([&] {
-      for (int k = 0; k < 100; ++k) query.enqueue(s.poses, clearance::placed{clearance::point_span(there.data(), points.size()), s.world_from_camera}, result.data());
+      for (int k = 0; k < 100; ++k)
+        query.enqueue(s.poses,
+                      clearance::placed{clearance::point_span(there.data(), points.size()), s.world_from_camera},
+                      result.data());
     }) / 100);
 }
 
@@ -103,9 +111,7 @@ void shell(benchmark::State& state, bool cold) {
   put_shell(gpu, model, s.poses, 0.3f, there.data(), there.size());
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
   const device_clock clock;
-  const auto frame = [&] {
-    query.enqueue(s.poses, clearance::point_span(there.data(), there.size()), result.data());
-  };
+  const auto frame = [&] { query.enqueue(s.poses, clearance::point_span(there.data(), there.size()), result.data()); };
   frame();  // once, as the first loads the kernel and is cold
   for (auto _ : state) {
     if (cold) query.forget();

@@ -15,7 +15,8 @@ namespace {
 enum kind { warm, cold, plain, parts };
 
 template <class Model, class Source>
-void ask(benchmark::State& state, const Model& model, const Source& source, kind how, const bench::scene& s = bench::the_scene()) {
+void ask(benchmark::State& state, const Model& model, const Source& source, kind how,
+         const bench::scene& s = bench::the_scene()) {
   const clearance::host cpu{.threads = unsigned(state.range(0))};
   const clearance::placed<Source> cloud{source, s.world_from_camera};
   clearance::min_distance_query query(cpu, model);

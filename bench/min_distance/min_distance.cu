@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One frame on a GPU, its points resident there: the prepared query warm (it remembers the last frame) and cold, beside a
-// kernel that only reads the points and one that does nothing. Times are CUDA events around the frame on an idle device, the
-// host's time to launch included; rows that are `queued` find the device at work, and are of the device alone.
+// One frame on a GPU, its points resident there: the prepared query warm (it remembers the last frame) and cold, beside
+// a kernel that only reads the points and one that does nothing. Times are CUDA events around the frame on an idle
+// device, the host's time to launch included; rows that are `queued` find the device at work, and are of the device
+// alone.
 #include "crowds.hpp"
 #include "device.cuh"
 #include "scene_files.hpp"
@@ -74,7 +75,8 @@ void ask(benchmark::State& state, const bench::scene& s, const Model& model, man
   const clearance::placed cloud{view, s.world_from_camera};
   const auto frame = [&] {
     if (how.plain)
-      clearance::min_distance_async(clearance::plain{gpu, clearance::near_first{}}, placed_there, s.poses, cloud, result.data());
+      clearance::min_distance_async(clearance::plain{gpu, clearance::near_first{}}, placed_there, s.poses, cloud,
+                                    result.data());
     else if (how.once)
       clearance::min_distance_async(gpu, placed_there, s.poses, cloud, result.data());
     else if (how.each)

@@ -9,11 +9,19 @@ namespace {
 const int rows = [] {
   bench::for_each_question([](const std::string& name, const auto& row) {
     if (name.ends_with(", one call")) return;  // nothing is prepared on the CPU but memory
-    benchmark::RegisterBenchmark(name.c_str(), [row](benchmark::State& state) {
-      const bench::scene& s = bench::the_scene();
-      static const auto model = bench::sphere_model<clearance::sphere>(s);
-      row(state, clearance::host{.threads = unsigned(state.range(0))}, model, clearance::placed{clearance::point_span(s.cloud), s.world_from_camera});
-    })->Arg(1)->Arg(0)->ArgName("threads")->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(name.c_str(),
+                                 [row](benchmark::State& state) {
+                                   const bench::scene& s = bench::the_scene();
+                                   static const auto model = bench::sphere_model<clearance::sphere>(s);
+                                   row(state, clearance::host{.threads = unsigned(state.range(0))}, model,
+                                       clearance::placed{clearance::point_span(s.cloud), s.world_from_camera});
+                                 })
+        ->Arg(1)
+        ->Arg(0)
+        ->ArgName("threads")
+        ->UseRealTime()
+        ->MeasureProcessCPUTime()
+        ->Unit(benchmark::kMillisecond);
   });
   return 0;
 }();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Zones, lists, the nearest, confirmed points, motions, gradients and joint vectors on a GPU, the points there. What is waited for by the
-// host's clock; *enqueued* and *placed* by CUDA events, behind other work: at once with memory for one call, or prepared.
+// Zones, lists, the nearest, confirmed points, motions, gradients and joint vectors on a GPU, the points there. What is
+// waited for by the host's clock; *enqueued* and *placed* by CUDA events, behind other work: at once with memory for
+// one call, or prepared.
 #include "device.cuh"
 #include "more_questions.hpp"
 
@@ -35,7 +36,8 @@ struct question {
   device_clock clock{true};
 
   explicit question(std::size_t count)
-      : points(gpu.copy_in(std::span<const vec3>(repeated(s.cloud, count)))), cloud{clearance::point_span(points.data(), points.size()), s.world_from_camera} {}
+      : points(gpu.copy_in(std::span<const vec3>(repeated(s.cloud, count)))),
+        cloud{clearance::point_span(points.data(), points.size()), s.world_from_camera} {}
 
   template <class Frame>
   void time(benchmark::State& state, const Frame& frame) const {
@@ -70,7 +72,8 @@ void within(benchmark::State& state, bool prepared) {
       query.enqueue(q.s.poses, q.cloud, 0.1f, pairs.data(), pairs.size(), count.data(), q.counts.data());
     } else {
       check_cuda(cudaMemsetAsync(count.data(), 0, sizeof(unsigned long long)), "cudaMemsetAsync");
-      clearance::within_async(q.gpu, q.model, q.s.poses, q.cloud, reaches.data(), pairs.data(), pairs.size(), count.data(), q.counts.data());
+      clearance::within_async(q.gpu, q.model, q.s.poses, q.cloud, reaches.data(), pairs.data(), pairs.size(),
+                              count.data(), q.counts.data());
     }
   });
   state.counters["pairs"] = double(q.gpu.copy_out(count)[0]);
@@ -118,7 +121,8 @@ void compacted(benchmark::State& state) {
   question q(std::size_t(state.range(0)));
   const device_buffer<vec3> points(q.points.size(), q.gpu.id);
   const device_buffer<std::uint32_t> numbers(q.points.size(), q.gpu.id), count(1, q.gpu.id);
-  q.time(state, [&] { clearance::compacted_async(q.gpu, q.cloud.source, points.data(), numbers.data(), count.data()); });
+  q.time(state,
+         [&] { clearance::compacted_async(q.gpu, q.cloud.source, points.data(), numbers.data(), count.data()); });
   state.counters["points"] = double(q.gpu.copy_out(count)[0]);
 }
 
@@ -152,7 +156,8 @@ void placed(benchmark::State& state) {
   clearance::min_distances_query query(of.gpu, of.model);
   of.time(state, [&] { query.place(chain, q.data(), std::size_t(state.range(0))); });
 }
-/// Of joint vectors of the host, until they are placed; by the host's clock. *there*: the GPU makes poses of them; else the host does.
+/// Of joint vectors of the host, until they are placed; by the host's clock. *there*: the GPU makes poses of them; else
+/// the host does.
 void placed_call(benchmark::State& state, bool there) {
   if (no_device(state)) return;
   const question of(1);
@@ -185,15 +190,23 @@ BENCHMARK_CAPTURE(to_triangles, enqueued_at_once_10cm_signed, true) TIMES;
 BENCHMARK(compacted) TIMES;
 BENCHMARK(placed)->Arg(4096)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(50);
 BENCHMARK_CAPTURE(placed_call, there, true)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
-BENCHMARK_CAPTURE(placed_call, by_the_host, false)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
+BENCHMARK_CAPTURE(placed_call, by_the_host, false)
+    ->Arg(4096)
+    ->UseRealTime()
+    ->Unit(benchmark::kMicrosecond)
+    ->Iterations(20);
 
 const int rows = [] {
   for_each_question([](const std::string& name, const auto& row) {
-    benchmark::RegisterBenchmark(name.c_str(), [row](benchmark::State& state) {
-      if (no_device(state)) return;
-      const question q(307200);
-      row(state, q.gpu, q.model, q.cloud);
-    })->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(200);
+    benchmark::RegisterBenchmark(name.c_str(),
+                                 [row](benchmark::State& state) {
+                                   if (no_device(state)) return;
+                                   const question q(307200);
+                                   row(state, q.gpu, q.model, q.cloud);
+                                 })
+        ->UseRealTime()
+        ->Unit(benchmark::kMicrosecond)
+        ->Iterations(200);
   });
   return 0;
 }();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Questions about one frame of 307,200 points that are waited for, wherever they run: prepared, and as one call, by the host's clock.
+// Questions about one frame of 307,200 points that are waited for, wherever they run: prepared, and as one call, by the
+// host's clock.
 #include "configurations.hpp"
 
 #include <clearance/compacted.hpp>
@@ -41,105 +42,130 @@ inline clearance::straight_motion some_motion() {
 
 inline Eigen::Vector3d origin_of(std::size_t part) { return the_scene().poses[part].translation(); }
 
-/// What gradients cost, each beside the minimum that it is of. The least distance: with respect to the pose of its part, and to the joints
-/// (of the KUKA alone; its stand-in has none). Every part's: one more walk a part.
+/// What gradients cost, each beside the minimum that it is of. The least distance: with respect to the pose of its
+/// part, and to the joints (of the KUKA alone; its stand-in has none). Every part's: one more walk a part.
 template <class Add>
 void for_each_gradient(const Add& add) {
   add("min_distance, prepared", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
     clearance::min_distance_query query(on, model);
     state.counters["mm"] = 1e3 * double(ask_often(state, [&] { return query(the_scene().poses, cloud); }).distance);
   });
-  add("min_distance and its gradient, prepared", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-    clearance::min_distance_query query(on, model);
-    const auto found = ask_often(state, [&] {
-      const auto least = query(the_scene().poses, cloud);
-      return clearance::gradient(least, origin_of(least.part));
-    });
-    state.counters["known"] = bool(found);
-  });
-  add("min_distance and its gradient by joints, prepared", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-    if (the_scene().name != "kuka") return state.SkipWithError("no joints without the real data");
-    const auto robot = load_kuka(CLEARANCE_TEST_DATA);
-    clearance::min_distance_query query(on, model);
-    const auto found = ask_often(state, [&] {
-      const auto least = query(the_scene().poses, cloud);
-      return clearance::io::joint_gradient(robot, kuka_joints, least.part, clearance::gradient(least, origin_of(least.part)));
-    });
-    state.counters["known"] = bool(found);
-  });
-  add("min_distance_per_part, prepared", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-    clearance::min_distance_query query(on, model);
-    std::vector<clearance::part_minimum> minima(model.size());
-    state.counters["mm"] = 1e3 * double(ask_often(state, [&] { return query.per_part(the_scene().poses, cloud, minima); }).distance);
-  });
-  add("min_distance_per_part and every part's gradient, prepared", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-    clearance::min_distance_query query(on, model);
-    clearance::part_witnesses_query where(on, model);
-    std::vector<clearance::part_minimum> minima(model.size());
-    const auto found = ask_often(state, [&] {
-      query.per_part(the_scene().poses, cloud, minima);
-      std::size_t known = 0;
-      for (const auto& witness : where(the_scene().poses, cloud, minima))
-        known += witness.part != clearance::none && clearance::gradient(witness, origin_of(witness.part));
-      return known;
-    });
-    state.counters["known"] = double(found);
-  });
+  add("min_distance and its gradient, prepared",
+      [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
+        clearance::min_distance_query query(on, model);
+        const auto found = ask_often(state, [&] {
+          const auto least = query(the_scene().poses, cloud);
+          return clearance::gradient(least, origin_of(least.part));
+        });
+        state.counters["known"] = bool(found);
+      });
+  add("min_distance and its gradient by joints, prepared",
+      [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
+        if (the_scene().name != "kuka") return state.SkipWithError("no joints without the real data");
+        const auto robot = load_kuka(CLEARANCE_TEST_DATA);
+        clearance::min_distance_query query(on, model);
+        const auto found = ask_often(state, [&] {
+          const auto least = query(the_scene().poses, cloud);
+          return clearance::io::joint_gradient(robot, kuka_joints, least.part,
+                                               clearance::gradient(least, origin_of(least.part)));
+        });
+        state.counters["known"] = bool(found);
+      });
+  add("min_distance_per_part, prepared",
+      [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
+        clearance::min_distance_query query(on, model);
+        std::vector<clearance::part_minimum> minima(model.size());
+        state.counters["mm"] =
+            1e3 * double(ask_often(state, [&] { return query.per_part(the_scene().poses, cloud, minima); }).distance);
+      });
+  add("min_distance_per_part and every part's gradient, prepared",
+      [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
+        clearance::min_distance_query query(on, model);
+        clearance::part_witnesses_query where(on, model);
+        std::vector<clearance::part_minimum> minima(model.size());
+        const auto found = ask_often(state, [&] {
+          query.per_part(the_scene().poses, cloud, minima);
+          std::size_t known = 0;
+          for (const auto& witness : where(the_scene().poses, cloud, minima))
+            known += witness.part != clearance::none && clearance::gradient(witness, origin_of(witness.part));
+          return known;
+        });
+        state.counters["known"] = double(found);
+      });
 }
 
 /// A robot that holds something: putting it on, and the minimum of both, to be compared with the robot's alone.
 template <class Add>
 void for_each_attached(const Add& add) {
-  const auto held = [](const auto& on) { return clearance::make_model<clearance::sphere>(std::vector{the_scene().packings.back()}).on(on); };
+  const auto held = [](const auto& on) {
+    return clearance::make_model<clearance::sphere>(std::vector{the_scene().packings.back()}).on(on);
+  };
   add("attach", [=](benchmark::State& state, const auto& on, const auto& model, const auto&) {
     const auto object = held(on);
     state.counters["parts"] = double(ask_often(state, [&] { return clearance::attach(on, model, object).size(); }));
   });
-  add("min_distance with an attached object, prepared", [=](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-    const auto object = held(on);
-    const auto holding = clearance::attach(on, model, object);
-    auto poses = the_scene().poses;
-    poses.push_back(poses.back() * Eigen::Translation3d(0, 0, 0.1));
-    clearance::min_distance_query query(on, holding);
-    state.counters["mm"] = 1e3 * double(ask_often(state, [&] { return query(poses, cloud); }).distance);
-  });
+  add("min_distance with an attached object, prepared",
+      [=](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
+        const auto object = held(on);
+        const auto holding = clearance::attach(on, model, object);
+        auto poses = the_scene().poses;
+        poses.push_back(poses.back() * Eigen::Translation3d(0, 0, 0.1));
+        clearance::min_distance_query query(on, holding);
+        state.counters["mm"] = 1e3 * double(ask_often(state, [&] { return query(poses, cloud); }).distance);
+      });
 }
 
 /// Calls `add(name, row)` for each question: `row(state, on, model, cloud)`, the model and the cloud there.
 template <class Add>
 void for_each_question(const Add& add) {
-  const auto both = [&](const std::string& name, const auto& prepare, const auto& once, const auto& count, const auto&... how) {
+  const auto both = [&](const std::string& name, const auto& prepare, const auto& once, const auto& count,
+                        const auto&... how) {
     add(name + ", prepared", [=](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
       auto query = prepare(on, model);
-      state.counters["found"] = double(count(ask_often(state, [&] { return query(the_scene().poses, cloud, how...); })));
+      state.counters["found"] =
+          double(count(ask_often(state, [&] { return query(the_scene().poses, cloud, how...); })));
     });
     add(name + ", one call", [=](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-      state.counters["found"] = double(count(ask_often(state, [&] { return once(on, model, the_scene().poses, cloud, how...); })));
+      state.counters["found"] =
+          double(count(ask_often(state, [&] { return once(on, model, the_scene().poses, cloud, how...); })));
     });
   };
-  both("zones of 10, 20 and 40 cm", [](const auto& on, const auto& model) { return clearance::zones_query(on, model); },
-       [](const auto&... all) { return clearance::zones(all...); },
-       [](const auto& found) {
-         std::uint64_t points = 0;
-         for (std::size_t k = 0; k < found.zones.size() / found.per_part; ++k) points += found.of(k, found.per_part - 1).points;
-         return points;
-       },
-       clearance::zones_options{.thresholds = {0.1, 0.2, 0.4}});
-  both("within 10 cm", [](const auto& on, const auto& model) { return clearance::within_query(on, model); },
-       [](const auto&... all) { return clearance::within(all...); }, [](const auto& found) { return found.pairs.size(); }, 0.1f);
-  both("in_collision, 5 cm", [](const auto& on, const auto& model) { return clearance::in_collision_query(on, model); },
-       [](const auto&... all) { return clearance::in_collision(all...); }, [](const auto& found) { return found.point != clearance::none; }, 0.05);
+  both(
+      "zones of 10, 20 and 40 cm", [](const auto& on, const auto& model) { return clearance::zones_query(on, model); },
+      [](const auto&... all) { return clearance::zones(all...); },
+      [](const auto& found) {
+        std::uint64_t points = 0;
+        for (std::size_t k = 0; k < found.zones.size() / found.per_part; ++k)
+          points += found.of(k, found.per_part - 1).points;
+        return points;
+      },
+      clearance::zones_options{.thresholds = {0.1, 0.2, 0.4}});
+  both(
+      "within 10 cm", [](const auto& on, const auto& model) { return clearance::within_query(on, model); },
+      [](const auto&... all) { return clearance::within(all...); },
+      [](const auto& found) { return found.pairs.size(); }, 0.1f);
+  both(
+      "in_collision, 5 cm", [](const auto& on, const auto& model) { return clearance::in_collision_query(on, model); },
+      [](const auto&... all) { return clearance::in_collision(all...); },
+      [](const auto& found) { return found.point != clearance::none; }, 0.05);
   const auto near = [](const auto& found) {
     return std::count_if(found.distance.begin(), found.distance.end(), [](float d) { return d < clearance::infinity; });
   };
-  both("distances_per_part, 10 cm", [](const auto& on, const auto& model) { return clearance::distances_per_part_query(on, model); },
-       [](const auto&... all) { return clearance::distances_per_part(all...); }, near, 0.1f);
+  both(
+      "distances_per_part, 10 cm",
+      [](const auto& on, const auto& model) { return clearance::distances_per_part_query(on, model); },
+      [](const auto&... all) { return clearance::distances_per_part(all...); }, near, 0.1f);
   for (const std::size_t k : {10, 1000})
-    both("nearest_k, " + std::to_string(k), [](const auto& on, const auto& model) { return clearance::nearest_k_query(on, model); },
-         [](const auto&... all) { return clearance::nearest_k(all...); }, [](const auto& found) { return found.pairs.size(); }, k);
-  both("min_distance_supported", [](const auto& on, const auto& model) { return clearance::min_distance_supported_query(on, model); },
-       [](const auto&... all) { return clearance::min_distance_supported(all...); }, [](const auto& found) { return found.isolated; },
-       clearance::support_options{});
+    both(
+        "nearest_k, " + std::to_string(k),
+        [](const auto& on, const auto& model) { return clearance::nearest_k_query(on, model); },
+        [](const auto&... all) { return clearance::nearest_k(all...); },
+        [](const auto& found) { return found.pairs.size(); }, k);
+  both(
+      "min_distance_supported",
+      [](const auto& on, const auto& model) { return clearance::min_distance_supported_query(on, model); },
+      [](const auto&... all) { return clearance::min_distance_supported(all...); },
+      [](const auto& found) { return found.isolated; }, clearance::support_options{});
   add("motion_clearance", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
     clearance::min_distance_query query(on, model);
     const auto motion = some_motion();
@@ -152,14 +178,17 @@ void for_each_question(const Add& add) {
   const auto exact = [&](const char* name, const auto& ask) {
     add(name, [=](benchmark::State& state, const auto& on, const auto&, const auto& cloud) {
       const auto triangles = triangle_model<clearance::aabb>(the_scene()).on(on);
-      const auto found = ask_often(state, [&] { return ask(on, triangles, the_scene().poses, cloud, clearance::distances_options{.d_max = 0.1f}); });
+      const auto found = ask_often(state, [&] {
+        return ask(on, triangles, the_scene().poses, cloud, clearance::distances_options{.d_max = 0.1f});
+      });
       state.counters["inside"] = double(std::ranges::count_if(found.distance, [](float d) { return d < 0; }));
     });
   };
   exact("distances to triangles, 10 cm", [](const auto&... all) { return clearance::distances(all...); });
   exact("signed_distances, 10 cm", [](const auto&... all) { return clearance::signed_distances(all...); });
   add("compacted", [](benchmark::State& state, const auto& on, const auto&, const auto& cloud) {
-    state.counters["points"] = double(ask_often(state, [&] { return clearance::compacted(on, cloud.source); }).points.size());
+    state.counters["points"] =
+        double(ask_often(state, [&] { return clearance::compacted(on, cloud.source); }).points.size());
   });
 }
 

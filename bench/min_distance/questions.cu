@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Questions about pairs on a GPU, the points resident there: zones, the points within a distance, whether there is one, and which are the
-// robot's own; beside them every part's minimum. *close*: the camera before the robot. CUDA events, behind other work.
+// Questions about pairs on a GPU, the points resident there: zones, the points within a distance, whether there is one,
+// and which are the robot's own; beside them every part's minimum. *close*: the camera before the robot. CUDA events,
+// behind other work.
 #include "device.cuh"
 
 #include <clearance/in_collision.cuh>
@@ -27,7 +28,8 @@ struct question {
   clearance::device_buffer<vec3> points;
   clearance::placed<clearance::point_span> cloud;
   clearance::device_buffer<point_counts> counts{1, gpu.id};
-  clearance::device_buffer<std::uint32_t> first_point = gpu.copy_in(std::span<const std::uint32_t>(std::vector<std::uint32_t>{0}));
+  clearance::device_buffer<std::uint32_t> first_point =
+      gpu.copy_in(std::span<const std::uint32_t>(std::vector<std::uint32_t>{0}));
   device_clock clock{true};
 
   explicit question(const benchmark::State& state, bool close = false)
@@ -44,11 +46,14 @@ struct question {
 
   /// Sets `words` back and asks, again and again.
   template <class Answer, class T>
-  void ask(benchmark::State& state, const Answer& answer, const clearance::device_buffer<T>& words, const std::vector<T>& fresh) {
+  void ask(benchmark::State& state, const Answer& answer, const clearance::device_buffer<T>& words,
+           const std::vector<T>& fresh) {
     pairwise::device_pairs<model_on_gpu::view_type> query(gpu, model.view());
     const auto start = gpu.copy_in(std::span<const T>(fresh));
     const auto frame = [&] {
-      clearance::check_cuda(cudaMemcpyAsync(words.data(), start.data(), words.size() * sizeof(T), cudaMemcpyDeviceToDevice), "cudaMemcpyAsync");
+      clearance::check_cuda(
+          cudaMemcpyAsync(words.data(), start.data(), words.size() * sizeof(T), cudaMemcpyDeviceToDevice),
+          "cudaMemcpyAsync");
       query.enqueue(s.poses, cloud, answer, counts.data(), clearance::minimum::as_it_is{});
     };
     frame();
@@ -62,7 +67,9 @@ void zones(benchmark::State& state, bool close) {
   const auto reaches = q.of_parts<float>(3, {0.1f, 0.2f, 0.4f});
   const std::vector<pairwise::zone_words> fresh(pairwise::count_in_zones::copies * reaches.size());
   const auto words = q.gpu.copy_in(std::span<const pairwise::zone_words>(fresh));
-  q.ask(state, pairwise::count_in_zones{words.data(), reaches.data(), q.first_point.data(), 3, std::uint32_t(reaches.size())}, words, fresh);
+  q.ask(state,
+        pairwise::count_in_zones{words.data(), reaches.data(), q.first_point.data(), 3, std::uint32_t(reaches.size())},
+        words, fresh);
   double pairs = 0;
   for (const auto& w : q.gpu.copy_out(words)) pairs += double(w.points);
   state.counters["pairs"] = pairs;
@@ -114,7 +121,8 @@ void own(benchmark::State& state, bool minimum, bool prepared) {
     if (prepared)
       filter.enqueue(q.s.poses, q.cloud, {.padding = {0.05}}, labels.data(), counts.data());
     else
-      clearance::self_filter_async(q.gpu, q.model, q.s.poses, q.cloud, {.padding = {0.05}}, labels.data(), counts.data());
+      clearance::self_filter_async(q.gpu, q.model, q.s.poses, q.cloud, {.padding = {0.05}}, labels.data(),
+                                   counts.data());
     if (minimum) query.enqueue(q.s.poses, rest, result.data());
   };
   frame();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What the benchmarks of the minimum ask about: a KUKA LWR before a table seen by a depth camera where the real data is,
-// and the scene of `clearance demo`, made in code, everywhere.
+// What the benchmarks of the minimum ask about: a KUKA LWR before a table seen by a depth camera where the real data
+// is, and the scene of `clearance demo`, made in code, everywhere.
 
 #include "../../tools/demo_scene.hpp"
 
@@ -82,7 +82,9 @@ inline scene kuka(const std::filesystem::path& data, bool packed) {
   s.name = "kuka";
   for (const auto& part : robot.parts()) s.meshes.push_back(clearance::close_mesh(part.mesh));
   s.poses = robot.poses(kuka_joints);
-  s.cloud = clearance::io::load_cloud((data / "clouds/kinect_seq/frame_20121214T142255.814212.pcd").string()).relative_to({0, 0, 0}).points;
+  s.cloud = clearance::io::load_cloud((data / "clouds/kinect_seq/frame_20121214T142255.814212.pcd").string())
+                .relative_to({0, 0, 0})
+                .points;
   s.world_from_camera = looking({2.18, -0.1, 1.25}, {-0.75, 0.1, -0.65});
   if (packed) pack_all(s);
   return s;
@@ -97,7 +99,8 @@ const scene& the_scene() {
     if (!real) std::fprintf(stderr, "No real data: this is the scene of clearance demo instead of the KUKA LWR.\n");
     scene made = real ? kuka(data, Packed) : demo(Packed);
     if (Packed)
-      std::fprintf(stderr, "%s: %zu links packed with 2,048 spheres each in %.2f s\n", made.name.c_str(), made.meshes.size(), made.packing_seconds);
+      std::fprintf(stderr, "%s: %zu links packed with 2,048 spheres each in %.2f s\n", made.name.c_str(),
+                   made.meshes.size(), made.packing_seconds);
     return made;
   }();
   return s;

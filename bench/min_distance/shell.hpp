@@ -49,12 +49,14 @@ struct shell_body {
   CLEARANCE_HD void operator()(std::size_t i) const {
     point_bits bits(i);
     points[i] = {clearance::not_a_number, clearance::not_a_number, clearance::not_a_number};
-    for (int tries = 0; tries < most_tries && !clearance::is_finite(points[i]); ++tries) points[i] = seen_along_a_ray(bits);
+    for (int tries = 0; tries < most_tries && !clearance::is_finite(points[i]); ++tries)
+      points[i] = seen_along_a_ray(bits);
   }
 
   CLEARANCE_HD float distance(vec3 world) const {
     clearance::nearest nearest;
-    for (std::uint32_t k = 0; k < count; ++k) clearance::near_first{}(parts[k].tree, placed[k].part_from_world(world), nearest);
+    for (std::uint32_t k = 0; k < count; ++k)
+      clearance::near_first{}(parts[k].tree, placed[k].part_from_world(world), nearest);
     return nearest.within;
   }
 
@@ -85,11 +87,13 @@ struct shell_body {
 /// Writes `count` points, in world coordinates, `away` metres from the robot to two micrometres. Parts are of our own
 /// trees; `points` is memory of the backend, and is there when this returns.
 template <clearance::backend B, class Model>
-void put_shell(const B& on, const Model& model, std::span<const Eigen::Isometry3d> poses, float away, vec3* points, std::size_t count) {
+void put_shell(const B& on, const Model& model, std::span<const Eigen::Isometry3d> poses, float away, vec3* points,
+               std::size_t count) {
   std::vector<shell_part> parts;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const auto& spheres = model.parts()[k].tree.primitives;
-    parts.push_back({clearance::to_floats(poses[k]), clearance::to_floats(poses[k].inverse()), spheres.data(), std::uint32_t(spheres.size())});
+    parts.push_back({clearance::to_floats(poses[k]), clearance::to_floats(poses[k].inverse()), spheres.data(),
+                     std::uint32_t(spheres.size())});
   }
   const auto there = on.copy_in(std::span<const shell_part>(parts));
   using view = typename Model::view_type;

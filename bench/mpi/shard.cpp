@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What ranks add to the slowest of them: mpirun -n N bench_mpi_shard. A frame of 300k points for each rank; medians of the time from a
-// barrier to the answer, on all ranks together and on the slowest by itself, and of one 8-byte reduction.
+// What ranks add to the slowest of them: mpirun -n N bench_mpi_shard. A frame of 300k points for each rank; medians of
+// the time from a barrier to the answer, on all ranks together and on the slowest by itself, and of one 8-byte
+// reduction.
 #include <clearance/make_model.hpp>
 #include <clearance/mpi/shard.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
@@ -40,22 +41,28 @@ int main(int count, char** arguments) {
   std::uniform_real_distribution<float> across(-1, 1);
   std::vector<std::vector<clearance::inner_sphere>> links(7);
   for (auto& link : links)
-    for (int k = 0; k < 500; ++k) link.push_back({{0.1f * across(bits), 0.1f * across(bits), 0.1f * across(bits)}, 0.02f});
+    for (int k = 0; k < 500; ++k)
+      link.push_back({{0.1f * across(bits), 0.1f * across(bits), 0.1f * across(bits)}, 0.02f});
   const auto arm = clearance::make_model<clearance::sphere>(links);
   std::vector<Eigen::Isometry3d> poses(7, Eigen::Isometry3d::Identity());
   for (std::size_t k = 0; k < 7; ++k) poses[k].translation().x() = 0.15 * double(k);
   for (const std::size_t points : {std::size_t(1000), std::size_t(307200)}) {
     std::vector<clearance::vec3> cloud;
-    for (std::size_t i = 0; i < points; ++i) cloud.push_back({3 * across(bits), 3 * across(bits), 0.5f + across(bits) * 0.05f});
+    for (std::size_t i = 0; i < points; ++i)
+      cloud.push_back({3 * across(bits), 3 * across(bits), 0.5f + across(bits) * 0.05f});
     clearance::min_distance_query alone(clearance::host{1}, arm);
     clearance::min_distance_query together(clearance::mpi::shard{MPI_COMM_WORLD, clearance::host{1}}, arm);
     const int calls = points > 100000 ? 200 : 2000;
-    const double slowest = median(calls, [&] { alone(poses, cloud); }), all = median(calls, [&] { together(poses, cloud); });
+    const double slowest = median(calls, [&] { alone(poses, cloud); }),
+                 all = median(calls, [&] { together(poses, cloud); });
     double one = 0;
-    const double reduction = median(calls, [&] { MPI_Allreduce(MPI_IN_PLACE, &one, 1, MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD); });
+    const double reduction =
+        median(calls, [&] { MPI_Allreduce(MPI_IN_PLACE, &one, 1, MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD); });
     if (rank == 0)
-      std::printf("%d ranks, %zu points each: slowest rank %.1f us, all together %.1f us, added %.1f us; one reduction of 8 bytes %.1f us\n", ranks, points,
-                  slowest, all, all - slowest, reduction);
+      std::printf(
+          "%d ranks, %zu points each: slowest rank %.1f us, all together %.1f us, added %.1f us; one reduction of 8 "
+          "bytes %.1f us\n",
+          ranks, points, slowest, all, all - slowest, reduction);
   }
   MPI_Finalize();
 }

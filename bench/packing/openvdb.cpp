@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenVDB's fillWithSpheres on the links of the KUKA LWR 4+, and pack beside it: the same count, one thread, one judge: fill,
-// certified gap, and how many spheres stick out of the mesh or into one another. CPU seconds without the judge's (make_s;
-// pack's hold a certificate of its own), and what a certificate takes (certify_s). --benchmark_format=json.
+// OpenVDB's fillWithSpheres on the links of the KUKA LWR 4+, and pack beside it: the same count, one thread, one judge:
+// fill, certified gap, and how many spheres stick out of the mesh or into one another. CPU seconds without the judge's
+// (make_s; pack's hold a certificate of its own), and what a certificate takes (certify_s). --benchmark_format=json.
 
 #include "packing/links.hpp"
 
@@ -100,7 +100,8 @@ int main(int argc, char** argv) {
   std::vector<mesh_solid> solids;
   for (const auto& file : files) solids.emplace_back(io::load_mesh(file));
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  measure("pack/all", solids, [](const mesh_solid& s) { return pack(s, {.count = sphere_count, .threads = 1}).spheres; });
+  measure("pack/all", solids,
+          [](const mesh_solid& s) { return pack(s, {.count = sphere_count, .threads = 1}).spheres; });
   for (const auto& [finest, instances] : {std::pair{100, 10000}, {200, 100000}})
     measure("openvdb/all/voxels:" + std::to_string(finest) + "/instances:" + std::to_string(instances), solids,
             [finest = finest, instances = instances](const mesh_solid& s) { return fill(s, finest, instances); });

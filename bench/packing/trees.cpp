@@ -7,8 +7,8 @@
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/io/robot.hpp>
-#include <clearance/visitor/nearest.hpp>
 #include <clearance/traversal/near_first.hpp>
+#include <clearance/visitor/nearest.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>

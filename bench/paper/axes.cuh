@@ -22,12 +22,15 @@ void traversals(lab& l, const Parts& parts, double reference) {
   l.time_method("cooperative", method<shared_by_all, cooperative>{}, parts, reference);
 }
 
-/// Fig. 4 right: parts in sequence, in streams, or in one kernel: fused in a thread's loop, or a grid of parts x points.
+/// Fig. 4 right: parts in sequence, in streams, or in one kernel: fused in a thread's loop, or a grid of parts x
+/// points.
 template <class Parts>
 void schedules(lab& l, const Parts& parts, double reference) {
   l.out.begin("schedule", l.scene->name, l.points.size());
-  for (const auto& [name, order] :
-       {std::pair{"sequential", schedule::sequential}, {"streams", schedule::streams}, {"fused", schedule::fused}, {"grid", schedule::grid}}) {
+  for (const auto& [name, order] : {std::pair{"sequential", schedule::sequential},
+                                    {"streams", schedule::streams},
+                                    {"fused", schedule::fused},
+                                    {"grid", schedule::grid}}) {
     l.time_method(std::string("recursive; ") + name, paper_method{.order = order}, parts, reference);
     l.time_method(std::string("near first; ") + name, method<shared_by_all, near_first>{.order = order}, parts,
                   reference);
@@ -164,7 +167,8 @@ void culling(lab& l, const Model& on_host, const Parts& parts, double reference)
           method<shared_by_all, recursive, points_into_parts, true>{.order = schedule::sequential}, parts, reference);
   l.count("recursive; all; fused parts",
           method<shared_by_all, recursive, points_into_parts, true>{.order = schedule::fused}, parts, reference);
-  l.count("recursive; all; grid of parts", method<shared_by_all, recursive, points_into_parts, true>{.order = schedule::grid}, parts, reference);
+  l.count("recursive; all; grid of parts",
+          method<shared_by_all, recursive, points_into_parts, true>{.order = schedule::grid}, parts, reference);
   l.count("near first; nobody", method<shared_by_nobody, near_first, points_into_parts, true>{}, parts, reference);
   l.count("near first; block", method<shared_by_block, near_first, points_into_parts, true>{}, parts, reference);
   l.count("recursive; block; few threads",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Everything on the CPU over the size of the cloud (the paper's Fig. 9): Algorithm 1 as compilers make it and by hand with SIMD, the
-// octree with and without its construction, and ours.
+// Everything on the CPU over the size of the cloud (the paper's Fig. 9): Algorithm 1 as compilers make it and by hand
+// with SIMD, the octree with and without its construction, and ours.
 
 #include "octree.hpp"
 #include "report.hpp"
@@ -44,7 +44,8 @@ void host_competitors(report& out, const scenario& scene, std::size_t count, con
 #endif
   for (const unsigned threads : {1u, 2u, 0u}) {
     const clearance::host cpu{.threads = threads};
-    const std::string how = " (" + (threads == 0 ? std::string("all") : std::to_string(threads)) + " thread" + (threads == 1 ? ")" : "s)");
+    const std::string how =
+        " (" + (threads == 0 ? std::string("all") : std::to_string(threads)) + " thread" + (threads == 1 ? ")" : "s)");
     clearance::min_distance_query query(cpu, model);
     query(poses, placed);
     measure("CPU ours" + how, [&] { return query(poses, placed).distance; });
@@ -74,7 +75,8 @@ void host_competitors(report& out, const scenario& scene, std::size_t count, con
 
 /// The distances along the run of the robot, and what one thread of ours takes for them.
 template <class Model>
-void host_along_motion(report& out, const scenario& scene, std::size_t count, const Model& model, int steps, int passes) {
+void host_along_motion(report& out, const scenario& scene, std::size_t count, const Model& model, int steps,
+                       int passes) {
   const auto points = scene.points(count);
   const clearance::placed<clearance::point_span> placed{clearance::point_span(points), scene.world_from_cloud};
   clearance::min_distance_query query(clearance::host{.threads = 1}, model);

@@ -51,7 +51,10 @@ class lab {
     const clearance::placed<clearance::point_span> placed{points, scene->world_from_cloud};
     const double least = clearance::min_distance(clearance::host{}, model, poses, placed).distance;
     if (quick)
-      out.expect("brute force", brute_force(model, clearance::frames::cloud_frame(model.view().facts, poses, scene->world_from_cloud), placed.source), least);
+      out.expect("brute force",
+                 brute_force(model, clearance::frames::cloud_frame(model.view().facts, poses, scene->world_from_cloud),
+                             placed.source),
+                 least);
     return least;
   }
 
@@ -107,8 +110,7 @@ class lab {
   }
   template <class Method, class Parts>
   double time_method(const std::string& variant, const Method& m, const Parts& p, double reference) {
-    return time(
-        variant, [&] { m.enqueue(streams, p, cloud(), bound(), nullptr); }, reference);
+    return time(variant, [&] { m.enqueue(streams, p, cloud(), bound(), nullptr); }, reference);
   }
 
   /// What a kernel that only reads the points takes, and one that does nothing.
@@ -150,7 +152,8 @@ class lab {
     const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
     const auto once = [&] {
       if (cold) query.forget();
-      return clock.microseconds([&] { query.enqueue(poses, clearance::placed<Source>{source, scene->world_from_cloud}, result.data()); });
+      return clock.microseconds(
+          [&] { query.enqueue(poses, clearance::placed<Source>{source, scene->world_from_cloud}, result.data()); });
     };
     once();
     auto all = repeat(once, budget, 5);

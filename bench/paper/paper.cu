@@ -2,7 +2,8 @@
 // The design space of Kaluschke et al. (2014) on today's GPU, beside this library: every axis, on both of the paper's
 // scenarios, as CSV. All variants must find the minimum that min_distance finds, else the exit code is 1.
 //
-//   bench_paper_device [FILE.csv [STAMP]]     scripts/paper runs it, and draws what it writes; with CLEARANCE_QUICK=1 a test:
+//   bench_paper_device [FILE.csv [STAMP]]     scripts/paper runs it, and draws what it writes; with CLEARANCE_QUICK=1 a
+//   test:
 //                                             small clouds, exact against brute force
 #include "axes.cuh"
 #include "competitors.cuh"

@@ -12,7 +12,8 @@
 
 namespace bench::paper {
 
-/// Small clouds and few runs, each against a plain loop over all points and primitives: to see that all is right (CLEARANCE_QUICK=1).
+/// Small clouds and few runs, each against a plain loop over all points and primitives: to see that all is right
+/// (CLEARANCE_QUICK=1).
 inline const bool quick = std::getenv("CLEARANCE_QUICK") != nullptr;
 inline constexpr std::size_t quick_points = 5'003;
 

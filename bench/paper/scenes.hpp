@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The paper's two scenarios (its section 5), and a recorded motion of all seven joints in each: the robot before a table that a Kinect
-// has seen, clouds merged to a larger one; and an artificial room whose points are far away and evenly spread.
+// The paper's two scenarios (its section 5), and a recorded motion of all seven joints in each: the robot before a
+// table that a Kinect has seen, clouds merged to a larger one; and an artificial room whose points are far away and
+// evenly spread.
 
 #include "../min_distance/scene.hpp"
 
@@ -98,7 +99,8 @@ inline constexpr std::array<double, 8> path[] = {
 inline std::function<std::vector<Eigen::Isometry3d>(double)> along_path(const scene& robot) {
   if (robot.name != "kuka") return {};
   const auto arm = std::make_shared<const clearance::io::robot>(clearance::io::load_robot(
-      std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf", {.geometry = clearance::io::robot_geometry::visual}));
+      std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/kuka_lwr4plus.urdf",
+      {.geometry = clearance::io::robot_geometry::visual}));
   return [arm](double t) {
     const auto& row = path[std::size_t(std::lround(t * double(std::size(path) - 1)))];
     return arm->poses(std::vector<double>(row.begin() + 1, row.end()));
@@ -127,7 +129,9 @@ inline std::vector<scenario> scenarios(const scene& robot) {
   scenario hall{.name = "room", .sizes = {307'200, 1'000'000, 2'500'000, 5'000'000}, .cell = 0.1};
   hall.points = room;
   // Its platform drives towards the wall, while the arm moves.
-  hall.poses = [start = robot.poses, arm = along_path(robot)](double t) { return carried(arm ? arm(t) : start, {1.6 + 1.8 * t, 0.6 * t, 0}); };
+  hall.poses = [start = robot.poses, arm = along_path(robot)](double t) {
+    return carried(arm ? arm(t) : start, {1.6 + 1.8 * t, 0.6 * t, 0});
+  };
   return {table, hall};
 }
 

@@ -45,7 +45,8 @@ real brute_force(const Model& model, const clearance::frames::cloud_frame& frame
         const clearance::sample s = cloud[i];
         if (!s.valid()) continue;
         const clearance::vec3 p = frame.places[k].part_from_cloud(s.position - frame.origin);
-        for (const auto& primitive : model.parts()[k].tree.primitives) mine = clearance::min(mine, primitive.distance(p));
+        for (const auto& primitive : model.parts()[k].tree.primitives)
+          mine = clearance::min(mine, primitive.distance(p));
       }
     const std::lock_guard lock(one_at_a_time);
     least = clearance::min(least, mine);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The competitor of the paper's Fig. 9, Algorithm 1 on a CPU "hand optimized to support modern SIMD", as it is written today for AVX2 and
-// FMA: eight points against a volume, one point against eight children, or both, each where it suits. Vectors compute bounds alone, which
-// `slack` makes conservative; what is within reach is asked by the library's own formula, so that all bits are right.
+// The competitor of the paper's Fig. 9, Algorithm 1 on a CPU "hand optimized to support modern SIMD", as it is written
+// today for AVX2 and FMA: eight points against a volume, one point against eight children, or both, each where it
+// suits. Vectors compute bounds alone, which `slack` makes conservative; what is within reach is asked by the library's
+// own formula, so that all bits are right.
 
 #include "bounds.hpp"
 
 #include <clearance/backend/host.hpp>
-#include <clearance/frame/root_test.hpp>
 #include <clearance/frame/frame.hpp>
+#include <clearance/frame/root_test.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/traversal/near_first.hpp>
@@ -57,7 +58,8 @@ inline eight load_eight(const real* f) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(low)), _mm_loadu_ps(high), 1);
   };
   const __m256 a = halves(f, f + 12), b = halves(f + 4, f + 16), c = halves(f + 8, f + 20);
-  const __m256 xy = _mm256_shuffle_ps(b, c, _MM_SHUFFLE(2, 1, 3, 2)), yz = _mm256_shuffle_ps(a, b, _MM_SHUFFLE(1, 0, 2, 1));
+  const __m256 xy = _mm256_shuffle_ps(b, c, _MM_SHUFFLE(2, 1, 3, 2)),
+               yz = _mm256_shuffle_ps(a, b, _MM_SHUFFLE(1, 0, 2, 1));
   return {_mm256_shuffle_ps(a, xy, _MM_SHUFFLE(2, 0, 3, 0)), _mm256_shuffle_ps(yz, xy, _MM_SHUFFLE(3, 1, 2, 0)),
           _mm256_shuffle_ps(yz, c, _MM_SHUFFLE(3, 0, 3, 1))};
 }
@@ -66,14 +68,17 @@ inline eight load_eight(const clearance::point_span& cloud, std::size_t n) {
   const auto* from = reinterpret_cast<const real*>(cloud.points) + 24 * n;
   if (8 * n + 8 <= cloud.size()) return load_eight(from);
   real few[24];
-  std::fill(std::copy(from, reinterpret_cast<const real*>(cloud.points + cloud.size()), few), few + 24, clearance::not_a_number);
+  std::fill(std::copy(from, reinterpret_cast<const real*>(cloud.points + cloud.size()), few), few + 24,
+            clearance::not_a_number);
   return load_eight(few);
 }
 
 /// As rigid_transform does it, and with its bits.
 inline eight transformed(const clearance::rigid_transform& t, const eight& p) {
   const auto row = [&](vec3 r, real at) {
-    return _mm256_fmadd_ps(_mm256_set1_ps(r.x), p.x, _mm256_fmadd_ps(_mm256_set1_ps(r.y), p.y, _mm256_fmadd_ps(_mm256_set1_ps(r.z), p.z, _mm256_set1_ps(at))));
+    return _mm256_fmadd_ps(
+        _mm256_set1_ps(r.x), p.x,
+        _mm256_fmadd_ps(_mm256_set1_ps(r.y), p.y, _mm256_fmadd_ps(_mm256_set1_ps(r.z), p.z, _mm256_set1_ps(at))));
   };
   return {row(t.row[0], t.translation.x), row(t.row[1], t.translation.y), row(t.row[2], t.translation.z)};
 }
@@ -103,7 +108,9 @@ inline real least_of(__m256 bounds) {
 template <class Tree>
 void walk_together(const Tree& tree, const eight& p, shared_least& best) {
   using entry = clearance::near_first::entry_of<Tree>;
-  const auto bounds = [&](const auto& ball) { return lower_bounds(p - splat(ball.center), _mm256_set1_ps(ball.radius)); };
+  const auto bounds = [&](const auto& ball) {
+    return lower_bounds(p - splat(ball.center), _mm256_set1_ps(ball.radius));
+  };
   if (within(bounds(tree.volume(tree.root())), best.reach()) == 0) return;
   entry pending[clearance::near_first::capacity];
   std::uint32_t count = 0;
@@ -119,7 +126,8 @@ void walk_together(const Tree& tree, const eight& p, shared_least& best) {
       } else {
         const auto child = tree.child(top.node, k);
         const __m256 all = bounds(tree.volume(child));
-        if (within(all, best.reach()) != 0) clearance::near_first::push<Tree>(pending, base, count, {least_of(all), child});
+        if (within(all, best.reach()) != 0)
+          clearance::near_first::push<Tree>(pending, base, count, {least_of(all), child});
       }
   }
 }
@@ -151,9 +159,11 @@ class wide_tree {
       const real reach = best.reach();
       if (!(top.bound <= reach)) continue;
       const balls& b = below_[top.node];
-      const __m256 bounds = lower_bounds(point - eight{_mm256_load_ps(b.x), _mm256_load_ps(b.y), _mm256_load_ps(b.z)}, _mm256_load_ps(b.radius));
+      const __m256 bounds = lower_bounds(point - eight{_mm256_load_ps(b.x), _mm256_load_ps(b.y), _mm256_load_ps(b.z)},
+                                         _mm256_load_ps(b.radius));
       if (tree_.is_leaf(top.node)) {
-        for_lanes(within(bounds, reach), [&](int k) { best.offer(tree_.primitive(top.node, std::uint32_t(k)).distance(p)); });
+        for_lanes(within(bounds, reach),
+                  [&](int k) { best.offer(tree_.primitive(top.node, std::uint32_t(k)).distance(p)); });
         continue;
       }
       alignas(32) real each[8];
@@ -170,7 +180,9 @@ class wide_tree {
     real x[8] = {}, y[8] = {}, z[8] = {}, radius[8];
 
     balls() { std::fill(radius, radius + 8, -clearance::infinity); }  // nothing: infinitely far
-    void put(std::uint32_t k, const auto& ball) { x[k] = ball.center.x, y[k] = ball.center.y, z[k] = ball.center.z, radius[k] = ball.radius; }
+    void put(std::uint32_t k, const auto& ball) {
+      x[k] = ball.center.x, y[k] = ball.center.y, z[k] = ball.center.z, radius[k] = ball.radius;
+    }
   };
 
   Tree tree_;
@@ -179,13 +191,14 @@ class wide_tree {
 
 /// Algorithm 1, eight points of the cloud at once.
 template <class PartView>
-real eight_points(const clearance::host& cpu, clearance::model_view<PartView> model, const clearance::frames::cloud_frame& frame,
-                  const clearance::point_span& cloud) {
+real eight_points(const clearance::host& cpu, clearance::model_view<PartView> model,
+                  const clearance::frames::cloud_frame& frame, const clearance::point_span& cloud) {
   shared_least best;
   cpu.for_ranges((cloud.size() + 7) / 8, [&](clearance::indices range) {
     for (std::size_t k = 0; k < model.size(); ++k)
       for (std::size_t n = range.begin; n < range.end; ++n)
-        walk_together(model.parts[k].tree, transformed(frame.places[k].part_from_cloud, load_eight(cloud, n) - splat(frame.origin)), best);
+        walk_together(model.parts[k].tree,
+                      transformed(frame.places[k].part_from_cloud, load_eight(cloud, n) - splat(frame.origin)), best);
   });
   return best.reach();
 }
@@ -202,8 +215,9 @@ wide_trees<PartView> make_wide_trees(clearance::model_view<PartView> model) {
 
 /// Algorithm 1, eight children at once.
 template <class PartView>
-real eight_children(const clearance::host& cpu, clearance::model_view<PartView> model, const wide_trees<PartView>& trees,
-                    const clearance::frames::cloud_frame& frame, const clearance::point_span& cloud) {
+real eight_children(const clearance::host& cpu, clearance::model_view<PartView> model,
+                    const wide_trees<PartView>& trees, const clearance::frames::cloud_frame& frame,
+                    const clearance::point_span& cloud) {
   shared_least best;
   cpu.for_ranges(cloud.size(), [&](clearance::indices range) {
     for (std::size_t k = 0; k < model.size(); ++k)
@@ -215,7 +229,8 @@ real eight_children(const clearance::host& cpu, clearance::model_view<PartView> 
   return best.reach();
 }
 
-/// Eight points against the ball of each part, where the cloud is; those that are left, one by one, against eight children.
+/// Eight points against the ball of each part, where the cloud is; those that are left, one by one, against eight
+/// children.
 template <class PartView>
 real eight_of_each(const clearance::host& cpu, clearance::model_view<PartView> model, const wide_trees<PartView>& trees,
                    const clearance::frames::cloud_frame& frame, const clearance::point_span& cloud) {
@@ -227,9 +242,8 @@ real eight_of_each(const clearance::host& cpu, clearance::model_view<PartView> m
         const clearance::ball& around = frame.places[k].around;
         const real most = clearance::frames::limit(around, best.reach());
         if (!(most >= 0)) continue;
-        for_lanes(within(square(p - splat(around.center)), most * most), [&](int lane) {
-          trees[k].walk(frame.places[k].part_from_cloud(p[lane]), best);
-        });
+        for_lanes(within(square(p - splat(around.center)), most * most),
+                  [&](int lane) { trees[k].walk(frame.places[k].part_from_cloud(p[lane]), best); });
       }
     }
   });

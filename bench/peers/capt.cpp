@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// VAMP's CAPT on the same frame: is any sphere of a robot within a margin of any point, for 1,000 random configurations? That is a boolean;
-// ours says how near those are, and at which point of which part. CAPT is made for each frame, for radii up to the robot's largest;
-// VAMP thins clouds before. `hits` is how many each finds, `missed` how many CAPT calls free though a point is within by more than rounding.
+// VAMP's CAPT on the same frame: is any sphere of a robot within a margin of any point, for 1,000 random
+// configurations? That is a boolean; ours says how near those are, and at which point of which part. CAPT is made for
+// each frame, for radii up to the robot's largest; VAMP thins clouds before. `hits` is how many each finds, `missed`
+// how many CAPT calls free though a point is within by more than rounding.
 #include "min_distance/configurations.hpp"
 
 #include <clearance/min_distances.hpp>
@@ -39,8 +40,10 @@ class sphere_robot {
       for (std::size_t k = 0; k < packing.spheres.size(); k += lanes::num_scalars) {
         std::array<std::array<float, lanes::num_scalars>, 4> rows;
         for (std::size_t lane = 0; lane < lanes::num_scalars; ++lane) {
-          const auto& s = packing.spheres[std::min(k + lane, packing.spheres.size() - 1)];  // the last fills what is left
-          rows[0][lane] = s.center.x, rows[1][lane] = s.center.y, rows[2][lane] = s.center.z, rows[3][lane] = s.radius + margin;
+          const auto& s =
+              packing.spheres[std::min(k + lane, packing.spheres.size() - 1)];  // the last fills what is left
+          rows[0][lane] = s.center.x, rows[1][lane] = s.center.y, rows[2][lane] = s.center.z,
+          rows[3][lane] = s.radius + margin;
           largest = std::max(largest, s.radius + margin), least = std::min(least, s.radius + margin);
         }
         links_.back().push_back({lanes(rows[0]), lanes(rows[1]), lanes(rows[2]), lanes(rows[3])});
@@ -48,7 +51,8 @@ class sphere_robot {
     }
   }
 
-  bool collides(const CAPT& cloud, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& camera_from_world) const {
+  bool collides(const CAPT& cloud, std::span<const Eigen::Isometry3d> poses,
+                const Eigen::Isometry3d& camera_from_world) const {
     for (std::size_t link = 0; link < links_.size(); ++link) {
       const Eigen::Matrix<float, 3, 4> m = (camera_from_world * poses[link]).matrix().topRows<3>().cast<float>();
       const auto row = [&](int r, const eight& s) { return s.x * m(r, 0) + s.y * m(r, 1) + s.z * m(r, 2) + m(r, 3); };
@@ -69,7 +73,10 @@ class sphere_robot {
 /// What a row asks.
 struct question {
   explicit question(const benchmark::State& state)
-      : packings(::packings(state.range(0))), margin(1e-3f * float(state.range(1))), apart(1e-3f * float(state.range(2))), threads(unsigned(state.range(3))) {}
+      : packings(::packings(state.range(0))),
+        margin(1e-3f * float(state.range(1))),
+        apart(1e-3f * float(state.range(2))),
+        threads(unsigned(state.range(3))) {}
   const std::vector<clearance::packing>& packings;
   float margin, apart;  ///< Metres. Points nearer to one another than `apart` are thinned, before either is asked.
   unsigned threads;
@@ -80,15 +87,21 @@ std::vector<point> points(float apart) {
   std::vector<point> all;
   for (const auto& p : bench::the_scene().cloud)
     if (clearance::is_finite(p)) all.push_back({p.x, p.y, p.z});
-  return apart > 0 ? vamp::collision::filter_pointcloud(all, apart, 20.f, {0, 0, 0}, {-20, -20, -20}, {20, 20, 20}, false) : all;
+  return apart > 0
+             ? vamp::collision::filter_pointcloud(all, apart, 20.f, {0, 0, 0}, {-20, -20, -20}, {20, 20, 20}, false)
+             : all;
 }
 
-double milliseconds() { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double milliseconds() {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 clearance::min_distances_result distances(const question& asked, std::span<const clearance::vec3> cloud) {
-  static const auto few = clearance::make_model<clearance::sphere>(::packings(40)), many = clearance::make_model<clearance::sphere>(::packings(2048));
-  return clearance::min_distances(clearance::host{.threads = asked.threads}, asked.packings.data() == ::packings(40).data() ? few : many, poses(),
-                                  clearance::placed{clearance::point_span(cloud), bench::the_scene().world_from_camera}, {asked.margin});
+  static const auto few = clearance::make_model<clearance::sphere>(::packings(40)),
+                    many = clearance::make_model<clearance::sphere>(::packings(2048));
+  return clearance::min_distances(
+      clearance::host{.threads = asked.threads}, asked.packings.data() == ::packings(40).data() ? few : many, poses(),
+      clearance::placed{clearance::point_span(cloud), bench::the_scene().world_from_camera}, {asked.margin});
 }
 std::vector<clearance::vec3> as_ours(const std::vector<point>& cloud) {
   std::vector<clearance::vec3> all;
@@ -113,7 +126,8 @@ void capt(benchmark::State& state) {
     const CAPT tree(cloud, robot.least, robot.largest, 0);
     thinned += begin - start, built += milliseconds() - begin;
     workers.for_pieces(configurations, 8, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t c = begin; c < end; ++c) hit[c] = robot.collides(tree, std::span(all).subspan(c * links, links), camera_from_world);
+      for (std::size_t c = begin; c < end; ++c)
+        hit[c] = robot.collides(tree, std::span(all).subspan(c * links, links), camera_from_world);
     });
   }
   const auto exact = distances(asked, as_ours(cloud));
@@ -137,12 +151,19 @@ void ours(benchmark::State& state) {
     found = distances(asked, asked.apart > 0 ? few : bench::the_scene().cloud);
   }
   if (asked.apart > 0) state.counters["thin_ms"] = benchmark::Counter(thinned, benchmark::Counter::kAvgIterations);
-  state.counters["hits"] = double(std::ranges::count_if(found.of, [](const auto& r) { return r.part != clearance::none; }));
+  state.counters["hits"] =
+      double(std::ranges::count_if(found.of, [](const auto& r) { return r.part != clearance::none; }));
   state.counters["points"] = double(found.of[0].valid);
 }
 
-#define SHOWN ->ArgNames({"spheres", "margin_mm", "apart_mm", "threads"})->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond)
-BENCHMARK(ours)->ArgsProduct({{40, 2048}, {0, 20}, {0, 10, 20}, {1}})->ArgsProduct({{40, 2048}, {0, 20}, {0}, {2}}) SHOWN;
+#define SHOWN                                                 \
+  ->ArgNames({"spheres", "margin_mm", "apart_mm", "threads"}) \
+      ->MeasureProcessCPUTime()                               \
+      ->UseRealTime()                                         \
+      ->Unit(benchmark::kMillisecond)
+BENCHMARK(ours)
+    ->ArgsProduct({{40, 2048}, {0, 20}, {0, 10, 20}, {1}})
+    ->ArgsProduct({{40, 2048}, {0, 20}, {0}, {2}}) SHOWN;
 BENCHMARK(capt)->ArgsProduct({{40, 2048}, {0, 20}, {10, 20}, {1}})->ArgsProduct({{40, 2048}, {0, 20}, {20}, {2}}) SHOWN;
 BENCHMARK(capt)->ArgsProduct({{40, 2048}, {0}, {0}, {1}})->Iterations(1) SHOWN;  // each a quarter of a minute, and 8 GB
 

@@ -4,8 +4,8 @@
 
 #include "min_distance/scene_files.hpp"
 
-#include <clearance/io/robot.hpp>
 #include <clearance/distances.hpp>
+#include <clearance/io/robot.hpp>
 #include <clearance/min_distance_query.hpp>
 #include <clearance/volume/aabb.hpp>
 
@@ -30,7 +30,8 @@ inline void ours_every_point(benchmark::State& state) {
   const clearance::placed<clearance::point_span> cloud{scene().cloud, scene().world_from_camera};
   std::vector<clearance::real> distance(scene().cloud.size());
   clearance::point_counts counts;
-  for (auto _ : state) clearance::distances_async(clearance::host{.threads = 1}, model, scene().poses, cloud, {distance.data()}, &counts);
+  for (auto _ : state)
+    clearance::distances_async(clearance::host{.threads = 1}, model, scene().poses, cloud, {distance.data()}, &counts);
   clearance::real least = clearance::infinity;
   for (const clearance::real d : distance) least = clearance::min(least, d);
   state.counters["distance_mm"] = least * 1e3;

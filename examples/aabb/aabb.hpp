@@ -32,7 +32,8 @@ int example(const Backend& on) {
   pose.translation() << 0.1, 0, 0.8;  // world from part
 
   const clearance::min_distance_result r = clearance::min_distance(on, part, pose, image);
-  std::printf("%.6f m to pixel (%u, %u), of %u that are valid\n", r.distance, r.point % 64, r.point / 64, unsigned(r.valid));
+  std::printf("%.6f m to pixel (%u, %u), of %u that are valid\n", r.distance, r.point % 64, r.point / 64,
+              unsigned(r.valid));
   // The finger is nearest, and straight in front of the cube's front face, which is at z = 0.9.
   const bool right = std::abs(r.distance - 0.3f) < 1e-6f && r.point == 20 * 64 + 40 && r.valid == 64 * 48 - 1;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cloud in a file that may be larger than memory: example_chunked [POINTS] [FOLDER] writes one there (12 bytes a point), asks about it
-// as the arm moves past, and deletes it. With `write` or `ask` for a third argument it does only that, and the file stays: what was just
-// written is in memory still.
+// A cloud in a file that may be larger than memory: example_chunked [POINTS] [FOLDER] writes one there (12 bytes a
+// point), asks about it as the arm moves past, and deletes it. With `write` or `ask` for a third argument it does only
+// that, and the file stays: what was just written is in memory still.
 #include <clearance/chunked_query.hpp>
 #include <clearance/io/mapped_cloud.hpp>
 #include <clearance/make_model.hpp>
@@ -23,7 +23,8 @@ void write_street(const std::string& file, std::size_t points) {
   std::ofstream out(file, std::ios::binary);
   std::vector<clearance::vec3> some;
   for (std::size_t i = 0; i < points; ++i) {
-    some.push_back({float(200 * double(i) / double(points) - 100), 1.5f + 0.01f * float(i % 7), 0.01f * float(i * 37 % 300)});
+    some.push_back(
+        {float(200 * double(i) / double(points) - 100), 1.5f + 0.01f * float(i % 7), 0.01f * float(i * 37 % 300)});
     if (some.size() == 65536 || i + 1 == points) {
       out.write(reinterpret_cast<const char*>(some.data()), std::streamsize(some.size() * sizeof(clearance::vec3)));
       some.clear();
@@ -37,7 +38,8 @@ void write_street(const std::string& file, std::size_t points) {
 int main(int count, char** arguments) {
   const std::size_t points = count > 1 ? std::strtoull(arguments[1], nullptr, 10) : 1000000;
   const std::string_view only = count > 3 ? arguments[3] : "";
-  const std::string file = std::string(count > 2 ? arguments[2] : std::filesystem::temp_directory_path().string()) + "/clearance_street.raw";
+  const std::string file =
+      std::string(count > 2 ? arguments[2] : std::filesystem::temp_directory_path().string()) + "/clearance_street.raw";
   int wrong = 0;
   try {
     if (only != "ask") write_street(file, points);
@@ -53,10 +55,12 @@ int main(int count, char** arguments) {
       const auto start = std::chrono::steady_clock::now();
       const clearance::min_distance_result r = ask(poses, street);
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      std::printf("at %5.1f m: %.3f m to point %u; of %llu points %llu were read, in %.4f s\n", along, double(r.distance), r.point,
-                  static_cast<unsigned long long>(r.seen), static_cast<unsigned long long>(ask.loaded()), seconds);
+      std::printf("at %5.1f m: %.3f m to point %u; of %llu points %llu were read, in %.4f s\n", along,
+                  double(r.distance), r.point, static_cast<unsigned long long>(r.seen),
+                  static_cast<unsigned long long>(ask.loaded()), seconds);
       // [ask]
-      wrong += points <= 10000000 && r.point != clearance::min_distance(clearance::host{}, arm, poses, street.cloud().source).point;
+      wrong += points <= 10000000 &&
+               r.point != clearance::min_distance(clearance::host{}, arm, poses, street.cloud().source).point;
     }
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());

@@ -28,10 +28,14 @@ int example(const Backend& on) {
   for (const std::chrono::duration<double> deadline : {0us, 1000us, 5000us, 10000000us}) {
     const auto r = clearance::min_distance_by(on, arm, poses, hall, deadline);
     std::printf("%8.1f ms: %3.0f %% of the points, %s, %.3f m; certainly at least %.3f m\n", 1e3 * deadline.count(),
-                100 * double(r.seen) / double(r.seen + r.unseen), to_string(r.state), double(r.distance), double(r.lower));
+                100 * double(r.seen) / double(r.seen + r.unseen), to_string(r.state), double(r.distance),
+                double(r.lower));
     right = right && r.lower <= all.lower && all.upper <= r.upper && (r.unseen == 0 || !(r.lower > 0));
   }
   // [deadline]
   const auto patient = clearance::min_distance_by(on, arm, poses, hall, 10s);
-  return right && patient.unseen == 0 && patient.distance == all.distance && patient.point == all.point && patient.lower == all.lower ? 0 : 1;
+  return right && patient.unseen == 0 && patient.distance == all.distance && patient.point == all.point &&
+                 patient.lower == all.lower
+             ? 0
+             : 1;
 }

@@ -16,7 +16,8 @@ inline auto arm_of_two() {
 }
 inline std::vector<clearance::vec3> wall() {
   std::vector<clearance::vec3> points;
-  for (int k = 0; k < 300000; ++k) points.push_back({0.6f, 0.002f * float(k % 600) - 0.6f, 0.002f * float(k / 600) - 0.5f});
+  for (int k = 0; k < 300000; ++k)
+    points.push_back({0.6f, 0.002f * float(k % 600) - 0.6f, 0.002f * float(k / 600) - 0.5f});
   return points;
 }
 inline std::vector<Eigen::Isometry3d> poses_at(double angle) {
@@ -35,11 +36,12 @@ int example(const Backend& on, const Cloud& cloud) {
   clearance::min_distance_query ask(on, arm);
   for (const double angle : {1.5, 1.0, 0.5, 0.0}) {
     const clearance::min_distance_result r = ask(poses_at(angle), cloud);
-    std::printf("%.1f rad: %.3f m, certainly more than %.3f m, to point %u of %llu\n", angle, double(r.distance), double(r.lower), r.point,
-                static_cast<unsigned long long>(r.seen));
+    std::printf("%.1f rad: %.3f m, certainly more than %.3f m, to point %u of %llu\n", angle, double(r.distance),
+                double(r.lower), r.point, static_cast<unsigned long long>(r.seen));
     // [ask]
     const auto same = clearance::min_distance(clearance::host{}, on_host, poses_at(angle), wall());
-    wrong += r.distance != same.distance || r.lower != same.lower || r.point != same.point || r.primitive != same.primitive || r.valid != same.valid;
+    wrong += r.distance != same.distance || r.lower != same.lower || r.point != same.point ||
+             r.primitive != same.primitive || r.valid != same.valid;
   }
   return wrong;
 }

@@ -19,21 +19,24 @@ int example(const Backend& on) {
     for (int i = 0; i < 40; ++i) links[std::size_t(k)].push_back({{0.02f * float(i), 0.1f * float(k), 0}, 0.04f});
   std::vector<clearance::vec3> wall;
   for (int i = 0; i < 100; ++i)
-    for (int j = 0; j < 100; ++j) wall.push_back({0.02f * float(i) - 0.5f, 0.3f + 0.001f * float(i % 5), 0.02f * float(j) - 1});
+    for (int j = 0; j < 100; ++j)
+      wall.push_back({0.02f * float(i) - 0.5f, 0.3f + 0.001f * float(i % 5), 0.02f * float(j) - 1});
   const std::vector<Eigen::Isometry3d> poses(2, Eigen::Isometry3d::Identity());
 
   // [distances]
   const auto robot = clearance::make_model<clearance::sphere>(links).on(on);
   const auto all = clearance::distances(on, robot, poses, wall, {.d_max = 0.5f, .which = true});
-  const auto near = std::ranges::count_if(all.distance, [&](clearance::real d) { return d <= 0.5f && !(all.certain.lower(d) > 0.25f); });
+  const auto near = std::ranges::count_if(
+      all.distance, [&](clearance::real d) { return d <= 0.5f && !(all.certain.lower(d) > 0.25f); });
   const auto first = std::size_t(std::ranges::min_element(all.distance) - all.distance.begin());
-  std::printf("%zd of %zu points are perhaps nearer than 25 cm; the nearest is %.1f cm from link %u\n", std::ptrdiff_t(near), wall.size(),
-              100.0 * all.distance[first], all.part[first]);
+  std::printf("%zd of %zu points are perhaps nearer than 25 cm; the nearest is %.1f cm from link %u\n",
+              std::ptrdiff_t(near), wall.size(), 100.0 * all.distance[first], all.part[first]);
   // [distances]
 
   // [parts]
   const auto each = clearance::distances_per_part(on, robot, poses, wall);  // of every link to every point
-  std::printf("that point is %.1f cm from link 0 and %.1f cm from link 1\n", 100.0 * each.of(0)[first], 100.0 * each.of(1)[first]);
+  std::printf("that point is %.1f cm from link 0 and %.1f cm from link 1\n", 100.0 * each.of(0)[first],
+              100.0 * each.of(1)[first]);
   // [parts]
 
   for (std::size_t i = 0; i < wall.size(); ++i) {

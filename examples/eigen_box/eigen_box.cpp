@@ -56,6 +56,7 @@ int main() {
   const auto ours = clearance::make_part(clearance::build<clearance::aabb>(spheres));
   const auto a = clearance::min_distance(here, eigens, pose, cloud);
   const auto b = clearance::min_distance(here, ours, pose, cloud);
-  std::printf("%.6f m to point %u in Eigen's boxes, %.6f m to point %u in ours\n", a.distance, a.point, b.distance, b.point);
+  std::printf("%.6f m to point %u in Eigen's boxes, %.6f m to point %u in ours\n", a.distance, a.point, b.distance,
+              b.point);
   return a.distance == b.distance && a.point == b.point && a.primitive == b.primitive ? 0 : 1;
 }

@@ -31,8 +31,8 @@ int example(const Backend& on) {
     const auto [least, minima] = clearance::min_distance_per_part(on, robot, poses, wall);
     const auto g = clearance::gradient(least, Eigen::Vector3d(poses[least.part].translation()));
     if (!g) return std::printf("no gradient: %s\n", to_string(g.state)), 1;
-    std::printf("link %u is %.3f m away, and a metre along (%.2f, %.2f, %.2f) takes it a metre farther\n", least.part, double(least.distance),
-                double(g.linear.x), double(g.linear.y), double(g.linear.z));
+    std::printf("link %u is %.3f m away, and a metre along (%.2f, %.2f, %.2f) takes it a metre farther\n", least.part,
+                double(least.distance), double(g.linear.x), double(g.linear.y), double(g.linear.z));
 
     // Both links count, the nearer more: no jump where they change places. 2 cm is how much of a difference matters.
     const auto smooth = clearance::smooth_minimum_of(minima, 0.02);
@@ -43,7 +43,8 @@ int example(const Backend& on) {
         away += smooth.weights[k] * Eigen::Vector3d(its.linear.x, its.linear.y, its.linear.z);
     for (auto& pose : poses) pose.translation() += 0.05 * away;
     // [gradient]
-    wrong += smooth.value > double(least.distance) || std::abs(away.x() + 1) > 1e-3 || (step > 0 && std::abs(smooth.value - before - 0.05) > 1e-4);
+    wrong += smooth.value > double(least.distance) || std::abs(away.x() + 1) > 1e-3 ||
+             (step > 0 && std::abs(smooth.value - before - 0.05) > 1e-4);
     before = smooth.value;
   }
   return wrong;

@@ -20,8 +20,8 @@ int example(const Backend& on) {
 
   // [pack]
   const clearance::packing packed = clearance::pack(box, {.count = 200});
-  std::printf("%zu spheres fill %.0f %% of the box; no point of it is more than %.2f mm from them\n", packed.spheres.size(),
-              100 * packed.fill, 1000 * packed.gap);
+  std::printf("%zu spheres fill %.0f %% of the box; no point of it is more than %.2f mm from them\n",
+              packed.spheres.size(), 100 * packed.fill, 1000 * packed.gap);
   const auto part = clearance::make_part<clearance::sphere>(packed).on(on);
   // [pack]
 

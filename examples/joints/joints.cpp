@@ -16,7 +16,8 @@ int main() {
   shoulder.name = "shoulder", shoulder.parent = "base", shoulder.child = "upper";
   elbow.name = "elbow", elbow.parent = "upper", elbow.child = "fore";
   elbow.origin.translation().x() = 0.4;
-  for (joint* j : {&shoulder, &elbow}) j->kind = clearance::io::joint_kind::revolute, j->axis = Eigen::Vector3d::UnitZ();
+  for (joint* j : {&shoulder, &elbow})
+    j->kind = clearance::io::joint_kind::revolute, j->axis = Eigen::Vector3d::UnitZ();
   const clearance::io::kinematic_tree tree({"base", "upper", "fore"}, {shoulder, elbow});
   const std::vector<std::size_t> links{1, 2};  // of the parts
   std::vector<std::vector<clearance::inner_sphere>> bodies(2);
@@ -34,7 +35,8 @@ int main() {
   const auto g = clearance::gradient(near, Eigen::Vector3d(poses[near.part].translation()));
   const auto by_joints = clearance::io::joint_gradient(tree, link_poses, links[near.part], g);
   if (!by_joints) return std::printf("no gradient: %s\n", to_string(g.state)), 1;
-  std::printf("%.3f m; shoulder %+.3f m/rad, elbow %+.3f m/rad\n", double(near.distance), (*by_joints)[0], (*by_joints)[1]);
+  std::printf("%.3f m; shoulder %+.3f m/rad, elbow %+.3f m/rad\n", double(near.distance), (*by_joints)[0],
+              (*by_joints)[1]);
   // [gradient]
 
   // [motion]
@@ -43,7 +45,10 @@ int main() {
     return clearance::motion_clearance(on, arm, motion, points, {.tolerance = 0.002, .margin = 0.02});
   };
   const auto away = way(-0.5, 0.4), through = way(1.2, 0.4);
-  std::printf("away: %s, at least %.3f m; through: %s at time %.2f\n", to_string(away.state), double(away.lower), to_string(through.state), through.time);
+  std::printf("away: %s, at least %.3f m; through: %s at time %.2f\n", to_string(away.state), double(away.lower),
+              to_string(through.state), through.time);
   // [motion]
-  return (*by_joints)[0] < 0 && away.state == clearance::state::free && through.state == clearance::state::collision ? 0 : 1;
+  return (*by_joints)[0] < 0 && away.state == clearance::state::free && through.state == clearance::state::collision
+             ? 0
+             : 1;
 }

@@ -27,13 +27,18 @@ int example(const Backend& on) {
   // [motion]
   const clearance::straight_motion motion(here, there);
   const auto r = clearance::motion_clearance(on, robot, motion, points, {.tolerance = 0.005, .margin = 0.1});
-  std::printf("%s: certainly at least %.3f m away all the way; at time %.3f the %s is at most %.3f m from point %u (%zu questions)\n", to_string(r.state),
-              double(r.lower), r.time, r.nearest.part == 1 ? "bar" : "hand", double(r.upper), r.nearest.point, r.queries);
+  std::printf(
+      "%s: certainly at least %.3f m away all the way; at time %.3f the %s is at most %.3f m from point %u (%zu "
+      "questions)\n",
+      to_string(r.state), double(r.lower), r.time, r.nearest.part == 1 ? "bar" : "hand", double(r.upper),
+      r.nearest.point, r.queries);
   if (!(r.lower > 0.1)) std::printf("another way is needed between %.3f and %.3f\n", r.from, r.to);
   // [motion]
 
-  const auto ends = std::min(clearance::min_distance(on, robot, here, points).lower, clearance::min_distance(on, robot, there, points).lower);
-  const auto enough = clearance::motion_clearance(on, robot, motion, points, {.tolerance = clearance::infinity, .margin = 0.1});
+  const auto ends = std::min(clearance::min_distance(on, robot, here, points).lower,
+                             clearance::min_distance(on, robot, there, points).lower);
+  const auto enough =
+      clearance::motion_clearance(on, robot, motion, points, {.tolerance = clearance::infinity, .margin = 0.1});
   const bool found = r.state == clearance::state::collision && r.lower <= r.upper && r.upper < 0.1 && ends > 0.8f;
   return found && enough.state != clearance::state::free && enough.queries <= r.queries ? 0 : 1;
 }

@@ -24,7 +24,8 @@ int example(const Backend& on) {
   // [near]
   const auto robot = clearance::make_model<clearance::sphere>(links).on(on);
   const auto touched = clearance::in_collision(on, robot, poses, shelf, 0.12);  // metres
-  std::printf("closer than 12 cm: %s, point %u is near link %u\n", to_string(touched.state), touched.point, touched.part);
+  std::printf("closer than 12 cm: %s, point %u is near link %u\n", to_string(touched.state), touched.point,
+              touched.part);
 
   const auto near = clearance::within(on, robot, poses, shelf, 0.12f);
   for (std::size_t k = 0; k < links.size(); ++k)

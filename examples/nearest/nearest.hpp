@@ -25,15 +25,17 @@ int example(const Backend& on) {
   const auto robot = clearance::make_model<clearance::sphere>(links).on(on);
   const auto near = clearance::nearest_k(on, robot, poses, seen, 100, {.d_max = 0.5f});
   for (std::size_t k = 0; k < links.size(); ++k)
-    std::printf("link %zu: the nearest of 100 is %.3f m away, the last %.3f m\n", k, double(near.of(k).front().distance), double(near.of(k).back().distance));
+    std::printf("link %zu: the nearest of 100 is %.3f m away, the last %.3f m\n", k,
+                double(near.of(k).front().distance), double(near.of(k).back().distance));
 
   const auto solid = clearance::min_distance_supported(on, robot, poses, seen, {.min_points = 5, .radius = 0.02});
-  std::printf("%.3f m to point %u; %llu nearer points are alone, the first %.3f m away\n", double(solid.distance), solid.point,
-              static_cast<unsigned long long>(solid.isolated), double(solid.nearest_isolated.distance));
+  std::printf("%.3f m to point %u; %llu nearer points are alone, the first %.3f m away\n", double(solid.distance),
+              solid.point, static_cast<unsigned long long>(solid.isolated), double(solid.nearest_isolated.distance));
   // [nearest]
-  const bool sorted = std::is_sorted(near.of(0).begin(), near.of(0).end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
-  return sorted && near.of(1)[0].point == 0 && near.of(1)[99].cloud == 0 && solid.isolated == 1 && solid.nearest_isolated.point == 0 && solid.point > 0 &&
-                 std::abs(solid.distance - 0.1f) < 1e-3f
+  const bool sorted = std::is_sorted(near.of(0).begin(), near.of(0).end(),
+                                     [](const auto& a, const auto& b) { return a.distance < b.distance; });
+  return sorted && near.of(1)[0].point == 0 && near.of(1)[99].cloud == 0 && solid.isolated == 1 &&
+                 solid.nearest_isolated.point == 0 && solid.point > 0 && std::abs(solid.distance - 0.1f) < 1e-3f
              ? 0
              : 1;
 }

@@ -21,7 +21,8 @@ struct crowding {
   /// Every point that is as near as that to some part comes here once a part, from any thread.
   CLEARANCE_HD void take(const clearance::pair_distance& pair) const {
     for (int zone = 0; zone < 3; ++zone)
-      if (pair.distance < (zone == 0 ? 0.05f : zone == 1 ? 0.1f : 0.2f)) clearance::add_to(counts + 3 * pair.part + zone, 1);
+      if (pair.distance < (zone == 0 ? 0.05f : zone == 1 ? 0.1f : 0.2f))
+        clearance::add_to(counts + 3 * pair.part + zone, 1);
   }
 };
 
@@ -38,12 +39,15 @@ int example(const Backend& on) {
     poses[k].translation() << 0.1 * double(k), 0.25 * double(k), 0;
   }
   std::vector<clearance::vec3> cloud;
-  for (int i = 0; i < 20000; ++i) cloud.push_back({0.0007f * float(i % 1000), 0.05f * float(i / 1000), 0.01f * float(i % 11)});
+  for (int i = 0; i < 20000; ++i)
+    cloud.push_back({0.0007f * float(i % 1000), 0.05f * float(i / 1000), 0.01f * float(i % 11)});
 
   const auto robot = clearance::make_model<clearance::sphere>(links).on(on);
   // [ask]
-  const auto counts = on.copy_in(std::span<const unsigned long long>(std::vector<unsigned long long>(3 * robot.size())));
-  const clearance::point_counts seen = clearance::collect(on, robot, poses, clearance::point_span(cloud), crowding{const_cast<unsigned long long*>(counts.data())});
+  const auto counts =
+      on.copy_in(std::span<const unsigned long long>(std::vector<unsigned long long>(3 * robot.size())));
+  const clearance::point_counts seen = clearance::collect(on, robot, poses, clearance::point_span(cloud),
+                                                          crowding{const_cast<unsigned long long*>(counts.data())});
   const auto near = on.copy_out(counts);
   // [ask]
 
@@ -56,6 +60,7 @@ int example(const Backend& on) {
       for (int zone = 0; zone < 3; ++zone) expected[3 * k + zone] += least < crowding::limits[zone];
     }
   for (std::size_t k = 0; k < links.size(); ++k)
-    std::printf("part %zu: %llu points nearer than 5 cm, %llu than 10, %llu than 20\n", k, near[3 * k], near[3 * k + 1], near[3 * k + 2]);
+    std::printf("part %zu: %llu points nearer than 5 cm, %llu than 10, %llu than 20\n", k, near[3 * k], near[3 * k + 1],
+                near[3 * k + 2]);
   return near == expected && seen.valid == cloud.size() ? 0 : 1;
 }

@@ -83,11 +83,13 @@ int example(const Backend& on, std::span<theirs::node> memory) {
   const auto there = on.copy_in(std::span<const clearance::inner_sphere>(spheres));
   std::vector<clearance::ball> all;
   for (const auto& s : spheres) all.push_back({s.center, s.radius});
-  const clearance::flat_list<clearance::aabb, clearance::inner_sphere> list{clearance::aabb::fit(all), there.data(), 300};
+  const clearance::flat_list<clearance::aabb, clearance::inner_sphere> list{clearance::aabb::fit(all), there.data(),
+                                                                            300};
   const auto flat = ask(on, list, facts, cloud);
 
   std::printf("linked: %.6f m, point %u, ball %u; flat: %.6f m, point %u, ball %u\n", linked.distance, linked.point,
               linked.primitive, flat.distance, flat.point, flat.primitive);
-  const bool same = linked.distance == flat.distance && linked.point == flat.point && linked.primitive == flat.primitive;
+  const bool same =
+      linked.distance == flat.distance && linked.point == flat.point && linked.primitive == flat.primitive;
   return same && linked.state == clearance::state::free ? 0 : 1;
 }

@@ -16,9 +16,9 @@ struct ball {
 
 struct node {
   float low[3], high[3];
-  const node* left;   // null in a leaf
+  const node* left;  // null in a leaf
   const node* right;
-  ball content;       // of a leaf
+  ball content;  // of a leaf
 };
 
 /// Takes nodes from the front of `memory` (two a ball are enough) and returns the root.

@@ -22,7 +22,8 @@ struct three_arrays {
     return {p, why(p, weight[i])};
   }
 
-  // Enough so far. With these a device has four entries on their way while it looks at others, as of the library's sources.
+  // Enough so far. With these a device has four entries on their way while it looks at others, as of the library's
+  // sources.
   struct alignas(16) row {
     float of[4];
   };
@@ -47,7 +48,9 @@ struct three_arrays {
   }
 
  private:
-  CLEARANCE_HD static row load(const float* array, cursor c) { return clearance::read_only(reinterpret_cast<const row*>(array) + c); }
+  CLEARANCE_HD static row load(const float* array, cursor c) {
+    return clearance::read_only(reinterpret_cast<const row*>(array) + c);
+  }
   CLEARANCE_HD static clearance::drop_reason why(clearance::vec3 p, float weight) {
     if (!clearance::is_finite(p)) return clearance::drop_reason::not_finite;
     return weight < 0 ? clearance::drop_reason::missing : clearance::drop_reason::none;
@@ -61,8 +64,8 @@ template <clearance::backend Backend>
 int example(const Backend& on) {
   std::vector<float> x, y, z, weight;
   for (int k = 0; k < 100; ++k) x.push_back(2 - 0.01f * k), y.push_back(0), z.push_back(0), weight.push_back(1);
-  weight[99] = -1;                     // the nearest is stale,
-  x[98] = clearance::not_a_number;     // and the next is no number
+  weight[99] = -1;                  // the nearest is stale,
+  x[98] = clearance::not_a_number;  // and the next is no number
   const std::vector<clearance::inner_sphere> spheres = {{{0, 0, 0}, 0.5f}};
   const auto part = clearance::make_part(clearance::build<clearance::sphere>(spheres)).on(on);
 

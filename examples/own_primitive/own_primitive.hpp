@@ -15,9 +15,7 @@ struct capsule {
   clearance::vec3 a, b;
   clearance::real radius;
 
-  CLEARANCE_HD clearance::real distance(clearance::vec3 q) const {
-    return clearance::length(q - on_axis(q)) - radius;
-  }
+  CLEARANCE_HD clearance::real distance(clearance::vec3 q) const { return clearance::length(q - on_axis(q)) - radius; }
   CLEARANCE_HD clearance::vec3 normal(clearance::vec3 q) const {
     const clearance::vec3 d = q - on_axis(q);
     const clearance::real l = clearance::length(d);

@@ -5,7 +5,8 @@
 
 // [device]
 template <clearance::hierarchy Tree>
-__global__ void find_three(Tree tree, const clearance::vec3* points, unsigned count, three_nearest::result_type* answers) {
+__global__ void find_three(Tree tree, const clearance::vec3* points, unsigned count,
+                           three_nearest::result_type* answers) {
   const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= count) return;
   three_nearest query;

@@ -74,7 +74,7 @@ int example(const Backend& on) {
   // Whatever the volume, the answer has the same bits.
   const auto boxes = clearance::make_part(clearance::build<clearance::aabb>(diagonal)).on(on);
   const auto theirs = clearance::min_distance(on, boxes, pose, cloud);
-  std::printf("%.6f m to point %u with my volume, %.6f m to point %u with a box\n", mine.distance, mine.point, theirs.distance,
-              theirs.point);
+  std::printf("%.6f m to point %u with my volume, %.6f m to point %u with a box\n", mine.distance, mine.point,
+              theirs.distance, theirs.point);
   return mine.distance == theirs.distance && mine.point == theirs.point && mine.primitive == theirs.primitive ? 0 : 1;
 }

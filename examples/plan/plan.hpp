@@ -35,8 +35,8 @@ int example(const Backend& on) {
     const auto found = ask(trajectory, frame, {.d_max = 0.2f});  // of what is farther away only that is known
     stops = found.first_below(0.05);
     if (stops < found.of.size())
-      std::printf("waypoint %zu comes %.3f m near to point %u, with part %u\n", stops, double(found.of[stops].distance), found.of[stops].point,
-                  found.of[stops].part);
+      std::printf("waypoint %zu comes %.3f m near to point %u, with part %u\n", stops, double(found.of[stops].distance),
+                  found.of[stops].point, found.of[stops].part);
     else
       std::printf("all %zu waypoints are free, by %.3f m at least\n", found.of.size(), double(found.of[0].lower));
     // [plan]
@@ -47,14 +47,16 @@ int example(const Backend& on) {
   clearance::in_collisions_query touches(on, arm);  // a state a configuration, and no more
   const auto& states = touches(trajectory, wall, 0.05);
   const std::size_t not_free = states.first_not_free();
-  if (not_free < states.of.size()) std::printf("waypoint %zu is the first that may be within 5 cm: %s\n", not_free, to_string(states.of[not_free]));
+  if (not_free < states.of.size())
+    std::printf("waypoint %zu is the first that may be within 5 cm: %s\n", not_free, to_string(states.of[not_free]));
   // [in_collisions]
   if (not_free != 73 || clearance::in_collisions(on, arm, trajectory, wall, 0.05).of != states.of) return 1;
 
   // [parts]
   const auto each = clearance::min_distances_per_part(on, arm, trajectory, wall);
   const auto at_73 = each.of(73);
-  std::printf("at waypoint 73 link 0 is %.3f m away, and link 1 %.3f m\n", double(at_73[0].distance), double(at_73[1].distance));
+  std::printf("at waypoint 73 link 0 is %.3f m away, and link 1 %.3f m\n", double(at_73[0].distance),
+              double(at_73[1].distance));
   // [parts]
   if (!(at_73[1].distance <= at_73[0].distance && at_73[1].part == 1)) return 1;
 
@@ -63,7 +65,8 @@ int example(const Backend& on) {
   slide.origin.m[0][3] = 0.3, slide.value = 0, slide.factor = 1, slide.slides = true;
   const auto chain = clearance::joint_chain<>({shoulder, slide}, {0, 1}, {{"reach", {0, 1}}}).on(on);
   std::vector<double> q;  // two trajectories, one number a waypoint
-  for (int waypoint = 0; waypoint < 200; ++waypoint) q.push_back(waypoint < 100 ? 0.01 * waypoint : 0.001 * (waypoint - 100));
+  for (int waypoint = 0; waypoint < 200; ++waypoint)
+    q.push_back(waypoint < 100 ? 0.01 * waypoint : 0.001 * (waypoint - 100));
   const auto of_joints = ask(chain, q, wall, {.d_max = 0.2f});
   const auto first = of_joints.first_below(0.05, 100);
   std::printf("the first trajectory stops at waypoint %zu of 100, the second at %zu\n", first[0], first[1]);

@@ -27,7 +27,8 @@ int example(const Backend& on) {
     const clearance::min_distance_result r = ask(std::vector{shoulder, elbow}, wall);
     if (!(r.lower > 0.05)) ++stops;  // also if there was no valid point
     // [frames]
-    const auto same = clearance::min_distance(clearance::host{}, clearance::model(std::vector{link, link}), std::vector{shoulder, elbow}, wall);
+    const auto same = clearance::min_distance(clearance::host{}, clearance::model(std::vector{link, link}),
+                                              std::vector{shoulder, elbow}, wall);
     if (r.distance != same.distance || r.point != same.point || r.primitive != same.primitive) return 1;
   }
   std::printf("%d of 20 frames were too close\n", stops);

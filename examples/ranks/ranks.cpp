@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each machine has sensors of its own before one arm: how far is it from all that they see together? mpirun -n 4 example_ranks
+// Each machine has sensors of its own before one arm: how far is it from all that they see together? mpirun -n 4
+// example_ranks
 #include <clearance/make_model.hpp>
 #include <clearance/mpi/shard.hpp>
 #include <clearance/points/sharded.hpp>
@@ -17,7 +18,8 @@ auto arm_of_two() {
 }
 std::vector<clearance::vec3> wall() {
   std::vector<clearance::vec3> points;
-  for (int k = 0; k < 300000; ++k) points.push_back({0.6f, 0.002f * float(k % 600) - 0.6f, 0.002f * float(k / 600) - 0.5f});
+  for (int k = 0; k < 300000; ++k)
+    points.push_back({0.6f, 0.002f * float(k % 600) - 0.6f, 0.002f * float(k / 600) - 0.5f});
   return points;
 }
 std::vector<Eigen::Isometry3d> poses_at(double angle) {
@@ -44,10 +46,11 @@ int main(int count, char** arguments) {
       const clearance::min_distance_result r = ask(poses_at(angle), mine);  // on every rank, which all get the same
       // [ask]
       if (rank == 0)
-        std::printf("%.1f rad: %.3f m, certainly more than %.3f m, to point %u of %llu on %d ranks\n", angle, double(r.distance), double(r.lower), r.point,
-                    static_cast<unsigned long long>(r.seen), ranks);
+        std::printf("%.1f rad: %.3f m, certainly more than %.3f m, to point %u of %llu on %d ranks\n", angle,
+                    double(r.distance), double(r.lower), r.point, static_cast<unsigned long long>(r.seen), ranks);
       const auto same = clearance::min_distance(clearance::host{1}, arm, poses_at(angle), points);
-      wrong += r.distance != same.distance || r.lower != same.lower || r.point != same.point || r.primitive != same.primitive || r.valid != same.valid;
+      wrong += r.distance != same.distance || r.lower != same.lower || r.point != same.point ||
+               r.primitive != same.primitive || r.valid != same.valid;
     }
   }
   MPI_Finalize();

@@ -41,7 +41,8 @@ int main() {
   // A camera 3 m in front of the base looks back at it, and sees a wall that stands 1 m from the base. (It looks along
   // the world's -x; its own axes are z forward, x right, y down.)
   const std::vector<std::uint16_t> pixels(64 * 48, 2000);
-  const clearance::depth_image<std::uint16_t> image(pixels.data(), 64, 48, {.fx = 60, .fy = 60, .cx = 31.5, .cy = 23.5});
+  const clearance::depth_image<std::uint16_t> image(pixels.data(), 64, 48,
+                                                    {.fx = 60, .fy = 60, .cx = 31.5, .cy = 23.5});
   Eigen::Isometry3d camera = Eigen::Isometry3d::Identity();
   camera.linear().col(0) = Eigen::Vector3d::UnitY(), camera.linear().col(1) = -Eigen::Vector3d::UnitZ();
   camera.linear().col(2) = -Eigen::Vector3d::UnitX();

@@ -28,25 +28,31 @@ int example(const Backend& on) {
 
   // [self_filter]
   const auto arm = clearance::make_model<clearance::sphere>(links).on(on);
-  const clearance::self_filter_options options{.padding = {0.02}};  // metres: noise, calibration, and the gap of the spheres
+  const clearance::self_filter_options options{
+      .padding = {0.02}};  // metres: noise, calibration, and the gap of the spheres
   const auto bare = clearance::min_distance_filtered(on, arm, poses, seen, options);
 
-  const auto tool = clearance::make_model<clearance::sphere>(box).on(on);  // grasped: one more part, and nothing is built anew
+  const auto tool =
+      clearance::make_model<clearance::sphere>(box).on(on);  // grasped: one more part, and nothing is built anew
   const auto holding = clearance::attach(on, arm, tool);
   auto its_poses = poses;
   its_poses.push_back(poses[1] * hand);  // world-from-link * link-from-object
   const auto r = clearance::min_distance_filtered(on, holding, its_poses, seen, options);
-  std::printf("%llu of %zu points are the robot's; it is %.3f m from point %u\n", r.filter.counts.own, seen.size(), double(r.rest.distance), r.rest.point);
+  std::printf("%llu of %zu points are the robot's; it is %.3f m from point %u\n", r.filter.counts.own, seen.size(),
+              double(r.rest.distance), r.rest.point);
   // [self_filter]
 
   // [compacted]
   const auto labels = on.copy_in(std::span<const clearance::point_label>(r.filter.labels));
   const auto left = clearance::compacted(on, clearance::masked(clearance::point_span(seen), labels.data()));
-  std::printf("%zu points are left for others; the first of them is number %u of the cloud\n", left.points.size(), left.numbers.front());
+  std::printf("%zu points are left for others; the first of them is number %u of the cloud\n", left.points.size(),
+              left.numbers.front());
   // [compacted]
-  if (left.numbers != r.filter.rest || left.points.size() != left.numbers.size() || left.points.front() != seen[left.numbers.front()]) return 1;
-  return bare.filter.rest.size() == 410 && bare.rest.point >= 400 && bare.rest.point < 410 && r.filter.counts.own == 410 && r.rest.point >= 410 &&
-                 std::abs(r.rest.distance - 0.32f) < 1e-4f
+  if (left.numbers != r.filter.rest || left.points.size() != left.numbers.size() ||
+      left.points.front() != seen[left.numbers.front()])
+    return 1;
+  return bare.filter.rest.size() == 410 && bare.rest.point >= 400 && bare.rest.point < 410 &&
+                 r.filter.counts.own == 410 && r.rest.point >= 410 && std::abs(r.rest.distance - 0.32f) < 1e-4f
              ? 0
              : 1;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Stop, slow down, warn: zones around the links of an arm, as safety engineers and Nav2's collision monitor know them. And approach: as slow
-// as leaves time before a collision.
+// Stop, slow down, warn: zones around the links of an arm, as safety engineers and Nav2's collision monitor know them.
+// And approach: as slow as leaves time before a collision.
 
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
@@ -33,26 +33,32 @@ int example(const Backend& on) {
     poses[1].translation().x() = reached;
     const auto seen = ask(poses, person, options);
     const char* const what[] = {"stop", "slow down", "warn", "go on"};
-    std::printf("%.1f m: %s; %llu points in the warning zone of the last link, the nearest %.2f m away\n", reached, what[seen.innermost()],
-                static_cast<unsigned long long>(seen.of(1, 2).points), double(seen.of(1, 2).nearest));
+    std::printf("%.1f m: %s; %llu points in the warning zone of the last link, the nearest %.2f m away\n", reached,
+                what[seen.innermost()], static_cast<unsigned long long>(seen.of(1, 2).points),
+                double(seen.of(1, 2).nearest));
     // [zones]
-    wrong += seen.innermost() != expected-- || clearance::zones(on, arm, poses, person, options).of(1, 2).points != seen.of(1, 2).points;
+    wrong += seen.innermost() != expected-- ||
+             clearance::zones(on, arm, poses, person, options).of(1, 2).points != seen.of(1, 2).points;
   }
 
   for (const double x : {0.5, -0.5}) {
     std::vector<Eigen::Isometry3d> poses(2, Eigen::Isometry3d::Identity());
     poses[1].translation().x() = 0.3;
     // [approach]
-    const std::vector<Eigen::Vector3d> velocity{{0, 0, 0}, {x, 0, 0}};  // of each link, as commanded (m/s); neither turns
-    const double time_before_collision = 2;                             // seconds that have to remain
+    const std::vector<Eigen::Vector3d> velocity{{0, 0, 0},
+                                                {x, 0, 0}};  // of each link, as commanded (m/s); neither turns
+    const double time_before_collision = 2;                  // seconds that have to remain
     const auto [least, minima] = clearance::min_distance_per_part(on, arm, poses, person);
-    double speed = least.lower > 0 ? 1 : 0, fastest = 0;  // of what is commanded: nothing, if nothing is known; and how fast a gap closes
+    double speed = least.lower > 0 ? 1 : 0,
+           fastest = 0;  // of what is commanded: nothing, if nothing is known; and how fast a gap closes
     for (const auto& near : clearance::part_witnesses(on, arm, poses, person, minima)) {
       if (near.part == clearance::none) continue;
-      const auto closing = clearance::approach_speed(near, velocity[near.part], Eigen::Vector3d::Zero(), poses[near.part].translation());
+      const auto closing =
+          clearance::approach_speed(near, velocity[near.part], Eigen::Vector3d::Zero(), poses[near.part].translation());
       fastest = std::max(fastest, closing.value_or(0));  // without a direction it touches, or is inside: `lower` is 0
     }
-    if (fastest > 0) speed = std::min(speed, double(least.lower) / (time_before_collision * fastest));  // moving away is not slowed
+    if (fastest > 0)
+      speed = std::min(speed, double(least.lower) / (time_before_collision * fastest));  // moving away is not slowed
     std::printf("%.2f m away, at %+.1f m/s: %.0f %% of that\n", double(least.distance), x, 100 * speed);
     // [approach]
     wrong += std::abs(speed - (x > 0 ? 0.48 : 1.0)) > 1e-4;

@@ -11,8 +11,8 @@
 
 namespace clearance::minimum {
 
-/// On a device: chunks go there through a ring, and a kernel searches one while the next is copied. What is on the device already is read
-/// where it is.
+/// On a device: chunks go there through a ring, and a kernel searches one while the next is copied. What is on the
+/// device already is read where it is.
 template <class PartView>
 class chunked_search<device, PartView> {
  public:
@@ -24,8 +24,9 @@ class chunked_search<device, PartView> {
   std::size_t parts() const { return search_.parts(); }
 
   template <class C>
-  void operator()(const chunked<C>& chunks, const std::vector<point_range>& ranges, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose,
-                  min_distance_result& result, std::span<part_minimum> minima, std::vector<scan::boxed_piece>* seen) {
+  void operator()(const chunked<C>& chunks, const std::vector<point_range>& ranges,
+                  std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose, min_distance_result& result,
+                  std::span<part_minimum> minima, std::vector<scan::boxed_piece>* seen) {
     try {
       if (minima.empty())
         search<false>(chunks.cloud(), ranges, poses, pose, seen);
@@ -38,22 +39,27 @@ class chunked_search<device, PartView> {
     }
     result = *answer_.data();
     std::copy_n(minima_.data(), minima.size(), minima.begin());
-    number_as_in_cloud(result, minima, [&](std::uint32_t k, std::uint32_t i) { return std::uint32_t(ranges[k].begin) + i; });
+    number_as_in_cloud(result, minima,
+                       [&](std::uint32_t k, std::uint32_t i) { return std::uint32_t(ranges[k].begin) + i; });
   }
 
  private:
   template <bool PerPart, class C>
-  void search(const C& cloud, const std::vector<point_range>& ranges, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose,
-              std::vector<scan::boxed_piece>* seen) {
+  void search(const C& cloud, const std::vector<point_range>& ranges, std::span<const Eigen::Isometry3d> poses,
+              const Eigen::Isometry3d& pose, std::vector<scan::boxed_piece>* seen) {
     using S = loaded_source<C>;
-    static_assert(requires(const S s) { s.at(s.bytes().data()); }, "a source that does not say where its bytes are cannot be copied to a device");
-    if (seen != nullptr && boxes_.size() < seen->size()) boxes_ = {}, boxes_ = device_buffer<scan::boxed_piece>(seen->size(), on_.id);
+    static_assert(
+        requires(const S s) { s.at(s.bytes().data()); },
+        "a source that does not say where its bytes are cannot be copied to a device");
+    if (seen != nullptr && boxes_.size() < seen->size())
+      boxes_ = {}, boxes_ = device_buffer<scan::boxed_piece>(seen->size(), on_.id);
     std::size_t pinned = 0;
     for (const point_range& r : ranges) pinned = std::max(pinned, cloud.room(r.end - r.begin));
     ring_.need(pinned, 0);
     std::optional<S> there;
     const auto done = [&](std::size_t k) {
-      if (seen != nullptr && there) scan::enqueue_boxes(on_, *there, boxes_.data() + ranges[k].begin / scan::piece_points);
+      if (seen != nullptr && there)
+        scan::enqueue_boxes(on_, *there, boxes_.data() + ranges[k].begin / scan::piece_points);
       ring_.read(k);
     };
     const auto load = [&](std::size_t k) { return placed<S>{load_range(cloud, ranges[k], ring_.fill(k)), pose}; };
@@ -73,7 +79,9 @@ class chunked_search<device, PartView> {
     if (!ranges.empty()) done(ranges.size() - 1);
     if (seen == nullptr || seen->empty()) return;
     const device_guard guard(on_.id);
-    check_cuda(cudaMemcpyAsync(seen->data(), boxes_.data(), seen->size() * sizeof(scan::boxed_piece), cudaMemcpyDeviceToHost, on_.stream), "cudaMemcpyAsync");
+    check_cuda(cudaMemcpyAsync(seen->data(), boxes_.data(), seen->size() * sizeof(scan::boxed_piece),
+                               cudaMemcpyDeviceToHost, on_.stream),
+               "cudaMemcpyAsync");
   }
 
   /// Whatever has gone wrong: nothing reads or writes any more.

@@ -11,15 +11,18 @@ namespace clearance {
 
 namespace minimum {
 
-/// Asks about ranges of a chunked cloud on a backend: `(cloud, ranges, poses, pose, result, minima, seen)`, points numbered as in the
-/// cloud; `minima`: one a part, or empty; what is seen of each piece is written to `seen`, if that is not null.
+/// Asks about ranges of a chunked cloud on a backend: `(cloud, ranges, poses, pose, result, minima, seen)`, points
+/// numbered as in the cloud; `minima`: one a part, or empty; what is seen of each piece is written to `seen`, if that
+/// is not null.
 template <class On, class PartView>
 class chunked_search {
-  static_assert(!requires { typename On::own_scan; }, "a device has a ring of its own: include <clearance/chunked_query.cuh>, not the .hpp");
+  static_assert(
+      !requires { typename On::own_scan; },
+      "a device has a ring of its own: include <clearance/chunked_query.cuh>, not the .hpp");
 };
 
-/// On the CPU: while some is searched the next is loaded. Ranges of what is in one place are searched as one, all at once or a chunk of
-/// points at a time: to begin costs the host tens of microseconds.
+/// On the CPU: while some is searched the next is loaded. Ranges of what is in one place are searched as one, all at
+/// once or a chunk of points at a time: to begin costs the host tens of microseconds.
 template <class PartView>
 class chunked_search<host, PartView> {
  public:
@@ -28,8 +31,9 @@ class chunked_search<host, PartView> {
   std::size_t parts() const { return search_.parts(); }
 
   template <class C>
-  void operator()(const chunked<C>& chunks, const std::vector<point_range>& ranges, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose,
-                  min_distance_result& result, std::span<part_minimum> minima, std::vector<scan::boxed_piece>* seen) {
+  void operator()(const chunked<C>& chunks, const std::vector<point_range>& ranges,
+                  std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose, min_distance_result& result,
+                  std::span<part_minimum> minima, std::vector<scan::boxed_piece>* seen) {
     const C& cloud = chunks.cloud();
     const std::vector<turn> turns = put_together(chunks, ranges);
     const auto load = [&](std::size_t k) { return load_part(cloud, ranges, turns[k], room_[k % 2]); };
@@ -37,7 +41,8 @@ class chunked_search<host, PartView> {
     std::future<part> ahead;
     const auto next = [&](std::size_t k) {
       const auto make = [&](const part& source) {
-        const scan::boxing<part> boxing{source, seen == nullptr || turns[k].points == 0 ? nullptr : seen->data() + numbers_[turns[k].piece]};
+        const scan::boxing<part> boxing{
+            source, seen == nullptr || turns[k].points == 0 ? nullptr : seen->data() + numbers_[turns[k].piece]};
         boxing.add_rest();
         return placed<scan::boxing<part>>{boxing, pose};
       };
@@ -48,7 +53,8 @@ class chunked_search<host, PartView> {
     };
     search_(poses, as_they_come(turns.size(), next), &result, minima.empty() ? nullptr : minima.data());
     number_as_in_cloud(result, minima, [&](std::uint32_t k, std::uint32_t i) {
-      return numbers_[turns[k].piece + i / scan::piece_points] * std::uint32_t(scan::piece_points) + i % std::uint32_t(scan::piece_points);
+      return numbers_[turns[k].piece + i / scan::piece_points] * std::uint32_t(scan::piece_points) +
+             i % std::uint32_t(scan::piece_points);
     });
   }
 
@@ -64,9 +70,11 @@ class chunked_search<host, PartView> {
     numbers_.clear();
     for (std::size_t r = 0; r < ranges.size(); ++r) {
       const std::size_t points = ranges[r].end - ranges[r].begin;
-      if (!addressed_cloud<C> || turns.empty() || turns.back().points + points > most) turns.push_back({r, r, numbers_.size(), 0});
+      if (!addressed_cloud<C> || turns.empty() || turns.back().points + points > most)
+        turns.push_back({r, r, numbers_.size(), 0});
       turns.back().last = r + 1, turns.back().points += points;
-      for (std::size_t at = ranges[r].begin; at < ranges[r].end; at += scan::piece_points) numbers_.push_back(std::uint32_t(at / scan::piece_points));
+      for (std::size_t at = ranges[r].begin; at < ranges[r].end; at += scan::piece_points)
+        numbers_.push_back(std::uint32_t(at / scan::piece_points));
     }
     return turns;
   }
@@ -75,14 +83,17 @@ class chunked_search<host, PartView> {
     std::byte bytes[64];
   };
   template <class C>
-  auto load_part(const C& cloud, const std::vector<point_range>& ranges, const turn& its, std::vector<cache_line>& room) const {
+  auto load_part(const C& cloud, const std::vector<point_range>& ranges, const turn& its,
+                 std::vector<cache_line>& room) const {
     std::size_t bytes = 0;
-    for (std::size_t r = its.first; r < its.last; ++r) bytes = std::max(bytes, cloud.room(ranges[r].end - ranges[r].begin));
+    for (std::size_t r = its.first; r < its.last; ++r)
+      bytes = std::max(bytes, cloud.room(ranges[r].end - ranges[r].begin));
     room.resize((bytes + sizeof(cache_line) - 1) / sizeof(cache_line));
     std::byte* const memory = room.empty() ? nullptr : room[0].bytes;
     if constexpr (addressed_cloud<C>) {
       for (std::size_t r = its.first; r < its.last; ++r) load_range(cloud, ranges[r], memory);
-      return scan::listed_pieces<std::remove_cvref_t<decltype(cloud.whole())>>{cloud.whole(), numbers_.data() + its.piece, its.points};
+      return scan::listed_pieces<std::remove_cvref_t<decltype(cloud.whole())>>{cloud.whole(),
+                                                                               numbers_.data() + its.piece, its.points};
     } else {
       return load_range(cloud, ranges[its.first], memory);
     }
@@ -95,8 +106,9 @@ class chunked_search<host, PartView> {
 
 }  // namespace minimum
 
-/// The question about a `chunked` cloud: min_distance's, with min_distance's answer about all of it in memory, to the bit. The robot's
-/// memory must stay. One object is for one thread. On a device its memory is three chunks, and as much that is pinned where the cloud is not.
+/// The question about a `chunked` cloud: min_distance's, with min_distance's answer about all of it in memory, to the
+/// bit. The robot's memory must stay. One object is for one thread. On a device its memory is three chunks, and as much
+/// that is pinned where the cloud is not.
 template <class On, class PartView>
 class chunked_query {
  public:
@@ -106,12 +118,14 @@ class chunked_query {
 
   /// As min_distance; `pose` is world-from-cloud. Throws what `load` throws; the same object can be asked again then.
   template <loaded_cloud C>
-  min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
+  min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud,
+                                 const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
     return ask(poses, cloud, pose, {});
   }
   /// As min_distance_per_part; `minima`, one a part, are written.
   template <loaded_cloud C>
-  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose, std::span<part_minimum> minima) {
+  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud,
+                               const Eigen::Isometry3d& pose, std::span<part_minimum> minima) {
     frames::check_room(search_.parts(), minima.size());
     return ask(poses, cloud, pose, minima);
   }
@@ -121,13 +135,15 @@ class chunked_query {
 
  private:
   template <class C>
-  min_distance_result ask(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose, std::span<part_minimum> minima) {
+  min_distance_result ask(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose,
+                          std::span<part_minimum> minima) {
     loaded_ = 0;
-    return minimum::ask_chunked(cloud, facts_, poses, pose, minima,
-                                [&](const std::vector<point_range>& ranges, min_distance_result& result, std::vector<scan::boxed_piece>* seen) {
-                                  search_(cloud, ranges, poses, pose, result, minima, seen);
-                                  for (const point_range& r : ranges) loaded_ += r.end - r.begin;
-                                });
+    return minimum::ask_chunked(
+        cloud, facts_, poses, pose, minima,
+        [&](const std::vector<point_range>& ranges, min_distance_result& result, std::vector<scan::boxed_piece>* seen) {
+          search_(cloud, ranges, poses, pose, result, minima, seen);
+          for (const point_range& r : ranges) loaded_ += r.end - r.begin;
+        });
   }
 
   std::span<const part_facts> facts_;
@@ -136,6 +152,7 @@ class chunked_query {
 };
 
 template <class On, robot Robot>
-chunked_query(const On&, const Robot&) -> chunked_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+chunked_query(const On&, const Robot&)
+    -> chunked_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
 }  // namespace clearance

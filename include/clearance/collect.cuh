@@ -15,8 +15,8 @@ struct pairs_on<device> {
   using kept = device_pairs<PartView>;
 
   template <class PartView, class Clouds, answer Answer, class Here>
-  static void once(const device& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                   const Answer& answer, point_counts* counts, const Here& here) {
+  static void once(const device& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
+                   const Clouds& clouds, const Answer& answer, point_counts* counts, const Here& here) {
     stream_resource memory(on.id, on.stream);
     device_pairs<PartView>(on, model, &memory).enqueue(poses, clouds, answer, counts, here);
   }

@@ -12,7 +12,8 @@ namespace clearance {
 
 namespace pairwise {
 
-/// What each of them is made of: a robot that is ready to be asked about, and memory that is kept, there and on the host.
+/// What each of them is made of: a robot that is ready to be asked about, and memory that is kept, there and on the
+/// host.
 template <class On, class PartView>
 struct pair_question {
   On on;
@@ -22,7 +23,8 @@ struct pair_question {
   frame_ahead ahead;
 
   template <class... Memory>
-  pair_question(const On& on, const model_view<PartView>& model, Memory... from) : on(on), model(model), memory(on, from...), pairs{on, model, from...} {}
+  pair_question(const On& on, const model_view<PartView>& model, Memory... from)
+      : on(on), model(model), memory(on, from...), pairs{on, model, from...} {}
 
   /// Enqueues it: clouds have to be readable where it runs.
   template <class Clouds, answer Answer>
@@ -45,8 +47,8 @@ struct pair_question {
 
 }  // namespace pairwise
 
-/// `collect`, prepared: made once for a robot, asked every frame with new poses, points and answers. One object is for one thread and one
-/// stream; the robot must stay.
+/// `collect`, prepared: made once for a robot, asked every frame with new poses, points and answers. One object is for
+/// one thread and one stream; the robot must stay.
 template <class On, class PartView>
 class collect_query {
  public:
@@ -62,10 +64,11 @@ class collect_query {
     return question_.count(poses, question_.memory.readable(clouds), answer);
   }
 
-  /// As `collect_async`. On a device one kernel a cloud, and nothing is allocated or waited for. A graph that captures this keeps the
-  /// poses of now.
+  /// As `collect_async`. On a device one kernel a cloud, and nothing is allocated or waited for. A graph that captures
+  /// this keeps the poses of now.
   template <class Clouds, class Answer>
-  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer, point_counts* counts) {
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
+               point_counts* counts) {
     static_assert(explain_answer<Answer>() && explain_clouds<Clouds>());
     question_.ask(poses, clouds, answer, counts);
   }
@@ -74,6 +77,7 @@ class collect_query {
   pairwise::pair_question<On, PartView> question_;
 };
 template <class On, robot Robot, class... Memory>
-collect_query(const On&, const Robot&, Memory...) -> collect_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+collect_query(const On&, const Robot&, Memory...)
+    -> collect_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
 }  // namespace clearance

@@ -5,8 +5,8 @@
 #include <clearance/backend/device.cuh>
 #include <clearance/compacted.hpp>
 
-#include <cub/device/device_select.cuh>
 #include <thrust/iterator/counting_iterator.h>
+#include <cub/device/device_select.cuh>
 
 namespace clearance::detail {
 
@@ -33,8 +33,8 @@ struct compacts_on<device> {
   static void enqueue(const device& on, const S& source, vec3* points, std::uint32_t* numbers, std::uint32_t* count) {
     const device_guard guard(on.id);
     const auto select = [&](void* room, std::size_t& bytes) {
-      check_cuda(cub::DeviceSelect::If(room, bytes, thrust::counting_iterator<std::uint32_t>(0), numbers, count, int(source.size()), is_valid<S>{source},
-                                       on.stream),
+      check_cuda(cub::DeviceSelect::If(room, bytes, thrust::counting_iterator<std::uint32_t>(0), numbers, count,
+                                       int(source.size()), is_valid<S>{source}, on.stream),
                  "cub::DeviceSelect::If");
     };
     std::size_t bytes = 0;

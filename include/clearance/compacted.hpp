@@ -36,7 +36,9 @@ struct compact_body {
 /// By where it runs. One thread does it as fast as memory does.
 template <class On>
 struct compacts_on {
-  static_assert(!requires { typename On::own_scan; }, "a device does it otherwise: include <clearance/compacted.cuh>, not the .hpp");
+  static_assert(
+      !requires { typename On::own_scan; },
+      "a device does it otherwise: include <clearance/compacted.cuh>, not the .hpp");
 
   template <point_source S>
   static void enqueue(const On& on, const S& source, vec3* points, std::uint32_t* numbers, std::uint32_t* count) {
@@ -46,17 +48,19 @@ struct compacts_on {
 
 }  // namespace detail
 
-/// Enqueues it, into memory that `on` can write, with room for all points of the source, which `on` must be able to read. Throws
-/// std::invalid_argument if there are 2^31 points or more.
+/// Enqueues it, into memory that `on` can write, with room for all points of the source, which `on` must be able to
+/// read. Throws std::invalid_argument if there are 2^31 points or more.
 template <class On, point_source S>
 void compacted_async(const On& on, const S& source, vec3* points, std::uint32_t* numbers, std::uint32_t* count) {
   if (source.size() >= std::size_t(1) << 31)
-    throw std::invalid_argument("clearance: " + std::to_string(source.size()) + " points are too many for one call; it takes 2^31 - 1");
+    throw std::invalid_argument("clearance: " + std::to_string(source.size()) +
+                                " points are too many for one call; it takes 2^31 - 1");
   detail::compacts_on<On>::enqueue(on, source, points, numbers, count);
 }
 
-/// For what leaves the library, such as `masked(cloud, labels)` without the robot. To ask about it here, ask about the cloud itself, or
-/// masked_clouds: a source knows how far off its own points can be, and which were too close to be measured; positions do not.
+/// For what leaves the library, such as `masked(cloud, labels)` without the robot. To ask about it here, ask about the
+/// cloud itself, or masked_clouds: a source knows how far off its own points can be, and which were too close to be
+/// measured; positions do not.
 template <class On, point_source S>
 compacted_points compacted(const On& on, const S& source) {
   auto points = on.template make_scratch<vec3>(source.size());

@@ -15,8 +15,10 @@ struct distances_options {
 
 /// Distances of points, in the order of the clouds and their points.
 struct point_distances {
-  std::vector<real> distance;                  ///< Metres: to sphere parts signed, to triangle parts 0 inside; `+inf` beyond d_max, NaN where there is no point.
-  std::vector<std::uint32_t> part, primitive;  ///< Where asked for: of equally near ones the lowest; ~0u: none (or, for a primitive: inside).
+  std::vector<real> distance;  ///< Metres: to sphere parts signed, to triangle parts 0 inside; `+inf` beyond d_max, NaN
+                               ///< where there is no point.
+  std::vector<std::uint32_t> part,
+      primitive;  ///< Where asked for: of equally near ones the lowest; ~0u: none (or, for a primitive: inside).
   point_counts counts;
   distance_certainty certain;
 };
@@ -37,8 +39,8 @@ struct unprepared {
   model_view<PartView> model;
 
   template <class Clouds, class Here>
-  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out, real d_max, point_counts* counts,
-                             const Here& here) const {
+  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
+                             real d_max, point_counts* counts, const Here& here) const {
     return points_on<On>::once(on, model, poses, clouds, out, d_max, counts, here);
   }
   void forget() const {}
@@ -47,10 +49,13 @@ struct unprepared {
 /// Any backend that has no scan of its own: a loop over points.
 template <class On>
 struct points_on {
-  static_assert(!requires { typename On::own_scan; }, "a device has a scan of its own: include <clearance/distances.cuh>, not the .hpp");
+  static_assert(
+      !requires { typename On::own_scan; },
+      "a device has a scan of its own: include <clearance/distances.cuh>, not the .hpp");
 
   template <class PartView, class Clouds, class Here>
-  static distance_certainty once(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+  static distance_certainty once(const On& on, const model_view<PartView>& model,
+                                 std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                  const distances_out& out, real d_max, point_counts* counts, const Here& here) {
     const auto of_cloud = [&]<point_source S>(const S& source, const frames::turn& now) {
       on.for_each(source.size(), clear_body<S>{source, out, now.first});
@@ -66,7 +71,8 @@ struct points_on {
 template <>
 struct points_on<host> {
   template <class PartView, class Clouds, class Here>
-  static distance_certainty once(const host& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+  static distance_certainty once(const host& on, const model_view<PartView>& model,
+                                 std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                  const distances_out& out, real d_max, point_counts* counts, const Here&) {
     return on_host(on, model, poses, clouds, out, d_max, counts);
   }
@@ -86,7 +92,8 @@ point_distances wait_for(const On& on, const Clouds& clouds, const distances_opt
   auto which = on.template make_scratch<std::uint32_t>(options.which ? 2 * points : 0);
   auto counts = on.template make_scratch<point_counts>(1);
   minimum::cloud_copies<On> copies;
-  const distances_out out{distance.data(), options.which ? which.data() : nullptr, options.which ? which.data() + points : nullptr};
+  const distances_out out{distance.data(), options.which ? which.data() : nullptr,
+                          options.which ? which.data() + points : nullptr};
   point_distances all;
   all.certain = enqueue(out, counts.data(), minimum::readable_on<On>{on, copies});
   if (options.which) all.part = on.copy_out(out.part, points), all.primitive = on.copy_out(out.primitive, points);
@@ -97,20 +104,23 @@ point_distances wait_for(const On& on, const Clouds& clouds, const distances_opt
 
 }  // namespace pointwise
 
-/// Every point's distance to the nearest part (peers call d_max also max_dist, or activation distance). `poses` and `clouds` as
-/// for min_distance. Throws std::invalid_argument if the number of poses is wrong, one is not rigid, or d_max is NaN.
+/// Every point's distance to the nearest part (peers call d_max also max_dist, or activation distance). `poses` and
+/// `clouds` as for min_distance. Throws std::invalid_argument if the number of poses is wrong, one is not rigid, or
+/// d_max is NaN.
 template <class On, robot Robot, class Clouds>
-point_distances distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                          const distances_options& options = {}) {
-  return pointwise::wait_for(on, clouds, options, [&](const distances_out& out, point_counts* counts, const auto& here) {
-    return pointwise::points_on<On>::once(on, view_of(robot), poses, clouds, out, options.d_max, counts, here);
-  });
+point_distances distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                          const Clouds& clouds, const distances_options& options = {}) {
+  return pointwise::wait_for(
+      on, clouds, options, [&](const distances_out& out, point_counts* counts, const auto& here) {
+        return pointwise::points_on<On>::once(on, view_of(robot), poses, clouds, out, options.d_max, counts, here);
+      });
 }
 
 /// Enqueues it; clouds, and the memory of `out` and `counts`, must stay until it is done.
 template <class On, robot Robot, class Clouds>
-distance_certainty distances_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
-                                   point_counts* counts, real d_max = infinity) {
+distance_certainty distances_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                                   const Clouds& clouds, const distances_out& out, point_counts* counts,
+                                   real d_max = infinity) {
   static_assert(explain_clouds<Clouds>());
   pointwise::check({d_max});
   return pointwise::points_on<On>::once(on, view_of(robot), poses, clouds, out, d_max, counts, minimum::as_it_is{});

@@ -12,8 +12,8 @@ namespace clearance {
 /// Whether a distance has a gradient.
 enum class gradient_state : std::uint8_t {
   known,
-  no_data,       ///< There is no witness.
-  at_zero,       ///< The distance is exactly 0: on a surface, or inside a part of triangles, where moving changes nothing.
+  no_data,  ///< There is no witness.
+  at_zero,  ///< The distance is exactly 0: on a surface, or inside a part of triangles, where moving changes nothing.
   no_direction,  ///< There is no normal: at the centre of a sphere.
 };
 
@@ -22,16 +22,18 @@ inline const char* to_string(gradient_state s) {
   return names[int(s)];
 }
 
-/// The gradient of a distance with respect to the twist of its part, in world axes; plain data, that a kernel may write. NaN unless
-/// `state` is known. With respect to the point it is the witness's normal.
+/// The gradient of a distance with respect to the twist of its part, in world axes; plain data, that a kernel may
+/// write. NaN unless `state` is known. With respect to the point it is the witness's normal.
 struct pose_gradient {
   gradient_state state = gradient_state::no_data;
-  vec3 linear = {not_a_number, not_a_number, not_a_number};   ///< By the velocity of the part where it is at `about`: metres a metre,
+  vec3 linear = {not_a_number, not_a_number,
+                 not_a_number};  ///< By the velocity of the part where it is at `about`: metres a metre,
   vec3 angular = {not_a_number, not_a_number, not_a_number};  ///< and by its angular velocity: metres a radian.
   position about = {0, 0, 0};
 
   CLEARANCE_HD explicit operator bool() const { return state == gradient_state::known; }
-  /// How fast the distance grows, in metres a second, if the part moves with `velocity` at `about` (m/s) and turns (rad/s).
+  /// How fast the distance grows, in metres a second, if the part moves with `velocity` at `about` (m/s) and turns
+  /// (rad/s).
   CLEARANCE_HD real along(vec3 velocity, vec3 turning) const { return dot(linear, velocity) + dot(angular, turning); }
 };
 
@@ -43,7 +45,9 @@ CLEARANCE_HD pose_gradient gradient(const Witness& w, position about) {
   pose_gradient g;
   g.about = about;
   if (w.part == none || !(absolute(w.distance) < infinity)) return g;
-  g.state = w.distance == 0 ? gradient_state::at_zero : w.normal == vec3{0, 0, 0} ? gradient_state::no_direction : gradient_state::known;
+  g.state = w.distance == 0             ? gradient_state::at_zero
+            : w.normal == vec3{0, 0, 0} ? gradient_state::no_direction
+                                        : gradient_state::known;
   if (!g) return g;
   // The distance grows by -normal . (v + w x arm): the part's surface moves and the point stays.
   const double x = w.nearest.x - about.x, y = w.nearest.y - about.y, z = w.nearest.z - about.z;
@@ -57,28 +61,32 @@ pose_gradient gradient(const Witness& w, const Eigen::Vector3d& about) {
   return gradient(w, position{about.x(), about.y(), about.z()});
 }
 
-/// A minimum without corners: `-temperature log(sum exp(-distance / temperature))`. Never above the least distance, and at most
-/// `temperature log(parts)` below it. Its gradient is the sum of the parts' gradients times `weights`.
+/// A minimum without corners: `-temperature log(sum exp(-distance / temperature))`. Never above the least distance, and
+/// at most `temperature log(parts)` below it. Its gradient is the sum of the parts' gradients times `weights`.
 struct smooth_minimum {
   double value = infinity;      ///< Metres; infinite if no part has a point.
   std::vector<double> weights;  ///< One a part, together 1; all 0 if the value is infinite.
 };
 
-/// Of every part's minimum; `temperature` in metres. Throws std::invalid_argument if that is not above 0 and finite, or a distance is
-/// NaN or below everything.
+/// Of every part's minimum; `temperature` in metres. Throws std::invalid_argument if that is not above 0 and finite, or
+/// a distance is NaN or below everything.
 inline smooth_minimum smooth_minimum_of(std::span<const part_minimum> minima, double temperature) {
   if (!(temperature > 0 && temperature < double(infinity)))
-    throw std::invalid_argument("clearance: a temperature is " + std::to_string(temperature) + " m; it must be above 0 and finite");
+    throw std::invalid_argument("clearance: a temperature is " + std::to_string(temperature) +
+                                " m; it must be above 0 and finite");
   smooth_minimum all{infinity, std::vector<double>(minima.size(), 0.0)};
   double least = infinity, sum = 0;
   for (const part_minimum& m : minima) {
-    if (!(m.distance > -infinity)) throw std::invalid_argument("clearance: a part's distance is not a number, or below all numbers");
+    if (!(m.distance > -infinity))
+      throw std::invalid_argument("clearance: a part's distance is not a number, or below all numbers");
     least = std::min(least, double(m.distance));
   }
   if (least == double(infinity)) return all;
-  for (std::size_t k = 0; k < minima.size(); ++k) sum += all.weights[k] = std::exp((least - double(minima[k].distance)) / temperature);
+  for (std::size_t k = 0; k < minima.size(); ++k)
+    sum += all.weights[k] = std::exp((least - double(minima[k].distance)) / temperature);
   for (double& w : all.weights) w /= sum;
-  all.value = least - temperature * std::log(sum);  // the least one's term is exactly 1, so the logarithm is not below 0
+  all.value =
+      least - temperature * std::log(sum);  // the least one's term is exactly 1, so the logarithm is not below 0
   return all;
 }
 

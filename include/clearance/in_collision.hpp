@@ -10,12 +10,14 @@
 
 namespace clearance {
 
-/// Whether a point is within a margin (peers: security margin, safety distance), and which: the same one on every run and backend.
+/// Whether a point is within a margin (peers: security margin, safety distance), and which: the same one on every run
+/// and backend.
 struct collision_result {
-  /// collision: certainly one is; possible: that cannot be excluded; free: certainly none, and nothing was too close to be measured;
-  /// no_data: there was no valid point, or no part.
+  /// collision: certainly one is; possible: that cannot be excluded; free: certainly none, and nothing was too close to
+  /// be measured; no_data: there was no valid point, or no part.
   clearance::state state = clearance::state::no_data;
-  std::uint32_t cloud = none, point = none, part = none;  ///< The lowest certain one (by cloud, point, part); else the lowest possible one.
+  std::uint32_t cloud = none, point = none,
+                part = none;  ///< The lowest certain one (by cloud, point, part); else the lowest possible one.
   point_counts counts;
 };
 
@@ -31,7 +33,9 @@ struct tell_collision {
   CLEARANCE_HD void operator()(std::size_t) const {
     using answer = pairwise::first_within;
     const bool too_close = result->counts.dropped[int(drop_reason::too_close)] != 0;
-    result->state = result->counts.valid == 0 || parts == 0 ? state::no_data : too_close ? state::possible : state::free;
+    result->state = result->counts.valid == 0 || parts == 0 ? state::no_data
+                    : too_close                             ? state::possible
+                                                            : state::free;
     result->cloud = result->point = result->part = none;
     if (*word == answer::nothing) return;
     const auto where = pairwise::place_of(std::uint32_t(*word >> 31), first, clouds);
@@ -42,8 +46,8 @@ struct tell_collision {
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and margins. One object is for one thread and one
-/// stream; the robot must stay.
+/// The prepared question: made once for a robot, asked every frame with new poses, points and margins. One object is
+/// for one thread and one stream; the robot must stay.
 template <class On, class PartView>
 class in_collision_query {
  public:
@@ -53,7 +57,8 @@ class in_collision_query {
 
   /// As `in_collision`. Points that a device cannot read are copied into buffers that are kept.
   template <class Clouds>
-  collision_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins) {
+  collision_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                              std::span<const double> margins) {
     static_assert(explain_clouds<Clouds>());
     auto& [on, model, memory, pairs, ahead] = question_;
     memory.begin();
@@ -66,22 +71,25 @@ class in_collision_query {
     return (*this)(poses, clouds, std::span<const double>(&margin, 1));
   }
 
-  /// As `in_collision_async`. On a device nothing is waited for, and nothing allocated but by more clouds than ever before. A graph that
-  /// captures this keeps the poses and margins of now.
+  /// As `in_collision_async`. On a device nothing is waited for, and nothing allocated but by more clouds than ever
+  /// before. A graph that captures this keeps the poses and margins of now.
   template <class Clouds>
-  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins, collision_result* result) {
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins,
+               collision_result* result) {
     static_assert(explain_clouds<Clouds>());
     question_.memory.begin();
     ask(poses, clouds, margins, result);
   }
   template <class Clouds>
-  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin, collision_result* result) {
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin,
+               collision_result* result) {
     enqueue(poses, clouds, std::span<const double>(&margin, 1), result);
   }
 
  private:
   template <class Clouds>
-  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins, collision_result* result) {
+  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins,
+           collision_result* result) {
     auto& [on, model, memory, pairs, ahead] = question_;
     using answer = pairwise::first_within;
     pairwise::check_margins(margins, model.size());
@@ -96,32 +104,38 @@ class in_collision_query {
     }
     const auto [word, near, start] = memory.put(std::array{answer::nothing}, reaches, first);
     question_.ask(poses, clouds, answer{word, near, near + model.size(), start}, &result->counts);
-    on.for_each(1, detail::tell_collision{word, start, std::uint32_t(first.size()), std::uint32_t(model.size()), result});
+    on.for_each(1,
+                detail::tell_collision{word, start, std::uint32_t(first.size()), std::uint32_t(model.size()), result});
   }
 
   pairwise::pair_question<On, PartView> question_;
 };
 template <class On, robot Robot, class... Memory>
-in_collision_query(const On&, const Robot&, Memory...) -> in_collision_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+in_collision_query(const On&, const Robot&, Memory...)
+    -> in_collision_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// Is any point closer than `margins`, in metres: one for all parts, or one a part? `poses` and `clouds` as for min_distance. Throws
-/// std::invalid_argument as that does, if there are other than one or as many margins, or one is NaN.
+/// Is any point closer than `margins`, in metres: one for all parts, or one a part? `poses` and `clouds` as for
+/// min_distance. Throws std::invalid_argument as that does, if there are other than one or as many margins, or one is
+/// NaN.
 template <class On, robot Robot, class Clouds>
-collision_result in_collision(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                              std::span<const double> margins) {
-  return pairwise::asked_once<in_collision_query>(on, robot, [&](auto& query) { return query(poses, clouds, margins); });
+collision_result in_collision(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                              const Clouds& clouds, std::span<const double> margins) {
+  return pairwise::asked_once<in_collision_query>(on, robot,
+                                                  [&](auto& query) { return query(poses, clouds, margins); });
 }
 /// The same with one margin for all parts.
 template <class On, robot Robot, class Clouds>
-collision_result in_collision(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin = 0) {
+collision_result in_collision(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                              const Clouds& clouds, double margin = 0) {
   return in_collision(on, robot, poses, clouds, std::span<const double>(&margin, 1));
 }
 
 /// Enqueues it; `result`, in memory that `on` writes, and clouds must stay until it is done.
 template <class On, robot Robot, class Clouds>
-void in_collision_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins,
-                        collision_result* result) {
-  pairwise::asked_once<in_collision_query>(on, robot, [&](auto& query) { query.enqueue(poses, clouds, margins, result); });
+void in_collision_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                        const Clouds& clouds, std::span<const double> margins, collision_result* result) {
+  pairwise::asked_once<in_collision_query>(on, robot,
+                                           [&](auto& query) { query.enqueue(poses, clouds, margins, result); });
 }
 
 }  // namespace clearance

@@ -19,20 +19,24 @@ class in_collisions_query<device, PartView> : public minimum::placed_batch<PartV
   in_collisions_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr)
       : placed(on, view_of(robot), memory), margins_(std::max<std::size_t>(search_.parts(), 1), on.id, memory) {}
 
-  /// As in_collisions. What is returned stays until the next call. Points in host memory are copied into buffers that are kept.
+  /// As in_collisions. What is returned stays until the next call. Points in host memory are copied into buffers that
+  /// are kept.
   template <class Clouds>
-  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins) {
+  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                         std::span<const double> margins) {
     placed::place(poses);
     return (*this)(clouds, margins);
   }
   /// The same of joint vectors, one after another, whose poses the device computes.
   template <class Clouds>
-  const in_collisions_result& operator()(const joint_chain<device>& chain, std::span<const double> q, const Clouds& clouds, double margin = 0) {
+  const in_collisions_result& operator()(const joint_chain<device>& chain, std::span<const double> q,
+                                         const Clouds& clouds, double margin = 0) {
     placed::place(chain, q);
     return (*this)(clouds, margin);
   }
   template <class Clouds>
-  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin = 0) {
+  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                         double margin = 0) {
     return (*this)(poses, clouds, std::span<const double>(&margin, 1));
   }
 
@@ -50,9 +54,10 @@ class in_collisions_query<device, PartView> : public minimum::placed_batch<PartV
   const in_collisions_result& operator()(const Clouds& clouds, double margin = 0) {
     return (*this)(clouds, std::span<const double>(&margin, 1));
   }
-  /// Enqueues it: what is returned is memory of the device, one state a configuration, for what follows in its stream. Clouds must be
-  /// readable there. If a pose is not rigid, which cannot be thrown there, the state is `possible`. A graph that captures this keeps the
-  /// margins of now, and is void once more configurations are placed, or a larger cloud is asked.
+  /// Enqueues it: what is returned is memory of the device, one state a configuration, for what follows in its stream.
+  /// Clouds must be readable there. If a pose is not rigid, which cannot be thrown there, the state is `possible`. A
+  /// graph that captures this keeps the margins of now, and is void once more configurations are placed, or a larger
+  /// cloud is asked.
   template <class Clouds>
   const state* enqueue(const Clouds& clouds, std::span<const double> margins) {
     ask(clouds, margins, minimum::as_it_is{});

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Which of many configurations of one robot are nearer than a margin to anything that its sensors see? On the host; in_collisions.cuh
-// has a device, too.
+// Which of many configurations of one robot are nearer than a margin to anything that its sensors see? On the host;
+// in_collisions.cuh has a device, too.
 
 #include <clearance/in_collision.hpp>
 #include <clearance/min_distances.hpp>
 
 namespace clearance {
 
-/// One state a configuration: in_collision's of its poses. That tells no witness, because which one is found first is chance;
-/// min_distances does.
+/// One state a configuration: in_collision's of its poses. That tells no witness, because which one is found first is
+/// chance; min_distances does.
 struct in_collisions_result {
   std::vector<state> of;
   point_counts counts;  ///< Nothing, if there was no configuration.
@@ -17,10 +17,15 @@ struct in_collisions_result {
   /// The first configuration that is not certain to be farther away than its margins; or of.size().
   std::size_t first_not_free() const { return first_of(of); }
 
-  /// Where the configurations were several trajectories, [batch, horizon]: trajectory `i`'s, and the first of each, counted from its own
-  /// beginning. Throws std::invalid_argument if they are no whole trajectories of `horizon` configurations, or there is none of number i.
-  std::span<const state> trajectory(std::size_t i, std::size_t horizon) const { return detail::trajectory_of(std::span(of), i, horizon); }
-  std::vector<std::size_t> first_not_free(std::size_t horizon) const { return detail::first_of_each(std::span(of), horizon, first_of); }
+  /// Where the configurations were several trajectories, [batch, horizon]: trajectory `i`'s, and the first of each,
+  /// counted from its own beginning. Throws std::invalid_argument if they are no whole trajectories of `horizon`
+  /// configurations, or there is none of number i.
+  std::span<const state> trajectory(std::size_t i, std::size_t horizon) const {
+    return detail::trajectory_of(std::span(of), i, horizon);
+  }
+  std::vector<std::size_t> first_not_free(std::size_t horizon) const {
+    return detail::first_of_each(std::span(of), horizon, first_of);
+  }
 
  private:
   static std::size_t first_of(std::span<const state> some) {
@@ -28,11 +33,13 @@ struct in_collisions_result {
   }
 };
 
-/// The prepared question, asked for frame after frame: it keeps its memory. One object is for one thread and one stream. A device's is in
-/// in_collisions.cuh. A backend of one's own asks for each configuration by itself.
+/// The prepared question, asked for frame after frame: it keeps its memory. One object is for one thread and one
+/// stream. A device's is in in_collisions.cuh. A backend of one's own asks for each configuration by itself.
 template <class On, class PartView>
 class in_collisions_query {
-  static_assert(!requires { typename On::own_scan; }, "a device has a search of its own: include <clearance/in_collisions.cuh>, not the .hpp");
+  static_assert(
+      !requires { typename On::own_scan; },
+      "a device has a search of its own: include <clearance/in_collisions.cuh>, not the .hpp");
 
  public:
   template <robot Robot>
@@ -40,21 +47,24 @@ class in_collisions_query {
 
   /// As in_collisions. What is returned stays until the next call.
   template <class Clouds>
-  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins) {
+  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                         std::span<const double> margins) {
     static_assert(explain_clouds<Clouds>());
     pairwise::check_margins(margins, model_.size());
     result_.of.resize(detail::count_configurations(model_.size(), poses.size()));
     result_.counts = {};
     detail::named(model_.size(), poses, [&] {
       for (std::size_t c = 0; c < result_.of.size(); ++c) {
-        const collision_result one = in_collision(on_, model_, poses.subspan(c * model_.size(), model_.size()), clouds, margins);
+        const collision_result one =
+            in_collision(on_, model_, poses.subspan(c * model_.size(), model_.size()), clouds, margins);
         result_.of[c] = one.state, result_.counts = one.counts;
       }
     });
     return result_;
   }
   template <class Clouds>
-  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin = 0) {
+  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                         double margin = 0) {
     return (*this)(poses, clouds, std::span<const double>(&margin, 1));
   }
 
@@ -73,13 +83,15 @@ class in_collisions_query<host, PartView> {
 
   /// The same of joint vectors, one after another. Throws std::invalid_argument as joint_chain::count, too.
   template <class Clouds>
-  const in_collisions_result& operator()(const joint_chain<host>& chain, std::span<const double> q, const Clouds& clouds, double margin = 0) {
+  const in_collisions_result& operator()(const joint_chain<host>& chain, std::span<const double> q,
+                                         const Clouds& clouds, double margin = 0) {
     detail::check_chain(search_.parts(), chain.parts());
     return (*this)(chain.poses(q), clouds, margin);
   }
   /// As in_collisions. What is returned stays until the next call.
   template <class Clouds>
-  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins) {
+  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                         std::span<const double> margins) {
     static_assert(explain_clouds<Clouds>());
     pairwise::check_margins(margins, search_.parts());
     result_.of.resize(detail::count_configurations(search_.parts(), poses.size()));
@@ -88,7 +100,8 @@ class in_collisions_query<host, PartView> {
     return result_;
   }
   template <class Clouds>
-  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin = 0) {
+  const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                         double margin = 0) {
     return (*this)(poses, clouds, std::span<const double>(&margin, 1));
   }
 
@@ -98,13 +111,15 @@ class in_collisions_query<host, PartView> {
 };
 
 template <class On, robot Robot>
-in_collisions_query(const On&, const Robot&) -> in_collisions_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+in_collisions_query(const On&, const Robot&)
+    -> in_collisions_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// Is any point closer to a configuration than `margins`, in metres: one for all parts, or one a part? `poses` as for min_distances.
-/// Throws std::invalid_argument as that does, if there are other than one or as many margins, or one is NaN.
+/// Is any point closer to a configuration than `margins`, in metres: one for all parts, or one a part? `poses` as for
+/// min_distances. Throws std::invalid_argument as that does, if there are other than one or as many margins, or one is
+/// NaN.
 template <class On, robot Robot, class Clouds>
-in_collisions_result in_collisions(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                   std::span<const double> margins) {
+in_collisions_result in_collisions(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                                   const Clouds& clouds, std::span<const double> margins) {
   static_assert(explain_clouds<Clouds>());
   return detail::one_call<On>::of(on, [&](auto... memory) {
     in_collisions_query query(on, robot, memory...);
@@ -113,7 +128,8 @@ in_collisions_result in_collisions(const On& on, const Robot& robot, std::span<c
 }
 /// The same with one margin for all parts.
 template <class On, robot Robot, class Clouds>
-in_collisions_result in_collisions(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, double margin = 0) {
+in_collisions_result in_collisions(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                                   const Clouds& clouds, double margin = 0) {
   return in_collisions(on, robot, poses, clouds, std::span<const double>(&margin, 1));
 }
 

@@ -14,8 +14,8 @@ namespace clearance {
 
 struct part_options {
   build_options build = {};
-  double tolerance = 0;    ///< Metres by which the solid may differ from the true surface, either way (tessellation).
-  bool certified = true;   ///< False: the solid is not known (an open mesh without caps), so no lower bound is claimed.
+  double tolerance = 0;   ///< Metres by which the solid may differ from the true surface, either way (tessellation).
+  bool certified = true;  ///< False: the solid is not known (an open mesh without caps), so no lower bound is claimed.
 };
 
 /// Inner spheres: signed distances, and the packing's gap and tolerance in the bracket.
@@ -34,9 +34,11 @@ auto make_part(const closed_mesh& mesh, const part_options& options = {}, Fit fi
     return vec3{real(v.x()), real(v.y()), real(v.z())};
   };
   std::vector<triangle> triangles;
-  for (const auto& t : mesh.surface.triangles) triangles.push_back(triangle::from(corner(t[0]), corner(t[1]), corner(t[2])));
+  for (const auto& t : mesh.surface.triangles)
+    triangles.push_back(triangle::from(corner(t[0]), corner(t[1]), corner(t[2])));
   const bool certain = options.certified && mesh.closed;
-  auto surface = make_part(build<V>(triangles, options.build, fit), certain ? 0 : infinity, options.tolerance + mesh.tolerance);
+  auto surface =
+      make_part(build<V>(triangles, options.build, fit), certain ? 0 : infinity, options.tolerance + mesh.tolerance);
   winding<> interior;
   if (mesh.closed)
     interior = make_winding(mesh);
@@ -51,9 +53,9 @@ auto make_part(const std::vector<P>& primitives, const part_options& options = {
   return make_part(build<V>(primitives, options.build, fit), options.certified ? 0 : infinity, options.tolerance);
 }
 
-/// A robot: of each body, in the order given, its part. Bodies are packings, closed meshes, or vectors of primitives; `V` is the
-/// volume of their trees; `options` are the same for all, or `options(k)` those of body k. Throws std::invalid_argument if there
-/// is no body, or one has nothing in it.
+/// A robot: of each body, in the order given, its part. Bodies are packings, closed meshes, or vectors of primitives;
+/// `V` is the volume of their trees; `options` are the same for all, or `options(k)` those of body k. Throws
+/// std::invalid_argument if there is no body, or one has nothing in it.
 template <class V, std::ranges::forward_range Bodies, class Options = part_options>
 auto make_model(const Bodies& bodies, const Options& options = {}) {
   const auto of = [&](std::size_t k) -> part_options {

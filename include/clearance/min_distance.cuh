@@ -13,8 +13,8 @@ template <>
 struct search_on<device> {
   static const device& backend_of(const device& on) { return on; }
   template <bool PerPart, class PartView, class Clouds, class Here>
-  static void once(const device& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                   min_distance_result* result, part_minimum* minima, const Here& here) {
+  static void once(const device& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
+                   const Clouds& clouds, min_distance_result* result, part_minimum* minima, const Here& here) {
     stream_resource memory(on.id, on.stream);
     device_search<PartView>(on, model, &memory).template enqueue<PerPart>(poses, clouds, result, minima, here);
   }

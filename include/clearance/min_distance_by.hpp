@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far is a robot from what could be looked at before a deadline, and how much was it? On the host; min_distance_by.cuh has a device.
+// How far is a robot from what could be looked at before a deadline, and how much was it? On the host;
+// min_distance_by.cuh has a device.
 
 #include <clearance/answer/of_pieces.hpp>
 #include <clearance/frame/mapped_clouds.hpp>
@@ -13,15 +14,16 @@
 
 namespace clearance {
 
-/// The least distance to those points that there was time for. `lower` and `state` are about all points: while some are unseen, `lower` is
-/// 0, and nothing is `free`. `seen` points were looked at, and `unseen` were not.
+/// The least distance to those points that there was time for. `lower` and `state` are about all points: while some are
+/// unseen, `lower` is 0, and nothing is `free`. `seen` points were looked at, and `unseen` were not.
 struct min_distance_so_far : min_distance_result {
   std::uint64_t unseen = 0;
 };
 
 struct deadline_options {
   std::size_t piece = 0;  ///< Points between two looks at the clock; 0: what suits the backend.
-  bool per_part = false;  ///< Every part's minimum is looked for, which takes longer: `lower` is then min_distance_per_part's.
+  bool per_part =
+      false;  ///< Every part's minimum is looked for, which takes longer: `lower` is then min_distance_per_part's.
 };
 
 namespace minimum {
@@ -29,8 +31,12 @@ namespace minimum {
 /// How often a backend looks at the clock, and with which prepared question.
 template <class On>
 struct timed_on {
-  static_assert(!requires { typename On::own_scan; }, "a device has a scan of its own: include <clearance/min_distance_by.cuh>, not the .hpp");
-  static_assert(requires { typename On::own_scan; }, "a deadline is for a host or a device, not for several, nor for a backend of one's own");
+  static_assert(
+      !requires { typename On::own_scan; },
+      "a device has a scan of its own: include <clearance/min_distance_by.cuh>, not the .hpp");
+  static_assert(
+      requires { typename On::own_scan; },
+      "a deadline is for a host or a device, not for several, nor for a backend of one's own");
 };
 template <>
 struct timed_on<host> {
@@ -47,10 +53,13 @@ class stopwatch {
  public:
   /// Throws std::invalid_argument if the deadline is negative or NaN.
   explicit stopwatch(std::chrono::duration<double> deadline) : deadline_(deadline.count()) {
-    if (!(deadline_ >= 0)) throw std::invalid_argument("clearance: a deadline of " + std::to_string(deadline_) + " s; it must not be negative");
+    if (!(deadline_ >= 0))
+      throw std::invalid_argument("clearance: a deadline of " + std::to_string(deadline_) +
+                                  " s; it must not be negative");
   }
   bool operator()() {
-    const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(), took = asked_ < 0 ? 0 : now - asked_;
+    const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(),
+                 took = asked_ < 0 ? 0 : now - asked_;
     asked_ = now;
     return now + took < deadline_;
   }
@@ -79,17 +88,21 @@ struct some_slices {
 
 }  // namespace minimum
 
-/// As min_distance_by, as long as `go_on()`, which is asked before each piece: an own clock, or an order to stop. `query` is a prepared
-/// min_distance_query, and knows nothing of the last frame afterwards.
+/// As min_distance_by, as long as `go_on()`, which is asked before each piece: an own clock, or an order to stop.
+/// `query` is a prepared min_distance_query, and knows nothing of the last frame afterwards.
 template <class On, class PartView, class Clouds, class GoOn>
-min_distance_so_far min_distance_while(min_distance_query<On, PartView>& query, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, GoOn go_on,
+min_distance_so_far min_distance_while(min_distance_query<On, PartView>& query,
+                                       std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, GoOn go_on,
                                        const deadline_options& options = {}) {
   static_assert(explain_clouds<Clouds>());
   std::vector<std::size_t> sizes;
   std::uint64_t total = 0;
-  for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { sizes.push_back(source.size()), total += source.size(); });
+  for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) {
+    sizes.push_back(source.size()), total += source.size();
+  });
   if (total >= ~std::uint32_t(0)) throw std::invalid_argument("clearance: more than 2^32 - 2 points in one call");
-  const std::size_t piece = options.piece != 0 ? options.piece : minimum::timed_on<On>::piece, n = std::bit_ceil(std::size_t((total + piece - 1) / piece));
+  const std::size_t piece = options.piece != 0 ? options.piece : minimum::timed_on<On>::piece,
+                    n = std::bit_ceil(std::size_t((total + piece - 1) / piece));
   std::optional<minimum::of_pieces> all;
   const auto add = [&](const min_distance_result& r) {
     const minimum::of_pieces its(r);
@@ -100,13 +113,17 @@ min_distance_so_far min_distance_while(min_distance_query<On, PartView>& query, 
   std::size_t i = 0;
   for (; i < n && go_on(); ++i) {
     const std::size_t k = minimum::spread(i, n);
-    const auto some = mapped_clouds(clouds, minimum::some_slices{k, k + 1, n});  // of every cloud, so that errors are those of all
+    const auto some =
+        mapped_clouds(clouds, minimum::some_slices{k, k + 1, n});  // of every cloud, so that errors are those of all
     if (!options.per_part) query.bound_by(nearest);  // the first by nothing, whatever the query was told before
     const min_distance_result r = options.per_part ? query.per_part(poses, some, minima) : query(poses, some);
     if (r.part != none) nearest = r.distance;
     add(r.cloud == none ? r : renumbered(r, 0, std::uint32_t(first_of_slice(sizes[r.cloud], k, n))));
   }
-  if (i == 0) add(query(poses, mapped_clouds(clouds, minimum::some_slices{0, 0, n})));  // of no points; what cannot be asked is refused all the same
+  if (i == 0)
+    add(query(poses,
+              mapped_clouds(clouds, minimum::some_slices{
+                                        0, 0, n})));  // of no points; what cannot be asked is refused all the same
   query.forget();
   min_distance_so_far so_far{all->answer(scan::has_interior<PartView>)};
   so_far.unseen = total - so_far.seen;
@@ -119,20 +136,24 @@ min_distance_so_far min_distance_while(min_distance_query<On, PartView>& query, 
 
 /// As the next, of a prepared min_distance_query, which saves a device the preparation.
 template <class On, class PartView, class Clouds>
-min_distance_so_far min_distance_by(min_distance_query<On, PartView>& query, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                    std::chrono::duration<double> deadline, const deadline_options& options = {}) {
+min_distance_so_far min_distance_by(min_distance_query<On, PartView>& query, std::span<const Eigen::Isometry3d> poses,
+                                    const Clouds& clouds, std::chrono::duration<double> deadline,
+                                    const deadline_options& options = {}) {
   return min_distance_while(query, poses, clouds, minimum::stopwatch(deadline), options);
 }
 
-/// The least distance, or as much of it as is known `deadline` after the call: pieces of all clouds are asked one after another, spread over
-/// the clouds. If there is time for all, it is min_distance's answer, to the bit (`per_part`: min_distance_per_part's); if for none (0), nothing is
-/// known. Arguments as for min_distance. Throws std::invalid_argument as that does, and if the deadline is negative or NaN.
+/// The least distance, or as much of it as is known `deadline` after the call: pieces of all clouds are asked one after
+/// another, spread over the clouds. If there is time for all, it is min_distance's answer, to the bit (`per_part`:
+/// min_distance_per_part's); if for none (0), nothing is known. Arguments as for min_distance. Throws
+/// std::invalid_argument as that does, and if the deadline is negative or NaN.
 template <class On, robot Robot, class Clouds>
-min_distance_so_far min_distance_by(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                    std::chrono::duration<double> deadline, const deadline_options& options = {}) {
+min_distance_so_far min_distance_by(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                                    const Clouds& clouds, std::chrono::duration<double> deadline,
+                                    const deadline_options& options = {}) {
   static_assert(explain_clouds<Clouds>());
   minimum::stopwatch watch(deadline);
-  return minimum::timed_on<On>::with_query(on, robot, [&](auto& query) { return min_distance_while(query, poses, clouds, watch, options); });
+  return minimum::timed_on<On>::with_query(
+      on, robot, [&](auto& query) { return min_distance_while(query, poses, clouds, watch, options); });
 }
 
 }  // namespace clearance

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far is a robot from everything that its sensors see? On several devices at once: each is asked about a piece of every cloud.
+// How far is a robot from everything that its sensors see? On several devices at once: each is asked about a piece of
+// every cloud.
 
 #include <clearance/answer/of_pieces.hpp>
 #include <clearance/backend/devices.cuh>
@@ -14,15 +15,15 @@
 
 namespace clearance {
 
-/// The prepared question on several devices: a prepared question on each, about its piece of every cloud, and one answer of all. It
-/// equals that of one device to the bit. The robot is on each device (`model.on(devices)`). Clouds in host memory (and in another
-/// device's) are copied in slices, each device its own; `shard`ed clouds are read where they are. Pinned memory is copied to all
-/// devices at once.
+/// The prepared question on several devices: a prepared question on each, about its piece of every cloud, and one
+/// answer of all. It equals that of one device to the bit. The robot is on each device (`model.on(devices)`). Clouds in
+/// host memory (and in another device's) are copied in slices, each device its own; `shard`ed clouds are read where
+/// they are. Pinned memory is copied to all devices at once.
 template <class PartView>
 class min_distance_query<devices, PartView> {
  public:
-  /// `memory` for its own use: none, or for each device a resource that hands out memory of it; `pinned` one that hands out pinned
-  /// memory. Throws std::invalid_argument if the robot is not on these devices, and as on one device.
+  /// `memory` for its own use: none, or for each device a resource that hands out memory of it; `pinned` one that hands
+  /// out pinned memory. Throws std::invalid_argument if the robot is not on these devices, and as on one device.
   template <robot Robot>
   min_distance_query(const devices& on, const Robot& robot, std::span<std::pmr::memory_resource* const> memory = {},
                      std::pmr::memory_resource* pinned = nullptr)
@@ -30,7 +31,8 @@ class min_distance_query<devices, PartView> {
     const auto view = view_of(robot);
     static_assert(requires { view.each; }, "several devices take a robot that is on each of them: model.on(devices)");
     check(view.each, memory.size());
-    for (std::size_t k = 0; k < on.size(); ++k) each_.emplace_back(on.each()[k], view.each[k], memory.empty() ? nullptr : memory[k], pinned);
+    for (std::size_t k = 0; k < on.size(); ++k)
+      each_.emplace_back(on.each()[k], view.each[k], memory.empty() ? nullptr : memory[k], pinned);
   }
 
   /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
@@ -38,31 +40,37 @@ class min_distance_query<devices, PartView> {
     for (auto& query : each_) query.forget();
   }
 
-  /// One frame, waited for. Throws std::invalid_argument as min_distance, and if a cloud is in more or fewer shards than there are devices.
+  /// One frame, waited for. Throws std::invalid_argument as min_distance, and if a cloud is in more or fewer shards
+  /// than there are devices.
   template <class... Clouds>
   min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds&... clouds) {
     return ask<false>(poses, as_clouds(clouds...));
   }
   /// As min_distance_per_part; `minima`, one a part, are written.
   template <class Clouds>
-  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<part_minimum> minima) {
+  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                               std::span<part_minimum> minima) {
     frames::check_room(each_[0].minima_.size(), minima.size());
     const min_distance_result all = ask<true>(poses, clouds);
     std::ranges::fill(minima, part_minimum{});
     for (std::size_t k = 0; k < each_.size(); ++k)
-      for (std::size_t part = 0; part < minima.size(); ++part) minima[part] = merge(minima[part], in_whole(each_[k].minima_.data()[part], k));
+      for (std::size_t part = 0; part < minima.size(); ++part)
+        minima[part] = merge(minima[part], in_whole(each_[k].minima_.data()[part], k));
     return all;
   }
 
  private:
   void check(std::span<const model_view<PartView>> copies, std::size_t resources) const {
     if (copies.size() != on_.size())
-      throw std::invalid_argument("clearance: the robot is on " + std::to_string(copies.size()) + " devices, but " + std::to_string(on_.size()) + " are asked");
+      throw std::invalid_argument("clearance: the robot is on " + std::to_string(copies.size()) + " devices, but " +
+                                  std::to_string(on_.size()) + " are asked");
     if (resources != 0 && resources != on_.size())
-      throw std::invalid_argument("clearance: " + std::to_string(resources) + " memory resources for " + std::to_string(on_.size()) + " devices");
+      throw std::invalid_argument("clearance: " + std::to_string(resources) + " memory resources for " +
+                                  std::to_string(on_.size()) + " devices");
     for (std::size_t k = 0; k < copies.size(); ++k)
       if (const device& on = on_.each()[k]; !on.holds(copies[k].parts))
-        throw std::invalid_argument("clearance: the robot is not on device " + std::to_string(on.id) + ", which is asked");
+        throw std::invalid_argument("clearance: the robot is not on device " + std::to_string(on.id) +
+                                    ", which is asked");
   }
 
   template <bool PerPart, class Clouds>
@@ -115,9 +123,10 @@ struct search_on<devices> {
   static host backend_of(const devices&) { return {}; }
 
   template <bool PerPart, class PartView, class Clouds, class Here>
-  static void once(const devices& on, const replicas_view<PartView>& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                   min_distance_result* result, part_minimum* minima, const Here&) {
-    static_assert(!std::is_same_v<Here, as_it_is>, "several devices have no one stream to enqueue in: their answer is waited for");
+  static void once(const devices& on, const replicas_view<PartView>& robot, std::span<const Eigen::Isometry3d> poses,
+                   const Clouds& clouds, min_distance_result* result, part_minimum* minima, const Here&) {
+    static_assert(!std::is_same_v<Here, as_it_is>,
+                  "several devices have no one stream to enqueue in: their answer is waited for");
     std::deque<stream_resource> memory;
     std::vector<std::pmr::memory_resource*> of_each;
     for (const device& its : on.each()) of_each.push_back(&memory.emplace_back(its.id, its.stream));
@@ -128,8 +137,8 @@ struct search_on<devices> {
       *result = query(poses, clouds);
   }
   template <bool PerPart, class PartView, class Clouds, class Here>
-  static void once(const devices&, const model_view<PartView>&, std::span<const Eigen::Isometry3d>, const Clouds&, min_distance_result*, part_minimum*,
-                   const Here&) {
+  static void once(const devices&, const model_view<PartView>&, std::span<const Eigen::Isometry3d>, const Clouds&,
+                   min_distance_result*, part_minimum*, const Here&) {
     static_assert(!sizeof(PartView), "several devices take a robot that is on each of them: model.on(devices)");
   }
 };

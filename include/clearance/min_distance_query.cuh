@@ -8,48 +8,57 @@
 
 namespace clearance {
 
-/// The prepared question on a device: one kernel a cloud, no allocation and no synchronisation after the first call. The answer
-/// equals min_distance's to the bit. Memory for its own use comes from `memory`, a resource that hands out device memory, if one
-/// is given; and from `pinned`, which hands out pinned memory.
+/// The prepared question on a device: one kernel a cloud, no allocation and no synchronisation after the first call.
+/// The answer equals min_distance's to the bit. Memory for its own use comes from `memory`, a resource that hands out
+/// device memory, if one is given; and from `pinned`, which hands out pinned memory.
 template <class PartView>
 class min_distance_query<device, PartView> {
  public:
-  /// Throws std::invalid_argument if there are more parts than a kernel takes, or trees too deep or wide for its stacks.
+  /// Throws std::invalid_argument if there are more parts than a kernel takes, or trees too deep or wide for its
+  /// stacks.
   template <robot Robot>
-  min_distance_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr, std::pmr::memory_resource* pinned = nullptr)
-      : on_(on), search_(on, view_of(robot), memory), copies_(on, memory), answer_(1, on.id, pinned), minima_(search_.parts(), on.id, pinned) {
+  min_distance_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr,
+                     std::pmr::memory_resource* pinned = nullptr)
+      : on_(on),
+        search_(on, view_of(robot), memory),
+        copies_(on, memory),
+        answer_(1, on.id, pinned),
+        minima_(search_.parts(), on.id, pinned) {
     on_.wait();
     answer_.data()->done = 0;
   }
 
-  /// Of the next frame alone nothing needs to be found that is farther than `within` metres. Without a pair that is not, its answer has
-  /// no witness, and the state `no_data`, whatever points there were. `per_part` is not for such a frame.
+  /// Of the next frame alone nothing needs to be found that is farther than `within` metres. Without a pair that is
+  /// not, its answer has no witness, and the state `no_data`, whatever points there were. `per_part` is not for such a
+  /// frame.
   void bound_by(real within) { search_.bound_by(within); }
 
   /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
   void forget() { search_.forget(); }
 
-  /// Enqueues one frame. `clouds` as for min_distance, readable on the device until it is done; `result` in device or pinned
-  /// memory. A graph that captures this keeps the poses of now.
+  /// Enqueues one frame. `clouds` as for min_distance, readable on the device until it is done; `result` in device or
+  /// pinned memory. A graph that captures this keeps the poses of now.
   template <class Clouds>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result) {
     search_.template enqueue<false>(poses, clouds, result, nullptr, minimum::as_it_is{});
   }
   template <class Clouds>
-  void enqueue_per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result, part_minimum* minima) {
+  void enqueue_per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
+                        part_minimum* minima) {
     search_.template enqueue<true>(poses, clouds, result, minima, minimum::as_it_is{});
   }
 
-  /// Enqueues one frame with poses in device or pinned memory, read when the frame runs: one a part, and the cloud's (null:
-  /// the world's). A graph that captures this sees what is there at each launch. If a pose is not rigid, which cannot be
-  /// thrown there, the state is `possible` and the distance NaN.
+  /// Enqueues one frame with poses in device or pinned memory, read when the frame runs: one a part, and the cloud's
+  /// (null: the world's). A graph that captures this sees what is there at each launch. If a pose is not rigid, which
+  /// cannot be thrown there, the state is `possible` and the distance NaN.
   template <point_source S>
-  void enqueue(const world_transform* poses, const S& source, const world_transform* cloud_pose, min_distance_result* result) {
+  void enqueue(const world_transform* poses, const S& source, const world_transform* cloud_pose,
+               min_distance_result* result) {
     search_.template enqueue<false>(poses, source, cloud_pose, result, nullptr);
   }
   template <point_source S>
-  void enqueue_per_part(const world_transform* poses, const S& source, const world_transform* cloud_pose, min_distance_result* result,
-                        part_minimum* minima) {
+  void enqueue_per_part(const world_transform* poses, const S& source, const world_transform* cloud_pose,
+                        min_distance_result* result, part_minimum* minima) {
     search_.template enqueue<true>(poses, source, cloud_pose, result, minima);
   }
 
@@ -60,7 +69,8 @@ class min_distance_query<device, PartView> {
   }
   /// As min_distance_per_part; `minima`, one a part, are written.
   template <class Clouds>
-  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<part_minimum> minima) {
+  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                               std::span<part_minimum> minima) {
     frames::check_room(search_.parts(), minima.size());
     const min_distance_result result = ask<true>(poses, clouds);
     std::copy_n(minima_.data(), minima.size(), minima.begin());
@@ -85,9 +95,10 @@ class min_distance_query<device, PartView> {
   template <bool PerPart, class Clouds, class Piece>
   void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Piece& piece) {
     ++frame_number_;
-    search_.template enqueue<PerPart>(poses, clouds, &answer_.data()->result, minima_.data(),
-                                      [&](const auto& source, std::uint32_t cloud) { return copies_(piece(source), cloud); },
-                                      &answer_.data()->done, frame_number_);
+    search_.template enqueue<PerPart>(
+        poses, clouds, &answer_.data()->result, minima_.data(),
+        [&](const auto& source, std::uint32_t cloud) { return copies_(piece(source), cloud); }, &answer_.data()->done,
+        frame_number_);
   }
   /// Waits for it.
   const min_distance_result& answered() const {

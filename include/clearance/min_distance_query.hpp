@@ -5,12 +5,14 @@
 
 namespace clearance {
 
-/// A prepared question: made once for a robot, asked every frame with new poses and points. It keeps its memory and remembers
-/// where the last minima were, which only ever makes it faster. One object is for one thread and one stream. A device's is in
-/// min_distance_query.cuh.
+/// A prepared question: made once for a robot, asked every frame with new poses and points. It keeps its memory and
+/// remembers where the last minima were, which only ever makes it faster. One object is for one thread and one stream.
+/// A device's is in min_distance_query.cuh.
 template <class On, class PartView>
 class min_distance_query {
-  static_assert(!requires { typename On::own_scan; }, "a device has a scan of its own: include <clearance/min_distance_query.cuh>, not the .hpp");
+  static_assert(
+      !requires { typename On::own_scan; },
+      "a device has a scan of its own: include <clearance/min_distance_query.cuh>, not the .hpp");
 };
 
 /// On the CPU, with any tree. After the first frames of a size, a call allocates nothing. The robot's memory must stay.
@@ -29,15 +31,17 @@ class min_distance_query<host, PartView> {
   }
   /// As min_distance_per_part; `minima`, one a part, are written.
   template <class Clouds>
-  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<part_minimum> minima) {
+  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                               std::span<part_minimum> minima) {
     frames::check_room(search_.parts(), minima.size());
     min_distance_result result;
     search_(poses, clouds, &result, minima.data());
     return result;
   }
 
-  /// Of the next frame alone nothing needs to be found that is farther than `within` metres. Without a pair that is not, its answer has
-  /// no witness, and the state `no_data`, whatever points there were. `per_part` is not for such a frame.
+  /// Of the next frame alone nothing needs to be found that is farther than `within` metres. Without a pair that is
+  /// not, its answer has no witness, and the state `no_data`, whatever points there were. `per_part` is not for such a
+  /// frame.
   void bound_by(real within) { search_.bound_by(within); }
 
   /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
@@ -48,6 +52,7 @@ class min_distance_query<host, PartView> {
 };
 
 template <class On, robot Robot>
-min_distance_query(const On&, const Robot&) -> min_distance_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+min_distance_query(const On&, const Robot&)
+    -> min_distance_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
 }  // namespace clearance

@@ -19,16 +19,18 @@ class min_distances_query<device, PartView> : public minimum::placed_batch<PartV
   min_distances_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr)
       : placed(on, view_of(robot), memory) {}
 
-  /// As min_distances. What is returned stays until the next call. Points in host memory are copied into buffers that are kept.
+  /// As min_distances. What is returned stays until the next call. Points in host memory are copied into buffers that
+  /// are kept.
   template <class Clouds>
-  const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const min_distances_options& options = {}) {
+  const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                         const min_distances_options& options = {}) {
     placed::place(poses);
     return (*this)(clouds, options);
   }
   /// The same of joint vectors, one after another, whose poses the device computes.
   template <class Clouds>
-  const min_distances_result& operator()(const joint_chain<device>& chain, std::span<const double> q, const Clouds& clouds,
-                                         const min_distances_options& options = {}) {
+  const min_distances_result& operator()(const joint_chain<device>& chain, std::span<const double> q,
+                                         const Clouds& clouds, const min_distances_options& options = {}) {
     placed::place(chain, q);
     return (*this)(clouds, options);
   }
@@ -42,9 +44,10 @@ class min_distances_query<device, PartView> : public minimum::placed_batch<PartV
     });
     return result_;
   }
-  /// Enqueues it: what is returned is memory of the device, one result a configuration, for what follows in its stream. Clouds must be
-  /// readable there. If a pose is not rigid, which cannot be thrown there, the state is `possible` and the distance NaN. A graph that
-  /// captures this is void once more configurations are placed, or a larger cloud is asked.
+  /// Enqueues it: what is returned is memory of the device, one result a configuration, for what follows in its stream.
+  /// Clouds must be readable there. If a pose is not rigid, which cannot be thrown there, the state is `possible` and
+  /// the distance NaN. A graph that captures this is void once more configurations are placed, or a larger cloud is
+  /// asked.
   template <class Clouds>
   const min_distance_result* enqueue(const Clouds& clouds, const min_distances_options& options = {}) {
     ask(clouds, options, minimum::as_it_is{});
@@ -60,7 +63,8 @@ class min_distances_query<device, PartView> : public minimum::placed_batch<PartV
     static_assert(explain_clouds<Clouds>());
     placed::check_placed();
     detail::check(options);
-    search_.enqueue(clouds, minimum::least_question{options.d_max}, [&](const auto& source, std::uint32_t cloud) { return here(source, cloud); });
+    search_.enqueue(clouds, minimum::least_question{options.d_max},
+                    [&](const auto& source, std::uint32_t cloud) { return here(source, cloud); });
   }
 
   using placed::search_, placed::copies_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far are many configurations of one robot, such as the waypoints of a trajectory, from everything that its sensors see? On the
-// host; min_distances.cuh has a device, too.
+// How far are many configurations of one robot, such as the waypoints of a trajectory, from everything that its sensors
+// see? On the host; min_distances.cuh has a device, too.
 
 #include <clearance/answer/configurations.hpp>
 #include <clearance/answer/host_batch.hpp>
@@ -15,21 +15,24 @@ struct min_distances_options {
   real d_max = infinity;  ///< Metres. Of a configuration that is farther away only that is known; it costs much less.
 };
 
-/// One result a configuration: min_distance's of its poses, to the bit, if that is at most d_max. Else the distance is infinite, at
-/// no point of no part, and `lower` what is certain: d_max less gap, tolerance and rounding.
+/// One result a configuration: min_distance's of its poses, to the bit, if that is at most d_max. Else the distance is
+/// infinite, at no point of no part, and `lower` what is certain: d_max less gap, tolerance and rounding.
 struct min_distances_result {
   std::vector<min_distance_result> of;
 
-  /// The first configuration that is not certain to be farther away than `margin`, in metres; or of.size(). Without a valid point
-  /// none is certain. Throws std::invalid_argument if the margin is negative or NaN: `lower` is 0 in a collision, too.
+  /// The first configuration that is not certain to be farther away than `margin`, in metres; or of.size(). Without a
+  /// valid point none is certain. Throws std::invalid_argument if the margin is negative or NaN: `lower` is 0 in a
+  /// collision, too.
   std::size_t first_below(double margin) const {
     check(margin);
     return first_of(of, margin);
   }
 
-  /// Where the configurations were several trajectories, [batch, horizon]: trajectory `i`'s. Throws std::invalid_argument if they are no
-  /// whole trajectories of `horizon` configurations, or there is none of number i.
-  std::span<const min_distance_result> trajectory(std::size_t i, std::size_t horizon) const { return detail::trajectory_of(std::span(of), i, horizon); }
+  /// Where the configurations were several trajectories, [batch, horizon]: trajectory `i`'s. Throws
+  /// std::invalid_argument if they are no whole trajectories of `horizon` configurations, or there is none of number i.
+  std::span<const min_distance_result> trajectory(std::size_t i, std::size_t horizon) const {
+    return detail::trajectory_of(std::span(of), i, horizon);
+  }
   /// And `first_below` of each, counted from its own beginning.
   std::vector<std::size_t> first_below(double margin, std::size_t horizon) const {
     check(margin);
@@ -38,10 +41,13 @@ struct min_distances_result {
 
  private:
   static void check(double margin) {
-    if (!(margin >= 0)) throw std::invalid_argument("clearance: the margin is " + std::to_string(margin) + " m; it must not be negative");
+    if (!(margin >= 0))
+      throw std::invalid_argument("clearance: the margin is " + std::to_string(margin) + " m; it must not be negative");
   }
   static std::size_t first_of(std::span<const min_distance_result> some, double margin) {
-    const auto near = [margin](const min_distance_result& r) { return r.state == state::no_data || !(double(r.lower) > margin); };
+    const auto near = [margin](const min_distance_result& r) {
+      return r.state == state::no_data || !(double(r.lower) > margin);
+    };
     return std::size_t(std::find_if(some.begin(), some.end(), near) - some.begin());
   }
 };
@@ -54,19 +60,22 @@ inline void check(const min_distances_options& options) {
 
 }  // namespace detail
 
-/// The prepared question, asked for frame after frame: it keeps its memory, and remembers where each configuration's last minimum was,
-/// which only ever makes it faster. One object is for one thread and one stream. A device's is in min_distances.cuh. A backend of
-/// one's own asks for each configuration by itself.
+/// The prepared question, asked for frame after frame: it keeps its memory, and remembers where each configuration's
+/// last minimum was, which only ever makes it faster. One object is for one thread and one stream. A device's is in
+/// min_distances.cuh. A backend of one's own asks for each configuration by itself.
 template <class On, class PartView>
 class min_distances_query {
-  static_assert(!requires { typename On::own_scan; }, "a device has a search of its own: include <clearance/min_distances.cuh>, not the .hpp");
+  static_assert(
+      !requires { typename On::own_scan; },
+      "a device has a search of its own: include <clearance/min_distances.cuh>, not the .hpp");
 
  public:
   template <robot Robot>
   min_distances_query(const On& on, const Robot& robot) : on_(on), model_(view_of(robot)) {}
 
   template <class Clouds>
-  const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const min_distances_options& options = {}) {
+  const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                         const min_distances_options& options = {}) {
     static_assert(explain_clouds<Clouds>());
     detail::check(options);
     result_.of.resize(detail::count_configurations(model_.size(), poses.size()));
@@ -87,7 +96,8 @@ class min_distances_query {
       const auto own = poses.subspan(c * model_.size(), model_.size());
       frames::cloud_frame frame;
       frames::for_each_turn(frame, model_.facts, own, clouds, [](const auto&, const frames::turn&) {});
-      search::template once<false>(on_, model_, own, clouds, one.data(), nullptr, minimum::readable_on<there>{backend, copies});
+      search::template once<false>(on_, model_, own, clouds, one.data(), nullptr,
+                                   minimum::readable_on<there>{backend, copies});
       result_.of[c] = backend.copy_out(one.data(), 1)[0];
       minimum::cut(result_.of[c], d_max, frame.slop, frame.error);
     }
@@ -107,14 +117,15 @@ class min_distances_query<host, PartView> {
 
   /// The same of joint vectors, one after another. Throws std::invalid_argument as joint_chain::count, too.
   template <class Clouds>
-  const min_distances_result& operator()(const joint_chain<host>& chain, std::span<const double> q, const Clouds& clouds,
-                                         const min_distances_options& options = {}) {
+  const min_distances_result& operator()(const joint_chain<host>& chain, std::span<const double> q,
+                                         const Clouds& clouds, const min_distances_options& options = {}) {
     detail::check_chain(search_.parts(), chain.parts());
     return (*this)(chain.poses(q), clouds, options);
   }
   /// As min_distances. What is returned stays until the next call.
   template <class Clouds>
-  const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const min_distances_options& options = {}) {
+  const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                         const min_distances_options& options = {}) {
     static_assert(explain_clouds<Clouds>());
     detail::check(options);
     result_.of.resize(detail::count_configurations(search_.parts(), poses.size()));
@@ -131,14 +142,15 @@ class min_distances_query<host, PartView> {
 };
 
 template <class On, robot Robot>
-min_distances_query(const On&, const Robot&) -> min_distances_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+min_distances_query(const On&, const Robot&)
+    -> min_distances_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// The least distance of each configuration. `poses` are world-from-part, one a part of the first configuration, then those of the
-/// next; `clouds` as for min_distance. Throws std::invalid_argument as that does, and if poses are no whole configurations, or
-/// d_max is NaN.
+/// The least distance of each configuration. `poses` are world-from-part, one a part of the first configuration, then
+/// those of the next; `clouds` as for min_distance. Throws std::invalid_argument as that does, and if poses are no
+/// whole configurations, or d_max is NaN.
 template <class On, robot Robot, class Clouds>
-min_distances_result min_distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                   const min_distances_options& options = {}) {
+min_distances_result min_distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                                   const Clouds& clouds, const min_distances_options& options = {}) {
   static_assert(explain_clouds<Clouds>());
   return detail::one_call<On>::of(on, [&](auto... memory) {
     min_distances_query query(on, robot, memory...);

@@ -19,22 +19,26 @@ struct min_distances_per_part_result {
   std::span<const min_distance_result> of(std::size_t c) const { return std::span(all).subspan(c * parts, parts); }
 };
 
-/// The prepared question, as min_distances_query. Each part is a robot of its own here, with a structure over the clouds and memory of its
-/// own: a frame costs as much as min_distances for each of them.
+/// The prepared question, as min_distances_query. Each part is a robot of its own here, with a structure over the
+/// clouds and memory of its own: a frame costs as much as min_distances for each of them.
 template <class On, class PartView>
 class min_distances_per_part_query {
   using query = min_distances_query<On, PartView>;
 
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory. Throws std::invalid_argument as
-  /// min_distances_query. The robot must stay.
+  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory. Throws
+  /// std::invalid_argument as min_distances_query. The robot must stay.
   template <robot Robot, class... Memory>
-  min_distances_per_part_query(const On& on, const Robot& robot, Memory... memory) : clouds_(on, memory...), model_(view_of(robot)) {
+  min_distances_per_part_query(const On& on, const Robot& robot, Memory... memory)
+      : clouds_(on, memory...), model_(view_of(robot)) {
     for (std::size_t k = 0; k < model_.size(); ++k)
-      each_.emplace_back(on, model_view<PartView>{model_.parts + k, model_.facts.subspan(k, 1), model_.depth, model_.width}, memory...);
+      each_.emplace_back(on,
+                         model_view<PartView>{model_.parts + k, model_.facts.subspan(k, 1), model_.depth, model_.width},
+                         memory...);
   }
 
-  /// As min_distances_per_part. What is returned stays until the next call. Points that a device cannot read are copied once for all parts.
+  /// As min_distances_per_part. What is returned stays until the next call. Points that a device cannot read are copied
+  /// once for all parts.
   template <class Clouds>
   const min_distances_per_part_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                                   const min_distances_options& options = {}) {
@@ -73,9 +77,11 @@ template <class On, robot Robot, class... Memory>
 min_distances_per_part_query(const On&, const Robot&, Memory...)
     -> min_distances_per_part_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// The least distance of each part of each configuration. `poses`, `clouds`, `options` and what is thrown as of min_distances.
+/// The least distance of each part of each configuration. `poses`, `clouds`, `options` and what is thrown as of
+/// min_distances.
 template <class On, robot Robot, class Clouds>
-min_distances_per_part_result min_distances_per_part(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+min_distances_per_part_result min_distances_per_part(const On& on, const Robot& robot,
+                                                     std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                                      const min_distances_options& options = {}) {
   return detail::one_call<On>::of(on, [&](auto... memory) {
     min_distances_per_part_query query(on, robot, memory...);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The least distance that several points confirm: one alone may be dust, rain, or a mixed pixel. On the host; min_support.cuh has a device.
+// The least distance that several points confirm: one alone may be dust, rain, or a mixed pixel. On the host;
+// min_support.cuh has a device.
 
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/support.hpp>
@@ -18,7 +19,8 @@ struct support_options {
 
 /// The nearest point that others confirm, and what is nearer, but alone.
 struct supported_distance {
-  /// As min_distance's, if the confirmed points that were asked were all; possible: none is confirmed; no_data: there is no valid point.
+  /// As min_distance's, if the confirmed points that were asked were all; possible: none is confirmed; no_data: there
+  /// is no valid point.
   clearance::state state = clearance::state::no_data;
   real distance = not_a_number;  ///< Metres. Infinite: no point is confirmed; NaN: none of the `most` nearest is.
   real lower = 0;                ///< All confirmed points are certainly at least so far away; 0 if none is.
@@ -30,15 +32,17 @@ struct supported_distance {
 
 namespace detail {
 
-/// The nearest points of a robot with their parts: by distance, cloud, point, as far as lists of each part's nearest tell, which is as many
-/// as each list has; and whether that is all of them.
+/// The nearest points of a robot with their parts: by distance, cloud, point, as far as lists of each part's nearest
+/// tell, which is as many as each list has; and whether that is all of them.
 inline std::pair<std::vector<pair_distance>, bool> nearest_points(const nearest_k_result& of_parts) {
   const auto before = [](const pair_distance& a, const pair_distance& b) {
     return std::tie(a.distance, a.cloud, a.point, a.part) < std::tie(b.distance, b.cloud, b.point, b.part);
   };
   const pair_distance* last = nullptr;  // of those behind, some may be missing
   for (std::size_t end = of_parts.per_part; end <= of_parts.pairs.size(); end += of_parts.per_part)
-    if (const pair_distance& its = of_parts.pairs[end - 1]; its.cloud != none && (last == nullptr || before(its, *last))) last = &its;
+    if (const pair_distance& its = of_parts.pairs[end - 1];
+        its.cloud != none && (last == nullptr || before(its, *last)))
+      last = &its;
   std::vector<pair_distance> pairs;
   for (const pair_distance& pair : of_parts.pairs)
     if (pair.cloud != none && (last == nullptr || !before(*last, pair))) pairs.push_back(pair);
@@ -59,8 +63,9 @@ std::vector<std::uint32_t> numbers_of(const Question& question, std::span<const 
 
 /// Which of some points have enough others around them. Clouds have to be readable where the question runs.
 template <class Question, class Clouds>
-std::vector<std::uint32_t> count_around(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                        std::span<const pair_distance> points, const support_options& options) {
+std::vector<std::uint32_t> count_around(Question& question, std::span<const Eigen::Isometry3d> poses,
+                                        const Clouds& clouds, std::span<const pair_distance> points,
+                                        const support_options& options) {
   const auto& on = question.on;
   const auto facts = question.model.facts;
   auto& memory = question.memory;
@@ -68,7 +73,8 @@ std::vector<std::uint32_t> count_around(Question& question, std::span<const Eige
   memory.begin();
   position* const place = memory.template room<position>(points.size()).data();
   const auto both = memory.put(numbers_of(question, points), std::vector<std::uint32_t>(points.size()));
-  std::uint32_t *const number = std::get<0>(both), *const support = std::get<1>(both);  // clang before 16 captures no structured bindings
+  std::uint32_t *const number = std::get<0>(both), *const support = std::get<1>(
+                                                       both);  // clang before 16 captures no structured bindings
   frames::cloud_frame frame;
   frames::for_each_turn(frame, facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
     on.for_each(points.size(), pairwise::place_candidates<S>{source, frame.world_from_cloud, now.first, number, place});
@@ -82,8 +88,15 @@ std::vector<std::uint32_t> count_around(Question& question, std::span<const Eige
       balls.push_back(its.near), all_within.push_back(its.all_within);
     }
     const auto [near] = memory.put(balls);
-    const pairwise::count_support<S> each{source, frame.world_from_cloud, enclosing_ball(std::span<const ball>(balls)), near, place, support,
-                                          std::uint32_t(points.size()), options.min_points, options.radius * options.radius};
+    const pairwise::count_support<S> each{source,
+                                          frame.world_from_cloud,
+                                          enclosing_ball(std::span<const ball>(balls)),
+                                          near,
+                                          place,
+                                          support,
+                                          std::uint32_t(points.size()),
+                                          options.min_points,
+                                          options.radius * options.radius};
     if constexpr (std::is_same_v<std::remove_cvref_t<decltype(on)>, host>)
       on.for_ranges(source.size(), pairwise::count_support_of_pieces<S>{each, all_within.data()});
     else
@@ -94,7 +107,8 @@ std::vector<std::uint32_t> count_around(Question& question, std::span<const Eige
 
 /// Is one of some points certainly inside a part that knows its inside?
 template <class Question, class Clouds>
-bool any_inside(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const pair_distance> points) {
+bool any_inside(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                std::span<const pair_distance> points) {
   using part_view = typename decltype(question.model)::part_type;
   if constexpr (scan::has_interior<part_view>) {
     const auto& model = question.model;
@@ -104,11 +118,14 @@ bool any_inside(Question& question, std::span<const Eigen::Isometry3d> poses, co
     const auto both = question.memory.put(numbers_of(question, points), std::vector<std::uint32_t>(points.size()));
     std::uint32_t *const number = std::get<0>(both), *const inside = std::get<1>(both);
     frames::cloud_frame frame;
-    frames::for_each_turn(frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
-      const auto [places] = question.memory.put(frame.places);
-      question.on.for_each(points.size(), pairwise::find_inside<part_view, S>{model.parts, places, std::uint32_t(model.size()), source, frame.origin, now.first,
-                                                                              number, inside, any_depth{stack_need(model.depth, model.width)}});
-    });
+    frames::for_each_turn(
+        frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+          const auto [places] = question.memory.put(frame.places);
+          question.on.for_each(points.size(),
+                               pairwise::find_inside<part_view, S>{model.parts, places, std::uint32_t(model.size()),
+                                                                   source, frame.origin, now.first, number, inside,
+                                                                   any_depth{stack_need(model.depth, model.width)}});
+        });
     const std::vector<std::uint32_t> found = question.on.copy_out(inside, points.size());
     return std::ranges::find(found, 1u) != found.end();
   }
@@ -117,17 +134,19 @@ bool any_inside(Question& question, std::span<const Eigen::Isometry3d> poses, co
 
 inline void check(const support_options& options) {
   if (options.min_points == 0 || !(options.radius >= 0 && options.radius < infinity))
-    throw std::invalid_argument("clearance: a point cannot be confirmed by " + std::to_string(options.min_points) + " points within " +
-                                std::to_string(options.radius) + " m");
+    throw std::invalid_argument("clearance: a point cannot be confirmed by " + std::to_string(options.min_points) +
+                                " points within " + std::to_string(options.radius) + " m");
   if (options.most == 0 || options.most > most_listed)
-    throw std::invalid_argument("clearance: " + std::to_string(options.most) + " nearest points cannot be asked; it must be 1 to 2^20");
+    throw std::invalid_argument("clearance: " + std::to_string(options.most) +
+                                " nearest points cannot be asked; it must be 1 to 2^20");
 }
 
 /// State and lower end of what was found, as those of min_distance; `inside`: a confirmed point is for certain.
 inline void bracket(supported_distance& r, const distance_certainty& certain, real tolerance, bool inside) {
   min_distance_result bracketed;
   bracketed.distance = r.distance, bracketed.part = r.part;
-  minimum::bracket(bracketed, minimum::certain_distance(r.distance, certain.slop, certain.error), tolerance, inside, certain.error);
+  minimum::bracket(bracketed, minimum::certain_distance(r.distance, certain.slop, certain.error), tolerance, inside,
+                   certain.error);
   bracketed.dropped[int(drop_reason::too_close)] = r.counts.dropped[int(drop_reason::too_close)];
   minimum::allow_for_too_close(bracketed);
   r.state = bracketed.state, r.lower = bracketed.lower;
@@ -135,8 +154,8 @@ inline void bracket(supported_distance& r, const distance_certainty& certain, re
 
 /// Clouds have to be readable where the question runs.
 template <class Question, class Clouds>
-supported_distance least_supported(Question& question, known_nearest& known, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                   const support_options& options) {
+supported_distance least_supported(Question& question, known_nearest& known, std::span<const Eigen::Isometry3d> poses,
+                                   const Clouds& clouds, const support_options& options) {
   check(options);
   supported_distance r;
   bool inside = false;
@@ -154,7 +173,8 @@ supported_distance least_supported(Question& question, known_nearest& known, std
     for (std::size_t i = 0; i < some.size(); ++i) {
       if (support[i] < options.min_points || (r.point != none && some[i].distance != r.distance)) continue;
       if (r.point == none) {
-        r.distance = some[i].distance, r.cloud = some[i].cloud, r.point = some[i].point, r.part = some[i].part, r.primitive = some[i].primitive;
+        r.distance = some[i].distance, r.cloud = some[i].cloud, r.point = some[i].point, r.part = some[i].part,
+        r.primitive = some[i].primitive;
         r.isolated = asked + i;
       }
       within.push_back(some[i]);
@@ -165,7 +185,8 @@ supported_distance least_supported(Question& question, known_nearest& known, std
     const bool ends = all || k == options.most;
     if (r.point != none) {
       inside = inside || (r.distance == 0 && any_inside(question, poses, clouds, within));
-      const bool more = !inside && r.distance == 0 && points.back().distance == 0 && scan::has_interior<typename decltype(question.model)::part_type>;
+      const bool more = !inside && r.distance == 0 && points.back().distance == 0 &&
+                        scan::has_interior<typename decltype(question.model)::part_type>;
       if (more && !ends) continue;  // the next of them may be deeper inside
       bracket(r, near.certain, question.model.facts[r.part].tolerance, inside);
       return r;
@@ -179,19 +200,21 @@ supported_distance least_supported(Question& question, known_nearest& known, std
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and options. It remembers how near the nearest
-/// were, which only ever makes it faster. It cannot be enqueued: how many points have to be asked is known when some have been. One object
-/// is for one thread and one stream; the robot must stay.
+/// The prepared question: made once for a robot, asked every frame with new poses, points and options. It remembers how
+/// near the nearest were, which only ever makes it faster. It cannot be enqueued: how many points have to be asked is
+/// known when some have been. One object is for one thread and one stream; the robot must stay.
 template <class On, class PartView>
 class min_distance_supported_query {
  public:
   /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
   template <robot Robot, class... Memory>
-  min_distance_supported_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
+  min_distance_supported_query(const On& on, const Robot& robot, Memory... memory)
+      : question_(on, view_of(robot), memory...) {}
 
   /// As `min_distance_supported`. Points that a device cannot read are copied into buffers that are kept.
   template <class Clouds>
-  supported_distance operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const support_options& options = {}) {
+  supported_distance operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                const support_options& options = {}) {
     static_assert(explain_clouds<Clouds>());
     return detail::least_supported(question_, known_, poses, question_.memory.readable(clouds), options);
   }
@@ -207,13 +230,14 @@ template <class On, robot Robot, class... Memory>
 min_distance_supported_query(const On&, const Robot&, Memory...)
     -> min_distance_supported_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// The least distance over points that have at least `min_points` - 1 other valid points of all clouds within `radius` of them, by world
-/// coordinates in double. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that does, if min_points or most is 0,
-/// most is above 2^20, or the radius is negative or not finite.
+/// The least distance over points that have at least `min_points` - 1 other valid points of all clouds within `radius`
+/// of them, by world coordinates in double. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as
+/// that does, if min_points or most is 0, most is above 2^20, or the radius is negative or not finite.
 template <class On, robot Robot, class Clouds>
-supported_distance min_distance_supported(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                          const support_options& options = {}) {
-  return pairwise::asked_once<min_distance_supported_query>(on, robot, [&](auto& query) { return query(poses, clouds, options); });
+supported_distance min_distance_supported(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                                          const Clouds& clouds, const support_options& options = {}) {
+  return pairwise::asked_once<min_distance_supported_query>(on, robot,
+                                                            [&](auto& query) { return query(poses, clouds, options); });
 }
 
 }  // namespace clearance

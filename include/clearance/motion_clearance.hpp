@@ -11,24 +11,25 @@
 namespace clearance {
 
 struct motion_clearance_options {
-  double tolerance = 0.01;          ///< Metres: how much `lower` may be below the least that is certain at a time that was asked; infinite: no
-                                    ///< more than the state has to be decided.
-  double margin = 0;                ///< Metres: what the state is about.
+  double tolerance = 0.01;  ///< Metres: how much `lower` may be below the least that is certain at a time that was
+                            ///< asked; infinite: no more than the state has to be decided.
+  double margin = 0;        ///< Metres: what the state is about.
   std::size_t most_queries = 1000;  ///< What has not been decided by then is left open, on the safe side.
 };
 
 /// The clearance over a motion. What lies between the times that were asked is in `lower`; times go from 0 to 1.
 struct motion_clearance_result {
-  /// free: lower > margin; collision: at `time` some point is certainly not farther than margin; possible: neither; no_data: no valid point.
+  /// free: lower > margin; collision: at `time` some point is certainly not farther than margin; possible: neither;
+  /// no_data: no valid point.
   clearance::state state = clearance::state::no_data;
-  real lower = 0;                           ///< At no time is a point nearer; 0 if that is not certain. Metres.
-  real upper = infinity;                    ///< At `time` some point is as near as this, certainly.
-  double time = not_a_number;               ///< Of those that were asked that with the least upper,
-  min_distance_result nearest;              ///< and what min_distance_per_part says of it.
-  double from = 0, to = 1;                  ///< The piece of the motion that keeps `lower` down,
-  std::uint32_t part = none;                ///< and the part that does.
+  real lower = 0;               ///< At no time is a point nearer; 0 if that is not certain. Metres.
+  real upper = infinity;        ///< At `time` some point is as near as this, certainly.
+  double time = not_a_number;   ///< Of those that were asked that with the least upper,
+  min_distance_result nearest;  ///< and what min_distance_per_part says of it.
+  double from = 0, to = 1;      ///< The piece of the motion that keeps `lower` down,
+  std::uint32_t part = none;    ///< and the part that does.
   std::size_t queries = 0;
-  bool settled = false;                     ///< `lower` is as good as `tolerance` asks, or as it can be; if not, the queries were used up.
+  bool settled = false;  ///< `lower` is as good as `tolerance` asks, or as it can be; if not, the queries were used up.
 };
 
 namespace detail {
@@ -48,7 +49,9 @@ struct motion_piece {
   std::size_t asked;
 
   /// Which of two is to be looked at later.
-  friend bool operator<(const motion_piece& a, const motion_piece& b) { return a.lower != b.lower ? a.lower > b.lower : a.time > b.time; }
+  friend bool operator<(const motion_piece& a, const motion_piece& b) {
+    return a.lower != b.lower ? a.lower > b.lower : a.time > b.time;
+  }
 };
 
 /// Pieces overlap by more than the rounding of their ends.
@@ -65,27 +68,31 @@ inline motion_piece piece_around(const asked_time& a, std::size_t number, double
 }
 
 inline void check(const motion_clearance_options& o) {
-  if (!(o.tolerance >= 0)) throw std::invalid_argument("clearance: a motion's tolerance is " + std::to_string(o.tolerance) + " m; it must not be negative");
+  if (!(o.tolerance >= 0))
+    throw std::invalid_argument("clearance: a motion's tolerance is " + std::to_string(o.tolerance) +
+                                " m; it must not be negative");
   if (!(o.margin >= 0 && o.margin < infinity))
-    throw std::invalid_argument("clearance: a motion's margin is " + std::to_string(o.margin) + " m; it must be finite and not negative");
+    throw std::invalid_argument("clearance: a motion's margin is " + std::to_string(o.margin) +
+                                " m; it must be finite and not negative");
   if (o.most_queries == 0) throw std::invalid_argument("clearance: a motion cannot be judged by 0 queries");
 }
 
 inline void check(const moment& m, std::size_t parts) {
   if (m.travels.size() != parts)
-    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but a motion says how " + std::to_string(m.travels.size()) +
-                                " move");
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but a motion says how " +
+                                std::to_string(m.travels.size()) + " move");
   for (std::size_t k = 0; k < parts; ++k) {
     const part_travel& t = m.travels[k];
     if (!(t.speed >= 0 && t.growth >= 0 && t.most >= 0 && t.rounding >= 0))
-      throw std::invalid_argument("clearance: a motion's bound for part " + std::to_string(k) + " is negative or not a number");
+      throw std::invalid_argument("clearance: a motion's bound for part " + std::to_string(k) +
+                                  " is negative or not a number");
   }
 }
 
 /// `ask(poses, minima)` is min_distance_per_part.
 template <class Ask, motion Motion, class Clouds>
-motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> facts, const Motion& motion, const Clouds& clouds,
-                                    const motion_clearance_options& options) {
+motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> facts, const Motion& motion,
+                                    const Clouds& clouds, const motion_clearance_options& options) {
   check(options);
   motion_clearance_result all;
   std::vector<asked_time> asked;
@@ -96,7 +103,8 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
     moment now = motion.at(time, facts);
     check(now, facts.size());
     const min_distance_result r = ask(std::span<const Eigen::Isometry3d>(now.poses), std::span(minima));
-    if (++all.queries == 1 || r.upper < all.upper || (r.upper == all.upper && time < all.time)) all.upper = r.upper, all.time = time, all.nearest = r;
+    if (++all.queries == 1 || r.upper < all.upper || (r.upper == all.upper && time < all.time))
+      all.upper = r.upper, all.time = time, all.nearest = r;
     if (r.part == none) return false;
     const frames::float_error error = ahead.look(facts, now.poses, clouds).error;
     asked_time a{time, {}, std::move(now.travels)};
@@ -119,7 +127,8 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
     const double third = worst.half / 3;
     const auto put = [&](std::size_t number) {
       motion_piece piece = piece_around(asked[number], number, third);
-      if (piece.lower < worst.lower) piece.lower = worst.lower, piece.part = worst.part;  // what is known of the whole is so of a piece
+      if (piece.lower < worst.lower)
+        piece.lower = worst.lower, piece.part = worst.part;  // what is known of the whole is so of a piece
       pieces.push(piece);
     };
     put(worst.asked);  // a third of it has the same middle, so that two questions make three pieces
@@ -129,7 +138,9 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
     }
   }
   if (all.nearest.dropped[int(drop_reason::too_close)] != 0) all.lower = 0;  // nothing is free then
-  all.state = all.upper <= options.margin ? state::collision : all.lower > options.margin ? state::free : state::possible;
+  all.state = all.upper <= options.margin  ? state::collision
+              : all.lower > options.margin ? state::free
+                                           : state::possible;
   return all;
 }
 
@@ -137,17 +148,20 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
 
 /// By a prepared query of the caller's for the same robot, which keeps its memory.
 template <class On, class PartView, robot Robot, motion Motion, class Clouds>
-motion_clearance_result motion_clearance(min_distance_query<On, PartView>& query, const Robot& robot, const Motion& motion, const Clouds& clouds,
+motion_clearance_result motion_clearance(min_distance_query<On, PartView>& query, const Robot& robot,
+                                         const Motion& motion, const Clouds& clouds,
                                          const motion_clearance_options& options = {}) {
   static_assert(explain_clouds<Clouds>());
-  const auto ask = [&](std::span<const Eigen::Isometry3d> poses, std::span<part_minimum> minima) { return query.per_part(poses, clouds, minima); };
+  const auto ask = [&](std::span<const Eigen::Isometry3d> poses, std::span<part_minimum> minima) {
+    return query.per_part(poses, clouds, minima);
+  };
   return detail::over_motion(ask, view_of(robot).facts, motion, clouds, options);
 }
 
-/// A lower bound of the clearance over a motion, which is never above it: every part's least distance is asked for at times that are
-/// chosen where the bound is lowest, and between them a part can get nearer only by as much as it moves. `clouds` as for min_distance;
-/// they are asked many times, so those for a device should be there. Throws std::invalid_argument as min_distance and the motion do,
-/// and if a tolerance or a margin is negative or not a number.
+/// A lower bound of the clearance over a motion, which is never above it: every part's least distance is asked for at
+/// times that are chosen where the bound is lowest, and between them a part can get nearer only by as much as it moves.
+/// `clouds` as for min_distance; they are asked many times, so those for a device should be there. Throws
+/// std::invalid_argument as min_distance and the motion do, and if a tolerance or a margin is negative or not a number.
 template <class On, robot Robot, motion Motion, class Clouds>
 motion_clearance_result motion_clearance(const On& on, const Robot& robot, const Motion& motion, const Clouds& clouds,
                                          const motion_clearance_options& options = {}) {

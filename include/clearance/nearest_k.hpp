@@ -14,23 +14,25 @@ struct nearest_k_options {
   real d_max = infinity;  ///< Metres; farther points do not count.
 };
 
-/// Those of part k come from k * per_part on, the nearest first, then by cloud and point; where there are fewer, the others are at no point,
-/// and infinitely far.
+/// Those of part k come from k * per_part on, the nearest first, then by cloud and point; where there are fewer, the
+/// others are at no point, and infinitely far.
 struct nearest_k_result {
   std::size_t per_part = 0;
   std::vector<pair_distance> pairs;
   point_counts counts;
   distance_certainty certain;  ///< Of each distance.
 
-  std::span<const pair_distance> of(std::size_t part) const { return std::span(pairs).subspan(part * per_part, per_part); }
+  std::span<const pair_distance> of(std::size_t part) const {
+    return std::span(pairs).subspan(part * per_part, per_part);
+  }
 };
 
 namespace detail {
 
 inline constexpr std::size_t most_listed = std::size_t(1) << 20;  ///< Of a part.
 
-/// What the last frame tells of the next: how near the k nearest may still be. It is only ever a bound to begin with; where fewer points are
-/// so near, all is asked again.
+/// What the last frame tells of the next: how near the k nearest may still be. It is only ever a bound to begin with;
+/// where fewer points are so near, all is asked again.
 struct known_nearest {
   std::size_t k = 0;
   std::vector<real> last, radii;  ///< One a part: how near the last of k was, and a bound for the next frame's.
@@ -55,24 +57,27 @@ struct known_nearest {
 
 /// Bounds that hold, to begin with, where nothing is known of a frame before.
 template <class Question, class Clouds>
-std::vector<real> bounds_of_nearest(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k, real d_max) {
+std::vector<real> bounds_of_nearest(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                    std::size_t k, real d_max) {
   std::vector<real> bounds(question.model.size(), d_max);
-  pairwise::nearest_sample<std::remove_cvref_t<decltype(question.on)>>::lower(question.on, question.model, poses, clouds, k, bounds);
+  pairwise::nearest_sample<std::remove_cvref_t<decltype(question.on)>>::lower(question.on, question.model, poses,
+                                                                              clouds, k, bounds);
   return bounds;
 }
 
-/// How near the k nearest points of each part are: computed distances of k points are at most that, or there are not so many within d_max.
-/// Not many more than k are, but for equal distances. `first` are bounds to begin with; where they are too low and `again` allows it, all is
-/// asked once more.
+/// How near the k nearest points of each part are: computed distances of k points are at most that, or there are not so
+/// many within d_max. Not many more than k are, but for equal distances. `first` are bounds to begin with; where they
+/// are too low and `again` allows it, all is asked once more.
 template <class Question, class Clouds>
-std::vector<real> radii_of_nearest(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::uint32_t k, real d_max,
-                                   const std::vector<real>& first, bool again) {
+std::vector<real> radii_of_nearest(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                   std::uint32_t k, real d_max, const std::vector<real>& first, bool again) {
   using pairwise::nearest_bins, pairwise::nearest_window;
   const auto& on = question.on;
   const std::size_t parts = question.model.size(), enough = 4 * k * parts + (1 << 16);
   std::vector<nearest_window> windows;
   std::vector<std::uint32_t> bounds, before(parts);
-  for (const real bound : first) bounds.push_back(ordered(bound)), windows.push_back({.wanted = k, .bound = bounds.back()});
+  for (const real bound : first)
+    bounds.push_back(ordered(bound)), windows.push_back({.wanted = k, .bound = bounds.back()});
   for (int pass = 0; pass < nearest_bins::passes; ++pass) {
     const int shift = nearest_bins::shift_of(pass);
     question.memory.begin();
@@ -88,12 +93,15 @@ std::vector<real> radii_of_nearest(Question& question, std::span<const Eigen::Is
         listed += before[p];
         continue;
       }
-      const auto found = pairwise::find_wanted(std::span(all).subspan(p * nearest_bins::bins, nearest_bins::bins), w.wanted);
+      const auto found =
+          pairwise::find_wanted(std::span(all).subspan(p * nearest_bins::bins, nearest_bins::bins), w.wanted);
       const bool some = found.bin < nearest_bins::bins;
       if (!some && again && first[p] < d_max)
-        return radii_of_nearest(question, poses, clouds, k, d_max, bounds_of_nearest(question, poses, clouds, k, d_max), false);
+        return radii_of_nearest(question, poses, clouds, k, d_max, bounds_of_nearest(question, poses, clouds, k, d_max),
+                                false);
       if (some) bounds[p] = std::min(bounds[p], nearest_bins::end_of(w.low, found.bin, shift));
-      w = some ? nearest_window{w.low + (found.bin << shift), w.wanted - found.before, bounds[p]} : nearest_window{.bound = ordered(-infinity)};
+      w = some ? nearest_window{w.low + (found.bin << shift), w.wanted - found.before, bounds[p]}
+               : nearest_window{.bound = ordered(-infinity)};
       before[p] += found.before;
       listed += before[p] + found.its;
     }
@@ -106,12 +114,14 @@ std::vector<real> radii_of_nearest(Question& question, std::span<const Eigen::Is
 
 /// Clouds have to be readable where the question runs.
 template <class Question, class Clouds>
-nearest_k_result list_nearest(Question& question, known_nearest& known, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
-                              real d_max) {
-  if (k == 0 || k > most_listed) throw std::invalid_argument("clearance: k is " + std::to_string(k) + "; it must be 1 to 2^20");
+nearest_k_result list_nearest(Question& question, known_nearest& known, std::span<const Eigen::Isometry3d> poses,
+                              const Clouds& clouds, std::size_t k, real d_max) {
+  if (k == 0 || k > most_listed)
+    throw std::invalid_argument("clearance: k is " + std::to_string(k) + "; it must be 1 to 2^20");
   if (!(d_max == d_max)) throw std::invalid_argument("clearance: d_max is not a number");
   const bool cold = k > known.k;
-  const std::vector<real> first = cold ? bounds_of_nearest(question, poses, clouds, k, d_max) : known.first_bounds(d_max);
+  const std::vector<real> first =
+      cold ? bounds_of_nearest(question, poses, clouds, k, d_max) : known.first_bounds(d_max);
   const std::vector<real> radii = radii_of_nearest(question, poses, clouds, std::uint32_t(k), d_max, first, !cold);
   nearest_k_result all;
   all.per_part = k;
@@ -122,16 +132,17 @@ nearest_k_result list_nearest(Question& question, known_nearest& known, std::spa
                      near.pairs.begin() + std::ptrdiff_t(std::min(near.offsets[p] + k, near.offsets[p + 1])));
     all.pairs.resize((p + 1) * k, {none, none, p, none, infinity});
   }
-  const bool lost = !std::equal(radii.begin(), radii.end(), first.begin(), [](real now, real before) { return now <= before; });
+  const bool lost =
+      !std::equal(radii.begin(), radii.end(), first.begin(), [](real now, real before) { return now <= before; });
   if (k >= known.k || lost) known.learn(all);  // what is known of more is a bound for fewer, too
   return all;
 }
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and k. It remembers how near the nearest were, which
-/// only ever makes it faster. It cannot be enqueued: what one pass counts decides on the host whether there is another, and how much is
-/// listed. One object is for one thread and one stream; the robot must stay.
+/// The prepared question: made once for a robot, asked every frame with new poses, points and k. It remembers how near
+/// the nearest were, which only ever makes it faster. It cannot be enqueued: what one pass counts decides on the host
+/// whether there is another, and how much is listed. One object is for one thread and one stream; the robot must stay.
 template <class On, class PartView>
 class nearest_k_query {
  public:
@@ -141,7 +152,8 @@ class nearest_k_query {
 
   /// As `nearest_k`. Points that a device cannot read are copied into buffers that are kept.
   template <class Clouds>
-  nearest_k_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k, const nearest_k_options& options = {}) {
+  nearest_k_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
+                              const nearest_k_options& options = {}) {
     static_assert(explain_clouds<Clouds>());
     return detail::list_nearest(question_, known_, poses, question_.memory.readable(clouds), k, options.d_max);
   }
@@ -154,15 +166,17 @@ class nearest_k_query {
   detail::known_nearest known_;
 };
 template <class On, robot Robot, class... Memory>
-nearest_k_query(const On&, const Robot&, Memory...) -> nearest_k_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+nearest_k_query(const On&, const Robot&, Memory...)
+    -> nearest_k_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// The k nearest points of each part (peers: kNN, top k): by computed distance, then cloud and point; a point may be in the lists of several
-/// parts. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as min_distance, and if k is 0 or above 2^20, or d_max is
-/// NaN.
+/// The k nearest points of each part (peers: kNN, top k): by computed distance, then cloud and point; a point may be in
+/// the lists of several parts. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as min_distance,
+/// and if k is 0 or above 2^20, or d_max is NaN.
 template <class On, robot Robot, class Clouds>
-nearest_k_result nearest_k(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
-                           const nearest_k_options& options = {}) {
-  return pairwise::asked_once<nearest_k_query>(on, robot, [&](auto& query) { return query(poses, clouds, k, options); });
+nearest_k_result nearest_k(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                           const Clouds& clouds, std::size_t k, const nearest_k_options& options = {}) {
+  return pairwise::asked_once<nearest_k_query>(on, robot,
+                                               [&](auto& query) { return query(poses, clouds, k, options); });
 }
 
 }  // namespace clearance

@@ -37,27 +37,30 @@ struct witness_body {
     const auto f = evaluate(parts[i], q, least.distance, walk);
     if (f.nearest.id == none || f.distance != least.distance) return;
     const contact here = f.at(q, place.world_from_part);
-    witnesses[i] = {f.distance, std::uint32_t(i), cloud, least.point, f.nearest.id, world_from_cloud(p), here.nearest, here.normal};
+    witnesses[i] = {f.distance,   std::uint32_t(i),    cloud,        least.point,
+                    f.nearest.id, world_from_cloud(p), here.nearest, here.normal};
   }
 };
 
 }  // namespace minimum
 
-/// The prepared question: made once for a robot, asked after every frame's minima. One object is for one thread and one stream; the
-/// robot must stay.
+/// The prepared question: made once for a robot, asked after every frame's minima. One object is for one thread and one
+/// stream; the robot must stay.
 template <class On, class PartView>
 class part_witnesses_query {
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory. Throws std::invalid_argument if a tree is too
-  /// deep for `near_first` on a device.
+  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory. Throws
+  /// std::invalid_argument if a tree is too deep for `near_first` on a device.
   template <robot Robot, class... Memory>
-  part_witnesses_query(const On& on, const Robot& robot, Memory... memory) : on_(on), model_(view_of(robot)), memory_(on, memory...) {
+  part_witnesses_query(const On& on, const Robot& robot, Memory... memory)
+      : on_(on), model_(view_of(robot)), memory_(on, memory...) {
     if constexpr (requires { typename On::own_scan; }) minimum::check_stack<near_first>(model_.depth, model_.width);
   }
 
   /// As `part_witnesses`. Points that a device cannot read are copied into buffers that are kept.
   template <class Clouds>
-  std::vector<part_witness> operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const part_minimum> minima) {
+  std::vector<part_witness> operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                       std::span<const part_minimum> minima) {
     frames::check_room(model_.size(), minima.size());
     memory_.begin();
     part_witness* const found = memory_.template room<part_witness>(minima.size()).data();
@@ -65,28 +68,34 @@ class part_witnesses_query {
     auto all = on_.copy_out(found, minima.size());
     for (std::size_t k = 0; k < all.size(); ++k)
       if (minima[k].cloud != none && all[k].part == none)
-        throw std::invalid_argument("clearance: the minimum of part " + std::to_string(k) + " is not one of these poses and clouds");
+        throw std::invalid_argument("clearance: the minimum of part " + std::to_string(k) +
+                                    " is not one of these poses and clouds");
     return all;
   }
 
-  /// Enqueues it: `minima` and `witnesses`, one a part, and the clouds are in memory that `on` reads and writes. A minimum that is none of
-  /// these poses and clouds has no witness either. On a device one kernel a cloud; nothing is waited for, and nothing allocated but by more
-  /// parts or clouds than ever. A graph that captures this keeps the poses of now.
+  /// Enqueues it: `minima` and `witnesses`, one a part, and the clouds are in memory that `on` reads and writes. A
+  /// minimum that is none of these poses and clouds has no witness either. On a device one kernel a cloud; nothing is
+  /// waited for, and nothing allocated but by more parts or clouds than ever. A graph that captures this keeps the
+  /// poses of now.
   template <class Clouds>
-  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima, part_witness* witnesses) {
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima,
+               part_witness* witnesses) {
     memory_.begin();
     look(poses, clouds, minima, witnesses);
   }
 
  private:
   template <class Clouds>
-  void look(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima, part_witness* witnesses) {
+  void look(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima,
+            part_witness* witnesses) {
     const any_depth walk{stack_need(model_.depth, model_.width)};
-    frames::for_each_turn(frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
-      const auto places = pairwise::few_or_kept<minimum::few>(frame_.places, memory_);
-      on_.for_each(model_.size(), minimum::witness_body<PartView, S>{model_.parts, places, source, frame_.origin, frame_.world_from_cloud,
-                                                                     now.cloud, minima, walk, witnesses});
-    });
+    frames::for_each_turn(
+        frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+          const auto places = pairwise::few_or_kept<minimum::few>(frame_.places, memory_);
+          on_.for_each(model_.size(),
+                       minimum::witness_body<PartView, S>{model_.parts, places, source, frame_.origin,
+                                                          frame_.world_from_cloud, now.cloud, minima, walk, witnesses});
+        });
   }
 
   On on_;
@@ -98,14 +107,16 @@ template <class On, robot Robot, class... Memory>
 part_witnesses_query(const On&, const Robot&, Memory...)
     -> part_witnesses_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// The witnesses of minima that min_distance_per_part gave for the same robot, poses and clouds, one a part; a minimum at no point has
-/// none. One walk a part; clouds that `on` cannot read are copied once more. Throws std::invalid_argument as min_distance, or if the
-/// minima are not those of this robot, these poses and these clouds, or a tree is too deep for `near_first` on a device.
+/// The witnesses of minima that min_distance_per_part gave for the same robot, poses and clouds, one a part; a minimum
+/// at no point has none. One walk a part; clouds that `on` cannot read are copied once more. Throws
+/// std::invalid_argument as min_distance, or if the minima are not those of this robot, these poses and these clouds,
+/// or a tree is too deep for `near_first` on a device.
 template <backend On, robot Robot, class Clouds>
-std::vector<part_witness> part_witnesses(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                         std::span<const part_minimum> minima) {
+std::vector<part_witness> part_witnesses(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                                         const Clouds& clouds, std::span<const part_minimum> minima) {
   static_assert(explain_clouds<Clouds>());
-  return pairwise::asked_once<part_witnesses_query>(on, robot, [&](auto& query) { return query(poses, clouds, minima); });
+  return pairwise::asked_once<part_witnesses_query>(on, robot,
+                                                    [&](auto& query) { return query(poses, clouds, minima); });
 }
 
 }  // namespace clearance

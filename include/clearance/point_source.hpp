@@ -13,7 +13,8 @@
 
 namespace clearance {
 
-/// Why a record or pixel gave no point. `too_close`: something is there, nearer than the sensor can measure (REP 117); nothing is `free` then.
+/// Why a record or pixel gave no point. `too_close`: something is there, nearer than the sensor can measure (REP 117);
+/// nothing is `free` then.
 enum class drop_reason : std::uint8_t { none, not_finite, missing, saturated, out_of_range, masked, too_close };
 inline constexpr int drop_reasons = 7;
 
@@ -36,28 +37,34 @@ concept point_source = std::is_trivially_copyable_v<S> && requires(const S s, st
 
 /// A source that a kernel reads four neighbours ahead: it has the next four on their way while it looks at these.
 ///
-/// Law: where `fetches()`, for i % 4 == 0 and i + 3 < size(), `look(fetch(seek(i)), i, at)` sets `at` to the positions of s[i] to
+/// Law: where `fetches()`, for i % 4 == 0 and i + 3 < size(), `look(fetch(seek(i)), i, at)` sets `at` to the positions
+/// of s[i] to
 ///      s[i + 3] (if valid) and returns their drop reasons, the first in the lowest byte.
 /// Law: `skip(seek(i), n)` is `seek(i + n)`, for n % 4 == 0; it may lie behind the end, and is then not fetched.
 template <class S>
-concept fetched_source =
-    point_source<S> && requires(const S s, std::size_t i, const typename S::cursor& c, const typename S::four& f, vec3 (&at)[4]) {
-      { s.fetches() } -> std::same_as<bool>;
-      { s.seek(i) } -> std::same_as<typename S::cursor>;
-      { s.skip(c, i) } -> std::same_as<typename S::cursor>;
-      { s.fetch(c) } -> std::same_as<typename S::four>;
-      { s.look(f, i, at) } -> std::same_as<unsigned>;
-    };
+concept fetched_source = point_source<S> && requires(const S s, std::size_t i, const typename S::cursor& c,
+                                                     const typename S::four& f, vec3 (&at)[4]) {
+  { s.fetches() } -> std::same_as<bool>;
+  { s.seek(i) } -> std::same_as<typename S::cursor>;
+  { s.skip(c, i) } -> std::same_as<typename S::cursor>;
+  { s.fetch(c) } -> std::same_as<typename S::four>;
+  { s.look(f, i, at) } -> std::same_as<unsigned>;
+};
 
 /// A source whose points are an image's, row by row: neighbours above one another are neighbours too.
 ///
 /// Law: `columns()` is how many are in a row.
 template <class S>
-concept image_source = point_source<S> && requires(const S s) { { s.columns() } -> std::same_as<std::uint32_t>; };
+concept image_source = point_source<S> && requires(const S s) {
+  { s.columns() } -> std::same_as<std::uint32_t>;
+};
 
-/// A source that tells when it filters nothing: every point whose coordinates are finite counts, and every position can be read.
+/// A source that tells when it filters nothing: every point whose coordinates are finite counts, and every position can
+/// be read.
 template <class S>
-concept unfiltered_source = point_source<S> && requires(const S s) { { s.unfiltered() } -> std::same_as<bool>; };
+concept unfiltered_source = point_source<S> && requires(const S s) {
+  { s.unfiltered() } -> std::same_as<bool>;
+};
 
 /// A box around points; empty (lower > upper) if there is none.
 struct extent {
@@ -71,24 +78,30 @@ struct extent {
 
 /// A source that says where 128 neighbours are without taking them apart, which a host asks first.
 ///
-/// Law: if `survey(begin, box, dropped)` is true, `box` holds all valid positions of s[begin] to s[begin + 127], and to `dropped`
+/// Law: if `survey(begin, box, dropped)` is true, `box` holds all valid positions of s[begin] to s[begin + 127], and to
+/// `dropped`
 ///      was added how many of them are not valid, by reason; if it is false, nothing was added.
 inline constexpr std::size_t surveyed_points = 128;
 template <class S>
-concept surveyed_source = point_source<S> && requires(const S s, std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) {
-  { s.survey(begin, box, dropped) } -> std::same_as<bool>;
-};
+concept surveyed_source =
+    point_source<S> && requires(const S s, std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) {
+      { s.survey(begin, box, dropped) } -> std::same_as<bool>;
+    };
 
-/// How far from its point a position may be: at most `absolute + relative * (its distance from the source's (0,0,0))`, in
-/// metres. What was lost before a source was made, or is lost when it is read; the bracket of every distance carries it.
+/// How far from its point a position may be: at most `absolute + relative * (its distance from the source's (0,0,0))`,
+/// in metres. What was lost before a source was made, or is lost when it is read; the bracket of every distance carries
+/// it.
 struct position_error {
   double absolute = 0, relative = 0;
 };
 
-/// A source with the optional member `position_error rounding() const`, called on the host, says so; any other is exact.
+/// A source with the optional member `position_error rounding() const`, called on the host, says so; any other is
+/// exact.
 template <point_source S>
 position_error rounding_of(const S& source) {
-  if constexpr (requires { { source.rounding() } -> std::same_as<position_error>; })
+  if constexpr (requires {
+                  { source.rounding() } -> std::same_as<position_error>;
+                })
     return source.rounding();
   else
     return {};
@@ -98,13 +111,19 @@ position_error rounding_of(const S& source) {
 template <class S>
 consteval bool explain_point_source() {
   static_assert(std::is_trivially_copyable_v<S>, "a point source must be a trivially copyable view");
-  static_assert(requires(const S s) { { s.size() } -> std::convertible_to<std::size_t>; },
-                "a point source needs: CLEARANCE_HD std::size_t size() const");
-  static_assert(requires(const S s, std::size_t i) { { s[i] } -> std::same_as<sample>; },
-                "a point source needs: CLEARANCE_HD sample operator[](std::size_t) const");
+  static_assert(
+      requires(const S s) {
+        { s.size() } -> std::convertible_to<std::size_t>;
+      }, "a point source needs: CLEARANCE_HD std::size_t size() const");
+  static_assert(
+      requires(const S s, std::size_t i) {
+        { s[i] } -> std::same_as<sample>;
+      }, "a point source needs: CLEARANCE_HD sample operator[](std::size_t) const");
   if constexpr (requires(const S s) { s.rounding(); })
-    static_assert(requires(const S s) { { s.rounding() } -> std::same_as<position_error>; },
-                  "what a point source has by the name rounding must be: position_error rounding() const");
+    static_assert(
+        requires(const S s) {
+          { s.rounding() } -> std::same_as<position_error>;
+        }, "what a point source has by the name rounding must be: position_error rounding() const");
   return point_source<S>;
 }
 

@@ -27,8 +27,8 @@ struct part_minimum {
   std::uint32_t cloud = none, point = none, primitive = none;
 };
 
-/// The pair that attains a part's least distance, in world coordinates, as in a min_distance_result. Without one: numbers `none`,
-/// infinitely far.
+/// The pair that attains a part's least distance, in world coordinates, as in a min_distance_result. Without one:
+/// numbers `none`, infinitely far.
 struct part_witness {
   real distance = infinity;
   std::uint32_t part = none, cloud = none, point = none, primitive = none;

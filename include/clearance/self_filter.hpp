@@ -13,14 +13,14 @@
 namespace clearance {
 
 struct self_filter_options {
-  /// Metres around a part that are the robot's: one for all parts, or one a part. It has to cover what a point of the robot's own
-  /// surface can be off: noise, calibration, and the gap of the part's spheres.
+  /// Metres around a part that are the robot's: one for all parts, or one a part. It has to cover what a point of the
+  /// robot's own surface can be off: noise, calibration, and the gap of the part's spheres.
   std::vector<double> padding = {0.01};
 };
 
-/// Whose each point is. A point is the robot's if it certainly is within the padding of a part's solid. If gap, tolerance or rounding
-/// leave that open it is `uncertain`, and not hidden: what is hidden wrongly may be an obstacle, what is kept wrongly stops a robot.
-/// Without a certificate all that is not the robot's is uncertain.
+/// Whose each point is. A point is the robot's if it certainly is within the padding of a part's solid. If gap,
+/// tolerance or rounding leave that open it is `uncertain`, and not hidden: what is hidden wrongly may be an obstacle,
+/// what is kept wrongly stops a robot. Without a certificate all that is not the robot's is uncertain.
 struct self_filter_result {
   std::vector<point_label> labels;   ///< One a point of all clouds, in their order.
   std::vector<std::size_t> offsets;  ///< Those of cloud c are offsets[c] to offsets[c + 1] - 1.
@@ -43,12 +43,14 @@ std::size_t count_points(const Clouds& clouds) {
   return points;
 }
 
-/// How near points must be to each part to be perhaps the robot's, and then to be so certainly. True if all others are uncertain: then
-/// nobody need ask of which.
-inline bool set_paddings(std::span<const double> padding, std::span<const part_facts> facts, const frames::float_error& error, std::vector<real>& reaches) {
+/// How near points must be to each part to be perhaps the robot's, and then to be so certainly. True if all others are
+/// uncertain: then nobody need ask of which.
+inline bool set_paddings(std::span<const double> padding, std::span<const part_facts> facts,
+                         const frames::float_error& error, std::vector<real>& reaches) {
   const std::size_t given = padding.size(), parts = facts.size();
   if (given != 1 && given != parts)
-    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " + std::to_string(given) + " paddings");
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " +
+                                std::to_string(given) + " paddings");
   reaches.resize(2 * parts);
   bool all_uncertain = false;
   for (std::size_t k = 0; k < parts; ++k) {
@@ -65,22 +67,26 @@ inline bool set_paddings(std::span<const double> padding, std::span<const part_f
 
 /// What is there to the host.
 template <class On, class Clouds>
-self_filter_result labelled(const On& on, const Clouds& clouds, const point_label* labels, const self_filter_counts* counts) {
+self_filter_result labelled(const On& on, const Clouds& clouds, const point_label* labels,
+                            const self_filter_counts* counts) {
   self_filter_result all;
   all.offsets = {0};
-  for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { all.offsets.push_back(all.offsets.back() + source.size()); });
+  for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) {
+    all.offsets.push_back(all.offsets.back() + source.size());
+  });
   all.labels = on.copy_out(labels, all.offsets.back());
   all.counts = on.copy_out(counts, 1)[0];
   all.rest.reserve(std::size_t(all.counts.points.valid - all.counts.own));
   for (std::size_t i = 0; i < all.labels.size(); ++i)
-    if (all.labels[i] == point_label::rest || all.labels[i] == point_label::uncertain) all.rest.push_back(std::uint32_t(i));
+    if (all.labels[i] == point_label::rest || all.labels[i] == point_label::uncertain)
+      all.rest.push_back(std::uint32_t(i));
   return all;
 }
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and paddings. One object is for one thread and
-/// one stream; the robot must stay.
+/// The prepared question: made once for a robot, asked every frame with new poses, points and paddings. One object is
+/// for one thread and one stream; the robot must stay.
 template <class On, class PartView>
 class self_filter_query {
  public:
@@ -90,7 +96,8 @@ class self_filter_query {
 
   /// As `self_filter`. Points that a device cannot read are copied into buffers that are kept.
   template <class Clouds>
-  self_filter_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const self_filter_options& options = {}) {
+  self_filter_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                const self_filter_options& options = {}) {
     static_assert(explain_clouds<Clouds>());
     auto& memory = question_.memory;
     memory.begin();
@@ -100,11 +107,11 @@ class self_filter_query {
     return detail::labelled(question_.on, clouds, labels, counts);
   }
 
-  /// As `self_filter_async`. On a device one kernel a cloud; nothing is waited for, and nothing allocated but by more clouds than ever before.
-  /// A graph that captures this keeps the poses and paddings of now.
+  /// As `self_filter_async`. On a device one kernel a cloud; nothing is waited for, and nothing allocated but by more
+  /// clouds than ever before. A graph that captures this keeps the poses and paddings of now.
   template <class Clouds>
-  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const self_filter_options& options, point_label* labels,
-               self_filter_counts* counts) {
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const self_filter_options& options,
+               point_label* labels, self_filter_counts* counts) {
     static_assert(explain_clouds<Clouds>());
     question_.memory.begin();
     ask(poses, clouds, options, labels, counts);
@@ -112,8 +119,8 @@ class self_filter_query {
 
  private:
   template <class Clouds>
-  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const self_filter_options& options, point_label* labels,
-           self_filter_counts* counts) {
+  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const self_filter_options& options,
+           point_label* labels, self_filter_counts* counts) {
     using answer = pairwise::own_points;
     const On& on = question_.on;
     const auto facts = question_.model.facts;
@@ -138,29 +145,32 @@ class self_filter_query {
   pairwise::pair_question<On, PartView> question_;
 };
 template <class On, robot Robot, class... Memory>
-self_filter_query(const On&, const Robot&, Memory...) -> self_filter_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+self_filter_query(const On&, const Robot&, Memory...)
+    -> self_filter_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// Which points are the robot itself? `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that does, and if there
-/// are other than one or as many paddings, or one is negative or not finite.
+/// Which points are the robot itself? `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that
+/// does, and if there are other than one or as many paddings, or one is negative or not finite.
 template <class On, robot Robot, class Clouds>
-self_filter_result self_filter(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                               const self_filter_options& options = {}) {
+self_filter_result self_filter(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                               const Clouds& clouds, const self_filter_options& options = {}) {
   return pairwise::asked_once<self_filter_query>(on, robot, [&](auto& query) { return query(poses, clouds, options); });
 }
 
-/// Enqueues self_filter, into memory that `on` can write; clouds must be readable where it runs, and stay until it is done. What follows
-/// in the same stream may ask about `masked_clouds(clouds, labels)`.
+/// Enqueues self_filter, into memory that `on` can write; clouds must be readable where it runs, and stay until it is
+/// done. What follows in the same stream may ask about `masked_clouds(clouds, labels)`.
 template <class On, robot Robot, class Clouds>
 void self_filter_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                        const self_filter_options& options, point_label* labels, self_filter_counts* counts) {
-  pairwise::asked_once<self_filter_query>(on, robot, [&](auto& query) { query.enqueue(poses, clouds, options, labels, counts); });
+  pairwise::asked_once<self_filter_query>(on, robot,
+                                          [&](auto& query) { query.enqueue(poses, clouds, options, labels, counts); });
 }
 
-/// And how far is a robot from the rest? `own` is what is filtered out, such as an arm that a camera sees; `robot` may be another one.
-/// Clouds that `on` cannot read are copied once.
+/// And how far is a robot from the rest? `own` is what is filtered out, such as an arm that a camera sees; `robot` may
+/// be another one. Clouds that `on` cannot read are copied once.
 template <class On, robot Robot, robot Own, class Clouds>
-filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Own& own,
-                                        std::span<const Eigen::Isometry3d> own_poses, const Clouds& clouds, const self_filter_options& options = {}) {
+filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                                        const Own& own, std::span<const Eigen::Isometry3d> own_poses,
+                                        const Clouds& clouds, const self_filter_options& options = {}) {
   static_assert(explain_clouds<Clouds>());
   const auto& there = minimum::search_on<On>::backend_of(on);
   auto labels = there.template make_scratch<point_label>(detail::count_points(clouds));
@@ -170,13 +180,14 @@ filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::s
   auto&& readable = memory.readable(clouds);
   self_filter_async(there, own, own_poses, readable, options, labels.data(), counts.data());
   const auto rest = masked_clouds(readable, labels.data());
-  minimum::search_on<On>::template once<false>(on, view_of(robot), poses, rest, result.data(), nullptr, minimum::as_it_is{});
+  minimum::search_on<On>::template once<false>(on, view_of(robot), poses, rest, result.data(), nullptr,
+                                               minimum::as_it_is{});
   return {detail::labelled(there, clouds, labels.data(), counts.data()), there.copy_out(result.data(), 1)[0]};
 }
 /// The same robot is filtered out and asked about.
 template <class On, robot Robot, class Clouds>
-filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                        const self_filter_options& options = {}) {
+filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                                        const Clouds& clouds, const self_filter_options& options = {}) {
   return min_distance_filtered(on, robot, poses, robot, poses, clouds, options);
 }
 

@@ -9,7 +9,8 @@
 
 namespace clearance {
 
-/// Points near parts: those of part k are pairs offsets[k] to offsets[k + 1] - 1, the nearest first, then by cloud and point.
+/// Points near parts: those of part k are pairs offsets[k] to offsets[k + 1] - 1, the nearest first, then by cloud and
+/// point.
 struct within_result {
   std::vector<std::size_t> offsets;
   std::vector<pair_distance> pairs;  ///< Distances as computed, in metres.
@@ -22,17 +23,20 @@ namespace detail {
 /// Of each part, from one radius or one a part.
 inline void set_radii(std::span<const real> radius, std::size_t parts, std::vector<real>& radii) {
   if (radius.size() != 1 && radius.size() != parts)
-    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " + std::to_string(radius.size()) + " radii");
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " +
+                                std::to_string(radius.size()) + " radii");
   radii.clear();
   for (std::size_t k = 0; k < parts; ++k) {
     radii.push_back(radius[radius.size() == 1 ? 0 : k]);
-    if (!(radii[k] == radii[k])) throw std::invalid_argument("clearance: the radius of part " + std::to_string(k) + " is not a number");
+    if (!(radii[k] == radii[k]))
+      throw std::invalid_argument("clearance: the radius of part " + std::to_string(k) + " is not a number");
   }
 }
 
 /// All pairs within `radii`, one a part, in order. Clouds have to be readable where the question runs.
 template <class Question, class Clouds>
-within_result list_within(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const std::vector<real>& radii) {
+within_result list_within(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                          const std::vector<real>& radii) {
   auto& memory = question.memory;
   within_result all;
   all.certain = question.certain(poses, clouds);
@@ -61,8 +65,8 @@ within_result list_within(Question& question, std::span<const Eigen::Isometry3d>
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and radii. One object is for one thread and one
-/// stream; the robot must stay.
+/// The prepared question: made once for a robot, asked every frame with new poses, points and radii. One object is for
+/// one thread and one stream; the robot must stay.
 template <class On, class PartView>
 class within_query {
  public:
@@ -72,7 +76,8 @@ class within_query {
 
   /// As `within`. Points that a device cannot read are copied into buffers that are kept.
   template <class Clouds>
-  within_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const real> radius) {
+  within_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                           std::span<const real> radius) {
     static_assert(explain_clouds<Clouds>());
     auto& radii = question_.ahead.reaches;
     detail::set_radii(radius, question_.model.size(), radii);
@@ -83,12 +88,13 @@ class within_query {
     return (*this)(poses, clouds, std::span<const real>(&radius, 1));
   }
 
-  /// Enqueues it, with memory of the caller's: up to `capacity` pairs in any order; `count` becomes how many there are: if that is more,
-  /// some were cut. Clouds, and all that is written, must stay until it is done. On a device nothing is allocated or waited for. A graph
-  /// that captures this keeps the poses and radii of now.
+  /// Enqueues it, with memory of the caller's: up to `capacity` pairs in any order; `count` becomes how many there are:
+  /// if that is more, some were cut. Clouds, and all that is written, must stay until it is done. On a device nothing
+  /// is allocated or waited for. A graph that captures this keeps the poses and radii of now.
   template <class Clouds>
-  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const real> radius, pair_distance* pairs,
-                             std::size_t capacity, unsigned long long* count, point_counts* counts) {
+  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                             std::span<const real> radius, pair_distance* pairs, std::size_t capacity,
+                             unsigned long long* count, point_counts* counts) {
     static_assert(explain_clouds<Clouds>());
     auto& radii = question_.ahead.reaches;
     detail::set_radii(radius, question_.model.size(), radii);
@@ -101,8 +107,9 @@ class within_query {
     return certain;
   }
   template <class Clouds>
-  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real radius, pair_distance* pairs, std::size_t capacity,
-                             unsigned long long* count, point_counts* counts) {
+  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real radius,
+                             pair_distance* pairs, std::size_t capacity, unsigned long long* count,
+                             point_counts* counts) {
     return enqueue(poses, clouds, std::span<const real>(&radius, 1), pairs, capacity, count, counts);
   }
 
@@ -110,26 +117,31 @@ class within_query {
   pairwise::pair_question<On, PartView> question_;
 };
 template <class On, robot Robot, class... Memory>
-within_query(const On&, const Robot&, Memory...) -> within_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+within_query(const On&, const Robot&, Memory...)
+    -> within_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// All pairs of a point and a part whose computed distance is at most `radius` metres: one for all parts, or one a part. `poses` and
-/// `clouds` as for min_distance. Throws std::invalid_argument as that does, and if there are other than one or as many radii, or one
-/// is NaN.
+/// All pairs of a point and a part whose computed distance is at most `radius` metres: one for all parts, or one a
+/// part. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that does, and if there are other
+/// than one or as many radii, or one is NaN.
 template <class On, robot Robot, class Clouds>
-within_result within(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const real> radius) {
+within_result within(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                     std::span<const real> radius) {
   return pairwise::asked_once<within_query>(on, robot, [&](auto& query) { return query(poses, clouds, radius); });
 }
 /// The same with one radius for all parts.
 template <class On, robot Robot, class Clouds>
-within_result within(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real radius) {
+within_result within(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                     real radius) {
   return within(on, robot, poses, clouds, std::span<const real>(&radius, 1));
 }
 
-/// Enqueues it, with memory of the caller's: up to `capacity` pairs in any order; `count` (0 beforehand) becomes how many there are: if
-/// that is more, some were cut. `reaches`, one a part, and all else in memory that `on` can read and write until it is done.
+/// Enqueues it, with memory of the caller's: up to `capacity` pairs in any order; `count` (0 beforehand) becomes how
+/// many there are: if that is more, some were cut. `reaches`, one a part, and all else in memory that `on` can read and
+/// write until it is done.
 template <class On, robot Robot, class Clouds>
-void within_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const real* reaches,
-                  pair_distance* pairs, std::size_t capacity, unsigned long long* count, point_counts* counts) {
+void within_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                  const real* reaches, pair_distance* pairs, std::size_t capacity, unsigned long long* count,
+                  point_counts* counts) {
   collect_async(on, robot, poses, clouds, pairwise::listed{pairs, count, capacity, reaches}, counts);
 }
 

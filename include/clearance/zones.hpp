@@ -8,13 +8,14 @@
 
 namespace clearance {
 
-/// One zone of one part. A point counts if it may be nearer than the zone's threshold: what arithmetic, gaps and tolerances leave
-/// open is on the safe side.
+/// One zone of one part. A point counts if it may be nearer than the zone's threshold: what arithmetic, gaps and
+/// tolerances leave open is on the safe side.
 struct zone {
   std::uint64_t points = 0;
-  real nearest = infinity;                                  ///< The least distance of its points, as computed. Metres.
-  std::uint32_t nearest_cloud = none, nearest_point = none;  ///< The point that has it; of equally near ones the lowest.
-  std::uint32_t first_cloud = none, first_point = none;      ///< The lowest of its points.
+  real nearest = infinity;  ///< The least distance of its points, as computed. Metres.
+  std::uint32_t nearest_cloud = none,
+                nearest_point = none;                    ///< The point that has it; of equally near ones the lowest.
+  std::uint32_t first_cloud = none, first_point = none;  ///< The lowest of its points.
 };
 
 struct zones_options {
@@ -29,8 +30,9 @@ struct zones_result {
   point_counts counts;
 
   const zone& of(std::size_t part, std::size_t z) const { return zones[part * per_part + z]; }
-  /// The innermost zone of all parts with enough points: 0 is the nearest threshold, `per_part` says that all are empty. Nothing is
-  /// known of a frame without a valid point, of no part, or with something too close to be measured: then it is 0.
+  /// The innermost zone of all parts with enough points: 0 is the nearest threshold, `per_part` says that all are
+  /// empty. Nothing is known of a frame without a valid point, of no part, or with something too close to be measured:
+  /// then it is 0.
   std::size_t innermost() const {
     if (counts.valid == 0 || zones.empty() || counts.dropped[int(drop_reason::too_close)] != 0) return 0;
     std::size_t least = per_part;
@@ -54,7 +56,8 @@ struct tell_zone {
     zone z;
     z.points = w.points;
     if (w.points != 0) {
-      const auto nearest = pairwise::place_of(key_index(w.nearest), first, clouds), lowest = pairwise::place_of(w.first, first, clouds);
+      const auto nearest = pairwise::place_of(key_index(w.nearest), first, clouds),
+                 lowest = pairwise::place_of(w.first, first, clouds);
       z.nearest = key_distance(w.nearest), z.nearest_cloud = nearest.cloud, z.nearest_point = nearest.point;
       z.first_cloud = lowest.cloud, z.first_point = lowest.point;
     }
@@ -63,18 +66,20 @@ struct tell_zone {
 };
 
 /// A part's reaches: its thresholds, and what may be nearer than it is computed to be.
-inline void add_reaches(std::span<const double> thresholds, const part_facts& facts, const frames::float_error& error, std::vector<real>& reaches) {
+inline void add_reaches(std::span<const double> thresholds, const part_facts& facts, const frames::float_error& error,
+                        std::vector<real>& reaches) {
   for (std::size_t z = 0; z < thresholds.size(); ++z) {
     if (!(thresholds[z] >= 0) || (z > 0 && !(thresholds[z] >= thresholds[z - 1])))
-      throw std::invalid_argument("clearance: a zone's threshold is " + std::to_string(thresholds[z]) + " m; they must not be negative, nor fall");
+      throw std::invalid_argument("clearance: a zone's threshold is " + std::to_string(thresholds[z]) +
+                                  " m; they must not be negative, nor fall");
     reaches.push_back(pairwise::may_be_within(thresholds[z], facts, error));
   }
 }
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and thresholds. One object is for one thread and
-/// one stream; the robot must stay.
+/// The prepared question: made once for a robot, asked every frame with new poses, points and thresholds. One object is
+/// for one thread and one stream; the robot must stay.
 template <class On, class PartView>
 class zones_query {
  public:
@@ -84,7 +89,8 @@ class zones_query {
 
   /// As `zones`. Points that a device cannot read are copied into buffers that are kept.
   template <class Clouds>
-  zones_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options) {
+  zones_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                          const zones_options& options) {
     static_assert(explain_clouds<Clouds>());
     auto& [on, model, memory, pairs, ahead] = question_;
     memory.begin();
@@ -98,10 +104,11 @@ class zones_query {
     return all;
   }
 
-  /// As `zones_async`. On a device nothing is waited for, and nothing allocated but by more zones or clouds than ever before. A graph that
-  /// captures this keeps the poses and thresholds of now.
+  /// As `zones_async`. On a device nothing is waited for, and nothing allocated but by more zones or clouds than ever
+  /// before. A graph that captures this keeps the poses and thresholds of now.
   template <class Clouds>
-  std::size_t enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options, zone* zones, point_counts* counts) {
+  std::size_t enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options,
+                      zone* zones, point_counts* counts) {
     static_assert(explain_clouds<Clouds>());
     question_.memory.begin();
     return ask(poses, clouds, options, zones, counts);
@@ -109,22 +116,25 @@ class zones_query {
 
  private:
   template <class Clouds>
-  std::size_t ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options, zone* zones, point_counts* counts) {
+  std::size_t ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options,
+                  zone* zones, point_counts* counts) {
     auto& [on, model, memory, pairs, ahead] = question_;
     const std::size_t given = options.thresholds.size(), parts = model.size();
     if (given == 0 || options.min_points == 0)
-      throw std::invalid_argument("clearance: zones need a threshold, and min_points a point; here are " + std::to_string(given) + " and " +
-                                  std::to_string(options.min_points));
+      throw std::invalid_argument("clearance: zones need a threshold, and min_points a point; here are " +
+                                  std::to_string(given) + " and " + std::to_string(options.min_points));
     const auto& first = ahead.first;
     const frames::float_error error = ahead.look(model.facts, poses, clouds).error;
     if (options.each_part && (parts == 0 || given % parts != 0))
-      throw std::invalid_argument("clearance: " + std::to_string(given) + " thresholds are not the same number for each of " + std::to_string(parts) +
+      throw std::invalid_argument("clearance: " + std::to_string(given) +
+                                  " thresholds are not the same number for each of " + std::to_string(parts) +
                                   " parts");
     const std::size_t per_part = options.each_part ? given / parts : given;
     auto& reaches = ahead.reaches;
     reaches.clear();
     for (std::size_t k = 0; k < parts; ++k)
-      detail::add_reaches(std::span(options.thresholds).subspan(options.each_part ? k * per_part : 0, per_part), model.facts[k], error, reaches);
+      detail::add_reaches(std::span(options.thresholds).subspan(options.each_part ? k * per_part : 0, per_part),
+                          model.facts[k], error, reaches);
     using answer = pairwise::count_in_zones;
     auto* const words = memory.template room<pairwise::zone_words>(answer::copies * reaches.size()).data();
     on.for_each(answer::copies * reaches.size(), pairwise::empty_zones{words});
@@ -138,20 +148,24 @@ class zones_query {
   pairwise::pair_question<On, PartView> question_;
 };
 template <class On, robot Robot, class... Memory>
-zones_query(const On&, const Robot&, Memory...) -> zones_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+zones_query(const On&, const Robot&, Memory...)
+    -> zones_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// Enqueues it: `zones`, as zones_result has them, and `counts`, in memory that `on` writes; clouds must stay until it is done. How many
-/// zones each part has.
+/// Enqueues it: `zones`, as zones_result has them, and `counts`, in memory that `on` writes; clouds must stay until it
+/// is done. How many zones each part has.
 template <class On, robot Robot, class Clouds>
-std::size_t zones_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options,
-                        zone* zones, point_counts* counts) {
-  return pairwise::asked_once<zones_query>(on, robot, [&](auto& query) { return query.enqueue(poses, clouds, options, zones, counts); });
+std::size_t zones_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
+                        const Clouds& clouds, const zones_options& options, zone* zones, point_counts* counts) {
+  return pairwise::asked_once<zones_query>(
+      on, robot, [&](auto& query) { return query.enqueue(poses, clouds, options, zones, counts); });
 }
 
-/// The points in zones around every part, in one pass. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that
-/// does, and if thresholds are negative, not in order, none, or not the same number for each part, or min_points is 0.
+/// The points in zones around every part, in one pass. `poses` and `clouds` as for min_distance. Throws
+/// std::invalid_argument as that does, and if thresholds are negative, not in order, none, or not the same number for
+/// each part, or min_points is 0.
 template <class On, robot Robot, class Clouds>
-zones_result zones(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options) {
+zones_result zones(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                   const zones_options& options) {
   return pairwise::asked_once<zones_query>(on, robot, [&](auto& query) { return query(poses, clouds, options); });
 }
 

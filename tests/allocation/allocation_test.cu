@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// After its first calls a prepared question asks nobody for memory: every way to get some is counted, in the process and on the
-// device, and so is every wait of the driver's.
+// After its first calls a prepared question asks nobody for memory: every way to get some is counted, in the process
+// and on the device, and so is every wait of the driver's.
 // wraps: cudaMalloc cudaMallocAsync cudaMallocHost cudaHostAlloc cudaMallocManaged cudaMallocFromPoolAsync cudaFree cudaFreeAsync
 // wraps: cudaDeviceSynchronize cudaStreamSynchronize _Znwm
 #include "support/product_device.cuh"
@@ -35,7 +35,8 @@ COUNTED(on_device, cudaMallocAsync, (void** p, std::size_t n, cudaStream_t s), (
 COUNTED(on_device, cudaMallocHost, (void** p, std::size_t n), (p, n))
 COUNTED(on_device, cudaHostAlloc, (void** p, std::size_t n, unsigned flags), (p, n, flags))
 COUNTED(on_device, cudaMallocManaged, (void** p, std::size_t n, unsigned flags), (p, n, flags))
-COUNTED(on_device, cudaMallocFromPoolAsync, (void** p, std::size_t n, cudaMemPool_t pool, cudaStream_t s), (p, n, pool, s))
+COUNTED(on_device, cudaMallocFromPoolAsync, (void** p, std::size_t n, cudaMemPool_t pool, cudaStream_t s),
+        (p, n, pool, s))
 COUNTED(on_device, cudaFree, (void* p), (p))
 COUNTED(on_device, cudaFreeAsync, (void* p, cudaStream_t s), (p, s))
 COUNTED(waits, cudaDeviceSynchronize, (), ())
@@ -151,11 +152,14 @@ void ask_about_pairs(const scene<inner_sphere>& s, std::size_t clouds) {
     within.enqueue(s.poses, asked, real(now.near), pairs.data(), pairs.size(), count.data(), counts.data());
     in_collision.enqueue(s.poses, asked, now.near, result.data());
     per_part.enqueue(s.poses, asked, distance.data(), counts.data(), real(now.near));
-    collect.enqueue(s.poses, asked, clearance::pairwise::listed{pairs.data(), count.data(), pairs.size(), reaches.data()}, counts.data());
+    collect.enqueue(s.poses, asked,
+                    clearance::pairwise::listed{pairs.data(), count.data(), pairs.size(), reaches.data()},
+                    counts.data());
     filter.enqueue(s.poses, asked, now.own, labels.data(), own.data());
     where.enqueue(s.poses, asked, minima.data(), witnesses.data());
   };
-  gpu.stage(std::span<const clearance::part_minimum>(std::vector<clearance::part_minimum>(model.size())), minima.data());
+  gpu.stage(std::span<const clearance::part_minimum>(std::vector<clearance::part_minimum>(model.size())),
+            minima.data());
   const pair_options each[] = {{0.1}, {0.2}, {0.3}};
   frame(several, each[0]);
   const counted before;
@@ -178,7 +182,8 @@ TEST_CASE("Prepared questions about pairs allocate nothing, and do not wait, aft
   ask_about_pairs(scenes<inner_sphere>()[1], 2);
   dice d(41);
   scene<inner_sphere> s;  // of more parts and clouds than travel with a launch
-  for (int part = 0; part < 14; ++part) s.parts.push_back(random_primitives<inner_sphere>(d, 20, 0.2, 0.1)), s.poses.push_back(d.pose(1));
+  for (int part = 0; part < 14; ++part)
+    s.parts.push_back(random_primitives<inner_sphere>(d, 20, 0.2, 0.1)), s.poses.push_back(d.pose(1));
   s.points = d.points(2000, 2);
   ask_about_pairs(s, 5);
 }
@@ -198,7 +203,9 @@ TEST_CASE("One call takes one block of memory in the order of its stream, and wa
   CHECK(on_device == before.before_on_device + 2);  // taken, and given back
   CHECK(waits == before.before_waits);
   const clearance::device_buffer<clearance::collision_result> found(1, gpu.id);
-  const auto collide = [&] { clearance::in_collision_async(gpu, model, s.poses, cloud, std::vector{0.1}, found.data()); };
+  const auto collide = [&] {
+    clearance::in_collision_async(gpu, model, s.poses, cloud, std::vector{0.1}, found.data());
+  };
   collide();
   const counted collided;
   collide();

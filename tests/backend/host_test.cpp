@@ -37,7 +37,11 @@ TEST_CASE("The host keeps to the threads it was given") {
 }
 
 TEST_CASE("An exception of a body reaches the caller") {
-  CHECK_THROWS_AS(host{}.for_each(50000, [](std::size_t i) { if (i == 40000) throw std::out_of_range("body"); }), std::out_of_range);
+  CHECK_THROWS_AS(host{}.for_each(50000,
+                                  [](std::size_t i) {
+                                    if (i == 40000) throw std::out_of_range("body");
+                                  }),
+                  std::out_of_range);
 }
 
 TEST_CASE("Keys order as (distance, index) does, negative distances and zeros included") {

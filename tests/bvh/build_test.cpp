@@ -20,8 +20,8 @@ std::vector<std::vector<P>> inputs() {
   dice d(7);
   std::vector<std::vector<P>> all;
   for (const std::size_t n : {1, 2, 3, 4, 5, 8, 9, 33, 400}) all.push_back(random_primitives<P>(d, n));
-  all.emplace_back(100, all[1][0]);          // all coincident
-  all.push_back(all[6]);                     // every one twice
+  all.emplace_back(100, all[1][0]);  // all coincident
+  all.push_back(all[6]);             // every one twice
   all.back().insert(all.back().end(), all[6].begin(), all[6].end());
   auto sizes = random_primitives<P>(d, 60, 1, 1e-4);
   for (const P& p : random_primitives<P>(d, 5, 100, 50)) sizes.push_back(p);
@@ -31,7 +31,8 @@ std::vector<std::vector<P>> inputs() {
 
 std::vector<std::vector<inner_sphere>> more(std::vector<std::vector<inner_sphere>> all) {
   all.emplace_back();
-  for (int k = 0; k < 200; ++k) all.back().push_back({{real(std::ldexp(1.0, k % 100 - 50)), 0, 0}, 0});  // on a line, doubling
+  for (int k = 0; k < 200; ++k)
+    all.back().push_back({{real(std::ldexp(1.0, k % 100 - 50)), 0, 0}, 0});  // on a line, doubling
   all.emplace_back();
   for (int k = 0; k < 64; ++k) all.back().push_back({{real(k % 4), real(k / 4 % 4), real(k / 16)}, 0.5f});  // a lattice
   return all;
@@ -55,7 +56,8 @@ void check(Fit fit, Split split = {}) {
           if (node.is_leaf()) {
             v.require(node.count() <= leaf, "a leaf of", node.count());
           } else {
-            v.require(node.first == children && node.first > n, "children are not contiguous, in order, after their parent");
+            v.require(node.first == children && node.first > n,
+                      "children are not contiguous, in order, after their parent");
             v.require(node.count() >= 2, "a node with one child");
             children += node.count();
           }
@@ -100,7 +102,10 @@ TEST_CASE("A flat list and a linked binary tree are hierarchies") {
   for (const auto& primitives : inputs<inner_sphere>()) {
     std::vector<ball> balls;
     for (const auto& s : primitives) balls.push_back({s.center, s.radius});
-    hierarchy_check(clearance::flat_list<clearance::sphere, inner_sphere>{clearance::sphere::fit(balls), primitives.data(), std::uint32_t(primitives.size())}, primitives, v);
+    hierarchy_check(
+        clearance::flat_list<clearance::sphere, inner_sphere>{clearance::sphere::fit(balls), primitives.data(),
+                                                              std::uint32_t(primitives.size())},
+        primitives, v);
     hierarchy_check(linked_tree<clearance::aabb, inner_sphere>(primitives).view(), primitives, v);
     hierarchy_check(linked_tree<clearance::aabb, inner_sphere>(primitives, true).view(), primitives, v);
   }
@@ -127,7 +132,8 @@ TEST_CASE("Builders refuse what is no tree, with the value in the message") {
   const auto says = [&](auto call, const char* words) { return message(call).find(words) != std::string::npos; };
   CHECK(says([] { build<clearance::sphere>(std::vector<inner_sphere>{}); }, "no primitives"));
   for (const std::uint32_t width : {0u, 1u, 3u, 7u, 16u})
-    CHECK(says([&] { build<clearance::sphere>(one, {.width = width}); }, ("width is " + std::to_string(width)).c_str()));
+    CHECK(
+        says([&] { build<clearance::sphere>(one, {.width = width}); }, ("width is " + std::to_string(width)).c_str()));
   CHECK(says([&] { build<clearance::sphere>(one, {.leaf_size = 0}); }, "leaf_size is 0"));
   const real bad[] = {clearance::not_a_number, infinity, -infinity, 1e30f};
   for (const real x : bad) {

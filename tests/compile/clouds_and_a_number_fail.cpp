@@ -5,7 +5,10 @@
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
-clearance::real ask(const std::vector<std::vector<clearance::inner_sphere>>& bodies, const std::vector<clearance::vec3>& points) {
+clearance::real ask(const std::vector<std::vector<clearance::inner_sphere>>& bodies,
+                    const std::vector<clearance::vec3>& points) {
   const clearance::point_span span(points);
-  return clearance::min_distance(clearance::host{}, clearance::make_model<clearance::sphere>(bodies), std::vector{Eigen::Isometry3d::Identity()}, span, span).distance;
+  return clearance::min_distance(clearance::host{}, clearance::make_model<clearance::sphere>(bodies),
+                                 std::vector{Eigen::Isometry3d::Identity()}, span, span)
+      .distance;
 }

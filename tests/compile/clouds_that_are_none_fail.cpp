@@ -11,5 +11,7 @@ struct points {
 };
 
 clearance::real ask(const std::vector<std::vector<clearance::inner_sphere>>& bodies) {
-  return clearance::min_distance(clearance::host{}, clearance::make_model<clearance::sphere>(bodies), std::vector{Eigen::Isometry3d::Identity()}, points{}).distance;
+  return clearance::min_distance(clearance::host{}, clearance::make_model<clearance::sphere>(bodies),
+                                 std::vector{Eigen::Isometry3d::Identity()}, points{})
+      .distance;
 }

@@ -10,6 +10,8 @@ struct card : clearance::host {
   using own_scan = void;
 };
 
-clearance::point_distances ask(const std::vector<std::vector<clearance::inner_sphere>>& bodies, const std::vector<clearance::vec3>& points) {
-  return clearance::distances(card{}, clearance::make_model<clearance::sphere>(bodies), std::vector{Eigen::Isometry3d::Identity()}, points);
+clearance::point_distances ask(const std::vector<std::vector<clearance::inner_sphere>>& bodies,
+                               const std::vector<clearance::vec3>& points) {
+  return clearance::distances(card{}, clearance::make_model<clearance::sphere>(bodies),
+                              std::vector{Eigen::Isometry3d::Identity()}, points);
 }

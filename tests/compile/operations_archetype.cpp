@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The least that a point source and an answer must offer to the operations, and the least part; and a backend that is not ours.
+// The least that a point source and an answer must offer to the operations, and the least part; and a backend that is
+// not ours.
 #include <clearance/backend/host.hpp>
+#include <clearance/bvh/build.hpp>
 #include <clearance/collect.hpp>
 #include <clearance/distances.hpp>
 #include <clearance/min_distance.hpp>
 #include <clearance/min_support.hpp>
-#include <clearance/self_filter.hpp>
-#include <clearance/bvh/build.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/self_filter.hpp>
 #include <clearance/volume/sphere.hpp>
 
 namespace {
@@ -42,7 +43,6 @@ struct in_line : clearance::host {
 };
 static_assert(clearance::backend<in_line>);
 
-
 int main() {
   const std::vector<clearance::inner_sphere> ball = {{{0, 0, 0}, 1}};
   const auto part = clearance::make_part(clearance::build<clearance::sphere>(ball));
@@ -59,6 +59,8 @@ int main() {
   if (rest.rest.distance != 2 || rest.filter.counts.own != 1 || rest.filter.rest.size() != 2) return 3;
   const auto nearest = clearance::nearest_k(in_line{}, robot, poses, least_source{}, 2);
   if (nearest.of(0)[1].distance != 2) return 4;
-  if (clearance::min_distance_supported(in_line{}, robot, poses, least_source{}, {.min_points = 3, .radius = 1}).distance != 2) return 5;
+  if (clearance::min_distance_supported(in_line{}, robot, poses, least_source{}, {.min_points = 3, .radius = 1})
+          .distance != 2)
+    return 5;
   return r.distance == 1 && same.distance == 1 && pairs == 2 && in_line_pairs == 2 && seen.valid == 3 ? 0 : 1;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A second opinion from FCL, through those of its paths that are exact: radius-0 spheres against sphere shapes, point by
-// point and through its broad phase, and BVHModel<OBBRSS> of a mesh against one of points written as degenerate triangles.
+// A second opinion from FCL, through those of its paths that are exact: radius-0 spheres against sphere shapes, point
+// by point and through its broad phase, and BVHModel<OBBRSS> of a mesh against one of points written as degenerate
+// triangles.
 #include "support/brute_force.hpp"
 #include "support/scenes.hpp"
 
@@ -24,11 +25,13 @@ using Eigen::Isometry3d, Eigen::Vector3d;
 Vector3d wide_vector(vec3 p) { return {p.x, p.y, p.z}; }
 
 /// The least distance as FCL's broad phase finds it; spheres that overlap a point are not its business.
-double by_broad_phase(const std::vector<std::vector<inner_sphere>>& parts, const std::vector<Isometry3d>& poses, const std::vector<vec3>& points) {
+double by_broad_phase(const std::vector<std::vector<inner_sphere>>& parts, const std::vector<Isometry3d>& poses,
+                      const std::vector<vec3>& points) {
   std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects;
   fcl::DynamicAABBTreeCollisionManagerd robot, cloud;
   const auto add = [&](auto& manager, double radius, const Vector3d& at) {
-    objects.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Sphered>(radius), Eigen::Matrix3d::Identity(), at));
+    objects.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Sphered>(radius),
+                                                              Eigen::Matrix3d::Identity(), at));
     manager.registerObject(objects.back().get());
   };
   for (std::size_t k = 0; k < parts.size(); ++k)
@@ -61,7 +64,9 @@ double by_meshes(const std::vector<triangle>& faces, const Isometry3d& pose, con
 }
 
 /// Eight units in the last place of |p| + |t| + part size.
-double tolerance(const Isometry3d& pose, double p, double size) { return 8 * 0x1p-23 * (p + pose.translation().norm() + size); }
+double tolerance(const Isometry3d& pose, double p, double size) {
+  return 8 * 0x1p-23 * (p + pose.translation().norm() + size);
+}
 
 std::vector<vec3> outside(dice& d, std::size_t n, double nearest, double farthest) {
   std::vector<vec3> all(n);
@@ -88,7 +93,8 @@ TEST_CASE("Sphere parts are as far as FCL's spheres are, sphere by sphere and po
         fcl::DistanceResultd result;
         least = std::min(least, fcl::distance(&ball, there, &point, here, request, result));
       }
-    const auto r = clearance::min_distance(clearance::host{}, clearance::make_part(clearance::build<clearance::sphere>(spheres)), pose, points);
+    const auto r = clearance::min_distance(
+        clearance::host{}, clearance::make_part(clearance::build<clearance::sphere>(spheres)), pose, points);
     CHECK(std::abs(r.distance - least) <= tolerance(pose, 6, 1.3));
     CHECK((r.lower <= least && least <= r.upper));
   }
@@ -97,7 +103,8 @@ TEST_CASE("Sphere parts are as far as FCL's spheres are, sphere by sphere and po
 TEST_CASE("Robots of sphere parts are as far from a cloud as FCL's broad phase says") {
   dice d(2);
   for (int round = 0; round < 15; ++round) {
-    const std::vector<std::vector<inner_sphere>> parts = {random_spheres(d, 200, 0.4, 0.05), random_spheres(d, 1, 0.4, 0.3), random_spheres(d, 80, 0.2, 0.1)};
+    const std::vector<std::vector<inner_sphere>> parts = {
+        random_spheres(d, 200, 0.4, 0.05), random_spheres(d, 1, 0.4, 0.3), random_spheres(d, 80, 0.2, 0.1)};
     const std::vector<Isometry3d> poses = {d.pose(0.5), d.pose(0.5), d.pose(0.5)};
     const auto points = outside(d, 2000, 2, 4);
     std::vector<decltype(clearance::make_part(clearance::build<clearance::aabb>(parts[0])))> own;
@@ -117,8 +124,10 @@ TEST_CASE("Triangle parts are as far from a cloud as FCL's meshes are") {
     const Isometry3d pose = d.pose(1);
     const auto points = outside(d, 1500, 2.8, 5);
     const double truth = by_meshes(faces, pose, points);
-    const auto in_boxes = clearance::min_distance(clearance::host{}, clearance::make_part(clearance::build<clearance::obb>(faces)), pose, points);
-    const auto in_spheres = clearance::min_distance(clearance::host{}, clearance::make_part(clearance::build<clearance::sphere>(faces)), pose, points);
+    const auto in_boxes = clearance::min_distance(
+        clearance::host{}, clearance::make_part(clearance::build<clearance::obb>(faces)), pose, points);
+    const auto in_spheres = clearance::min_distance(
+        clearance::host{}, clearance::make_part(clearance::build<clearance::sphere>(faces)), pose, points);
     CHECK(std::abs(in_boxes.distance - truth) <= tolerance(pose, 5, 1) + 1e-10);
     CHECK(same_bits(in_boxes.distance, in_spheres.distance));
     CHECK((in_boxes.lower <= truth + 1e-10 && truth <= in_boxes.upper));

@@ -27,8 +27,9 @@ io::cloud read(const std::string& end, const std::string& bytes) {
 }
 
 std::string ply(const std::string& format, const std::string& count, const std::string& type, const std::string& rest) {
-  return "ply\nformat " + format + " 1.0\ncomment ours\nelement vertex " + count + "\nproperty " + type + " z\nproperty uchar red\nproperty " +
-         type + " x\nproperty " + type + " y\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n" + rest;
+  return "ply\nformat " + format + " 1.0\ncomment ours\nelement vertex " + count + "\nproperty " + type +
+         " z\nproperty uchar red\nproperty " + type + " x\nproperty " + type +
+         " y\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n" + rest;
 }
 
 std::string record(float x, float y, float z) {
@@ -42,7 +43,9 @@ std::string record(float x, float y, float z) {
 }  // namespace
 
 TEST_CASE("an XYZ file may have comments, other separators and further columns") {
-  const io::cloud c = read(".xyz", "\xEF\xBB\xBF# made by hand\n1 2 3 red\r\n\n  4,5,6, 255\n7;8\t9 0 # last\nnan nan nan -\n+1e1 -.5 inf x");
+  const io::cloud c =
+      read(".xyz",
+           "\xEF\xBB\xBF# made by hand\n1 2 3 red\r\n\n  4,5,6, 255\n7;8\t9 0 # last\nnan nan nan -\n+1e1 -.5 inf x");
   REQUIRE(c.points.size() == 5);
   CHECK(c.points[0] == Eigen::Vector3d(1, 2, 3));
   CHECK(c.points[1] == Eigen::Vector3d(4, 5, 6));
@@ -70,7 +73,8 @@ TEST_CASE("floats for a query are exact where floats can be, and say what they l
   for (const double away : {0.0, 5.0, 70.0, 1e4, 5e6}) {
     std::uniform_real_distribution<float> along(float(away) - 5, float(away) + 5);
     std::vector<Eigen::Vector3d> points;
-    for (int i = 0; i < 500; ++i) points.emplace_back(double(along(random)), double(along(random)), double(along(random)));
+    for (int i = 0; i < 500; ++i)
+      points.emplace_back(double(along(random)), double(along(random)), double(along(random)));
     const io::cloud c = io::make_cloud("", points, points.size(), 1);
     Eigen::Isometry3d robot = Eigen::Isometry3d::Identity();
     robot.translation().setConstant(away);
@@ -93,7 +97,8 @@ TEST_CASE("floats for a query are exact where floats can be, and say what they l
 
 TEST_CASE("the points of a PLY file come in the file's order, from text and from bytes") {
   const std::string text = ply("ascii", "3", "float", "3 200 1 2\nnan 200 nan nan\n6 200 4 5\n");
-  const std::string bytes = ply("binary_little_endian", "3", "float", record(1, 2, 3) + record(not_a_number, 0, 0) + record(4, 5, 6));
+  const std::string bytes =
+      ply("binary_little_endian", "3", "float", record(1, 2, 3) + record(not_a_number, 0, 0) + record(4, 5, 6));
   for (const io::cloud& c : {read(".ply", text), read(".PLY", bytes)}) {
     REQUIRE(c.points.size() == 3);
     CHECK(c.points[0] == Eigen::Vector3d(1, 2, 3));
@@ -120,7 +125,8 @@ TEST_CASE("a PLY file that is not what it says is refused") {
   contains(refused(".ply", ply("binary_little_endian", "2", "float", record(1, 2, 3))), "more than the file holds");
   contains(refused(".ply", ply("ascii", "2", "float", "3.0000 200 1.00000 2.00000\n")), "the file ends after 1");
   contains(refused(".ply", ply("ascii", "1", "float", "3 200 1 two\n")), ":12: \"two\" is not a number");
-  contains(refused(".ply", ply("ascii", "1", "float", "3 200 1\n\n\n")), ":12: vertex 0 has fewer values than the header says");
+  contains(refused(".ply", ply("ascii", "1", "float", "3 200 1\n\n\n")),
+           ":12: vertex 0 has fewer values than the header says");
   contains(refused(".ply", ply("ascii", "1", "real", "")), ":5: a PLY property needs");
   CHECK(read(".ply", ply("ascii", "1", "double", "1 200 5000000.125 2\n")).points.at(0).x() == 5000000.125);
   CHECK(read(".ply", ply("ascii", "1", "double", "1 200 5.125 2\n")).points.at(0) == Eigen::Vector3d(5.125, 2, 1));
@@ -164,19 +170,22 @@ TEST_CASE("real damaged PLY files are read or refused", "[data]") {
   CHECK(io::load_ply(folder + "trimesh/empty.ply").points.empty());
 }
 
-TEST_CASE("decimal commas, thousands and empty coordinates of a text cloud are refused with the line, separators are not") {
-  for (const char* line : {"0,5 0,2 0,1", "0,5;0,2;0,1", "0,5\t0,2\t0,1", "0,5, 0,2, 0,1", "0,5; 0,2; 0,1", "-0,5 0 1", "0 0,2 1", "0 1 0,2",
-                           "1,5e3 2 3", "1,234.5 2,345.6 3,456.7", "1.234,5 2.345,6 3.456,7", "500,000 5,000,000.0 3", "1,000;2,000;3,000",
-                           "1,5 2,5 3,5 255", "0,5;0,2;0,1;7", "0,5 0,2"}) {
+TEST_CASE(
+    "decimal commas, thousands and empty coordinates of a text cloud are refused with the line, separators are not") {
+  for (const char* line :
+       {"0,5 0,2 0,1", "0,5;0,2;0,1", "0,5\t0,2\t0,1", "0,5, 0,2, 0,1", "0,5; 0,2; 0,1", "-0,5 0 1", "0 0,2 1",
+        "0 1 0,2", "1,5e3 2 3", "1,234.5 2,345.6 3,456.7", "1.234,5 2.345,6 3.456,7", "500,000 5,000,000.0 3",
+        "1,000;2,000;3,000", "1,5 2,5 3,5 255", "0,5;0,2;0,1;7", "0,5 0,2"}) {
     INFO(line);
     contains(refused(".xyz", "1 2 3\n" + std::string(line) + "\n"), ":2: \"");
     contains(refused(".txt", std::string(line) + " # one\n"), "may be one number or several");
   }
   for (const char* line : {",1,2,3", "1,,2,3", "1,2,,3", "1;;2;3", ";1;2;3", "1; ;2;3", "1;2; ;3", "1 , , 2 3"})
     contains(refused(".xyz", std::string(line) + "\n"), ":1: nothing stands for ");
-  for (const char* line : {"1,2,3", "1, 2, 3", "1 ,2 ,3", "1 , 2 , 3", "1;2;3", "1; 2; 3", "1\t2\t3", "1 2 3", "1,2,3,", "1,2,3 4", "1,2,3;4",
-                           "1,2,3,,4", "1,2,3, ,4", "1 2 3 a,b", "1,2,3,4,5", "1.0,2.0, 3.0", "1.0, 2.0,3.0", "1;2;3;0,5", "//X Y Z\n1 2 3",
-                           " 1 2 3 ", "1 2 3;"}) {
+  for (const char* line :
+       {"1,2,3",     "1, 2, 3",      "1 ,2 ,3",      "1 , 2 , 3", "1;2;3",          "1; 2; 3",   "1\t2\t3",
+        "1 2 3",     "1,2,3,",       "1,2,3 4",      "1,2,3;4",   "1,2,3,,4",       "1,2,3, ,4", "1 2 3 a,b",
+        "1,2,3,4,5", "1.0,2.0, 3.0", "1.0, 2.0,3.0", "1;2;3;0,5", "//X Y Z\n1 2 3", " 1 2 3 ",   "1 2 3;"}) {
     INFO(line);
     const io::cloud c = read(".xyz", std::string(line) + "\n");
     REQUIRE(c.points.size() == 1);

@@ -13,9 +13,7 @@ using namespace clearance;
 
 namespace {
 
-std::string big(std::uint32_t value) {
-  return {char(value >> 24), char(value >> 16), char(value >> 8), char(value)};
-}
+std::string big(std::uint32_t value) { return {char(value >> 24), char(value >> 16), char(value >> 8), char(value)}; }
 
 std::string chunk(const std::string& name, const std::string& data) {
   return big(std::uint32_t(data.size())) + name + data + big(io::png_crc(name + data));
@@ -26,11 +24,13 @@ std::string zlib(const std::string& data) {
   std::uint32_t a = 1, b = 0;
   for (const char c : data) a = (a + std::uint8_t(c)) % 65521, b = (b + a) % 65521;
   const auto size = std::uint16_t(data.size()), not_size = std::uint16_t(~size);
-  return std::string("\x78\x01\x01", 3) + char(size) + char(size >> 8) + char(not_size) + char(not_size >> 8) + data + big(b << 16 | a);
+  return std::string("\x78\x01\x01", 3) + char(size) + char(size >> 8) + char(not_size) + char(not_size >> 8) + data +
+         big(b << 16 | a);
 }
 
 std::string png(std::uint32_t width, std::uint32_t height, int depth, int colour, const std::string& rows) {
-  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", big(width) + big(height) + char(depth) + char(colour) + std::string(3, '\0')) +
+  return "\x89PNG\r\n\x1a\n" +
+         chunk("IHDR", big(width) + big(height) + char(depth) + char(colour) + std::string(3, '\0')) +
          chunk("IDAT", zlib(rows)) + chunk("IEND", "");
 }
 
@@ -70,9 +70,7 @@ TEST_CASE("any other PNG is refused by what it is") {
 
 TEST_CASE("a PNG cut short or damaged anywhere is refused") {
   const std::string whole = png(3, 2, 16, 0, pixels);
-  const auto read = [&](const std::string& bytes) {
-    return refusal([&] { io::read_png(bytes, "fuzz"); });
-  };
+  const auto read = [&](const std::string& bytes) { return refusal([&] { io::read_png(bytes, "fuzz"); }); };
   REQUIRE(read(whole).empty());
   REQUIRE(read(whole + "padding").empty());
   for (std::size_t length = 0; length < whole.size(); ++length) CHECK(!read(whole.substr(0, length)).empty());
@@ -102,7 +100,8 @@ TEST_CASE("a PNG with right checksums and wrong contents is read or refused, nev
 
 TEST_CASE("the data of a PNG have the checksum and the length that they say, or are refused") {
   const auto image = [](const std::string& packed) {
-    return refused("\x89PNG\r\n\x1a\n" + chunk("IHDR", big(3) + big(2) + char(16) + std::string(4, '\0')) + chunk("IDAT", packed) + chunk("IEND", ""));
+    return refused("\x89PNG\r\n\x1a\n" + chunk("IHDR", big(3) + big(2) + char(16) + std::string(4, '\0')) +
+                   chunk("IDAT", packed) + chunk("IEND", ""));
   };
   const std::string packed = zlib(pixels);
   CHECK(image(packed).empty());
@@ -111,27 +110,34 @@ TEST_CASE("the data of a PNG have the checksum and the length that they say, or 
     changed[at] = char(changed[at] ^ 1);
     contains(image(changed), "the PNG image is damaged");
   }
-  for (std::size_t length = 0; length < packed.size(); ++length) contains(image(packed.substr(0, length)), "the PNG image");
+  for (std::size_t length = 0; length < packed.size(); ++length)
+    contains(image(packed.substr(0, length)), "the PNG image");
   contains(image(packed + '\0'), "checksum");
-  for (const std::size_t more : {1u, 2u, 7u, 14u, 1000u}) contains(image(zlib(pixels + std::string(more, '\1'))), "not those of 3x2 pixels");
-  for (std::size_t less = 1; less <= pixels.size(); ++less) contains(image(zlib(pixels.substr(0, pixels.size() - less))), "the PNG image");
+  for (const std::size_t more : {1u, 2u, 7u, 14u, 1000u})
+    contains(image(zlib(pixels + std::string(more, '\1'))), "not those of 3x2 pixels");
+  for (std::size_t less = 1; less <= pixels.size(); ++less)
+    contains(image(zlib(pixels.substr(0, pixels.size() - less))), "the PNG image");
   // A megabyte that would become a gigabyte is not unpacked.
   std::string blocks = "\x78\x01";
   for (int k = 0; k < 20; ++k) blocks += std::string("\0\xff\xff\0\0", 5) + std::string(65535, '\0');
   contains(image(blocks), "not those of 3x2 pixels");
-  for (int filter = 5; filter < 256; filter += 50) contains(image(zlib(char(filter) + pixels.substr(1))), "unknown filter " + std::to_string(filter));
+  for (int filter = 5; filter < 256; filter += 50)
+    contains(image(zlib(char(filter) + pixels.substr(1))), "unknown filter " + std::to_string(filter));
 }
 
 TEST_CASE("a PNG has one header, data in one place, and no chunk that its pixels would need") {
-  const std::string start = "\x89PNG\r\n\x1a\n", head = big(3) + big(2) + char(16) + std::string(4, '\0'), data = zlib(pixels);
+  const std::string start = "\x89PNG\r\n\x1a\n", head = big(3) + big(2) + char(16) + std::string(4, '\0'),
+                    data = zlib(pixels);
   const auto of = [&](const std::vector<std::string>& chunks) {
     std::string bytes = start;
     for (const auto& each : chunks) bytes += each;
     return refused(bytes);
   };
-  const std::string first = chunk("IHDR", head), end = chunk("IEND", ""), half = chunk("IDAT", data.substr(0, 9)), rest = chunk("IDAT", data.substr(9));
+  const std::string first = chunk("IHDR", head), end = chunk("IEND", ""), half = chunk("IDAT", data.substr(0, 9)),
+                    rest = chunk("IDAT", data.substr(9));
   CHECK(of({first, half, rest, end}).empty());
-  CHECK(of({first, chunk("gAMA", "1234"), chunk("tEXt", "a"), half, chunk("IDAT", ""), rest, chunk("tIME", "x"), end}).empty());
+  CHECK(of({first, chunk("gAMA", "1234"), chunk("tEXt", "a"), half, chunk("IDAT", ""), rest, chunk("tIME", "x"), end})
+            .empty());
   contains(of({first, half, chunk("tEXt", "a"), rest, end}), "in two places");
   contains(of({first, rest, half, end}), "the PNG image is damaged");
   contains(of({first, first, half, rest, end}), "no proper header");
@@ -161,20 +167,25 @@ TEST_CASE("a PNG of any size, with any filters, interlaced or not, gives the num
             std::vector<std::uint8_t> row;
             for (std::size_t x = 0; x < width; ++x)
               if (!interlaced || adam7[y % 8 * 8 + x % 8] == pass)
-                for (const int v : {written[y * width + x] >> 8, written[y * width + x] & 255}) row.push_back(std::uint8_t(v));
+                for (const int v : {written[y * width + x] >> 8, written[y * width + x] & 255})
+                  row.push_back(std::uint8_t(v));
             if (row.empty()) continue;
             above.resize(row.size());
             const int filter = int(random() % 5);
             rows += char(filter);
             for (std::size_t i = 0; i < row.size(); ++i) {
               const int a = i > 1 ? row[i - 2] : 0, b = above[i], c = i > 1 ? above[i - 2] : 0, p = a + b - c;
-              const int nearest = std::abs(p - a) <= std::abs(p - b) && std::abs(p - a) <= std::abs(p - c) ? a : std::abs(p - b) <= std::abs(p - c) ? b : c;
+              const int nearest = std::abs(p - a) <= std::abs(p - b) && std::abs(p - a) <= std::abs(p - c) ? a
+                                  : std::abs(p - b) <= std::abs(p - c)                                     ? b
+                                                                                                           : c;
               rows += char(row[i] - std::array{0, a, b, (a + b) / 2, nearest}[std::size_t(filter)]);
             }
             above = row;
           }
         }
-        std::string bytes = "\x89PNG\r\n\x1a\n" + chunk("IHDR", big(std::uint32_t(width)) + big(std::uint32_t(height)) + char(16) + std::string(3, '\0') + char(interlaced)) +
+        std::string bytes = "\x89PNG\r\n\x1a\n" +
+                            chunk("IHDR", big(std::uint32_t(width)) + big(std::uint32_t(height)) + char(16) +
+                                              std::string(3, '\0') + char(interlaced)) +
                             chunk("IDAT", zlib(rows)) + chunk("IEND", "");
         INFO(width << " x " << height << (interlaced ? ", interlaced" : ""));
         CHECK(io::read_png(bytes, "made").pixels == written);
@@ -187,7 +198,8 @@ TEST_CASE("the PNG and the PCD of one real frame agree in every pixel", "[data]"
     WARN("SKIPPED: no folder " << folder);
     return;
   }
-  for (const std::string name : {"frame_20121214T142255.814212", "frame_20121214T142256.068683", "frame_20121214T142256.332395"}) {
+  for (const std::string name :
+       {"frame_20121214T142255.814212", "frame_20121214T142256.068683", "frame_20121214T142256.332395"}) {
     const io::depth_frame depth = io::load_png(folder + name + "_depth.png");
     const io::cloud cloud = io::load_pcd(folder + name + ".pcd");
     REQUIRE(depth.pixels.size() == cloud.points.size());

@@ -46,17 +46,21 @@ void against_differences() {
       };
       const auto before = ask(-h), after = ask(h);
       for (std::size_t k = 0; k < minima.size(); ++k) {
-        const auto same = [&](const auto& m) { return m.point == minima[k].point && m.primitive == minima[k].primitive; };
+        const auto same = [&](const auto& m) {
+          return m.point == minima[k].point && m.primitive == minima[k].primitive;
+        };
         if (!same(before[k]) || !same(after[k]) || std::abs(minima[k].distance) < 0.05) continue;
-        const auto g = joint_gradient(tree, here, k, clearance::gradient(witnesses[k], Eigen::Vector3d(here[k].translation())));
+        const auto g =
+            joint_gradient(tree, here, k, clearance::gradient(witnesses[k], Eigen::Vector3d(here[k].translation())));
         const double rate = (double(after[k].distance) - double(before[k].distance)) / (2 * h);
         v.require(g && std::size_t(g->size()) == q.size(), "a gradient of part", k);
         if (!g) continue;
         // Mimic factors make a small step a larger one.
-        v.require(std::abs((*g)[Eigen::Index(i)] - rate) < 5e-3 * (1 + std::abs(rate)), "part", k, ", value", i, ":", (*g)[Eigen::Index(i)],
-                  " instead of", rate);
+        v.require(std::abs((*g)[Eigen::Index(i)] - rate) < 5e-3 * (1 + std::abs(rate)), "part", k, ", value", i, ":",
+                  (*g)[Eigen::Index(i)], " instead of", rate);
         ++compared, moving += std::abs(rate) > 0.05;
-        for (std::size_t j = 0; j < tree.joints().size(); ++j) followed += tree.joints()[j].follows && tree.drive(j).value == i && std::abs(rate) > 0.05;
+        for (std::size_t j = 0; j < tree.joints().size(); ++j)
+          followed += tree.joints()[j].follows && tree.drive(j).value == i && std::abs(rate) > 0.05;
       }
     }
   }
@@ -67,8 +71,12 @@ void against_differences() {
 
 }  // namespace
 
-TEST_CASE("Gradients by joints of every kind, mimics among them, are those of differences: spheres") { against_differences<inner_sphere>(); }
-TEST_CASE("Gradients by joints of every kind, mimics among them, are those of differences: triangles") { against_differences<triangle>(); }
+TEST_CASE("Gradients by joints of every kind, mimics among them, are those of differences: spheres") {
+  against_differences<inner_sphere>();
+}
+TEST_CASE("Gradients by joints of every kind, mimics among them, are those of differences: triangles") {
+  against_differences<triangle>();
+}
 
 TEST_CASE("A Jacobian is how a link's point moves") {
   verdict v;
@@ -88,7 +96,8 @@ TEST_CASE("A Jacobian is how a link's point moves") {
         const Eigen::Matrix3d spin = (a.linear() - b.linear()) / (2 * h) * poses[link].linear().transpose();
         const Eigen::Vector3d turning(spin(2, 1), spin(0, 2), spin(1, 0));
         const auto column = all.col(Eigen::Index(i));
-        v.require((column.head<3>() - velocity).norm() < 1e-6 && (column.tail<3>() - turning).norm() < 1e-6, "link", link, ", value", i);
+        v.require((column.head<3>() - velocity).norm() < 1e-6 && (column.tail<3>() - turning).norm() < 1e-6, "link",
+                  link, ", value", i);
       }
     }
   }
@@ -100,7 +109,8 @@ TEST_CASE("What has no gradient has none by joints, and what is no link or part 
   const auto poses = tree.link_poses(q);
   CHECK(!joint_gradient(tree, poses, 2, clearance::pose_gradient{}));
   CHECK(says(sentence<std::invalid_argument>([&] { jacobian(tree, poses, 9, {0, 0, 0}); }), "link number 9"));
-  CHECK(says(sentence<std::invalid_argument>([&] { jacobian(tree, std::span(poses).first(2), 1, {0, 0, 0}); }), "2 poses"));
+  CHECK(says(sentence<std::invalid_argument>([&] { jacobian(tree, std::span(poses).first(2), 1, {0, 0, 0}); }),
+             "2 poses"));
 
   struct small_part {
     std::size_t link;

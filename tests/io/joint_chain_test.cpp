@@ -17,7 +17,9 @@ TEST_CASE("Sine and cosine are within a unit of rounding, of small and of large 
       const double x = d.number(-top, top);
       const auto [s, c] = sine_cosine_of(x);
       const long double sine = std::sin((long double)x), cosine = std::cos((long double)x);
-      v.require(std::abs(s - sine) <= 2.3e-16 * std::abs(sine) + 1e-18 && std::abs(c - cosine) <= 2.3e-16 * std::abs(cosine) + 1e-18, "at", x, ":", s, c);
+      v.require(std::abs(s - sine) <= 2.3e-16 * std::abs(sine) + 1e-18 &&
+                    std::abs(c - cosine) <= 2.3e-16 * std::abs(cosine) + 1e-18,
+                "at", x, ":", s, c);
     }
   const double quarter = std::acos(-1.0) / 2;
   for (int k = -9; k < 10; ++k)
@@ -26,7 +28,8 @@ TEST_CASE("Sine and cosine are within a unit of rounding, of small and of large 
       v.require(std::abs(sine_cosine_of(x).sine - std::sin((long double)x)) < 2e-16, "about", k, " quarter turns");
     }
   v.require(sine_cosine_of(0).sine == 0 && sine_cosine_of(0).cosine == 1, "at 0");
-  for (const double none : {std::nan(""), 1e300, -1.1e9, double(clearance::infinity)}) v.require(std::isnan(sine_cosine_of(none).sine), "of", none);
+  for (const double none : {std::nan(""), 1e300, -1.1e9, double(clearance::infinity)})
+    v.require(std::isnan(sine_cosine_of(none).sine), "of", none);
 }
 
 TEST_CASE("A joint chain puts parts where link_poses puts their links") {
@@ -47,7 +50,9 @@ TEST_CASE("A joint chain puts parts where link_poses puts their links") {
     for (std::size_t c = 0; c < 2; ++c) {
       const auto expected = tree.link_poses(c == 0 ? q : rest);
       for (std::size_t k = 0; k < links.size(); ++k)
-        v.require(((base * expected[links[k]]).matrix() - poses[c * links.size() + k].matrix()).cwiseAbs().maxCoeff() < 1e-12, "configuration", c, ", part", k);
+        v.require(
+            ((base * expected[links[k]]).matrix() - poses[c * links.size() + k].matrix()).cwiseAbs().maxCoeff() < 1e-12,
+            "configuration", c, ", part", k);
     }
     for (const auto& j : tree.joints()) followed += j.follows.has_value(), sliding += j.kind == joint_kind::prismatic;
   }
@@ -59,7 +64,8 @@ TEST_CASE("A hundred thousand links may hang, and follow, one on another") {
   std::vector<joint> joints;
   for (int k = 1; k <= 100'000; ++k) {
     joint j;
-    j.name = "joint " + std::to_string(k), j.parent = links.back(), j.child = std::to_string(k), j.kind = joint_kind::prismatic;
+    j.name = "joint " + std::to_string(k), j.parent = links.back(), j.child = std::to_string(k),
+    j.kind = joint_kind::prismatic;
     if (k > 1) j.follows = clearance::io::mimic{joints.back().name, k % 2 == 0 ? 1.0 : -1.0, 0.125};
     links.push_back(j.child), joints.push_back(std::move(j));
   }
@@ -74,7 +80,8 @@ TEST_CASE("Ways that cancel are refused where double loses more of them than a b
   const auto chain = [](double there, double back) {
     clearance::chain_link first, second;
     first.origin.m[0][3] = there;
-    second.origin.m[0][3] = back, second.origin.m[1][3] = 0.1, second.parent = 0, second.value = 0, second.factor = 1, second.slides = true;
+    second.origin.m[0][3] = back, second.origin.m[1][3] = 0.1, second.parent = 0, second.value = 0, second.factor = 1,
+    second.slides = true;
     return joint_chain<>({first, second}, {1}, {{"slide", {}}});
   };
   const auto refused = [](const joint_chain<>& c, double q) {
@@ -99,7 +106,8 @@ TEST_CASE("Ways that cancel are refused where double loses more of them than a b
 
 TEST_CASE("What is no joint vector is refused, by configuration and joint") {
   joint shoulder, elbow;
-  shoulder.name = "shoulder", shoulder.parent = "base", shoulder.child = "upper", shoulder.lower = -1, shoulder.upper = 1;
+  shoulder.name = "shoulder", shoulder.parent = "base", shoulder.child = "upper", shoulder.lower = -1,
+  shoulder.upper = 1;
   elbow.name = "elbow", elbow.parent = "upper", elbow.child = "fore";
   for (joint* j : {&shoulder, &elbow}) j->kind = joint_kind::revolute;
   const kinematic_tree tree({"base", "upper", "fore"}, {shoulder, elbow});
@@ -114,7 +122,8 @@ TEST_CASE("What is no joint vector is refused, by configuration and joint") {
     return "nothing was refused";
   };
   const auto of = [&](std::vector<double> q) { return refusal([&] { chain.poses(q); }); };
-  CHECK(of({0, 0, 2, 0}) == "clearance: configuration 1: joint \"shoulder\" at 2.000000 is outside -1.000000 to 1.000000");
+  CHECK(of({0, 0, 2, 0}) ==
+        "clearance: configuration 1: joint \"shoulder\" at 2.000000 is outside -1.000000 to 1.000000");
   CHECK(of({0, std::nan("")}).find("joint \"elbow\" at nan") != std::string::npos);
   CHECK(of({0, double(clearance::infinity)}).find("joint \"elbow\" at inf") != std::string::npos);
   CHECK(of({0, 0, 0}) == "clearance: 3 numbers are no whole joint vectors of 2");
@@ -123,15 +132,19 @@ TEST_CASE("What is no joint vector is refused, by configuration and joint") {
   CHECK(of({0, 2e9}) == "clearance: configuration 0: joint \"elbow\" turns a link by more than 2^30 rad");
   const double out[] = {2, 0};
   CHECK(std::isnan(chain.view().pose(out, 0).m[0][0]));  // where nobody can throw
-  CHECK(refusal([&] { joint_chain_of(tree, std::vector<std::size_t>{3}); }) == "the robot has 3 links, and none of number 3");
+  CHECK(refusal([&] { joint_chain_of(tree, std::vector<std::size_t>{3}); }) ==
+        "the robot has 3 links, and none of number 3");
   clearance::chain_link ring;
   ring.parent = 0;
-  CHECK(refusal([&] { joint_chain<>({ring}, {0}, {{"a", {}}}); }) == "clearance: a joint chain has links that hang on no base");
-  CHECK(refusal([&] { joint_chain<>({{}}, {1}, {{"a", {}}}); }) == "clearance: a joint chain has a part that is link 1, which is none");
+  CHECK(refusal([&] { joint_chain<>({ring}, {0}, {{"a", {}}}); }) ==
+        "clearance: a joint chain has links that hang on no base");
+  CHECK(refusal([&] { joint_chain<>({{}}, {1}, {{"a", {}}}); }) ==
+        "clearance: a joint chain has a part that is link 1, which is none");
   CHECK(refusal([&] { joint_chain<>({{}}, {0}, {}); }) == "clearance: a joint chain has no joint that moves");
   clearance::chain_link thick;
   thick.value = 0, thick.axis = {2, 0, 0};
   CHECK(refusal([&] { joint_chain<>({thick}, {0}, {{"a", {}}}); }).find("axis of length 2") != std::string::npos);
   thick.axis = {1, 0, 0}, thick.value = 1;
-  CHECK(refusal([&] { joint_chain<>({thick}, {0}, {{"a", {}}}); }).find("number 1, which is none") != std::string::npos);
+  CHECK(refusal([&] { joint_chain<>({thick}, {0}, {{"a", {}}}); }).find("number 1, which is none") !=
+        std::string::npos);
 }

@@ -14,7 +14,8 @@
 
 using namespace testing;
 using namespace clearance::io;
-using clearance::host, clearance::min_distance_query, clearance::motion_clearance, clearance::part_travel, clearance::state;
+using clearance::host, clearance::min_distance_query, clearance::motion_clearance, clearance::part_travel,
+    clearance::state;
 
 namespace {
 
@@ -42,7 +43,8 @@ TEST_CASE("A joint motion's bound holds for every point of a link at every time"
     const auto to = other(d, from, trial % 4 == 0 ? 8 : 0.7);
     const joint_motion motion(tree, all_links(tree), from, to, {}, d.pose(1));
     std::vector<clearance::part_facts> parts;
-    for (std::size_t k = 0; k < tree.links().size(); ++k) parts.push_back({d.point(0.3), d.number(0, 0.2), d.number(0, 0.05), d.number(0, 0.05)});
+    for (std::size_t k = 0; k < tree.links().size(); ++k)
+      parts.push_back({d.point(0.3), d.number(0, 0.2), d.number(0, 0.05), d.number(0, 0.05)});
     const double t = d.uniform(0, 1);
     const auto now = motion.at(t, parts);
     for (int step = 0; step < 30; ++step) {
@@ -50,8 +52,10 @@ TEST_CASE("A joint motion's bound holds for every point of a link at every time"
       const auto then = motion.at(when, parts);
       for (std::size_t k = 0; k < parts.size(); ++k) {
         const vec3 n = d.direction();
-        const Eigen::Vector3d p = clearance::center_of(parts[k]) + clearance::solid_radius(parts[k]) * Eigen::Vector3d(n.x, n.y, n.z).normalized();
-        const double moved = (now.poses[k] * p - then.poses[k] * p).norm(), most = now.travels[k].within(std::abs(when - t));
+        const Eigen::Vector3d p = clearance::center_of(parts[k]) +
+                                  clearance::solid_radius(parts[k]) * Eigen::Vector3d(n.x, n.y, n.z).normalized();
+        const double moved = (now.poses[k] * p - then.poses[k] * p).norm(),
+                     most = now.travels[k].within(std::abs(when - t));
         v.require(moved <= most, "link", k, " moves", moved, " of at most", most);
         if (most > 1e-3) tightest = std::max(tightest, moved / most);
         wide += most > 3;
@@ -84,8 +88,12 @@ TEST_CASE("No time of a joint motion has less than its clearance") {
     }
     least = std::max(0.0, least);
     v.require(double(r.lower) <= least, "trial", trial, ": lower", r.lower, " but at some time", least);
-    v.require(r.settled && double(r.lower) >= least - 0.0101, "trial", trial, ": lower", r.lower, " of", least, " after", r.queries);
-    v.require(r.state == (r.lower > 0 ? state::free : r.upper <= 0 ? state::collision : state::possible), "trial", trial, ": the state");
+    v.require(r.settled && double(r.lower) >= least - 0.0101, "trial", trial, ": lower", r.lower, " of", least,
+              " after", r.queries);
+    v.require(r.state == (r.lower > 0    ? state::free
+                          : r.upper <= 0 ? state::collision
+                                         : state::possible),
+              "trial", trial, ": the state");
     free += r.state == state::free;
     for (const auto& joint : tree.joints()) with_mimics += r.state == state::free && joint.follows;
   }
@@ -97,7 +105,8 @@ TEST_CASE("A hinge, a slide and one that follows move their links as far as they
   std::vector<joint> joints(3);
   const char* const names[] = {"hinge", "slide", "double"};
   for (std::size_t k = 0; k < 3; ++k) {
-    joints[k].name = names[k], joints[k].parent = "l" + std::to_string(k), joints[k].child = "l" + std::to_string(k + 1);
+    joints[k].name = names[k], joints[k].parent = "l" + std::to_string(k),
+    joints[k].child = "l" + std::to_string(k + 1);
     joints[k].kind = k == 1 ? joint_kind::prismatic : joint_kind::revolute;
     joints[k].axis = Eigen::Vector3d::UnitZ();
   }
@@ -110,17 +119,18 @@ TEST_CASE("A hinge, a slide and one that follows move their links as far as they
   };
   CHECK(travel(0, {0, 0}, {1, 1}).within(1) < 1e-12);
   CHECK(travel(1, {0, 0}, {0.5, 1}).within(1) == Approx(0.5 * 6));         // 5 m to its middle, and its radius
-  CHECK(travel(2, {1, 0}, {1, 2}).within(0.5) == Approx(1));              // it slides by 2 m in all
+  CHECK(travel(2, {1, 0}, {1, 2}).within(0.5) == Approx(1));               // it slides by 2 m in all
   CHECK(travel(2, {0, 1}, {1, 1}).speed == Approx(std::hypot(4, 4) + 1));  // 1 m farther from the hinge
   CHECK(travel(2, {0, -1}, {1, 1}).most == Approx(1 * (6 + 1) + 2));
-  CHECK(travel(3, {0, 0}, {0, 0.5}).most == Approx(1 * 6 + 0.5));          // turns by twice what the slide does
+  CHECK(travel(3, {0, 0}, {0, 0.5}).most == Approx(1 * 6 + 0.5));  // turns by twice what the slide does
 }
 
 TEST_CASE("An arm that unfolds is faster soon than it is now") {
   verdict v;
   std::vector<joint> joints(3);
   for (std::size_t k = 0; k < 3; ++k) {
-    joints[k].name = "j" + std::to_string(k), joints[k].parent = "l" + std::to_string(k), joints[k].child = "l" + std::to_string(k + 1);
+    joints[k].name = "j" + std::to_string(k), joints[k].parent = "l" + std::to_string(k),
+    joints[k].child = "l" + std::to_string(k + 1);
     joints[k].kind = k == 2 ? joint_kind::prismatic : joint_kind::revolute;
     joints[k].axis = k == 2 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
   }
@@ -136,7 +146,8 @@ TEST_CASE("An arm that unfolds is faster soon than it is now") {
   double tightest = 0;
   for (double h = 1e-3; h <= 1; h += 1e-3) {
     const Eigen::Vector3d middle(0.5, 0, 0);
-    const double fastest = (unfold.at(h, parts).poses[0] * middle - unfold.at(h - 1e-6, parts).poses[0] * middle).norm() / 1e-6;
+    const double fastest =
+        (unfold.at(h, parts).poses[0] * middle - unfold.at(h - 1e-6, parts).poses[0] * middle).norm() / 1e-6;
     const part_travel& t = now.travels[0];
     v.require(fastest <= std::min(t.most, t.speed + t.growth * h) * (1 + 1e-6), "at", h, " it moves at", fastest);
     tightest = std::max(tightest, fastest / std::min(t.most, t.speed + t.growth * h));
@@ -150,7 +161,8 @@ TEST_CASE("An arm that unfolds is faster soon than it is now") {
 TEST_CASE("Joint motions refuse what is no configuration, link or base") {
   dice d(6);
   const auto [tree, q] = random_tree(d, 5, 0.3);
-  const auto refusal = [&, &tree = tree, &q = q](std::vector<std::size_t> links, std::vector<double> to, joint_options options, const Eigen::Isometry3d& base) {
+  const auto refusal = [&, &tree = tree, &q = q](std::vector<std::size_t> links, std::vector<double> to,
+                                                 joint_options options, const Eigen::Isometry3d& base) {
     return sentence<std::invalid_argument>([&] { joint_motion(tree, links, q, to, options, base); });
   };
   const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
@@ -165,13 +177,16 @@ TEST_CASE("Joint motions refuse what is no configuration, link or base") {
   scaled.linear() *= 2;
   CHECK(says(refusal({0}, q, {}, scaled), "the base"));
   const joint_motion motion(tree, {0, 1}, q, q);
-  CHECK(says(sentence<std::invalid_argument>([&] { motion.at(0.5, std::vector<clearance::part_facts>(3)); }), "3 parts"));
+  CHECK(
+      says(sentence<std::invalid_argument>([&] { motion.at(0.5, std::vector<clearance::part_facts>(3)); }), "3 parts"));
 
   joint limited;
-  limited.name = "j", limited.parent = "a", limited.child = "b", limited.kind = joint_kind::revolute, limited.lower = -1, limited.upper = 0.7;
+  limited.name = "j", limited.parent = "a", limited.child = "b", limited.kind = joint_kind::revolute,
+  limited.lower = -1, limited.upper = 0.7;
   const kinematic_tree narrow({"a", "b"}, {limited});
   const std::vector<double> low{-1}, high{0.7}, beyond{0.8};
   CHECK(says(sentence<std::invalid_argument>([&] { joint_motion(narrow, {1}, low, beyond); }), "outside its limits"));
   const joint_motion wide(narrow, {1}, low, high);
-  for (const double t : {0.0, 0.1, 0.7, 1.0}) CHECK(wide.at(t, std::vector<clearance::part_facts>(1)).poses.size() == 1);
+  for (const double t : {0.0, 0.1, 0.7, 1.0})
+    CHECK(wide.at(t, std::vector<clearance::part_facts>(1)).poses.size() == 1);
 }

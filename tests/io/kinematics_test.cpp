@@ -113,10 +113,8 @@ TEST_CASE("a configuration has the order of the joints given, and unset joints r
   CHECK(says(sentence<error>([&] { tree.link_poses(std::vector<double>{1, 0}); }), "3 movable joints, here are 2"));
   CHECK(says(sentence<error>([&] { tree.configuration({{"f", 0}}); }), "fixed"));
   CHECK(says(sentence<error>([&] { tree.configuration({{"none", 0}}); }), "no joint \"none\""));
-  CHECK(says(sentence<error>([&] {
-               tree.configuration({{"x", std::nan("")}}, {.ignore_limits = true});
-             }),
-             "not finite"));
+  CHECK(
+      says(sentence<error>([&] { tree.configuration({{"x", std::nan("")}}, {.ignore_limits = true}); }), "not finite"));
   CHECK(says(sentence<error>([&] { tree.link("none"); }), "no link \"none\""));
 }
 

@@ -19,7 +19,7 @@ using clearance::chunked, clearance::host;
 
 extern "C" {
 int __real_madvise(void*, std::size_t, int);
-int broken_disk = 0;  // what populating says instead
+int broken_disk = 0;                  // what populating says instead
 std::string moved_there, moved_here;  // another file takes the name of one that is open
 int __wrap_madvise(void* at, std::size_t bytes, int advice) {
   if (!moved_there.empty()) std::filesystem::rename(std::exchange(moved_there, {}), moved_here);
@@ -39,7 +39,8 @@ std::string bytes_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 const auto& arm() {
-  static const auto model = clearance::make_model<clearance::sphere>(std::vector<std::vector<clearance::inner_sphere>>{{{{0, 0, 0}, 0.1f}, {{0.2f, 0, 0}, 0.1f}}});
+  static const auto model = clearance::make_model<clearance::sphere>(
+      std::vector<std::vector<clearance::inner_sphere>>{{{{0, 0, 0}, 0.1f}, {{0.2f, 0, 0}, 0.1f}}});
   return model;
 }
 const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()};
@@ -53,8 +54,8 @@ void same(Cloud cloud, const std::vector<vec3>& points) {
   CHECK(same_result(query(poses, in_chunks), expected));
 }
 std::string pcd(const std::string& fields, const std::string& size, std::size_t n, const std::string& data = "binary") {
-  return "VERSION .7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE F F F F\nWIDTH " + std::to_string(n) + "\nHEIGHT 1\nPOINTS " + std::to_string(n) +
-         "\nDATA " + data + "\n";
+  return "VERSION .7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE F F F F\nWIDTH " + std::to_string(n) +
+         "\nHEIGHT 1\nPOINTS " + std::to_string(n) + "\nDATA " + data + "\n";
 }
 
 }  // namespace
@@ -82,7 +83,8 @@ TEST_CASE("What cannot be mapped is refused in a sentence") {
   const auto points = some_points(100);
   const scratch_file empty(".raw"), cut(".raw", bytes_of(points).substr(0, 1195)), folderless(".raw", "x");
   CHECK(refusal([&] { map_points(empty.path); }) == empty.path + ": is empty (0 bytes)");
-  CHECK(refusal([&] { map_points(cut.path); }).find("ends in the middle of a record of 12 bytes: it has 1195 bytes") != std::string::npos);
+  CHECK(refusal([&] { map_points(cut.path); }).find("ends in the middle of a record of 12 bytes: it has 1195 bytes") !=
+        std::string::npos);
   CHECK(refusal([&] { map_points(cut.path + "no"); }).find("there is no such file") != std::string::npos);
   CHECK(refusal([&] { map_points("/tmp"); }).find("is no regular file") != std::string::npos);
   CHECK(refusal([&] { map_points("/dev/null"); }).find("is no regular file") != std::string::npos);
@@ -91,19 +93,29 @@ TEST_CASE("What cannot be mapped is refused in a sentence") {
   CHECK(refusal([&] { map_points(odd.path, 1); }).find("no multiple of 4") != std::string::npos);
   clearance::strided_points<float> layout;
   layout.step = 8;
-  CHECK(refusal([&] { clearance::io::map_records(odd.path, layout, 1); }).find("a coordinate at byte 8 of records of 8 bytes") != std::string::npos);
+  CHECK(refusal([&] {
+          clearance::io::map_records(odd.path, layout, 1);
+        }).find("a coordinate at byte 8 of records of 8 bytes") != std::string::npos);
   layout.step = 12, layout.count = 101;
-  CHECK(refusal([&] { clearance::io::map_records(odd.path, layout, 1); }).find("has 100 records, not 101") != std::string::npos);
+  CHECK(refusal([&] { clearance::io::map_records(odd.path, layout, 1); }).find("has 100 records, not 101") !=
+        std::string::npos);
 
   const std::string body = bytes_of(std::vector<float>(400, 1.0f));
-  const scratch_file shorter(".pcd", pcd("x y z i", "4 4 4 4", 101) + body), longer(".pcd", pcd("x y z i", "4 4 4 4", 99) + body);
-  const scratch_file ascii(".pcd", pcd("x y z i", "4 4 4 4", 1, "ascii") + "1 2 3 4\n"), none(".pcd", pcd("x y z i", "4 4 4 4", 0));
+  const scratch_file shorter(".pcd", pcd("x y z i", "4 4 4 4", 101) + body),
+      longer(".pcd", pcd("x y z i", "4 4 4 4", 99) + body);
+  const scratch_file ascii(".pcd", pcd("x y z i", "4 4 4 4", 1, "ascii") + "1 2 3 4\n"),
+      none(".pcd", pcd("x y z i", "4 4 4 4", 0));
   const scratch_file doubles(".pcd", pcd("x y z i", "8 8 8 8", 50) + body);
-  CHECK(refusal([&] { map_pcd(shorter.path); }).find("POINTS says 101 records of 16 bytes, but the file ends 1600 bytes after the header") != std::string::npos);
-  CHECK(refusal([&] { map_pcd(longer.path); }).find("POINTS says 99, but 16 bytes follow the last record") != std::string::npos);
+  CHECK(refusal([&] {
+          map_pcd(shorter.path);
+        }).find("POINTS says 101 records of 16 bytes, but the file ends 1600 bytes after the header") !=
+        std::string::npos);
+  CHECK(refusal([&] { map_pcd(longer.path); }).find("POINTS says 99, but 16 bytes follow the last record") !=
+        std::string::npos);
   CHECK(refusal([&] { map_pcd(ascii.path); }).find("not binary") != std::string::npos);
   CHECK(refusal([&] { map_pcd(none.path); }).find("POINTS is 0") != std::string::npos);
-  CHECK(refusal([&] { map_pcd(doubles.path); }).find("field x is of TYPE F and SIZE 8, not F and 4") != std::string::npos);
+  CHECK(refusal([&] { map_pcd(doubles.path); }).find("field x is of TYPE F and SIZE 8, not F and 4") !=
+        std::string::npos);
   CHECK(map_pcd<double>(doubles.path).size() == 50);
 
   const std::string knot = odd.path + ".knot";
@@ -118,7 +130,8 @@ TEST_CASE("No more than the beginning of a large file is looked through for a PC
     ::getrusage(RUSAGE_SELF, &used);
     return used.ru_maxrss / 1024;  // MiB
   };
-  const scratch_file zeros(".pcd"), comments(".pcd", pcd("x y z i", "4 4 4 4", 1).substr(0, 60) + "#" + std::string((1 << 20) + 10, 'c') + "\nDATA binary\n");
+  const scratch_file zeros(".pcd"), comments(".pcd", pcd("x y z i", "4 4 4 4", 1).substr(0, 60) + "#" +
+                                                         std::string((1 << 20) + 10, 'c') + "\nDATA binary\n");
   std::filesystem::resize_file(zeros.path, std::uintmax_t(1) << 32);  // a hole, which takes no disk
   const auto before = resident();
   CHECK(refusal([&] { clearance::io::map_pcd(zeros.path); }).find("is no PCD header entry") != std::string::npos);
@@ -128,8 +141,10 @@ TEST_CASE("No more than the beginning of a large file is looked through for a PC
   std::string header = pcd("x y z i", "4 4 4 4", 1);
   header.insert(header.find("FIELDS"), "#" + std::string((1 << 20) - header.size() - 2, 'c') + "\n");
   REQUIRE(header.size() == 1 << 20);
-  const scratch_file just(".pcd", header + std::string(16, '\0')), less(".pcd", header.erase(header.find("cc"), 1) + std::string(16, '\0'));
-  CHECK(refusal([&] { clearance::io::map_pcd(just.path); }).find("has a PCD header of 1 MiB or more") != std::string::npos);
+  const scratch_file just(".pcd", header + std::string(16, '\0')),
+      less(".pcd", header.erase(header.find("cc"), 1) + std::string(16, '\0'));
+  CHECK(refusal([&] { clearance::io::map_pcd(just.path); }).find("has a PCD header of 1 MiB or more") !=
+        std::string::npos);
   CHECK(clearance::io::map_pcd(less.path).size() == 1);
 }
 

@@ -68,8 +68,8 @@ std::string word(std::uint32_t value) {
 
 std::string glb(std::string json, std::string data) {
   json.resize((json.size() + 3) / 4 * 4, ' ');
-  return "glTF" + word(2) + word(std::uint32_t(28 + json.size() + data.size())) + word(std::uint32_t(json.size())) + "JSON" +
-         json + word(std::uint32_t(data.size())) + std::string("BIN\0", 4) + data;
+  return "glTF" + word(2) + word(std::uint32_t(28 + json.size() + data.size())) + word(std::uint32_t(json.size())) +
+         "JSON" + json + word(std::uint32_t(data.size())) + std::string("BIN\0", 4) + data;
 }
 
 /// A tetrahedron twice: indexed, and as a strip of four vertices.
@@ -119,7 +119,8 @@ TEST_CASE("a damaged number of a COLLADA file is refused, or it was of no use") 
       if (child.name == "p" && one_of(e.name, {"polygons", "tristrips", "trifans"})) free.insert(&child);
     const auto damage = [&](std::string& value, const std::string& what) {
       const std::string kept = value;
-      for (const auto& text : words_damaged(kept, {"", "nan", "1e999", "0,5", "x", "1 1", "&", "4294967301", "18446744073709551621"})) {
+      for (const auto& text :
+           words_damaged(kept, {"", "nan", "1e999", "0,5", "x", "1 1", "&", "4294967301", "18446744073709551621"})) {
         value = text;
         const bool transform = one_of(e.name, {"matrix", "rotate", "scale", "translate", "float_array", "unit"});
         all.push_back({what + "=" + text, xml_text(root), "", transform && says(text, "42949")});
@@ -135,7 +136,8 @@ TEST_CASE("a damaged number of a COLLADA file is refused, or it was of no use") 
     };
     for (auto& [key, value] : e.attributes)
       if (one_of(key, {"count", "stride", "offset", "meter"})) damage(value, e.name + "." + key);
-    if (e.text.find_first_not_of(" \t\r\n") != e.text.npos && e.name != "author" && e.name != "up_axis") damage(e.text, e.name);
+    if (e.text.find_first_not_of(" \t\r\n") != e.text.npos && e.name != "author" && e.name != "up_axis")
+      damage(e.text, e.name);
   });
   CHECK(all.size() > 1000);
   check_damages(all, seed, read.file, std::cref(read));
@@ -146,8 +148,8 @@ TEST_CASE("what is left out of a COLLADA file, renamed or there twice does not c
   check_damages(structure_damages(seed,
                                   {"unit", "asset", "matrix", "rotate", "scale", "translate", "node", "instance_node",
                                    "instance_geometry", "triangles", "polylist", "polygons", "tristrips", "trifans"},
-                                  {"matrix", "rotate", "scale", "translate", "node", "instance_node", "instance_geometry",
-                                   "triangles", "polylist", "polygons", "tristrips", "trifans"},
+                                  {"matrix", "rotate", "scale", "translate", "node", "instance_node",
+                                   "instance_geometry", "triangles", "polylist", "polygons", "tristrips", "trifans"},
                                   {"meter"}),
                 seed, read.file, std::cref(read));
 }
@@ -164,7 +166,8 @@ TEST_CASE("a damaged member of a glTF file is refused, or it was of no use") {
   };
   for (const auto& [path, value] : flat.items()) {
     const nlohmann::json::json_pointer at(path);
-    for (const char* other : {"-1", "1.5", "4294967301", "18446744073709551616", "\"x\"", "null", "[]", "{}", "true", "99"}) {
+    for (const char* other :
+         {"-1", "1.5", "4294967301", "18446744073709551616", "\"x\"", "null", "[]", "{}", "true", "99"}) {
       nlohmann::json made = whole;
       made[at] = nlohmann::json::parse(other);
       all.push_back({path + "=" + other, glb(made.dump(), data), "", transform(path) && made[at].is_number()});
@@ -175,7 +178,8 @@ TEST_CASE("a damaged member of a glTF file is refused, or it was of no use") {
     if (!above.is_object()) continue;
     above.erase(at.back());
     all.push_back({path + " left out", glb(made.dump(), data), "",
-                   transform(path) || says(path, "/mesh") || says(path, "byteOffset") || says(path, "mode") || says(path, "byteStride")});
+                   transform(path) || says(path, "/mesh") || says(path, "byteOffset") || says(path, "mode") ||
+                       says(path, "byteStride")});
     above[at.back() + "x"] = value;
     all.push_back({path + " renamed", glb(made.dump(), data), "", false});
     std::string text = whole.dump();
@@ -209,7 +213,8 @@ TEST_CASE("a damaged member of a glTF file is refused, or it was of no use") {
   CHECK(says(refused(with("/accessors/1/count", 0)), "count 0"));
   for (const int off : {1, 2, 3, 5, 6, 7}) CHECK(says(refused(with("/accessors/0/byteOffset", off)), "not aligned"));
   for (const int off : {67, 65}) CHECK(says(refused(with("/bufferViews/1/byteOffset", off)), "not aligned"));
-  for (const int stride : {13, 14, 15, 17}) CHECK(says(refused(with("/bufferViews/0/byteStride", stride)), "not aligned"));
+  for (const int stride : {13, 14, 15, 17})
+    CHECK(says(refused(with("/bufferViews/0/byteStride", stride)), "not aligned"));
   CHECK(says(refused(with("/nodes/2/scale", {1, 1, 1})), "parts of one"));
   CHECK(says(refused(with("/nodes/1/scale", {0, 1, 1})), "flattens"));
 }
@@ -217,9 +222,12 @@ TEST_CASE("a damaged member of a glTF file is refused, or it was of no use") {
 TEST_CASE("one byte of a mesh file changed does not change how much there is, unless it is a number") {
   const std::string json = glb(glb_json().dump(), glb_bytes());
   std::string stl = "solid s\n";
-  for (int i = 0; i < 4; ++i) stl += "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 " + std::to_string(i) + "\nvertex 0 1 0\nendloop\nendfacet\n";
+  for (int i = 0; i < 4; ++i)
+    stl += "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 " + std::to_string(i) +
+           "\nvertex 0 1 0\nendloop\nendfacet\n";
   stl += "endsolid s\n";
-  for (const auto& [name, whole] : {std::pair<std::string, std::string>{"m.dae", seed}, {"m.glb", json}, {"m.stl", stl}}) {
+  for (const auto& [name, whole] :
+       {std::pair<std::string, std::string>{"m.dae", seed}, {"m.glb", json}, {"m.stl", stl}}) {
     const mesh_file read(name);
     const auto faces = std::ranges::count(read(whole).answer, ';');
     std::uint32_t random = 99;
@@ -284,35 +292,46 @@ TEST_CASE("a line of an OFF or OBJ file has as many numbers as its kind says, or
       for (std::size_t damaged = 0; damaged < 4; ++damaged)
         for (std::size_t more = 0; more < 12; ++more) {
           const outcome made = read(text(usual, damaged, more, 0));
-          INFO(kind << ": vertex " << damaged << " has " << more << " numbers instead of " << usual << ": " << made.refusal);
+          INFO(kind << ": vertex " << damaged << " has " << more << " numbers instead of " << usual << ": "
+                    << made.refusal);
           const bool fits = off ? more == usual : colour.contains(more);
           CHECK(made.refusal.empty() == fits);
           // Of colours the first vertex says how many there are.
           const std::size_t line = 3 + (damaged == 0 && allowed.contains(more) ? 1 : damaged);
-          if (fits) CHECK(made.answer == whole.answer);
-          else CHECK(made.refusal.starts_with(read.file + ":" + std::to_string(line) + ": a vertex of "));
+          if (fits)
+            CHECK(made.answer == whole.answer);
+          else
+            CHECK(made.refusal.starts_with(read.file + ":" + std::to_string(line) + ": a vertex of "));
         }
       for (std::size_t face = 0; off && face < 8; ++face) {
         const outcome made = read(text(usual, 0, usual, face));
         CHECK(made.refusal.empty() == colour.contains(face));
-        if (made.refusal.empty()) CHECK(made.answer == whole.answer);
-        else CHECK(made.refusal.starts_with(read.file + ":7: a face of 3 corners has "));
+        if (made.refusal.empty())
+          CHECK(made.answer == whole.answer);
+        else
+          CHECK(made.refusal.starts_with(read.file + ":7: a face of 3 corners has "));
       }
     }
   }
   const mesh_file off("m.off"), obj("m.obj");
   // What a corner says besides its vertex is passed over, but it must be what may stand there.
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 ";
-  for (const char* corner : {"2", "2/1", "2//1", "2/1/1", "2/-1/-1", "2/", "2//", "+2"}) CHECK(obj(three + corner + " 3\n").refusal.empty());
-  for (const char* corner : {"2/x", "2/0,5", "2//1d0", "2//0x10", "2/1/0.25", "2/1/1/1", "2///", "/2", "2\\1", "2/1 x", "2/nan"})
+  for (const char* corner : {"2", "2/1", "2//1", "2/1/1", "2/-1/-1", "2/", "2//", "+2"})
+    CHECK(obj(three + corner + " 3\n").refusal.empty());
+  for (const char* corner :
+       {"2/x", "2/0,5", "2//1d0", "2//0x10", "2/1/0.25", "2/1/1/1", "2///", "/2", "2\\1", "2/1 x", "2/nan"})
     CHECK(says(obj(three + corner + " 3\n").refusal, ":4: "));
   const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2";
-  for (const char* counts : {"3 1", "3 1 0", "3 1 0 # edges"}) CHECK(off("OFF\n" + std::string(counts) + "\n" + vertices).refusal.empty());
-  for (const char* counts : {"3", "3 1 0 0", "3 1 0 0 0 0", "3 1 x"}) CHECK_FALSE(off("OFF\n" + std::string(counts) + "\n" + vertices).refusal.empty());
+  for (const char* counts : {"3 1", "3 1 0", "3 1 0 # edges"})
+    CHECK(off("OFF\n" + std::string(counts) + "\n" + vertices).refusal.empty());
+  for (const char* counts : {"3", "3 1 0 0", "3 1 0 0 0 0", "3 1 x"})
+    CHECK_FALSE(off("OFF\n" + std::string(counts) + "\n" + vertices).refusal.empty());
   CHECK(says(off("OFF\n3 1 0\n" + vertices + " x").refusal, ":6: \"x\" is not a number"));
-  CHECK(off("COFF\n3 1 0\n0 0 0 nan nan nan\n1 0 0 1 1 1\n0 1 0 0 0 0\n3 0 1 2").refusal.empty());  // some tools write that
+  CHECK(off("COFF\n3 1 0\n0 0 0 nan nan nan\n1 0 0 1 1 1\n0 1 0 0 0 0\n3 0 1 2")
+            .refusal.empty());  // some tools write that
   // Two lines of an OBJ file that became one.
-  const std::vector<std::string> lines = {"v 0 0 0", "v 1 0 0", "v 0 1 0", "v 0 0 1", "vn 0 0 1", "vt 0 1", "vp 1", "s off", "l 1 2", "p 1", "f 1 2 3", "f 1 2 4"};
+  const std::vector<std::string> lines = {"v 0 0 0", "v 1 0 0", "v 0 1 0", "v 0 0 1", "vn 0 0 1", "vt 0 1",
+                                          "vp 1",    "s off",   "l 1 2",   "p 1",     "f 1 2 3",  "f 1 2 4"};
   for (std::size_t joined = 0; joined < lines.size(); ++joined) {
     std::string text;
     for (std::size_t k = 0; k < lines.size(); ++k) text += lines[k] + (k == joined ? " " : "\n");
@@ -334,9 +353,12 @@ TEST_CASE("what a small file unfolds to has limits, which a sentence names and a
   }
   const std::string end = "</visual_scene>";
   CHECK(says(dae(dae_with(end, chain + "<node id=\"c8\"/>" + end)).refusal, "mesh_limits::nodes"));
-  CHECK(says(dae(dae_with(end, chain + "<node id=\"c8\"><instance_geometry url=\"#g\"/></node>" + end)).refusal, "mesh_limits::"));
-  CHECK(says(dae(dae_with(end, "<node id=\"x\"><instance_node url=\"#x\"/></node>" + end)).refusal, "mesh_limits::depth"));
-  CHECK(says(dae(dae_with(end, "<node id=\"&#x78;\"><instance_node url=\"#&#120;\"/></node>" + end)).refusal, "mesh_limits::depth"));
+  CHECK(says(dae(dae_with(end, chain + "<node id=\"c8\"><instance_geometry url=\"#g\"/></node>" + end)).refusal,
+             "mesh_limits::"));
+  CHECK(says(dae(dae_with(end, "<node id=\"x\"><instance_node url=\"#x\"/></node>" + end)).refusal,
+             "mesh_limits::depth"));
+  CHECK(says(dae(dae_with(end, "<node id=\"&#x78;\"><instance_node url=\"#&#120;\"/></node>" + end)).refusal,
+             "mesh_limits::depth"));
   for (int i = 0; i < 20000; ++i) deep += "<node>";
   CHECK(says(dae(dae_with(end, deep)).refusal, "mesh_limits::depth"));
   std::string params;
@@ -344,8 +366,10 @@ TEST_CASE("what a small file unfolds to has limits, which a sentence names and a
   CHECK(dae(dae_with("</accessor>", params + "</accessor>")).answer == dae(seed).answer);
   CHECK(says(dae(dae_with("url=\"#g\"", "url=\"#missing\"")).refusal, "does not exist"));
   CHECK(says(dae(dae_with("url=\"#g\"", "url=\"other.dae#g\"")).refusal, "not in this file"));
-  CHECK(says(dae(dae_with("<instance_geometry url=\"#g\">", "<instance_controller url=\"#g\"/><instance_geometry url=\"#g\">")).refusal,
-             "<instance_controller> is not known"));
+  CHECK(says(
+      dae(dae_with("<instance_geometry url=\"#g\">", "<instance_controller url=\"#g\"/><instance_geometry url=\"#g\">"))
+          .refusal,
+      "<instance_controller> is not known"));
   CHECK(says(dae(dae_with("<scale>1 2 -1", "<skew>0 0 0 0 0 0 0</skew><scale>1 2 -1")).refusal, "<skew>"));
 
   // glTF: 20,000 nodes inside one another; one mesh at very many places.

@@ -183,9 +183,11 @@ TEST_CASE("a COLLADA file has one unit and one up axis, or is refused, wherever 
     text.insert(text.find('>', at) + 1, "<asset><created>2026</created>" + own + "</asset>");
     return sentence([&] { load_mesh(folder.put("a.dae", text)); });
   };
-  for (const char* place : {"<library_geometries", "<geometry ", "<source ", "<library_visual_scenes", "<visual_scene ", "<node "}) {
+  for (const char* place :
+       {"<library_geometries", "<geometry ", "<source ", "<library_visual_scenes", "<visual_scene ", "<node "}) {
     INFO(place);
-    for (const char* same : {"", "<unit meter=\"0.01\"/>", "<unit meter=\"1e-2\" name=\"cm\"/>", "<up_axis> Z_UP </up_axis>"})
+    for (const char* same :
+         {"", "<unit meter=\"0.01\"/>", "<unit meter=\"1e-2\" name=\"cm\"/>", "<up_axis> Z_UP </up_axis>"})
       CHECK(with(place, same) == "");
     CHECK(says(with(place, "<unit meter=\"10\"/>"), "has a unit of 10 m of its own, the file's is 0.01 m"));
     CHECK(says(with(place, "<unit/>"), "has a unit of 1 m of its own"));
@@ -234,7 +236,9 @@ TEST_CASE("damaged meshes are refused in one sentence that names the file") {
   CHECK(says(refusal("a.obj", "v 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), ":1:"));
   for (const std::string rest : {"\n3", " 2\n3", "\nx 3", "\nF 1 2 3"})  // of a face that was broken over two lines
     CHECK(says(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3" + rest + "\n"), "no statement"));
-  CHECK(load_mesh(folder.put("counts.obj", "3 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvw 1 0 1\nf 1 2 3\n#x\n")).triangles.size() == 1);
+  CHECK(
+      load_mesh(folder.put("counts.obj", "3 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvw 1 0 1\nf 1 2 3\n#x\n")).triangles.size() ==
+      1);
   CHECK(says(refusal("a.obj", "v 0 0 inf\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "not finite"));
   CHECK(says(refusal("a.obj", "v 0 0 1.#IND\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "not a number"));
   CHECK(says(refusal("a.obj", "v 0 0 0\n"), "no triangles"));
@@ -280,7 +284,8 @@ TEST_CASE("damaged meshes are refused in one sentence that names the file") {
     for (int k = 0; k < 10; ++k) chain += "<instance_node url=\"#n" + std::to_string(i + 1) + "\"/>";
     chain += "</node>";
   }
-  CHECK(says(refusal("a.dae", dae("", chain + "<node id=\"n8\"><instance_geometry url=\"#g\"/></node>")), "mesh_limits::"));
+  CHECK(says(refusal("a.dae", dae("", chain + "<node id=\"n8\"><instance_geometry url=\"#g\"/></node>")),
+             "mesh_limits::"));
   std::string deep;
   for (int i = 0; i < 50000; ++i) deep += "<node>";
   CHECK(says(refusal("a.dae", dae("", deep)), "inside one another"));

@@ -29,8 +29,9 @@ TEST_CASE("a backslash ends no comment and no name of an OBJ file, and joins the
       for (std::size_t at = 0; (at = text.find('\n', at)) != text.npos; at += end.size()) text.replace(at, 1, end);
       return text;
     };
-    for (const char* before : {"# from C:\\robots\\", "#\\", "  # \\", "usemtl steel\\", "mtllib C:\\robots\\", "o arm\\", "g a b\\",
-                               "usemap x\\", "maplib a b\\", "shadow_obj x\\", "trace_obj x\\", "f 1 2 3 # from C:\\"})
+    for (const char* before :
+         {"# from C:\\robots\\", "#\\", "  # \\", "usemtl steel\\", "mtllib C:\\robots\\", "o arm\\", "g a b\\",
+          "usemap x\\", "maplib a b\\", "shadow_obj x\\", "trace_obj x\\", "f 1 2 3 # from C:\\"})
       for (const char* after : {"f 1 3 4", "# steel\nf 1 3 4", "\nf 1 3 4", "usemtl b\\\nf 1 3 4"}) {
         const std::string text = with(square + "f 1 2 3\n" + before + "\n" + after + "\n");
         INFO(text);
@@ -51,13 +52,14 @@ TEST_CASE("what an OBJ file has beside polygons and would be lost is refused by 
   const obj_file file;
   const std::string surface = "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nparm u 0 1\nparm v 0 1\nend\n";
   CHECK(says(file.refusal(square + "f 1 2 3\n" + surface), ":8: \"surf\" brings geometry"));
-  for (const std::string more : {"surf 0 1 0 1 1 2 3 4", "curv 0 1 1 2", "curv2 1 2", "bsp 1 2", "bzp 1 2 3 4", "cdc 1 2", "cdp 1 2",
-                                 "call other.obj", "csh cat other.obj"})
+  for (const std::string more : {"surf 0 1 0 1 1 2 3 4", "curv 0 1 1 2", "curv2 1 2", "bsp 1 2", "bzp 1 2 3 4",
+                                 "cdc 1 2", "cdp 1 2", "call other.obj", "csh cat other.obj"})
     for (const std::string& text : {square + "f 1 2 3\n" + more + "\n", more + "\n" + square + "f 1 2 3\n"}) {
       INFO(text);
       CHECK(says(file.refusal(text), "\"" + more.substr(0, more.find(' ')) + "\" brings geometry"));
     }
-  // Before the first vertex only counts may stand that are no statement: a vertex whose word is damaged shifts all faces.
+  // Before the first vertex only counts may stand that are no statement: a vertex whose word is damaged shifts all
+  // faces.
   CHECK(file.mesh("4 1\n" + square + "f 1 2 3\n").triangles.size() == 1);
   for (const std::string first : {"V 0 0 0", "w 0 0 0", "0 0 0", "v0 0 0", "solid x", "4.5 1", "-4 1"}) {
     INFO(first);
@@ -73,7 +75,7 @@ TEST_CASE("edges that an OBJ file has as faces are triangles without area, besid
   CHECK(mesh.triangles[2] == std::array<std::uint32_t, 3>{1, 1, 1});
   CHECK(mesh.triangles[3] == std::array<std::uint32_t, 3>{0, 2, 3});
   CHECK(says(file.refusal(square + "f 1 2 3\nf\n"), ":6: a face has fewer than three"));
-  CHECK(says(file.refusal(square + "f 1 2\nf 3 4\n"), "fewer than three"));           // no surface at all
+  CHECK(says(file.refusal(square + "f 1 2\nf 3 4\n"), "fewer than three"));                 // no surface at all
   CHECK(says(file.refusal(square + "f 1 2 3\nf 1 3"), ":6: a face has fewer than three"));  // cut short
   CHECK(says(file.refusal(square + "f 1 2 3\nf 1 9\n"), ":6: a face has vertex 9"));
 }
@@ -81,8 +83,11 @@ TEST_CASE("edges that an OBJ file has as faces are triangles without area, besid
 TEST_CASE("a text mesh may begin with a byte order mark, and is the same mesh") {
   const robot_folder folder;
   const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n", mark = "\xEF\xBB\xBF";
-  const std::string facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
-  const std::string head = "property float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string facet =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  const std::string head =
+      "property float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int "
+      "vertex_indices\nend_header\n";
   const std::pair<std::string, std::string> files[] = {
       {"m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf -4 -3 -2\n"},
       {"m.off", "OFF\n3 1 0\n" + vertices + "3 0 1 2\n"},

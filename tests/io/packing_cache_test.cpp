@@ -25,7 +25,8 @@ packed through(const std::filesystem::path& folder, pack_options options = {.cou
   bool ran = false;
   options.progress = [&](std::size_t, std::size_t) { ran = true; };
   const auto [made, found] = io::pack_cached(box, options, io::packing_cache(folder));
-  return {io::ist_bytes(std::vector{io::packed_part{.name = "", .spheres = made, .solid = {}, .recipe = {}}}), found, ran};
+  return {io::ist_bytes(std::vector{io::packed_part{.name = "", .spheres = made, .solid = {}, .recipe = {}}}), found,
+          ran};
 }
 
 std::size_t files_in(const std::filesystem::path& folder) {
@@ -132,8 +133,13 @@ TEST_CASE("the key is of the mesh and of every option that changes the spheres, 
   const io::digest key = io::packing_key(box, {});
   CHECK(key == io::packing_key(box, {.seconds = 3, .threads = 2, .progress = [](std::size_t, std::size_t) {}}));
   std::vector<io::digest> keys = {key};
-  for (const pack_options& other : std::vector<pack_options>{{.count = 7}, {.smallest_radius = 1e-3}, {.gap_target = 1e-3}, {.seed = 1},
-                                                             {.gap_per_radius = 2}, {.allow_overlap = true}, {.gap_tolerance = 0.02}})
+  for (const pack_options& other : std::vector<pack_options>{{.count = 7},
+                                                             {.smallest_radius = 1e-3},
+                                                             {.gap_target = 1e-3},
+                                                             {.seed = 1},
+                                                             {.gap_per_radius = 2},
+                                                             {.allow_overlap = true},
+                                                             {.gap_tolerance = 0.02}})
     keys.push_back(io::packing_key(box, other));
   keys.push_back(io::packing_key(box, {}, "device"));
   closed_mesh other = box;
@@ -160,8 +166,8 @@ TEST_CASE("a damaged entry of the cache is packed anew and repaired") {
   const auto part = io::load_ist(entry.string())[0];
   auto other = part;
   other.recipe = io::packing_key(box, {.count = 41});  // undamaged, but about something else
-  for (const std::string& bad : {flipped, version, good.substr(0, good.size() - 7), good + "x", std::string(), std::string("solid"),
-                                 io::ist_bytes(std::vector{other})}) {
+  for (const std::string& bad : {flipped, version, good.substr(0, good.size() - 7), good + "x", std::string(),
+                                 std::string("solid"), io::ist_bytes(std::vector{other})}) {
     std::ofstream(entry, std::ios::binary | std::ios::trunc) << bad;
     const packed again = through(folder.path);
     CHECK((!again.found && again.ran));
@@ -243,10 +249,12 @@ TEST_CASE("a file of spheres is read and written by the end of its name") {
     CHECK(back[0].spheres.spheres.size() == 9);
     CHECK(std::isfinite(back[0].spheres.gap) == (end == ".ist" || end == ".IST"));
     if (end == ".csv")
-      CHECK(refusal([&] { io::save_spheres(two, file.path); }).find("holds the spheres of one part, here are 2") != std::string::npos);
+      CHECK(refusal([&] { io::save_spheres(two, file.path); }).find("holds the spheres of one part, here are 2") !=
+            std::string::npos);
     else
       io::save_spheres(two, file.path);
   }
   CHECK(refusal([] { io::load_spheres("x.stl"); }) == "x.stl: spheres are read from .ist, .csv, .yaml and .yml files");
-  CHECK(refusal([&] { io::save_spheres(one, "x.stl"); }) == "x.stl: spheres are written to .ist, .csv, .yaml and .yml files");
+  CHECK(refusal([&] { io::save_spheres(one, "x.stl"); }) ==
+        "x.stl: spheres are written to .ist, .csv, .yaml and .yml files");
 }

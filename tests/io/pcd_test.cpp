@@ -19,7 +19,8 @@ std::string raw(T... values) {
 
 std::string header(const std::string& fields, const std::string& size, const std::string& type,
                    const std::string& count, const std::string& rest) {
-  return "# .PCD\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE " + type + "\nCOUNT " + count + "\n" + rest;
+  return "# .PCD\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE " + type + "\nCOUNT " + count + "\n" +
+         rest;
 }
 
 std::string plain(const std::string& rest) { return header("x y z", "4 4 4", "F F F", "1 1 1", rest); }
@@ -41,15 +42,18 @@ bool says(const std::string& sentence, const std::string& part) {
 
 /// The same three records (1,2,3) (nan) (4,5,6) with a colour, in the three encodings.
 std::string sample_file(const std::string& encoding) {
-  const std::string head = header("rgb x y z", "4 4 4 4", "U F F F", "1 1 1 1", "WIDTH 3\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 3\nDATA " + encoding + "\n");
+  const std::string head = header("rgb x y z", "4 4 4 4", "U F F F", "1 1 1 1",
+                                  "WIDTH 3\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 3\nDATA " + encoding + "\n");
   const float nan = not_a_number;
   if (encoding == "ascii") return head + "7 1 2 3\n8 nan nan nan\n9 4 5 6\n";
   if (encoding == "binary") return head + raw(7u, 1.f, 2.f, 3.f, 8u, nan, nan, nan, 9u, 4.f, 5.f, 6.f);
   const std::string by_field = raw(7u, 8u, 9u, 1.f, nan, 4.f, 2.f, nan, 5.f, 3.f, nan, 6.f);
   std::string packed(200, '\0');
-  const unsigned size = lzf_compress(by_field.data(), unsigned(by_field.size()), packed.data(), unsigned(packed.size()));
+  const unsigned size =
+      lzf_compress(by_field.data(), unsigned(by_field.size()), packed.data(), unsigned(packed.size()));
   REQUIRE(size > 0);
-  return head + raw(std::uint32_t(size), std::uint32_t(by_field.size())) + packed.substr(0, size) + std::string(3901, '\0');
+  return head + raw(std::uint32_t(size), std::uint32_t(by_field.size())) + packed.substr(0, size) +
+         std::string(3901, '\0');
 }
 
 }  // namespace
@@ -69,17 +73,17 @@ TEST_CASE("the three encodings of a PCD file give the same records, invalid ones
 }
 
 TEST_CASE("fields may have any order and type, and counts above one") {
-  const std::string bytes = header("z _ y n x", "2 1 8 4 1", "I U F F U", "1 3 1 2 1", "WIDTH 1\nHEIGHT 2\nPOINTS 2\nDATA binary\n");
-  const auto record = [](std::int16_t z, double y, std::uint8_t x) {
-    return raw(z) + "___" + raw(y, 1.f, 2.f, x);
-  };
+  const std::string bytes =
+      header("z _ y n x", "2 1 8 4 1", "I U F F U", "1 3 1 2 1", "WIDTH 1\nHEIGHT 2\nPOINTS 2\nDATA binary\n");
+  const auto record = [](std::int16_t z, double y, std::uint8_t x) { return raw(z) + "___" + raw(y, 1.f, 2.f, x); };
   const io::cloud c = read(bytes + record(-3, 2.5, 200) + record(4, -1, 0));
   REQUIRE(c.points.size() == 2);
   CHECK(c.points[0] == Eigen::Vector3d(200, 2.5, -3));
   CHECK(c.points[1] == Eigen::Vector3d(0, -1, 4));
   CHECK(c.height == 2);
   const io::cloud text = read(header("z _ y", "4 1 4", "F U F", "1 3 1", "").substr(0, 0) +
-                              "VERSION .5\r\nCOLUMNS z _ y x\r\nSIZE 4 1 4 4\r\nTYPE F U F F\r\nCOUNT 1 2 1 1\r\nWIDTH 1\r\nDATA ascii\r\n3 0 0 2 1\r\n");
+                              "VERSION .5\r\nCOLUMNS z _ y x\r\nSIZE 4 1 4 4\r\nTYPE F U F F\r\nCOUNT 1 2 1 1\r\nWIDTH "
+                              "1\r\nDATA ascii\r\n3 0 0 2 1\r\n");
   REQUIRE(text.points.size() == 1);
   CHECK(text.points[0] == Eigen::Vector3d(1, 2, 3));
 }
@@ -109,7 +113,8 @@ TEST_CASE("a PCD file that contradicts itself is refused with its line or its nu
   says(refused("hello\n"), "\"hello\" is no PCD header entry");
   says(refused(plain("WIDTH 2\nHEIGHT 2\nPOINTS 3\nDATA ascii\n")), "WIDTH 2 times HEIGHT 2 is not POINTS 3");
   says(refused(plain("WIDTH 2\nPOINTS 2\nDATA ascii\n1 2 3\n")), "ends after 1 records");
-  says(refused(plain("WIDTH 1\nPOINTS 1\nDATA ascii\n1 2 3\n4 5 6\n")), ":11: POINTS says 1, but here is another record");
+  says(refused(plain("WIDTH 1\nPOINTS 1\nDATA ascii\n1 2 3\n4 5 6\n")),
+       ":11: POINTS says 1, but here is another record");
   says(refused(plain("WIDTH 1\nPOINTS 1\nDATA ascii\n1 2\n")), ":10: a record needs 3 values, here are 2");
   says(refused(plain("WIDTH 1\nPOINTS 1\nDATA ascii\n1 2 3m\n")), ":10: \"3m\" is not a number");
   says(refused(plain("WIDTH -1\nDATA ascii\n")), ":7: WIDTH \"-1\" is not a whole number in range");
@@ -129,7 +134,8 @@ TEST_CASE("no number in a PCD file is believed before it is compared with the fi
   for (const std::string encoding : {"ascii", "binary", "binary_compressed"}) {
     CHECK(!refused(plain("WIDTH " + most + "\nHEIGHT 1\nPOINTS " + most + "\nDATA " + encoding + "\n")).empty());
     CHECK(!refused(plain("WIDTH " + most + "\nHEIGHT " + most + "\nDATA " + encoding + "\n12345678")).empty());
-    CHECK(!refused(header("x y z _", "4 4 4 8", "F F F F", "1 1 1 " + most, "WIDTH 1\nDATA " + encoding + "\n1 2 3\n")).empty());
+    CHECK(!refused(header("x y z _", "4 4 4 8", "F F F F", "1 1 1 " + most, "WIDTH 1\nDATA " + encoding + "\n1 2 3\n"))
+               .empty());
     CHECK(!refused(plain("WIDTH 99999999999999999999\nDATA " + encoding + "\n")).empty());
   }
   const std::string head = plain("WIDTH 100000000\nHEIGHT 1\nPOINTS 100000000\nDATA binary_compressed\n");
@@ -166,42 +172,49 @@ TEST_CASE("every real PCD file is read, with the number of invalid points that i
     WARN("SKIPPED: no folder " << folder);
     return;
   }
-  struct expected { const char* file; std::size_t width, height, invalid; };
-  for (const auto& [name, width, height, invalid] : {
-           expected{"kinect_seq/frame_20121214T142255.814212.pcd", 640, 480, 35625},
-           expected{"lidar/251370668.pcd", 69088, 1, 0}, expected{"lidar/room_scan1.pcd", 112586, 1, 0},
-           expected{"organized/capture0001.pcd", 640, 480, 57553}, expected{"organized/five_people.pcd", 640, 480, 68125},
-           expected{"organized/table_scene_mug_stereo_textured.pcd", 640, 480, 97920}, expected{"small/bunny.pcd", 397, 1, 0},
-           expected{"small/car6.pcd", 10031, 1, 0}, expected{"small/colored_cloud.pcd", 1, 1000, 0},
-           expected{"small/curve_close.pcd", 110, 1, 0}, expected{"small/krylon.pcd", 4467, 1, 0},
-           expected{"small/lamppost.pcd", 1771, 1, 0}, expected{"small/milk_color.pcd", 13704, 1, 0},
-           expected{"small/object_template_0.pcd", 1397, 1, 0}, expected{"small/octants.pcd", 8, 1, 0},
-           expected{"unorganized/region_growing_tutorial_mm.pcd", 108104, 1, 0}}) {
+  struct expected {
+    const char* file;
+    std::size_t width, height, invalid;
+  };
+  for (const auto& [name, width, height, invalid] :
+       {expected{"kinect_seq/frame_20121214T142255.814212.pcd", 640, 480, 35625},
+        expected{"lidar/251370668.pcd", 69088, 1, 0}, expected{"lidar/room_scan1.pcd", 112586, 1, 0},
+        expected{"organized/capture0001.pcd", 640, 480, 57553}, expected{"organized/five_people.pcd", 640, 480, 68125},
+        expected{"organized/table_scene_mug_stereo_textured.pcd", 640, 480, 97920},
+        expected{"small/bunny.pcd", 397, 1, 0}, expected{"small/car6.pcd", 10031, 1, 0},
+        expected{"small/colored_cloud.pcd", 1, 1000, 0}, expected{"small/curve_close.pcd", 110, 1, 0},
+        expected{"small/krylon.pcd", 4467, 1, 0}, expected{"small/lamppost.pcd", 1771, 1, 0},
+        expected{"small/milk_color.pcd", 13704, 1, 0}, expected{"small/object_template_0.pcd", 1397, 1, 0},
+        expected{"small/octants.pcd", 8, 1, 0}, expected{"unorganized/region_growing_tutorial_mm.pcd", 108104, 1, 0}}) {
     INFO(name);
     const io::cloud c = io::load_pcd(folder + name);
     CHECK(c.width == width);
     CHECK(c.height == height);
     CHECK(c.points.size() == width * height);
-    CHECK(std::size_t(std::count_if(c.points.begin(), c.points.end(), [](const auto& p) { return !p.allFinite(); })) == invalid);
+    CHECK(std::size_t(std::count_if(c.points.begin(), c.points.end(), [](const auto& p) { return !p.allFinite(); })) ==
+          invalid);
   }
   const io::cloud octants = io::load_pcd(folder + "small/octants.pcd");
   CHECK(std::abs(octants.points.front().z()) <= 9);
 }
 
-TEST_CASE("PCD fields in capitals, a mark before the header, and a page that is filled and then ends a line are a PCD file") {
+TEST_CASE(
+    "PCD fields in capitals, a mark before the header, and a page that is filled and then ends a line are a PCD file") {
   const auto points = read(plain("WIDTH 2\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 6\n")).points;
-  CHECK(read(header("X Y Z", "4 4 4", "F F F", "1 1 1", "WIDTH 2\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 6\n")).points == points);
+  CHECK(read(header("X Y Z", "4 4 4", "F F F", "1 1 1", "WIDTH 2\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 6\n")).points ==
+        points);
   CHECK(read("\xEF\xBB\xBF" + plain("WIDTH 2\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 6\n")).points == points);
   says(refused(header("x y z X", "4 4 4 4", "F F F F", "1 1 1 1", "WIDTH 0\nDATA ascii\n")), "more than one field x");
   for (const std::string encoding : {"binary", "binary_compressed"}) {
     const std::string whole = sample_file(encoding), file = whole.substr(0, whole.find_last_not_of('\0') + 1);
     const std::string zeros(encoding == "binary" ? 3000 : 3901, '\0');
-    for (const std::string& end : {std::string("\n"), std::string("\r\n"), zeros, zeros + "\n", zeros + "\r\n", "\n" + zeros, "\r\n" + zeros}) {
+    for (const std::string& end :
+         {std::string("\n"), std::string("\r\n"), zeros, zeros + "\n", zeros + "\r\n", "\n" + zeros, "\r\n" + zeros}) {
       INFO(encoding << ' ' << end.size());
       CHECK(read(file + end).points.size() == 3);
     }
-    for (const std::string& end : {"\n" + zeros + "\n", zeros + "\n" + zeros, zeros + "\n\n", zeros + "x", std::string("\n\n"), std::string(4096, '\0'),
-                                   std::string(4096, '\0') + "\n"})
+    for (const std::string& end : {"\n" + zeros + "\n", zeros + "\n" + zeros, zeros + "\n\n", zeros + "x",
+                                   std::string("\n\n"), std::string(4096, '\0'), std::string(4096, '\0') + "\n"})
       says(refused(file + end), "bytes follow the last record");
   }
 }

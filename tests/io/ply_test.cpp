@@ -18,12 +18,14 @@ struct type_law {
   double least, most;  // of whole types all between, of floats the largest finite ones
   bool whole;
 };
-const type_law types[] = {
-    {"char", "int8", -128, 127, true},           {"uchar", "uint8", 0, 255, true},
-    {"short", "int16", -32768, 32767, true},     {"ushort", "uint16", 0, 65535, true},
-    {"int", "int32", -0x1p31, 0x1p31 - 1, true}, {"uint", "uint32", 0, 0x1p32 - 1, true},
-    {"float", "float32", -0x1.fffffep127, 0x1.fffffep127, false},
-    {"double", "float64", -0x1.fffffffffffffp1023, 0x1.fffffffffffffp1023, false}};
+const type_law types[] = {{"char", "int8", -128, 127, true},
+                          {"uchar", "uint8", 0, 255, true},
+                          {"short", "int16", -32768, 32767, true},
+                          {"ushort", "uint16", 0, 65535, true},
+                          {"int", "int32", -0x1p31, 0x1p31 - 1, true},
+                          {"uint", "uint32", 0, 0x1p32 - 1, true},
+                          {"float", "float32", -0x1.fffffep127, 0x1.fffffep127, false},
+                          {"double", "float64", -0x1.fffffffffffffp1023, 0x1.fffffffffffffp1023, false}};
 
 const char* const formats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
 
@@ -49,14 +51,22 @@ struct ply_writer {
       if (format == "binary_big_endian") std::reverse(raw, raw + sizeof typed);
       bytes.append(raw, sizeof typed);
     };
-    if (type == "char" || type == "int8") as(std::int8_t(value));
-    else if (type == "uchar" || type == "uint8") as(std::uint8_t(value));
-    else if (type == "short" || type == "int16") as(std::int16_t(value));
-    else if (type == "ushort" || type == "uint16") as(std::uint16_t(value));
-    else if (type == "int" || type == "int32") as(std::int32_t(value));
-    else if (type == "uint" || type == "uint32") as(std::uint32_t(value));
-    else if (type == "float" || type == "float32") as(float(value));
-    else as(value);
+    if (type == "char" || type == "int8")
+      as(std::int8_t(value));
+    else if (type == "uchar" || type == "uint8")
+      as(std::uint8_t(value));
+    else if (type == "short" || type == "int16")
+      as(std::int16_t(value));
+    else if (type == "ushort" || type == "uint16")
+      as(std::uint16_t(value));
+    else if (type == "int" || type == "int32")
+      as(std::int32_t(value));
+    else if (type == "uint" || type == "uint32")
+      as(std::uint32_t(value));
+    else if (type == "float" || type == "float32")
+      as(float(value));
+    else
+      as(value);
   }
   void end() {
     if (format == "ascii") bytes += newline;
@@ -76,9 +86,9 @@ std::vector<Eigen::Vector3d> vertices_of(const std::string& bytes) {
 /// Vertices whose y has the given type, with one more property of it, a list of it, and a face before or after them.
 struct made_of {
   std::string type, format;
-  int vertices = 2;           // that are there
-  int said = 2;               // that the header says
-  std::string odd = {};       // text for the second vertex's y, in place of a value
+  int vertices = 2;      // that are there
+  int said = 2;          // that the header says
+  std::string odd = {};  // text for the second vertex's y, in place of a value
   bool face_first = false;
   std::string newline = "\n";
 
@@ -87,8 +97,8 @@ struct made_of {
     const std::vector<std::string> face = {"element face 1", "property list uchar int vertex_indices"};
     std::vector<std::string> lines = face_first ? face : std::vector<std::string>{};
     for (const std::string& line :
-         {"element vertex " + std::to_string(said), std::string("property float x"), "property " + type + " y", "property list uchar " + type + " extra",
-          std::string("property double z"), "property " + type + " other"})
+         {"element vertex " + std::to_string(said), std::string("property float x"), "property " + type + " y",
+          "property list uchar " + type + " extra", std::string("property double z"), "property " + type + " other"})
       lines.push_back(line);
     if (!face_first) lines.insert(lines.end(), face.begin(), face.end());
     out.header(lines);
@@ -123,7 +133,8 @@ TEST_CASE("a PLY file of any type, format, order of elements and line end gives 
       for (const char* format : formats)
         for (const bool face_first : {false, true})
           for (const char* newline : {"\n", "\r\n", "\r"}) {
-            const std::string bytes = made_of{.type = name, .format = format, .face_first = face_first, .newline = newline}.bytes();
+            const std::string bytes =
+                made_of{.type = name, .format = format, .face_first = face_first, .newline = newline}.bytes();
             INFO(bytes.substr(0, 300));
             const auto found = vertices_of(bytes);
             REQUIRE(found.size() == 2);
@@ -140,7 +151,8 @@ TEST_CASE("a value that does not fit its PLY type is refused, and its bounds are
     for (const char* format : formats)
       for (const double bound : {type.least, type.most, 0.0}) {
         ply_writer out{format};
-        out.header({"element vertex 1", std::string("property ") + type.name + " x", "property uchar y", "property char z"});
+        out.header(
+            {"element vertex 1", std::string("property ") + type.name + " x", "property uchar y", "property char z"});
         out.put(bound, type.name), out.put(255, "uchar"), out.put(-128, "char"), out.end();
         INFO(type.name << ' ' << format << ' ' << bound);
         const auto found = vertices_of(out.bytes);
@@ -148,22 +160,37 @@ TEST_CASE("a value that does not fit its PLY type is refused, and its bounds are
         CHECK(found[0] == Eigen::Vector3d(bound, 255, -128));
       }
     char below[64], above[64];
-    std::snprintf(below, sizeof below, "%.0f", type.least - 1), std::snprintf(above, sizeof above, "%.0f", type.most + 1);
-    std::vector<std::string> bad = {"", "one", "1,5", "0x1", "1e", "--1", "+-1", "1e400", "-1e400", "1" + std::string(400, '0'), "1e999999999999999999999"};
+    std::snprintf(below, sizeof below, "%.0f", type.least - 1),
+        std::snprintf(above, sizeof above, "%.0f", type.most + 1);
+    std::vector<std::string> bad = {"",
+                                    "one",
+                                    "1,5",
+                                    "0x1",
+                                    "1e",
+                                    "--1",
+                                    "+-1",
+                                    "1e400",
+                                    "-1e400",
+                                    "1" + std::string(400, '0'),
+                                    "1e999999999999999999999"};
     if (type.whole)
-      for (const std::string& more : {std::string(below), std::string(above), std::string("0.5"), std::string("1.0"), std::string("1e0"), std::string("nan"), std::string("inf"),
-                                     std::string("99999999999999999999")}) bad.push_back(more);
+      for (const std::string& more :
+           {std::string(below), std::string(above), std::string("0.5"), std::string("1.0"), std::string("1e0"),
+            std::string("nan"), std::string("inf"), std::string("99999999999999999999")})
+        bad.push_back(more);
     if (std::string(type.name) == "float")
       for (const char* more : {"1e39", "-3.5e38"}) bad.push_back(more);
     for (const std::string& word : bad) {
       INFO(type.name << " \"" << word << '"');
-      const std::string said = fault(made_of{.type = type.name, .format = "ascii", .odd = word.empty() ? " " : word}.bytes());
+      const std::string said =
+          fault(made_of{.type = type.name, .format = "ascii", .odd = word.empty() ? " " : word}.bytes());
       CHECK(said.find("made.ply:") == 0);
       CHECK(said.size() <= 400);
     }
   }
   // Too small for a double is 0, however it is spelt.
-  for (const std::string& tiny : {std::string("1e-400"), "0." + std::string(330, '0') + "1", "-0." + std::string(330, '0') + "1e-3", std::string("1e-999999999999999999999")})
+  for (const std::string& tiny : {std::string("1e-400"), "0." + std::string(330, '0') + "1",
+                                  "-0." + std::string(330, '0') + "1e-3", std::string("1e-999999999999999999999")})
     CHECK(vertices_of(made_of{.type = "double", .format = "ascii", .odd = tiny}.bytes()).at(1).y() == 0);
 }
 
@@ -173,7 +200,9 @@ TEST_CASE("a PLY file has as many records as its header says, no fewer and no mo
       for (const bool face_first : {false, true})
         for (int there = 0; there <= 4; ++there)
           for (int said = 0; said <= 4; ++said) {
-            const std::string bytes = made_of{.type = type.name, .format = format, .vertices = there, .said = said, .face_first = face_first}.bytes();
+            const std::string bytes =
+                made_of{.type = type.name, .format = format, .vertices = there, .said = said, .face_first = face_first}
+                    .bytes();
             INFO(type.name << ' ' << format << ' ' << there << ' ' << said << ' ' << face_first);
             CHECK(fault(bytes).empty() == (there == said));
           }
@@ -183,7 +212,8 @@ TEST_CASE("a PLY file has as many records as its header says, no fewer and no mo
     CHECK(fault(whole + " \r\n\n").empty() == text);
     CHECK_FALSE(fault(whole + '\0').empty());
     CHECK_FALSE(fault(whole + "1").empty());
-    for (std::size_t cut = 0; cut + (text ? 3 : 0) < whole.size(); ++cut) CHECK_FALSE(fault(whole.substr(0, cut)).empty());
+    for (std::size_t cut = 0; cut + (text ? 3 : 0) < whole.size(); ++cut)
+      CHECK_FALSE(fault(whole.substr(0, cut)).empty());
   }
 }
 
@@ -247,8 +277,10 @@ TEST_CASE("a PLY header that says something twice, or nothing that is known, is 
   with("property float x", "property float w");
   with("list uchar int", "list float int");
   with("end_header", "end_headers");
-  CHECK_FALSE(refusal([&] { io::read_ply("ply\nformat ascii 1.0\nelement vertfx 0\nend_header\n", "made.ply"); }).empty());
-  const std::string strips = "ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n3 0 1 2\n";
+  CHECK_FALSE(
+      refusal([&] { io::read_ply("ply\nformat ascii 1.0\nelement vertfx 0\nend_header\n", "made.ply"); }).empty());
+  const std::string strips =
+      "ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n3 0 1 2\n";
   CHECK_FALSE(refusal([&] { io::read_ply_mesh(strips, "made.ply"); }).empty());
 }
 
@@ -269,7 +301,8 @@ TEST_CASE("triangle strips of a PLY file are triangles that face the same way, a
       const auto strips = [&](const std::vector<std::vector<double>>& lists) {
         ply_writer out{.format = format};
         out.header({"element vertex 6", "property float x", "property float y", "property float z",
-                    "element tristrips " + std::to_string(lists.size()), "property list int " + std::string(type) + " vertex_indices"});
+                    "element tristrips " + std::to_string(lists.size()),
+                    "property list int " + std::string(type) + " vertex_indices"});
         for (int i = 0; i < 6; ++i) {
           for (const double v : {i / 2, i % 2, 0}) out.put(v, "float");
           out.end();
@@ -281,19 +314,29 @@ TEST_CASE("triangle strips of a PLY file are triangles that face the same way, a
         }
         return out.bytes;
       };
-      const auto mesh = io::read_ply_mesh(strips({{0, 1, 2, 3, 4, -1, 5, 4, 3, -1}, {0, 1, 2, -1, -1, 1, 3, 2, 4}}), "made.ply");
+      const auto mesh =
+          io::read_ply_mesh(strips({{0, 1, 2, 3, 4, -1, 5, 4, 3, -1}, {0, 1, 2, -1, -1, 1, 3, 2, 4}}), "made.ply");
       CHECK(mesh.corners == std::vector<std::uint32_t>{0, 1, 2, 2, 1, 3, 2, 3, 4, 5, 4, 3, 0, 1, 2, 1, 3, 2, 2, 3, 4});
       CHECK(mesh.ends.size() == 7);
-      for (const std::vector<double>& bad : {std::vector<double>{0, 1, 2, -1, 3, 4}, {0, 1, -1, 2, 3, 4}, {0, -1, 2, 3, 4}, {0, 1}, {0, 1, 6}, {0, 1, -2}, {}})
+      for (const std::vector<double>& bad : {std::vector<double>{0, 1, 2, -1, 3, 4},
+                                             {0, 1, -1, 2, 3, 4},
+                                             {0, -1, 2, 3, 4},
+                                             {0, 1},
+                                             {0, 1, 6},
+                                             {0, 1, -2},
+                                             {}})
         CHECK_FALSE(refusal([&] { io::read_ply_mesh(strips({bad}), "made.ply"); }).empty());
     }
 }
 
-TEST_CASE("PLY faces in an element that is not known are refused, and what some writers get wrong in the header is not") {
-  const std::string vertices = "property float x\nproperty float y\nproperty float z\n", three = "0 0 0\n1 0 0\n0 1 0\n";
+TEST_CASE(
+    "PLY faces in an element that is not known are refused, and what some writers get wrong in the header is not") {
+  const std::string vertices = "property float x\nproperty float y\nproperty float z\n",
+                    three = "0 0 0\n1 0 0\n0 1 0\n";
   const std::string list = "property list uchar int vertex_indices\n";
   const auto with = [&](const std::string& elements, const std::string& records) {
-    return "ply\nformat ascii 1.0\nelement vertex 3\n" + vertices + "element face 1\n" + list + elements + "end_header\n" + three + "3 0 1 2\n" + records;
+    return "ply\nformat ascii 1.0\nelement vertex 3\n" + vertices + "element face 1\n" + list + elements +
+           "end_header\n" + three + "3 0 1 2\n" + records;
   };
   for (const char* name : {"multi_face", "faces", "polygon", "cell", "range_grid"})
     for (const char* indices : {"vertex_indices", "vertex_index"}) {
@@ -304,9 +347,11 @@ TEST_CASE("PLY faces in an element that is not known are refused, and what some 
       CHECK(io::read_ply(with(more, "3 0 2 1\n"), "made.ply").points.size() == 3);  // a cloud is what it was
     }
   CHECK(io::read_ply_mesh(with("element none 0\n" + list, ""), "made.ply").ends.size() == 1);
-  CHECK(io::read_ply_mesh(with("element edge 1\nproperty int vertex1\nproperty int vertex2\n", "0 1\n"), "made.ply").ends.size() == 1);
+  CHECK(io::read_ply_mesh(with("element edge 1\nproperty int vertex1\nproperty int vertex2\n", "0 1\n"), "made.ply")
+            .ends.size() == 1);
   const std::string good = with("", "");
-  for (const std::string& head : {std::string("PLY\n"), std::string("ply\nCreated by Blender3D 247 - www.blender.org, source file: \n")})
+  for (const std::string& head :
+       {std::string("PLY\n"), std::string("ply\nCreated by Blender3D 247 - www.blender.org, source file: \n")})
     CHECK(io::read_ply_mesh(head + good.substr(4), "made.ply").ends.size() == 1);
   CHECK_FALSE(refusal([&] { io::read_ply_mesh("Ply" + good.substr(3), "made.ply"); }).empty());
   CHECK_FALSE(refusal([&] { io::read_ply_mesh("ply\nCreated on a day\n" + good.substr(4), "made.ply"); }).empty());

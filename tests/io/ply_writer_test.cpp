@@ -22,7 +22,8 @@ TEST_CASE("a PLY file that is written has the positions to the last bit, and a r
   CHECK(read.points == points);
   const std::string bytes = io::read_bytes(file.path);
   const std::string head =
-      "ply\nformat binary_little_endian 1.0\ncomment made\\x0aby a test\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+      "ply\nformat binary_little_endian 1.0\ncomment made\\x0aby a test\nelement vertex 3\nproperty double x\nproperty "
+      "double y\nproperty double z\n"
       "property uchar red\nproperty float distance\nproperty uint point\nproperty int part\nend_header\n";
   REQUIRE(bytes.starts_with(head));
   REQUIRE(bytes.size() == head.size() + 3 * (24 + 1 + 4 + 4 + 4));
@@ -44,7 +45,8 @@ TEST_CASE("a PLY file that is written has the positions to the last bit, and a r
 
 TEST_CASE("columns that do not fit their points, or have no name, are refused") {
   const std::vector<Eigen::Vector3d> points(3);
-  const io::ply_column few[] = {{"distance", std::vector<float>{1, 2}}}, many[] = {{"distance", std::vector<float>{1, 2, 3, 4}}};
+  const io::ply_column few[] = {{"distance", std::vector<float>{1, 2}}},
+                       many[] = {{"distance", std::vector<float>{1, 2, 3, 4}}};
   CHECK_THROWS_WITH(io::ply_bytes(points, few), "clearance: the PLY column \"distance\" has 2 values for 3 points");
   CHECK_THROWS_AS(io::ply_bytes(points, many), std::invalid_argument);
   for (const std::string name : {"", "a b", "x\n", "\xc3\xb6"}) {
@@ -77,11 +79,17 @@ TEST_CASE("a PLY file in pieces is the same file, and pieces that are not its po
   const io::ply_column whole[] = {{"distance", values}};
   for (const std::size_t each : {1u, 3u, 10u}) {
     std::size_t at = 0;
-    io::save_ply_pieces(file.path, points.size(), [&] {
-      const std::size_t begin = std::exchange(at, std::min(points.size(), at + each));
-      const auto some = [&](const auto& all) { return std::remove_cvref_t<decltype(all)>(all.begin() + std::ptrdiff_t(begin), all.begin() + std::ptrdiff_t(at)); };
-      return io::ply_piece{some(points), {{"distance", some(values)}}};
-    }, "made");
+    io::save_ply_pieces(
+        file.path, points.size(),
+        [&] {
+          const std::size_t begin = std::exchange(at, std::min(points.size(), at + each));
+          const auto some = [&](const auto& all) {
+            return std::remove_cvref_t<decltype(all)>(all.begin() + std::ptrdiff_t(begin),
+                                                      all.begin() + std::ptrdiff_t(at));
+          };
+          return io::ply_piece{some(points), {{"distance", some(values)}}};
+        },
+        "made");
     CHECK(io::read_bytes(file.path) == io::ply_bytes(points, whole, "made"));
   }
   io::save_ply_pieces(file.path, 0, [] { return io::ply_piece{{}, {{"distance", std::vector<float>{}}}}; });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a small compressed file may become.
-#include "support/catch.hpp"
 #include "io/scratch_file.hpp"
+#include "support/catch.hpp"
 #include "tools/small_png.hpp"
 
 #include <clearance/io/pcd.hpp>
@@ -17,8 +17,9 @@ std::string packed_pcd(std::uint32_t points) {
   std::string packed(zeros.size() + 100, '\0');
   packed.resize(lzf_compress(zeros.data(), unsigned(zeros.size()), packed.data(), unsigned(packed.size())));
   const auto raw = [](std::uint32_t v) { return std::string(reinterpret_cast<const char*>(&v), 4); };
-  return "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH " + std::to_string(points) + "\nHEIGHT 1\nDATA binary_compressed\n" + raw(std::uint32_t(packed.size())) +
-         raw(std::uint32_t(zeros.size())) + packed;
+  return "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH " + std::to_string(points) +
+         "\nHEIGHT 1\nDATA binary_compressed\n" + raw(std::uint32_t(packed.size())) + raw(std::uint32_t(zeros.size())) +
+         packed;
 }
 
 }  // namespace
@@ -31,14 +32,16 @@ TEST_CASE("a compressed cloud is read up to the limit that is set, and refused b
     const std::string said = refusal([&] { io::read_pcd(bytes, "made.pcd", {.unfolded = memory - 1}); });
     INFO(said);
     CHECK(said.find("made.pcd: ") == 0);
-    CHECK(said.find("more than the limit of " + std::to_string((memory - 1) >> 20) + " MiB (read_limits::unfolded)") != std::string::npos);
+    CHECK(said.find("more than the limit of " + std::to_string((memory - 1) >> 20) + " MiB (read_limits::unfolded)") !=
+          std::string::npos);
   }
   // 5 MB that would become 15 GB of points are refused before anything is unpacked.
   std::string bomb = "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH 140000000\nHEIGHT 1\nDATA binary_compressed\n";
   for (const std::uint32_t size : {5000000u, 420000000u}) bomb.append(reinterpret_cast<const char*>(&size), 4);
   bomb += std::string(5000000, '\x41');
   CHECK(refusal([&] { io::read_pcd(bomb, "made.pcd"); }).find("limit of 1024 MiB") != std::string::npos);
-  const std::string plain = "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH 1000\nHEIGHT 1\nDATA binary\n" + std::string(3000, '\1');
+  const std::string plain =
+      "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH 1000\nHEIGHT 1\nDATA binary\n" + std::string(3000, '\1');
   CHECK(io::read_pcd(plain, "made.pcd", {.unfolded = 0}).points.size() == 1000);  // nothing unfolds
 }
 
@@ -48,7 +51,8 @@ TEST_CASE("an image is read up to the limit that is set") {
   CHECK(refusal([&] { io::read_png(bytes, "made.png", {.unfolded = 7}); }).find("2x1 pixels") != std::string::npos);
   // A header of 16384 x 32767 pixels with enough data to be possible, of which nothing is unpacked.
   const std::string size("\0\0\x40\0\0\0\x7f\xff", 8);
-  const std::string bomb = "\x89PNG\r\n\x1a\n" + chunk("IHDR", size + std::string("\x10\0\0\0\0", 5)) + chunk("IDAT", std::string(1100000, 'x')) + chunk("IEND", "");
+  const std::string bomb = "\x89PNG\r\n\x1a\n" + chunk("IHDR", size + std::string("\x10\0\0\0\0", 5)) +
+                           chunk("IDAT", std::string(1100000, 'x')) + chunk("IEND", "");
   const std::string said = refusal([&] { io::read_png(bomb, "made.png"); });
   INFO(said);
   CHECK(said.find("more than the limit of 1024 MiB (read_limits::unfolded)") != std::string::npos);

@@ -44,7 +44,8 @@ std::string all_of(const io::robot& r) {
     out << ';';
   }
   for (const double q : {0.0, 0.4, -1.0})
-    for (const auto& pose : r.poses(std::vector<double>(r.kinematics().size(), q), {.ignore_limits = true})) out << pose.matrix() << ';';
+    for (const auto& pose : r.poses(std::vector<double>(r.kinematics().size(), q), {.ignore_limits = true}))
+      out << pose.matrix() << ';';
   return out.str();
 }
 
@@ -76,8 +77,8 @@ TEST_CASE("a damaged number of a URDF is refused in its link or joint, or it was
     for (auto& [key, value] : e.attributes) {
       if (one_of(key, {"name", "link", "joint", "type", "filename"})) continue;
       const std::string kept = value;
-      for (const auto& text :
-           words_damaged(kept, {"", "0,2", "nan", "-nan", "inf", "1e999", "0x10", "1.2.3", "--1", "1 1", "x", "1e", "."})) {
+      for (const auto& text : words_damaged(
+               kept, {"", "0,2", "nan", "-nan", "inf", "1e999", "0x10", "1.2.3", "--1", "1 1", "x", "1e", "."})) {
         value = text;
         all.push_back({e.name + "." + key + "=" + text, xml_text(root), owner, false});
       }
@@ -135,10 +136,13 @@ TEST_CASE("a shape that got into another element is refused, whichever that is")
   CHECK(shapes == 7);
   CHECK(tried > 250);
   for (const char* around : {"sensor", "contact", "self_collision_checking", "inertial"}) {
-    const std::string link = "<robot name=\"r\"><link name=\"a\"><visual><geometry><box size=\"1 1 1\"/></geometry></visual><" + std::string(around) + ">";
+    const std::string link =
+        "<robot name=\"r\"><link name=\"a\"><visual><geometry><box size=\"1 1 1\"/></geometry></visual><" +
+        std::string(around) + ">";
     const std::string end = "</" + std::string(around) + "></link></robot>";
     CHECK(read(link + end).refusal.empty());
-    CHECK(says(read(link + "<collision><geometry><box size=\"1 1 1\"/></geometry></collision>" + end).refusal, "link \"a\""));
+    CHECK(says(read(link + "<collision><geometry><box size=\"1 1 1\"/></geometry></collision>" + end).refusal,
+               "link \"a\""));
   }
 }
 
@@ -188,21 +192,33 @@ TEST_CASE("XML that is not well-formed, has a document type, or names that canno
   const auto with = [&](const std::string& inside) { return "<robot name=\"r\">" + inside + "</robot>"; };
   const std::string good = with("<link name=\"a\">" + shape + "</link>");
   REQUIRE(read(good).refusal.empty());
-  const std::string laughs =
-      "<!DOCTYPE r [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;\">]>" + with("<link name=\"&b;\"/>");
-  for (const std::string& text : std::vector<std::string>{
-           good + "<robot name=\"s\"/>", good + "more", "more" + good, "x<?xml version=\"1.0\"?>" + good, laughs,
-           "<!DOCTYPE robot>" + good, "<?xml version=\"1.0\" encoding=\"none\"?>" + good,
-           with("<link name=\"a\" name=\"b\">" + shape + "</link>"), with("<link name=\"&unknown;\">" + shape + "</link>"),
-           with("<link name=\"a&#27;[2J\">" + shape + "</link>"), with("<link name=\"a&#10;b\">" + shape + "</link>"),
-           with("<link name=\"a\x7f\">" + shape + "</link>"), with("<link name=\"a&#x9b;\">" + shape + "</link>"),
-           with("<link name=\"a\xff\">" + shape + "</link>"), with("<link name=\"a\xc0\xaf\">" + shape + "</link>"),
-           with("<link name=\"" + std::string(2'000'000, 'n') + "\">" + shape + "</link>"),
-           with("<link name=\"\">" + shape + "</link>"), with("<link name=a>" + shape + "</link>"),
-           with("<link name=\"a\">" + shape + "</lnk>"), with("<link name=\"a\">" + shape + "</link>link name=\"b\"/>"),
-           with("<x:link name=\"a\">" + shape + "</x:link>"), with("<lnk name=\"a\">" + shape + "</lnk>"),
-           with("<link name=\"a\">" + shape + "</link><model><link name=\"b\"/></model>"),
-           with("<link name=\"a\">" + shape + std::string("\0", 1) + "</link>")}) {
+  const std::string laughs = "<!DOCTYPE r [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;\">]>" +
+                             with("<link name=\"&b;\"/>");
+  for (const std::string& text :
+       std::vector<std::string>{good + "<robot name=\"s\"/>",
+                                good + "more",
+                                "more" + good,
+                                "x<?xml version=\"1.0\"?>" + good,
+                                laughs,
+                                "<!DOCTYPE robot>" + good,
+                                "<?xml version=\"1.0\" encoding=\"none\"?>" + good,
+                                with("<link name=\"a\" name=\"b\">" + shape + "</link>"),
+                                with("<link name=\"&unknown;\">" + shape + "</link>"),
+                                with("<link name=\"a&#27;[2J\">" + shape + "</link>"),
+                                with("<link name=\"a&#10;b\">" + shape + "</link>"),
+                                with("<link name=\"a\x7f\">" + shape + "</link>"),
+                                with("<link name=\"a&#x9b;\">" + shape + "</link>"),
+                                with("<link name=\"a\xff\">" + shape + "</link>"),
+                                with("<link name=\"a\xc0\xaf\">" + shape + "</link>"),
+                                with("<link name=\"" + std::string(2'000'000, 'n') + "\">" + shape + "</link>"),
+                                with("<link name=\"\">" + shape + "</link>"),
+                                with("<link name=a>" + shape + "</link>"),
+                                with("<link name=\"a\">" + shape + "</lnk>"),
+                                with("<link name=\"a\">" + shape + "</link>link name=\"b\"/>"),
+                                with("<x:link name=\"a\">" + shape + "</x:link>"),
+                                with("<lnk name=\"a\">" + shape + "</lnk>"),
+                                with("<link name=\"a\">" + shape + "</link><model><link name=\"b\"/></model>"),
+                                with("<link name=\"a\">" + shape + std::string("\0", 1) + "</link>")}) {
     const outcome made = read(text);
     INFO(text.substr(0, 200));
     CHECK_FALSE(made.refusal.empty());
@@ -211,18 +227,22 @@ TEST_CASE("XML that is not well-formed, has a document type, or names that canno
   CHECK(read("\n<?xml version=\"1.0\"?>" + good).refusal.empty());
   CHECK(read(with("<link name=\"a\">" + shape + "</link>text")).refusal.empty());
   // Other vocabularies, if they say so, and elements that have nothing of a robot in them.
-  CHECK(read(with("<link name=\"a\">" + shape + "</link><gazebo reference=\"a\"><visual/></gazebo><mujoco><a/></mujoco>")).refusal.empty());
-  CHECK(read("<robot name=\"r\" xmlns:x=\"urn:x\"><link name=\"a\">" + shape + "<x:y/></link></robot>").refusal.empty());
+  CHECK(
+      read(with("<link name=\"a\">" + shape + "</link><gazebo reference=\"a\"><visual/></gazebo><mujoco><a/></mujoco>"))
+          .refusal.empty());
+  CHECK(
+      read("<robot name=\"r\" xmlns:x=\"urn:x\"><link name=\"a\">" + shape + "<x:y/></link></robot>").refusal.empty());
   CHECK(read("\xEF\xBB\xBF" + good).refusal.empty());
 }
 
 TEST_CASE("joints keep the file's order, however their names are written") {
   const robot_folder folder;
   const auto order = [&](const std::string& first) {
-    std::string text = "<robot name=\"r\"><link name=\"a\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>";
+    std::string text =
+        "<robot name=\"r\"><link name=\"a\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>";
     for (const std::string& name : {std::string("z"), first, std::string("m")})
-      text += "<link name=\"to " + name + "\"/><joint name=\"" + name + "\" type=\"continuous\"><parent link=\"a\"/><child link=\"to " +
-              name + "\"/></joint>";
+      text += "<link name=\"to " + name + "\"/><joint name=\"" + name +
+              "\" type=\"continuous\"><parent link=\"a\"/><child link=\"to " + name + "\"/></joint>";
     const io::robot r = io::load_robot(folder.put("r.urdf", text + "</robot>"));
     REQUIRE(r.kinematics().size() == 3);
     return r.kinematics().movable(1).name;
@@ -241,9 +261,12 @@ TEST_CASE("a value that no number can hold is refused with the joint that has it
     return io::load_robot(folder.put(
         "r.urdf",
         "<robot name=\"r\"><link name=\"a\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>"
-        "<link name=\"b\"/><link name=\"c\"/><joint name=\"one\" type=\"prismatic\"><parent link=\"a\"/><child link=\"b\"/>" +
-            origin + "<limit lower=\"-3\" upper=\"3\"/></joint><joint name=\"two\" type=\"prismatic\"><parent link=\"b\"/>"
-            "<child link=\"c\"/>" + origin + "<limit lower=\"-3\" upper=\"3\"/>" + mimic + "</joint></robot>"));
+        "<link name=\"b\"/><link name=\"c\"/><joint name=\"one\" type=\"prismatic\"><parent link=\"a\"/><child "
+        "link=\"b\"/>" +
+            origin +
+            "<limit lower=\"-3\" upper=\"3\"/></joint><joint name=\"two\" type=\"prismatic\"><parent link=\"b\"/>"
+            "<child link=\"c\"/>" +
+            origin + "<limit lower=\"-3\" upper=\"3\"/>" + mimic + "</joint></robot>"));
   };
   const io::robot follows = chain("<mimic joint=\"one\" multiplier=\"1e308\"/>", "");
   CHECK(follows.poses(std::vector<double>{1}).size() == 1);
@@ -257,8 +280,8 @@ TEST_CASE("only regular files are meshes, and what a robot reads has limits") {
   folder.put("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const auto with = [&](const std::string& uri, const io::robot_options& options = {}) {
     return sentence([&] {
-      io::load_robot(folder.put("r.urdf", "<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh filename=\"" + uri +
-                                              "\"/></geometry></collision></link></robot>"),
+      io::load_robot(folder.put("r.urdf", "<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh filename=\"" +
+                                              uri + "\"/></geometry></collision></link></robot>"),
                      options);
     });
   };
@@ -285,17 +308,16 @@ TEST_CASE("the robots that were made to attack are refused, or answered in full"
     WARN("SKIPPED: no folder " << folder);
     return;
   }
-  const auto load = [&](const std::string& name) {
-    return sentence([&] { io::load_robot(folder / name); });
-  };
+  const auto load = [&](const std::string& name) { return sentence([&] { io::load_robot(folder / name); }); };
   for (const char* bad :
-       {"link-box-comma.urdf", "dae-no-vcount.urdf", "dae-no-p.urdf", "dae-selfnode-entity.urdf", "dae-instance-lost.urdf",
-        "dae-index-wraps.urdf", "glb-child-lost.urdf", "glb-chain20000.urdf", "esc.urdf"}) {
+       {"link-box-comma.urdf", "dae-no-vcount.urdf", "dae-no-p.urdf", "dae-selfnode-entity.urdf",
+        "dae-instance-lost.urdf", "dae-index-wraps.urdf", "glb-child-lost.urdf", "glb-chain20000.urdf", "esc.urdf"}) {
     INFO(bad);
     CHECK_FALSE(load(bad).empty());
     check_sentence(load(bad), (folder / bad).string().substr(0, 20));
   }
-  for (const char* good : {"link-ref.urdf", "dae-instance-ok.urdf", "glb-ok.urdf", "order-plain.urdf", "order-entity.urdf"})
+  for (const char* good :
+       {"link-ref.urdf", "dae-instance-ok.urdf", "glb-ok.urdf", "order-plain.urdf", "order-entity.urdf"})
     CHECK(load(good) == "");
   CHECK(io::load_robot(folder / "link-capsule.urdf").parts().size() == 2);
   const auto both = io::load_robot(folder / "link-second-lost.urdf").parts().at(1);
@@ -323,10 +345,12 @@ TEST_CASE("every single damaged number of the real robots is refused, or was of 
           for (const auto* shapes : {&link.collision, &link.visual})
             for (const auto& s : *shapes) {
               out << s.geometry.index() << s.origin.matrix();
-              if (const auto* mesh = std::get_if<io::urdf_mesh>(&s.geometry)) out << mesh->uri << mesh->scale.transpose();
+              if (const auto* mesh = std::get_if<io::urdf_mesh>(&s.geometry))
+                out << mesh->uri << mesh->scale.transpose();
             }
         }
-        for (const auto& j : made.tree.joints()) out << j.name << j.origin.matrix() << j.axis.transpose() << j.lower << j.upper;
+        for (const auto& j : made.tree.joints())
+          out << j.name << j.origin.matrix() << j.axis.transpose() << j.lower << j.upper;
         return {out.str(), ""};
       } catch (const std::exception& error) {
         return {"", error.what()};
@@ -341,7 +365,8 @@ TEST_CASE("every single damaged number of the real robots is refused, or was of 
       for (auto& [key, value] : e.attributes) {
         if (one_of(key, {"name", "link", "joint", "type", "filename"})) continue;
         const std::string kept = value;
-        for (const auto& text : words_damaged(kept, {std::vector<std::string>{"0,1", "nan", "", "1e999"}[std::size_t(++number % 4)]})) {
+        for (const auto& text :
+             words_damaged(kept, {std::vector<std::string>{"0,1", "nan", "", "1e999"}[std::size_t(++number % 4)]})) {
           value = text;
           all.push_back({e.name + "." + key + "=" + text, xml_text(root), owner, false});
         }

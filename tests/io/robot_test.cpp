@@ -131,7 +131,8 @@ TEST_CASE("a shape of any size has a bounded number of triangles, and states the
   CHECK(few.parts()[0].tessellation_error == io::tessellate_sphere(1).error);
   io::robot_options fewer;
   fewer.limits.triangles = 100'000;
-  CHECK(says(sentence([&] { load_robot(folder.path / "s.urdf", fewer); }), "link \"a\": with it the robot has more than 100000 triangles"));
+  CHECK(says(sentence([&] { load_robot(folder.path / "s.urdf", fewer); }),
+             "link \"a\": with it the robot has more than 100000 triangles"));
 }
 
 TEST_CASE("a part is all shapes of one link, each at its origin, and links without geometry are none") {
@@ -250,9 +251,11 @@ TEST_CASE("package names are looked up where given, then above the URDF, then in
 
   CHECK(corner(urdf("ws/alpha/urdf/r.urdf", "package:///alpha/meshes/t.obj")) == 1);
   CHECK(corner(urdf("ws/alpha/urdf/r.urdf", "model://alpha/meshes/t.obj")) == 1);
-  CHECK(says(sentence([&] { load_robot(urdf("ws/tau/urdf/r.urdf", "package://tau_description/meshes/u.obj")); }), "--package tau_description=FOLDER"));
+  CHECK(says(sentence([&] { load_robot(urdf("ws/tau/urdf/r.urdf", "package://tau_description/meshes/u.obj")); }),
+             "--package tau_description=FOLDER"));
   folder.put("ws/tau/meshes/u.obj", triangle);
-  CHECK(says(sentence([&] { load_robot(folder.path / "ws/tau/urdf/r.urdf"); }), "--package tau_description=" + (folder.path / "ws/tau").string() + " would do"));
+  CHECK(says(sentence([&] { load_robot(folder.path / "ws/tau/urdf/r.urdf"); }),
+             "--package tau_description=" + (folder.path / "ws/tau").string() + " would do"));
   CHECK(corner(urdf("x/f.urdf", "file://" + (folder.path / "ros/gamma/t.obj").string())) == 4);
   CHECK(corner(urdf("x/a.urdf", (folder.path / "ros/gamma/t.obj").string())) == 4);
   CHECK(corner(urdf("x/p.urdf", "../ros/gamma/t.obj")) == 4);

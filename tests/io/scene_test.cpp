@@ -80,7 +80,10 @@ TEST_CASE("points have the colour of their cloud, or each its own, also where so
   const auto colours = [&](const std::string& name) {
     const auto& at = read.all["accessors"][std::size_t(read.meshes.at(name)["primitives"][0]["attributes"]["COLOR_0"])];
     std::vector<float> values(4 * at["count"].get<std::size_t>());
-    std::memcpy(values.data(), bytes.data() + data + read.all["bufferViews"][std::size_t(at["bufferView"])]["byteOffset"].get<std::size_t>(), 4 * values.size());
+    std::memcpy(
+        values.data(),
+        bytes.data() + data + read.all["bufferViews"][std::size_t(at["bufferView"])]["byteOffset"].get<std::size_t>(),
+        4 * values.size());
     return values;
   };
   CHECK(colours("one") == std::vector<float>{0.5f, 0.25f, 0, 1, 0.5f, 0.25f, 0, 1});
@@ -89,7 +92,8 @@ TEST_CASE("points have the colour of their cloud, or each its own, also where so
 
 TEST_CASE("the mesh of a scene file is the mesh that went in, turned so that y is up") {
   io::scene world;
-  world.bodies.push_back({.name = "a\xffname", .mesh = io::icosphere(1), .pose = Eigen::Isometry3d(Eigen::Translation3d(1, 2, 3))});
+  world.bodies.push_back(
+      {.name = "a\xffname", .mesh = io::icosphere(1), .pose = Eigen::Isometry3d(Eigen::Translation3d(1, 2, 3))});
   world.bodies.push_back({.name = "grouped", .mesh = io::icosphere(0), .group = "g"});
   const scratch_file file(".glb");
   io::save_scene(world, file.path);
@@ -97,7 +101,8 @@ TEST_CASE("the mesh of a scene file is the mesh that went in, turned so that y i
   REQUIRE(read.triangles.size() == 100);
   for (std::size_t t = 0; t < 80; ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Eigen::Vector3d in = world.bodies[0].mesh.vertices[world.bodies[0].mesh.triangles[t][k]] + Eigen::Vector3d(1, 2, 3);
+      const Eigen::Vector3d in =
+          world.bodies[0].mesh.vertices[world.bodies[0].mesh.triangles[t][k]] + Eigen::Vector3d(1, 2, 3);
       CHECK((read.vertices[read.triangles[t][k]] - Eigen::Vector3d(in.x(), in.z(), -in.y())).norm() < 1e-6);
     }
   const gltf_file json(file.path);
@@ -116,7 +121,8 @@ TEST_CASE("drawn balls are where they are, and look outward") {
     const ball& b = balls[nearest];
     ++corners[nearest];
     const Eigen::Vector3f out = eigen(mesh.positions[v]) - eigen(b.center);
-    if (!(std::abs(out.norm() - b.radius) < 5e-3) || !((out / b.radius - eigen(mesh.normals[v])).norm() < 1e-2)) FAIL("vertex " << v);
+    if (!(std::abs(out.norm() - b.radius) < 5e-3) || !((out / b.radius - eigen(mesh.normals[v])).norm() < 1e-2))
+      FAIL("vertex " << v);
   }
   for (const int count : corners) CHECK(count >= 12);
   for (std::size_t f = 0; f < mesh.corners.size(); f += 3) {
@@ -127,7 +133,8 @@ TEST_CASE("drawn balls are where they are, and look outward") {
 
 TEST_CASE("a packing is drawn as its mesh, its spheres by size, and a node for each level of its tree") {
   io::scene_packing part{.name = "arm", .mesh = io::icosphere(1), .spheres = {}};
-  for (int i = 0; i < 200; ++i) part.spheres.spheres.push_back({{real(i % 20), real(i / 20), 0}, i % 2 ? 0.003f : 0.3f});
+  for (int i = 0; i < 200; ++i)
+    part.spheres.spheres.push_back({{real(i % 20), real(i / 20), 0}, i % 2 ? 0.003f : 0.3f});
   part.pose = Eigen::Translation3d(1, 2, 3);
   const scratch_file file(".glb");
   io::save_scene(io::packing_scene({part}), file.path);
@@ -136,7 +143,8 @@ TEST_CASE("a packing is drawn as its mesh, its spheres by size, and a node for e
   std::set<std::string> members;
   for (const std::size_t child : read.nodes.at("arm")["children"]) members.insert(read.all["nodes"][child]["name"]);
   CHECK(members.size() == 1 + 2 + tree.depth + 1);
-  for (std::uint32_t level = 0; level <= tree.depth; ++level) CHECK(members.count("arm level " + std::to_string(level)));
+  for (std::uint32_t level = 0; level <= tree.depth; ++level)
+    CHECK(members.count("arm level " + std::to_string(level)));
   REQUIRE(members.count("arm mesh"));
   CHECK(read.nodes.at("arm mesh")["matrix"][13] == 2.0);
   CHECK(read.materials.at("arm mesh")["alphaMode"] == "BLEND");
@@ -149,7 +157,8 @@ TEST_CASE("a packing is drawn as its mesh, its spheres by size, and a node for e
 TEST_CASE("the faces of drawn balls and rods look outward") {
   for (const triangle_mesh& mesh : {io::icosphere(0), io::icosphere(2), io::rod({0, 0.3, 0.4}), io::rod({0, 0, 0})}) {
     double six_volumes = 0;
-    for (const auto& t : mesh.triangles) six_volumes += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]]));
+    for (const auto& t : mesh.triangles)
+      six_volumes += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]]));
     CHECK(six_volumes > 0);
   }
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <unistd.h>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
-#include <unistd.h>
 
 /// A file that is gone with the object.
 struct scratch_file {
@@ -14,7 +14,8 @@ struct scratch_file {
   explicit scratch_file(const std::string& end, const std::string& bytes = {}) {
     static int count = 0;
     path = (std::filesystem::temp_directory_path() /
-            ("clearance_" + std::to_string(::getpid()) + "_" + std::to_string(++count) + end)).string();
+            ("clearance_" + std::to_string(::getpid()) + "_" + std::to_string(++count) + end))
+               .string();
     put(bytes);
   }
   scratch_file(const scratch_file&) = delete;

@@ -172,7 +172,8 @@ TEST_CASE("a key that a YAML file has twice is refused at every level, and so is
     };
     const std::string sphere = "{" + entry("center", "[0, 0, 0]") + ", " + entry("radius", "1") + "}";
     std::string text = "[" + sphere + "]";
-    for (const char* key : {"link", "collision_spheres", "kinematics", "robot_cfg"}) text = "{" + entry(key, text) + "}";
+    for (const char* key : {"link", "collision_spheres", "kinematics", "robot_cfg"})
+      text = "{" + entry(key, text) + "}";
     CHECK(yaml_refusal(text + "\n") == ":1: has the key \"" + twice + "\" twice");
   }
   const std::string good = "collision_spheres:\n  a: &x [{center: [0,0,0], radius: 1}]\n";

@@ -55,7 +55,9 @@ TEST_CASE("lines may end by \\n, \\r\\n or \\r alone in every text format") {
       {".pcd", pcd + "1 2 3\n4 5 6\n7 8 9"},
       {".pcd", pcd + "1 2 3\n4 5 6\n7 8 9\n1 1 1\n"},
       {".pcd", pcd + "1 2 3\n4 5 6\n"},
-      {".ply", "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n4 5 6\n"},
+      {".ply",
+       "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 "
+       "3\n4 5 6\n"},
       {".obj", "# made\nv 1 2 3\nv 4 5 6\nv 0 0 0\nf 1 2 \\\n3\n"},
       {".obj", "v 1 2 3\nv 4 5 6\nf 1 2 3\n"},
       {".off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
@@ -92,7 +94,8 @@ TEST_CASE("a number with a # in it, as old runtimes spell NaN, is no number that
       {".csv", {"x,y,z,r\n", "7", ",", "8", ",", "9", ",", "3", "\n"}},
       {".obj", {"v ", "7", " ", "8", " ", "9", "\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}},
       {".off", {"OFF\n3 1 0\n", "7", " ", "8", " ", "9", "\n1 0 0\n0 1 0\n3 0 1 2\n"}},
-      {".pcd", {"FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nDATA ascii\n", "7", " ", "8", " ", "9", "\n"}}};
+      {".pcd",
+       {"FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nDATA ascii\n", "7", " ", "8", " ", "9", "\n"}}};
   for (const auto& [ending, pieces] : files)
     for (std::size_t which = 1; which + 1 < pieces.size(); which += 2)
       for (const char* spelt : {"1.#IND", "-1.#IND", "1.#QNAN", "1.#INF"}) {
@@ -107,7 +110,8 @@ TEST_CASE("a number with a # in it, as old runtimes spell NaN, is no number that
 TEST_CASE("binary PCD data may begin with any byte, and POINTS is what the data hold") {
   for (const char* end : ends)
     for (int first = 0; first < 256; ++first) {
-      const std::string header = with_ends("VERSION .7\nFIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH 2\nHEIGHT 1\nDATA binary\n", end);
+      const std::string header =
+          with_ends("VERSION .7\nFIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH 2\nHEIGHT 1\nDATA binary\n", end);
       const std::string data = {char(first), 10, 13, 13, 10, char(first)};
       const scratch_file file(".pcd", header + data);
       const io::cloud c = io::load_pcd(file.path);
@@ -124,7 +128,8 @@ TEST_CASE("binary PCD data may begin with any byte, and POINTS is what the data 
     const std::string said = refusal([&] { io::read_pcd(header + data, "made.pcd"); });
     INFO(said);
     CHECK(said.empty() == (records == 2));
-    if (records == 2) CHECK(refusal([&] { io::read_pcd(header + data + std::string(1000, '\0'), "made.pcd"); }).empty());
+    if (records == 2)
+      CHECK(refusal([&] { io::read_pcd(header + data + std::string(1000, '\0'), "made.pcd"); }).empty());
     if (records == 2) CHECK_FALSE(refusal([&] { io::read_pcd(header + data + 'x', "made.pcd"); }).empty());
   }
 }
@@ -132,7 +137,9 @@ TEST_CASE("binary PCD data may begin with any byte, and POINTS is what the data 
 TEST_CASE("an ascii PCD coordinate fits its TYPE and SIZE, and no header entry is given twice") {
   const auto read = [](const std::string& type, const std::string& size, const std::string& word) {
     return refusal([&] {
-      io::read_pcd("FIELDS x y z\nSIZE " + size + " 4 4\nTYPE " + type + " F F\nWIDTH 1\nHEIGHT 1\nDATA ascii\n" + word + " 0 0\n", "made.pcd");
+      io::read_pcd("FIELDS x y z\nSIZE " + size + " 4 4\nTYPE " + type + " F F\nWIDTH 1\nHEIGHT 1\nDATA ascii\n" +
+                       word + " 0 0\n",
+                   "made.pcd");
     });
   };
   for (const int size : {1, 2, 4, 8}) {
@@ -159,10 +166,13 @@ TEST_CASE("an ascii PCD coordinate fits its TYPE and SIZE, and no header entry i
   CHECK(read("F", "8", "3.5e38").empty());
   CHECK_FALSE(read("F", "8", "1e309").empty());
   CHECK(read("F", "8", "nan").empty());
-  const std::vector<std::string> entries = {"VERSION .7", "FIELDS x y z", "SIZE 4 4 4", "TYPE F F F", "COUNT 1 1 1", "WIDTH 1", "HEIGHT 1", "VIEWPOINT 0 0 0 1 0 0 0", "POINTS 1"};
+  const std::vector<std::string> entries = {"VERSION .7",  "FIELDS x y z", "SIZE 4 4 4", "TYPE F F F",
+                                            "COUNT 1 1 1", "WIDTH 1",      "HEIGHT 1",   "VIEWPOINT 0 0 0 1 0 0 0",
+                                            "POINTS 1"};
   for (std::size_t twice = 0; twice <= entries.size(); ++twice) {
     std::string text;
     for (std::size_t i = 0; i < entries.size(); ++i) text += entries[i] + '\n' + (i == twice ? entries[i] + '\n' : "");
-    CHECK(refusal([&] { io::read_pcd(text + "DATA ascii\n1 2 3\n", "made.pcd"); }).empty() == (twice == entries.size()));
+    CHECK(refusal([&] { io::read_pcd(text + "DATA ascii\n1 2 3\n", "made.pcd"); }).empty() ==
+          (twice == entries.size()));
   }
 }

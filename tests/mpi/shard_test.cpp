@@ -11,13 +11,14 @@
 #include <clearance/volume/sphere.hpp>
 
 using namespace testing;
-using clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::part_minimum, clearance::placed, clearance::point_span,
-    clearance::slice;
+using clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::part_minimum,
+    clearance::placed, clearance::point_span, clearance::slice;
 namespace mpi = clearance::mpi;
 
 // As MPI does in a communicator that returns its errors.
 bool gathering_fails = false, reducing_fails = false;
-extern "C" int MPI_Allgather(const void* from, int n, MPI_Datatype type, void* to, int m, MPI_Datatype their, MPI_Comm comm) {
+extern "C" int MPI_Allgather(const void* from, int n, MPI_Datatype type, void* to, int m, MPI_Datatype their,
+                             MPI_Comm comm) {
   return gathering_fails ? MPI_ERR_OTHER : PMPI_Allgather(from, n, type, to, m, their, comm);
 }
 extern "C" int MPI_Allreduce(const void* from, void* to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm) {
@@ -70,18 +71,22 @@ std::string refused(F f) {
 
 /// `mine` is this rank's piece of `whole`.
 template <class Model, class Mine, class Whole>
-void ask_often(const Model& model, std::vector<Eigen::Isometry3d> poses, const Mine& mine, const Whole& whole, verdict& v, const std::string& what) {
+void ask_often(const Model& model, std::vector<Eigen::Isometry3d> poses, const Mine& mine, const Whole& whole,
+               verdict& v, const std::string& what) {
   clearance::min_distance_query query(on, model);
   std::vector<part_minimum> minima(poses.size());
   for (int round = 0; round < 3; ++round) {
     const auto expected = min_distance(host{1}, model, poses, whole);
     v.require(same_result(query(poses, mine), expected), what, ", round ", round, ": another answer");
-    v.require(same_result(min_distance(on, model, poses, mine), expected), what, ", round ", round, ": another answer of one call");
+    v.require(same_result(min_distance(on, model, poses, mine), expected), what, ", round ", round,
+              ": another answer of one call");
     const auto [robot, each] = min_distance_per_part(host{1}, model, poses, whole);
-    v.require(same_result(query.per_part(poses, mine, minima), robot), what, ", round ", round, ": another answer by parts");
+    v.require(same_result(query.per_part(poses, mine, minima), robot), what, ", round ", round,
+              ": another answer by parts");
     v.require(std::ranges::equal(minima, each, same_minimum), what, ", round ", round, ": some part's minimum differs");
     const auto [again, theirs] = min_distance_per_part(on, model, poses, mine);
-    v.require(same_result(again, robot) && std::ranges::equal(theirs, each, same_minimum), what, ", round ", round, ": one call differs by parts");
+    v.require(same_result(again, robot) && std::ranges::equal(theirs, each, same_minimum), what, ", round ", round,
+              ": one call differs by parts");
     poses[0].translation().x() += 0.1;
   }
 }
@@ -99,8 +104,11 @@ TEST_CASE("Ranks have the answer of one process: all scenes, points and images, 
     ask_often(model, s.poses, piece(all.span, s.cloud_pose), placed{all.span, s.cloud_pose}, v, s.name + ", points");
     ask_often(model, s.poses, piece(all.raw, all.camera_pose), placed{all.raw, all.camera_pose}, v, s.name + ", image");
     // Two clouds: the lowest cloud wins, on whatever rank it is.
-    ask_often(model, s.poses, std::tuple(piece(all.span, s.cloud_pose), piece(all.span, s.cloud_pose), piece(all.raw, all.camera_pose)),
-              std::tuple(placed{all.span, s.cloud_pose}, placed{all.span, s.cloud_pose}, placed{all.raw, all.camera_pose}), v, s.name + ", three clouds");
+    ask_often(
+        model, s.poses,
+        std::tuple(piece(all.span, s.cloud_pose), piece(all.span, s.cloud_pose), piece(all.raw, all.camera_pose)),
+        std::tuple(placed{all.span, s.cloud_pose}, placed{all.span, s.cloud_pose}, placed{all.raw, all.camera_pose}), v,
+        s.name + ", three clouds");
   }
 }
 
@@ -109,14 +117,17 @@ TEST_CASE("Unequal pieces, empty ones, and points inside, which are nearest and 
   dice d(17);
   clearance::triangle_mesh box;
   for (int k = 0; k < 8; ++k) box.vertices.emplace_back(k & 1 ? 0.3 : -0.3, k & 2 ? 0.3 : -0.3, k & 4 ? 0.3 : -0.3);
-  box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   std::vector<decltype(clearance::make_part<clearance::aabb>(clearance::close_mesh(box)))> boxes;
-  for (const double tolerance : {1e-4, 0.05}) boxes.push_back(clearance::make_part<clearance::aabb>(clearance::close_mesh(box), {.tolerance = tolerance}));
+  for (const double tolerance : {1e-4, 0.05})
+    boxes.push_back(clearance::make_part<clearance::aabb>(clearance::close_mesh(box), {.tolerance = tolerance}));
   const clearance::model solid(std::move(boxes));
   using part = clearance::part<clearance::bvh<clearance::sphere, inner_sphere>>;
   std::vector<part> tolerant;
   for (const double tolerance : {0.09, 1e-4})
-    tolerant.push_back(clearance::make_part(clearance::build<clearance::sphere>(random_primitives<inner_sphere>(d, 30, 0.3, 0.1)), 0, tolerance));
+    tolerant.push_back(clearance::make_part(
+        clearance::build<clearance::sphere>(random_primitives<inner_sphere>(d, 30, 0.3, 0.1)), 0, tolerance));
   const clearance::model spheres(std::move(tolerant));
   const std::vector<Eigen::Isometry3d> poses = {shifted(0, 0, 0), shifted(0.7, 0, 0)};
   for (const std::size_t n : {0, 1, 2, 7, 1001})
@@ -126,10 +137,13 @@ TEST_CASE("Unequal pieces, empty ones, and points inside, which are nearest and 
         const auto cut = [&](int k) -> std::size_t {
           if (k <= 0) return 0;
           if (k >= ranks()) return n;
-          return turn == 0 ? n : turn == 1 ? n * std::size_t(k - 1) / std::size_t(ranks()) : std::min<std::size_t>(n, 1);
+          return turn == 0   ? n
+                 : turn == 1 ? n * std::size_t(k - 1) / std::size_t(ranks())
+                             : std::min<std::size_t>(n, 1);
         };
         const point_span whole(points), mine = whole.slice(cut(rank()), cut(rank() + 1));
-        const std::string what = std::to_string(n) + " within " + std::to_string(half) + ", turn " + std::to_string(turn);
+        const std::string what =
+            std::to_string(n) + " within " + std::to_string(half) + ", turn " + std::to_string(turn);
         ask_often(solid, poses, mine, whole, v, what + ", solid");
         ask_often(spheres, poses, mine, whole, v, what + ", spheres");
       }
@@ -138,7 +152,8 @@ TEST_CASE("Unequal pieces, empty ones, and points inside, which are nearest and 
 
 TEST_CASE("A rank that throws ends all with its sentence, and all can ask again") {
   dice d(4);
-  const auto model = clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{random_primitives<inner_sphere>(d, 30, 0.3, 0.1)});
+  const auto model = clearance::make_model<clearance::sphere>(
+      std::vector<std::vector<inner_sphere>>{random_primitives<inner_sphere>(d, 30, 0.3, 0.1)});
   const auto points = d.points(500, 2);
   const std::vector<Eigen::Isometry3d> poses = {shifted(0, 0, 0)};
   clearance::min_distance_query query(on, model);
@@ -155,7 +170,8 @@ TEST_CASE("A rank that throws ends all with its sentence, and all can ask again"
   if (rank() == last)
     CHECK(told == "clearance: the disk is full");
   else
-    CHECK(told == "clearance: rank " + std::to_string(last) + " of " + std::to_string(ranks()) + ": clearance: the disk is full");
+    CHECK(told == "clearance: rank " + std::to_string(last) + " of " + std::to_string(ranks()) +
+                      ": clearance: the disk is full");
   CHECK(same_result(query(poses, mine), expected));
 
   Eigen::Isometry3d skewed = poses[0];
@@ -164,21 +180,29 @@ TEST_CASE("A rank that throws ends all with its sentence, and all can ask again"
   CHECK(same_result(query(poses, mine), expected));
   if (ranks() > 1) {
     const std::vector<Eigen::Isometry3d> other = {shifted(rank() == last ? 1e-9 : 0, 0, 0)};
-    CHECK(refused([&] { query(other, mine); }) == "clearance: rank " + std::to_string(last) + " asks about other poses than rank 0");
+    CHECK(refused([&] { query(other, mine); }) ==
+          "clearance: rank " + std::to_string(last) + " asks about other poses than rank 0");
     for (int axis = 0; axis < 3; ++axis) {  // half a turn changes nothing but signs
       Eigen::Isometry3d turned = poses[0];
       const Eigen::Vector3d about = Eigen::Vector3d::Unit(axis);
       if (rank() == last) turned.linear() = 2 * about * about.transpose() - Eigen::Matrix3d::Identity();
-      CHECK(refused([&] { query(std::vector{turned}, mine); }).find(" asks about other poses than rank 0") != std::string::npos);
+      CHECK(refused([&] { query(std::vector{turned}, mine); }).find(" asks about other poses than rank 0") !=
+            std::string::npos);
     }
     const double side = rank() == last ? -1 : 1;
-    CHECK(refused([&] { query(std::vector{shifted(side, 2 * side, 0)}, mine); }).find(" asks about other poses than rank 0") != std::string::npos);
+    CHECK(refused([&] {
+            query(std::vector{shifted(side, 2 * side, 0)}, mine);
+          }).find(" asks about other poses than rank 0") != std::string::npos);
     const std::vector<placed<point_span>> clouds(rank() == last ? 2 : 1, placed<point_span>{mine});
-    CHECK(refused([&] { query(poses, clouds); }) == "clearance: rank " + std::to_string(last) + " asks about 2 clouds, rank 0 about 1");
+    CHECK(refused([&] { query(poses, clouds); }) ==
+          "clearance: rank " + std::to_string(last) + " asks about 2 clouds, rank 0 about 1");
   }
   std::vector<part_minimum> room(rank() == last ? 2 : 1);
-  CHECK(refused([&] { query.per_part(poses, mine, room); }).find("clearance: there are 1 parts, but room for 2 minima") != std::string::npos);
-  CHECK(refused([&] { query(poses, unplugged{mine, rank() == last}); }).find("clearance: the camera is unplugged") != std::string::npos);
+  CHECK(refused([&] {
+          query.per_part(poses, mine, room);
+        }).find("clearance: there are 1 parts, but room for 2 minima") != std::string::npos);
+  CHECK(refused([&] { query(poses, unplugged{mine, rank() == last}); }).find("clearance: the camera is unplugged") !=
+        std::string::npos);
   const point_span huge(points.data(), (std::size_t(1) << 32) / std::size_t(ranks()));  // never read
   CHECK(refused([&] { query(poses, huge); }) == "clearance: more than 2^32 - 2 points on all ranks together");
   CHECK(refused([&] { mpi::question none(MPI_COMM_NULL); }).find("no communicator") != std::string::npos);

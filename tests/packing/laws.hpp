@@ -87,7 +87,8 @@ inline double met_gap(const mesh_solid& s, const packing& p) {
   for (const auto& t : s.mesh().surface.triangles)  // gaps are largest at edges
     for (int k = 0; k < 3; ++k)
       for (int i = 1; i < 256; ++i)
-        most = std::max(most, sphere_distance(p, s.corners()[t[k]] + i / 256.0 * (s.corners()[t[(k + 1) % 3]] - s.corners()[t[k]])));
+        most = std::max(most, sphere_distance(p, s.corners()[t[k]] +
+                                                     i / 256.0 * (s.corners()[t[(k + 1) % 3]] - s.corners()[t[k]])));
   return most;
 }
 

@@ -15,7 +15,8 @@ packing alone(const triangle_mesh& mesh, const pack_options& options) { return p
 TEST_CASE("spheres lie inside, apart, in order, and the gap is certified") { keeps_the_laws(alone, 5e-5); }
 
 TEST_CASE("the first sphere of a cube is its inscribed one, the next sit in its corners") {
-  const packing p = pack(shapes::box({0, 0, 0}, {1, 1, 1}), {.count = 9, .gap_per_radius = std::numeric_limits<double>::infinity()});
+  const packing p =
+      pack(shapes::box({0, 0, 0}, {1, 1, 1}), {.count = 9, .gap_per_radius = std::numeric_limits<double>::infinity()});
   CHECK(p.spheres[0].radius == Approx(0.5).epsilon(1e-3));
   const double corner = 0.5 * (std::sqrt(3.0) - 1) / (std::sqrt(3.0) + 1);
   for (int i = 1; i < 9; ++i) CHECK(p.spheres[i].radius == Approx(corner).epsilon(1e-2));
@@ -69,7 +70,8 @@ TEST_CASE("real robots are packed within the laws", "[data]") {
 }
 
 TEST_CASE("a real link is filled as well as it was, nearly", "[data]") {
-  const std::filesystem::path file = std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/meshes/link_2.STL";
+  const std::filesystem::path file =
+      std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/meshes/link_2.STL";
   if (!std::filesystem::exists(file)) {
     WARN("SKIPPED: no file " << file);
     return;

@@ -13,7 +13,8 @@ namespace packer_laws {
 using namespace packing_laws;
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-/// `missed`: metres by which the sampled gap may fall short of the true one; it depends on where the spheres happen to be.
+/// `missed`: metres by which the sampled gap may fall short of the true one; it depends on where the spheres happen to
+/// be.
 template <class Pack>
 void keeps_the_laws(Pack pack, double missed = 3e-5) {
   using namespace shapes;
@@ -122,7 +123,8 @@ void refuses_what_makes_no_sense(Pack pack) {
   CHECK_THROWS_AS(pack(bad, {}), std::invalid_argument);
 }
 
-/// Plates, needles and wedges that are thinner and thinner: spheres that keep the laws, or none and a reason; and an end.
+/// Plates, needles and wedges that are thinner and thinner: spheres that keep the laws, or none and a reason; and an
+/// end.
 template <class Pack>
 void ends_on_thin_bodies(Pack pack, double thinnest = 1e-7) {
   int packed = 0, given_up = 0;
@@ -137,8 +139,9 @@ void ends_on_thin_bodies(Pack pack, double thinnest = 1e-7) {
         ++given_up;
         CHECK((p.stopped_by == pack_stop::search_limit || p.stopped_by == pack_stop::no_room));
         CHECK(std::isinf(p.gap));
-        CHECK(p.room >= thin / 4);  // the largest that fits is not above what is said; a wedge is half as thick on average
-        CHECK(thin < 5e-5);         // in thicker ones every packer finds spheres
+        CHECK(p.room >=
+              thin / 4);     // the largest that fits is not above what is said; a wedge is half as thick on average
+        CHECK(thin < 5e-5);  // in thicker ones every packer finds spheres
       } else {
         ++packed;
         CHECK(p.radius_max <= thin / 2);

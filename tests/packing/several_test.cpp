@@ -14,10 +14,8 @@ namespace {
 
 std::vector<triangle_mesh> some_meshes() {
   using namespace shapes;
-  return {box({0, 0, 0}, {1, 1, 1}),
-          globe({5, -3, 2}, 0.02),
-          merged(box({0, 0, 0}, {1, 0.7, 0.9}), globe({1, 0.5, 0.5}, 0.4)),
-          box({0, 0, 0}, {1, 1, 0.01}),
+  return {box({0, 0, 0}, {1, 1, 1}), globe({5, -3, 2}, 0.02),
+          merged(box({0, 0, 0}, {1, 0.7, 0.9}), globe({1, 0.5, 0.5}, 0.4)), box({0, 0, 0}, {1, 1, 0.01}),
           torus(1, 0.25)};
 }
 

@@ -10,7 +10,8 @@
 #include <limits>
 
 using namespace testing;
-using clearance::depth_image, clearance::drop_reason, clearance::point_filter, clearance::point_span, clearance::strided_points;
+using clearance::depth_image, clearance::drop_reason, clearance::point_filter, clearance::point_span,
+    clearance::strided_points;
 
 namespace {
 
@@ -39,7 +40,8 @@ struct records {
     std::copy(offset.begin(), offset.end(), view.offset);
     view.width = width, view.row_step = row_step;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      std::byte* const record = memory.data() + shift + (width == 0 ? i * step : i / width * row_step + i % width * step);
+      std::byte* const record =
+          memory.data() + shift + (width == 0 ? i * step : i / width * row_step + i % width * step);
       const Scalar xyz[3] = {points[i].x, points[i].y, points[i].z};
       for (int k = 0; k < 3; ++k) std::memcpy(record + offset[k], &xyz[k], sizeof(Scalar));
     }
@@ -72,7 +74,8 @@ TEST_CASE("A span gives its points as they are, and says what is no point") {
 }
 
 TEST_CASE("Ranges are distances from the sensor, both ends included") {
-  const std::vector<vec3> points = {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {0, 4, 0}, {0, 0, -5}, {missing, 0, 0}, {1e30f, 0, 0}};
+  const std::vector<vec3> points = {{1, 0, 0},  {2, 0, 0},       {3, 0, 0},    {0, 4, 0},
+                                    {0, 0, -5}, {missing, 0, 0}, {1e30f, 0, 0}};
   const auto reasons = [&](point_filter filter) {
     std::string all;
     for (std::size_t i = 0; i < points.size(); ++i) all += "-nmsr"[int(point_span(points, filter)[i].dropped)];
@@ -100,7 +103,8 @@ TEST_CASE("Records of doubles, and rows with padding, read like a plain span") {
   dice d(3);
   const auto points = with_holes(d, 300);
   for (const std::uint32_t step : {24u, 26u, 32u, 41u})
-    for (const std::size_t shift : {0, 3, 8}) require_same(records<double>(points, step, {0, 8, step - 8}, shift).view, points);
+    for (const std::size_t shift : {0, 3, 8})
+      require_same(records<double>(points, step, {0, 8, step - 8}, shift).view, points);
   for (const std::size_t padding : {0, 5, 64}) {
     require_same(records<float>(points, 18, {0, 4, 8}, 0, 20, padding).view, points);
     require_same(records<float>(points, 12, {0, 4, 8}, 1, 7, padding).view, points);  // the last row is not full
@@ -126,9 +130,11 @@ TEST_CASE("A filter holds for records too") {
 
 namespace {
 
-void require_there(vec3 p, std::uint32_t u, std::uint32_t v, wide z, const clearance::intrinsics& camera, verdict& verdict) {
+void require_there(vec3 p, std::uint32_t u, std::uint32_t v, wide z, const clearance::intrinsics& camera,
+                   verdict& verdict) {
   const auto truth = oracle::deprojected(u, v, z, camera.fx, camera.fy, camera.cx, camera.cy);
-  verdict.require(oracle::between(wider(p), truth) <= 8 * 0x1p-24L * oracle::length(truth), "pixel", u, v, " is elsewhere");
+  verdict.require(oracle::between(wider(p), truth) <= 8 * 0x1p-24L * oracle::length(truth), "pixel", u, v,
+                  " is elsewhere");
 }
 
 }  // namespace
@@ -158,13 +164,18 @@ TEST_CASE("Depth images give the points that the oracle deprojects, and say what
     for (std::uint32_t x = 0; x < width; ++x) {
       const std::size_t i = y * width + x, at = y * row + x;
       const auto a = millimetres[i];
-      const auto expected = raw[at] == 0 ? drop_reason::missing : raw[at] == 65535 ? drop_reason::saturated : drop_reason::none;
+      const auto expected = raw[at] == 0       ? drop_reason::missing
+                            : raw[at] == 65535 ? drop_reason::saturated
+                                               : drop_reason::none;
       v.require(a.dropped == expected, "pixel", i, " of 16 bits");
       if (a.valid()) require_there(a.position, x, y, wide(raw[at]) * 0.001L, camera, v);
       const auto b = floats[i];
       const float z = metres[at];
-      v.require(b.dropped == (z == 0 ? drop_reason::missing : !std::isfinite(z) ? drop_reason::not_finite
-                              : z < 0 ? drop_reason::out_of_range : drop_reason::none), "pixel", i, " of floats");
+      v.require(b.dropped == (z == 0              ? drop_reason::missing
+                              : !std::isfinite(z) ? drop_reason::not_finite
+                              : z < 0             ? drop_reason::out_of_range
+                                                  : drop_reason::none),
+                "pixel", i, " of floats");
       if (b.valid()) require_there(b.position, x, y, z, camera, v);
     }
 }
@@ -195,7 +206,8 @@ void check_fetches(const S& source) {
       const unsigned reasons = source.look(source.fetch(from), i, at);
       for (int j = 0; j < 4; ++j) {
         const clearance::sample one = source[i + j];
-        v.require((reasons >> 8 * j & 0xff) == unsigned(one.dropped) && same_bytes(at[j], one.position), "sample", i + j, " of four differs");
+        v.require((reasons >> 8 * j & 0xff) == unsigned(one.dropped) && same_bytes(at[j], one.position), "sample",
+                  i + j, " of four differs");
       }
     }
 }
@@ -212,7 +224,8 @@ TEST_CASE("Four samples at once are the same four") {
   CHECK(!point_span(points.data() + 1, 8).fetches());
   alignas(16) std::array<std::uint16_t, 64 * 12> raw;
   alignas(16) std::array<float, 64 * 12> metres;
-  for (std::size_t k = 0; k < raw.size(); ++k) raw[k] = std::uint16_t(d.below(65536)), metres[k] = k % 5 ? d.number(-1, 5) : missing;
+  for (std::size_t k = 0; k < raw.size(); ++k)
+    raw[k] = std::uint16_t(d.below(65536)), metres[k] = k % 5 ? d.number(-1, 5) : missing;
   raw[5] = 0, raw[9] = 65535;
   depth_image<std::uint16_t> a(raw.data(), 64, 12, {525, 525, 30, 6});
   check_fetches(a);
@@ -235,8 +248,12 @@ TEST_CASE("Four samples at once are the same four") {
         const number x = d.below(20) == 0 ? number(missing) : number(d.number(-9, 9));
         std::memcpy(bytes.data() + i * step + offset[k], &x, sizeof x);
       }
-    return clearance::strided_points<number>{.data = bytes.data(), .count = bytes.size() / step, .step = step, .offset = {offset[0], offset[1], offset[2]},
-                                             .origin = {1, 2, 3}, .filter = {.nearest = 1}};
+    return clearance::strided_points<number>{.data = bytes.data(),
+                                             .count = bytes.size() / step,
+                                             .step = step,
+                                             .offset = {offset[0], offset[1], offset[2]},
+                                             .origin = {1, 2, 3},
+                                             .filter = {.nearest = 1}};
   };
   check_fetches(put(float(), 32, {0, 4, 8}));
   check_fetches(put(float(), 20, {12, 0, 8}));
@@ -246,7 +263,8 @@ TEST_CASE("Four samples at once are the same four") {
 
 TEST_CASE("Four at once are told holes and the largest coordinates as one by one") {
   constexpr float nan = clearance::not_a_number, inf = clearance::infinity;
-  const std::array<float, 12> edges = {0, -0.0f, 1e-38f, 5, 1e16f, 2.9e17f, 1e18f, 1.0000001e18f, 2e19f, 3e38f, inf, nan};
+  const std::array<float, 12> edges = {0,     -0.0f,         1e-38f, 5,     1e16f, 2.9e17f,
+                                       1e18f, 1.0000001e18f, 2e19f,  3e38f, inf,   nan};
   alignas(16) std::array<vec3, 4> points;
   for (const float x : edges)
     for (const float y : edges)
@@ -262,7 +280,8 @@ TEST_CASE("A table of a pinhole's rays is that pinhole, bit for bit; a bent ray 
   const depth_image<std::uint16_t> pinhole(nullptr, 60, 12, {525, 520, 30.5, 6.25});
   std::vector<clearance::ray> rays;
   for (std::uint32_t i = 0; i < 60 * 12; ++i) {
-    const vec3 at_one{(float(i % 60) - pinhole.cx) * pinhole.inverse_fx, (float(i / 60) - pinhole.cy) * pinhole.inverse_fy, 1};
+    const vec3 at_one{(float(i % 60) - pinhole.cx) * pinhole.inverse_fx,
+                      (float(i / 60) - pinhole.cy) * pinhole.inverse_fy, 1};
     rays.push_back({at_one.x, at_one.y});
   }
   std::vector<std::uint16_t> pixels(64 * 12);
@@ -272,7 +291,9 @@ TEST_CASE("A table of a pinhole's rays is that pinhole, bit for bit; a bent ray 
   clearance::ray_image<std::uint16_t> b(pixels.data(), rays.data(), 60, 12);
   a.pixels = pixels.data(), a.row = b.row = 64, a.farthest = b.farthest = 50;
   verdict v;
-  const auto same = [](const clearance::sample& x, const clearance::sample& y) { return x.dropped == y.dropped && same_bytes(x.position, y.position); };
+  const auto same = [](const clearance::sample& x, const clearance::sample& y) {
+    return x.dropped == y.dropped && same_bytes(x.position, y.position);
+  };
   for (std::size_t i = 0; i < a.size(); ++i) v.require(same(a[i], b[i]), "pixel", i, " differs");
   const std::vector<std::uint16_t> moved = pixels;
   v.require(same(b.at(reinterpret_cast<const std::byte*>(moved.data()))[100], a[100]), "a copy", 100, " differs");

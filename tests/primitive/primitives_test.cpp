@@ -11,7 +11,8 @@ wide exact(const inner_sphere& s, vec3 q) { return oracle::to_sphere(wider(q), w
 wide exact(const triangle& t, vec3 q) { return oracle::to_triangle(wider(q), wider(t.a), wider(t.b), wider(t.c)); }
 wide size(const inner_sphere& s) { return s.radius; }
 wide size(const triangle& t) {
-  return std::max({oracle::between(wider(t.a), wider(t.b)), oracle::between(wider(t.b), wider(t.c)), oracle::between(wider(t.c), wider(t.a))});
+  return std::max({oracle::between(wider(t.a), wider(t.b)), oracle::between(wider(t.b), wider(t.c)),
+                   oracle::between(wider(t.c), wider(t.a))});
 }
 
 /// The distance to within eight units of the numbers that enter it, and the witness to what floats can say.
@@ -20,13 +21,13 @@ void check(const P& p, vec3 q, verdict& v) {
   const ball near = p.balls()[0];
   const wide scale = oracle::between(wider(q), wider(near.center)) + size(p);
   const wide truth = exact(p, q), distance = p.distance(q);
-  v.require(std::abs(distance - truth) <= 8 * unit * scale, "distance", distance, " instead of", truth, " at ", q, " of ",
-            near.center, " size", size(p));
+  v.require(std::abs(distance - truth) <= 8 * unit * scale, "distance", distance, " instead of", truth, " at ", q,
+            " of ", near.center, " size", size(p));
   if constexpr (clearance::foreseen_primitive<P>)
     v.require(p.may_reach(q, p.distance(q)), "ruled out at ", q, ", though", distance, " away");
   if constexpr (clearance::bounded_primitive<P>)
-    v.require(p.lower_bound(q) <= p.distance(q), "the lower bound is", p.lower_bound(q),
-              " and the distance", distance, " at ", q);
+    v.require(p.lower_bound(q) <= p.distance(q), "the lower bound is", p.lower_bound(q), " and the distance", distance,
+              " at ", q);
   const vec3 at = p.nearest(q), n = p.normal(q);
   const wide written = scale + oracle::length(wider(q));  // nearest() is rounded to the grid of its coordinates
   v.require(std::abs(exact(p, at)) <= 16 * unit * written, "nearest is off the primitive by", exact(p, at), " at ", q);
@@ -113,10 +114,12 @@ TEST_CASE("The distance to needles and slivers is right, down to aspects of 1e-9
   verdict v;
   for (const double aspect : {1e-2, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9})
     for (int k = 0; k < 6; ++k) {
-      const vec3 a = d.point(k % 2 ? 1 : 0.001), along = d.direction(), thin = clearance::scaled(real(aspect), d.direction());
+      const vec3 a = d.point(k % 2 ? 1 : 0.001), along = d.direction(),
+                 thin = clearance::scaled(real(aspect), d.direction());
       const vec3 b = a + along;
       // A short edge (needle), an obtuse corner on the long edge (sliver), and one beyond its end.
-      for (const vec3 c : {a + thin, clearance::fma(d.number(0.1, 0.9), along, a) + thin, clearance::fma(1.5f, along, a) + thin}) {
+      for (const vec3 c :
+           {a + thin, clearance::fma(d.number(0.1, 0.9), along, a) + thin, clearance::fma(1.5f, along, a) + thin}) {
         for (const triangle& t : {triangle::from(a, b, c), triangle::from(c, a, b), triangle::from(b, a, c)})
           for (const vec3 q : around(d, t)) check(t, q, v);
       }
@@ -128,8 +131,9 @@ TEST_CASE("A triangle without area is its edges") {
   verdict v;
   for (int k = 0; k < 15; ++k) {
     const vec3 a = d.point(1), b = d.point(1), middle = clearance::fma(0.5f, b - a, a);
-    for (const triangle& t : {triangle::from(a, a, a), triangle::from(a, a, b), triangle::from(a, b, a), triangle::from(b, a, a),
-                              triangle::from(vec3{0, 0, 0}, vec3{1, 2, 3}, vec3{2, 4, 6}), triangle::from(a, b, middle)})
+    for (const triangle& t :
+         {triangle::from(a, a, a), triangle::from(a, a, b), triangle::from(a, b, a), triangle::from(b, a, a),
+          triangle::from(vec3{0, 0, 0}, vec3{1, 2, 3}, vec3{2, 4, 6}), triangle::from(a, b, middle)})
       for (const vec3 q : around(d, t)) check(t, q, v);
   }
   CHECK(triangle::from({1, 1, 1}, {1, 1, 1}, {1, 1, 1}).normal({1, 1, 1}) == vec3{0, 0, 0});

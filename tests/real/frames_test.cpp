@@ -21,14 +21,17 @@ TEST_CASE("A depth image and the cloud of the same frame agree to 1e-6 m, and in
     for (std::size_t i = 0; i < image.size(); ++i) {
       const auto a = image[i], b = cloud[i];
       v.require(a.valid() == b.valid(), "pixel", i, " is valid in one of both");
-      if (a.valid()) v.require(oracle::between(wider(a.position), wider(b.position)) <= 1e-6L, "pixel", i, " is elsewhere: ", a.position, b.position);
+      if (a.valid())
+        v.require(oracle::between(wider(a.position), wider(b.position)) <= 1e-6L, "pixel", i,
+                  " is elsewhere: ", a.position, b.position);
     }
     // And so is the answer.
     dice d(1);
     const auto part = clearance::make_part(clearance::build<clearance::sphere>(random_spheres(d, 500, 0.2, 0.05)));
     for (const double z : {0.2, 0.9, 3.0}) {
       const auto pose = shifted(0, 0, z);
-      const auto a = clearance::min_distance(clearance::host{}, part, pose, image), b = clearance::min_distance(clearance::host{}, part, pose, cloud);
+      const auto a = clearance::min_distance(clearance::host{}, part, pose, image),
+                 b = clearance::min_distance(clearance::host{}, part, pose, cloud);
       CHECK(std::abs(a.distance - b.distance) <= 1e-6f);
       CHECK(a.valid == b.valid);
       CHECK(a.state == b.state);
@@ -50,7 +53,8 @@ TEST_CASE("A frame of an arm's own camera, decoded, has the depths that its sour
     if (!s.valid()) continue;
     nearest = std::min(nearest, s.position.z), farthest = std::max(farthest, s.position.z);
     const wide u = wide(i % 640), w = wide(i / 640);
-    const auto truth = oracle::deprojected(u, w, wide(frame.pixels[i]) * 1e-4L, shelf_camera.fx, shelf_camera.fy, shelf_camera.cx, shelf_camera.cy);
+    const auto truth = oracle::deprojected(u, w, wide(frame.pixels[i]) * 1e-4L, shelf_camera.fx, shelf_camera.fy,
+                                           shelf_camera.cx, shelf_camera.cy);
     v.require(oracle::between(wider(s.position), truth) <= 1e-6L, "pixel", i, " is elsewhere");
   }
   CHECK(missing == 182138);

@@ -40,9 +40,11 @@ long double winding(const clearance::mesh_solid& s, oracle::vec q) {
       const Vector3d& c = s.corners()[t[k]];
       r[k] = oracle::vec{c.x(), c.y(), c.z()} - q, l[k] = oracle::length(r[k]);
     }
-    const oracle::vec cross{r[1].y * r[2].z - r[1].z * r[2].y, r[1].z * r[2].x - r[1].x * r[2].z, r[1].x * r[2].y - r[1].y * r[2].x};
-    sum += 2 * std::atan2(oracle::dot(r[0], cross), l[0] * l[1] * l[2] + oracle::dot(r[0], r[1]) * l[2] + oracle::dot(r[1], r[2]) * l[0] +
-                                                        oracle::dot(r[2], r[0]) * l[1]);
+    const oracle::vec cross{r[1].y * r[2].z - r[1].z * r[2].y, r[1].z * r[2].x - r[1].x * r[2].z,
+                            r[1].x * r[2].y - r[1].y * r[2].x};
+    sum +=
+        2 * std::atan2(oracle::dot(r[0], cross), l[0] * l[1] * l[2] + oracle::dot(r[0], r[1]) * l[2] +
+                                                     oracle::dot(r[1], r[2]) * l[0] + oracle::dot(r[2], r[0]) * l[1]);
   }
   return sum / (4 * std::numbers::pi_v<long double>);
 }
@@ -85,16 +87,20 @@ void check(const clearance::triangle_mesh& mesh, const std::string& name, census
     const bool inside = solid->inside(q);
     const double surface = solid->distance(q), exact = inside ? 0 : surface;
     const auto r = ask(pose, clearance::point_span(&p, 1));
-    v.require(r.lower <= exact && exact <= r.upper, name, p, ": bracket", r.lower, r.upper, "but", exact, inside ? "(inside)" : "");
+    v.require(r.lower <= exact && exact <= r.upper, name, p, ": bracket", r.lower, r.upper, "but", exact,
+              inside ? "(inside)" : "");
     // The surface of an inner shell is no nearer than the solid's own, so this is the stricter law.
     const double error = 1e-6 * (q.norm() + model.parts()[0].facts.radius);
-    v.require((inside ? -surface : surface) <= r.distance + error, name, p, ": signed distance", inside ? -surface : surface, "above", r.distance);
+    v.require((inside ? -surface : surface) <= r.distance + error, name, p, ": signed distance",
+              inside ? -surface : surface, "above", r.distance);
     ++all.points, all.inside += inside, all.in_gaps += inside && r.distance > 0;
     if (!brute) return;
     const oracle::vec w{q.x(), q.y(), q.z()};
     const long double truth = to_surface(*solid, w);
-    v.require(std::abs(truth - surface) <= 1e-9 * (1 + std::abs(truth)), name, p, ": distances differ:", double(truth), surface);
-    if (truth > 1e-6 * solid->bounds().diagonal().norm()) v.require((std::abs(winding(*solid, w)) > 0.5L) == inside, name, p, ": inside differs");
+    v.require(std::abs(truth - surface) <= 1e-9 * (1 + std::abs(truth)), name, p, ": distances differ:", double(truth),
+              surface);
+    if (truth > 1e-6 * solid->bounds().diagonal().norm())
+      v.require((std::abs(winding(*solid, w)) > 0.5L) == inside, name, p, ": inside differs");
     ++all.by_brute_force;
   };
   dice d(unsigned(all.solids));
@@ -126,13 +132,15 @@ TEST_CASE("The bracket holds and the signed distance is never above the spheres'
     const auto robot = io::load_robot(entry.path(), {.geometry = io::robot_geometry::collision});
     for (const auto& part : robot.parts()) check(part.mesh, entry.path().stem().string() + " " + part.name, all, v);
   }
-  WARN(all.solids << " links, " << all.points << " points, " << all.inside << " inside, " << all.in_gaps << " of them in gaps, " << all.by_brute_force
-                  << " checked by brute force; " << all.without_inside << " without an inside");
+  WARN(all.solids << " links, " << all.points << " points, " << all.inside << " inside, " << all.in_gaps
+                  << " of them in gaps, " << all.by_brute_force << " checked by brute force; " << all.without_inside
+                  << " without an inside");
   CHECK(all.solids > 50 / one_of);
   CHECK(all.in_gaps > all.points / 50);
 }
 
-TEST_CASE("The bracket holds and the signed distance is never above the spheres': every mesh with an inside", "[data]") {
+TEST_CASE("The bracket holds and the signed distance is never above the spheres': every mesh with an inside",
+          "[data]") {
   const std::filesystem::path meshes = std::filesystem::path(CLEARANCE_TEST_DATA) / "meshes";
   census all;
   std::size_t unread = 0;
@@ -146,8 +154,9 @@ TEST_CASE("The bracket holds and the signed distance is never above the spheres'
       ++unread;  // refused with a sentence; tests/io looks at those
     }
   }
-  WARN(all.solids << " meshes, " << all.points << " points, " << all.inside << " inside, " << all.in_gaps << " of them in gaps, " << all.by_brute_force
-                  << " checked by brute force; " << all.without_inside << " without an inside, " << unread << " unreadable");
+  WARN(all.solids << " meshes, " << all.points << " points, " << all.inside << " inside, " << all.in_gaps
+                  << " of them in gaps, " << all.by_brute_force << " checked by brute force; " << all.without_inside
+                  << " without an inside, " << unread << " unreadable");
   CHECK(all.solids > 40 / one_of);
   CHECK(all.in_gaps > all.points / 50);
 }

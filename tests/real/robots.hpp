@@ -22,7 +22,8 @@ struct real_robot {
   std::vector<clearance::closed_mesh> solids;
   std::vector<clearance::packing> packings;
 
-  real_robot(const std::string& urdf, std::size_t spheres, clearance::io::robot_geometry geometry = clearance::io::robot_geometry::collision)
+  real_robot(const std::string& urdf, std::size_t spheres,
+             clearance::io::robot_geometry geometry = clearance::io::robot_geometry::collision)
       : description(clearance::io::load_robot(data_folder + "/robots/" + urdf, {.geometry = geometry})) {
     for (const auto& part : description.parts()) solids.push_back(clearance::close_mesh(part.mesh));
     packings = clearance::pack(solids, {.count = spheres});
@@ -69,9 +70,11 @@ inline Eigen::Isometry3d looking_inward(double x, double y, double z) {
 }
 
 inline constexpr clearance::intrinsics kinect{525, 525, 320, 240};
-inline const char* const kinect_frames[] = {"20121214T142255.814212", "20121214T142256.068683", "20121214T142256.332395"};
+inline const char* const kinect_frames[] = {"20121214T142255.814212", "20121214T142256.068683",
+                                            "20121214T142256.332395"};
 
-inline clearance::depth_image<std::uint16_t> view_of(const clearance::io::depth_frame& frame, const clearance::intrinsics& camera, double scale) {
+inline clearance::depth_image<std::uint16_t> view_of(const clearance::io::depth_frame& frame,
+                                                     const clearance::intrinsics& camera, double scale) {
   return {frame.pixels.data(), std::uint32_t(frame.width), std::uint32_t(frame.height), camera, scale};
 }
 

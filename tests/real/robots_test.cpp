@@ -9,7 +9,8 @@
 #include <clearance/volume/sphere.hpp>
 
 using namespace testing;
-using clearance::host, clearance::io::robot_geometry, clearance::min_distance_per_part, clearance::placed, clearance::state;
+using clearance::host, clearance::io::robot_geometry, clearance::min_distance_per_part, clearance::placed,
+    clearance::state;
 
 namespace {
 
@@ -39,16 +40,20 @@ std::vector<seen_frame> frames() {
 using answer = std::pair<clearance::min_distance_result, std::vector<clearance::part_minimum>>;
 
 template <class Model>
-answer ask(const Model& model, const std::vector<Eigen::Isometry3d>& poses, const seen_frame& frame, const Eigen::Isometry3d& camera) {
-  return frame.with_source([&](const auto& source) { return min_distance_per_part(host{}, model, poses, placed{source, camera}); });
+answer ask(const Model& model, const std::vector<Eigen::Isometry3d>& poses, const seen_frame& frame,
+           const Eigen::Isometry3d& camera) {
+  return frame.with_source(
+      [&](const auto& source) { return min_distance_per_part(host{}, model, poses, placed{source, camera}); });
 }
 
 void require_same(const answer& a, const answer& b, verdict& v, const std::string& what) {
   const auto& [r, s] = std::pair(a.first, b.first);
-  v.require(same_bits(r.distance, s.distance) && r.point == s.point && r.part == s.part && r.primitive == s.primitive && r.state == s.state &&
-                same_bits(r.lower, s.lower) && same_bits(r.upper, s.upper), what, ": volumes disagree:", r.distance, " and", s.distance);
+  v.require(same_bits(r.distance, s.distance) && r.point == s.point && r.part == s.part && r.primitive == s.primitive &&
+                r.state == s.state && same_bits(r.lower, s.lower) && same_bits(r.upper, s.upper),
+            what, ": volumes disagree:", r.distance, " and", s.distance);
   for (std::size_t k = 0; k < a.second.size(); ++k)
-    v.require(same_bits(a.second[k].distance, b.second[k].distance) && a.second[k].point == b.second[k].point, what, ": minima of part", k);
+    v.require(same_bits(a.second[k].distance, b.second[k].distance) && a.second[k].point == b.second[k].point, what,
+              ": minima of part", k);
 }
 
 void check_robot(const char* urdf, std::size_t parts, robot_geometry geometry = robot_geometry::collision) {
@@ -74,17 +79,23 @@ void check_robot(const char* urdf, std::size_t parts, robot_geometry geometry = 
       require_same(spheres, ask(s_obb, poses, frame, camera), v, what + ", spheres in oriented boxes");
       const auto &t = triangles.first, &s = spheres.first;
       v.require(t.seen == 640 * 480 && t.valid == s.valid && t.valid > 0, what, ": counts");
-      v.require(std::max(t.lower, s.lower) <= std::min(t.upper, s.upper), what, ": brackets do not meet:", t.lower, t.upper, s.lower, s.upper);
+      v.require(std::max(t.lower, s.lower) <= std::min(t.upper, s.upper), what, ": brackets do not meet:", t.lower,
+                t.upper, s.lower, s.upper);
       v.require(t.state != state::no_data && s.state != state::no_data, what, ": no data");
       // No sphere reaches out of its solid, and none leaves more than the gap.
       const double room = 1e-5;
       for (std::size_t k = 0; k < triangles.second.size(); ++k) {
-        const double exact = triangles.second[k].distance, inner = spheres.second[k].distance, gap = robot.packings[k].gap;
-        v.require(std::max(inner, 0.0) >= exact - room, what, ": spheres of part", k, " reach out of the solid:", inner, " but", exact);
-        v.require(inner - gap <= exact + room, what, ": part", k, " leaves more than its gap", gap, ":", inner, " but", exact);
+        const double exact = triangles.second[k].distance, inner = spheres.second[k].distance,
+                     gap = robot.packings[k].gap;
+        v.require(std::max(inner, 0.0) >= exact - room, what, ": spheres of part", k, " reach out of the solid:", inner,
+                  " but", exact);
+        v.require(inner - gap <= exact + room, what, ": part", k, " leaves more than its gap", gap, ":", inner, " but",
+                  exact);
       }
-      v.require(!(s.state == state::collision && t.state == state::free), what, ": one certain of collision, the other of freedom");
-      v.require(!(t.state == state::collision && s.state == state::free), what, ": one certain of freedom, the other of collision");
+      v.require(!(s.state == state::collision && t.state == state::free), what,
+                ": one certain of collision, the other of freedom");
+      v.require(!(t.state == state::collision && s.state == state::free), what,
+                ": one certain of freedom, the other of collision");
       free += t.state == state::free, touched += t.state == state::collision;
     }
   CHECK(free > 0);
@@ -120,13 +131,15 @@ TEST_CASE("A real robot before every 997th pixel of a real frame is brute force,
       const Eigen::Isometry3d camera = looking_inward(away, 0.2, 0.6);
       std::vector<vec3> some;
       frame.with_source([&](const auto& source) {
-        for (std::size_t i = 0; i < source.size(); i += 997) some.push_back(source[i].valid() ? source[i].position : vec3{clearance::not_a_number, 0, 0});
+        for (std::size_t i = 0; i < source.size(); i += 997)
+          some.push_back(source[i].valid() ? source[i].position : vec3{clearance::not_a_number, 0, 0});
       });
       const auto poses = robot.poses(shifted(0, 0, 0), 0.4);
       const auto expected = brute_force(parts, poses, {brute_cloud(clearance::point_span(some), camera)});
       const auto [r, minima] = min_distance_per_part(host{}, model, poses, placed{clearance::point_span(some), camera});
       require_equal(r, expected, v, frame.name);
       require_equal(minima, expected, v, frame.name);
-      require_equal(clearance::min_distance(host{}, model, poses, placed{clearance::point_span(some), camera}), expected, v, frame.name);
+      require_equal(clearance::min_distance(host{}, model, poses, placed{clearance::point_span(some), camera}),
+                    expected, v, frame.name);
     }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// So many points that a device reads them a round ahead, from every kind of source that fetches: the host's result in every bit.
+// So many points that a device reads them a round ahead, from every kind of source that fetches: the host's result in
+// every bit.
 #include "support/product_device.cuh"
 
 #include <clearance/min_distance_query.cuh>
@@ -32,7 +33,8 @@ scene<inner_sphere> three_clumps() {
 std::vector<std::uint16_t> depths() {
   dice d(72);
   std::vector<std::uint16_t> pixels(n);
-  for (std::size_t i = 0; i < n; ++i) pixels[i] = i % 97 == 3 ? 0 : i % 1009 == 5 ? 65535 : std::uint16_t(3000 + d.below(400));
+  for (std::size_t i = 0; i < n; ++i)
+    pixels[i] = i % 97 == 3 ? 0 : i % 1009 == 5 ? 65535 : std::uint16_t(3000 + d.below(400));
   for (int k = 0; k < 200; ++k) pixels[d.below(n)] = std::uint16_t(1500 + d.below(1000));
   return pixels;
 }
@@ -51,17 +53,21 @@ TEST_CASE("Points that are read ahead are the host's, from every kind of source"
     const auto expected = clearance::min_distance(host{}, on_host, s.poses, placed{here, pose});
     clearance::min_distance_query query(gpu, model);
     for (const char* when : {", cold", ", warm"})
-      v.require(same_result(query(s.poses, placed{there, pose}), expected), what + when, ": differs from the host's result");
+      v.require(same_result(query(s.poses, placed{there, pose}), expected), what + when,
+                ": differs from the host's result");
   };
   const auto raw = depths();
   std::vector<float> metres(n);
-  for (std::size_t i = 0; i < n; ++i) metres[i] = raw[i] == 0 ? 0 : raw[i] == 65535 ? clearance::not_a_number : 0.001f * raw[i];
+  for (std::size_t i = 0; i < n; ++i)
+    metres[i] = raw[i] == 0 ? 0 : raw[i] == 65535 ? clearance::not_a_number : 0.001f * raw[i];
   const clearance::intrinsics camera{900, 910, 511.5, 349.5};
   const auto raw_there = gpu.copy_in(std::span<const std::uint16_t>(raw));
   const auto metres_there = gpu.copy_in(std::span<const float>(metres));
-  clearance::depth_image<std::uint16_t> image(raw.data(), width, height, camera), image_there(raw_there.data(), width, height, camera);
+  clearance::depth_image<std::uint16_t> image(raw.data(), width, height, camera),
+      image_there(raw_there.data(), width, height, camera);
   same(image, image_there, "16-bit image");
-  clearance::depth_image<float> floats(metres.data(), width, height, camera), floats_there(metres_there.data(), width, height, camera);
+  clearance::depth_image<float> floats(metres.data(), width, height, camera),
+      floats_there(metres_there.data(), width, height, camera);
   floats.farthest = floats_there.farthest = 3.2f;
   same(floats, floats_there, "float image");
   same(slice(image, 4, n - 3), slice(image_there, 4, n - 3), "a piece of an image");
@@ -70,16 +76,19 @@ TEST_CASE("Points that are read ahead are the host's, from every kind of source"
   for (std::size_t i = 0; i < n; ++i) rays[i] = {(float(i % width) - 511.5f) / 900, (float(i / width) - 349.5f) / 910};
   const auto rays_there = gpu.copy_in(std::span<const clearance::ray>(rays));
   same(clearance::ray_image<std::uint16_t>(raw.data(), rays.data(), width, height),
-             clearance::ray_image<std::uint16_t>(raw_there.data(), rays_there.data(), width, height), "16-bit rays");
+       clearance::ray_image<std::uint16_t>(raw_there.data(), rays_there.data(), width, height), "16-bit rays");
   same(clearance::ray_image<float>(metres.data(), rays.data(), width, height),
-             clearance::ray_image<float>(metres_there.data(), rays_there.data(), width, height), "float rays");
+       clearance::ray_image<float>(metres_there.data(), rays_there.data(), width, height), "float rays");
 
   std::vector<vec3> points(n);
-  for (std::size_t i = 0; i < n; ++i) points[i] = image[i].valid() ? image[i].position : vec3{clearance::not_a_number, 0, 0};
+  for (std::size_t i = 0; i < n; ++i)
+    points[i] = image[i].valid() ? image[i].position : vec3{clearance::not_a_number, 0, 0};
   const auto points_there = gpu.copy_in(std::span<const vec3>(points));
   for (const bool filtered : {false, true}) {
-    const clearance::point_filter filter = filtered ? clearance::point_filter{.nearest = 1.8f, .farthest = 3.3f} : clearance::point_filter{};
-    same(point_span(points, filter), point_span(points_there.data(), n, filter), filtered ? "filtered floats" : "floats");
+    const clearance::point_filter filter =
+        filtered ? clearance::point_filter{.nearest = 1.8f, .farthest = 3.3f} : clearance::point_filter{};
+    same(point_span(points, filter), point_span(points_there.data(), n, filter),
+         filtered ? "filtered floats" : "floats");
   }
   const auto records = [&](auto scalar, std::uint32_t step, const char* what) {
     using number = decltype(scalar);
@@ -89,7 +98,8 @@ TEST_CASE("Points that are read ahead are the host's, from every kind of source"
       std::memcpy(bytes.data() + i * step, xyz, sizeof xyz);
     }
     const auto there = gpu.copy_in(std::span<const std::byte>(bytes));
-    clearance::strided_points<number> here{.data = bytes.data(), .count = n, .step = step, .offset = {0, sizeof(number), 2 * sizeof(number)}};
+    clearance::strided_points<number> here{
+        .data = bytes.data(), .count = n, .step = step, .offset = {0, sizeof(number), 2 * sizeof(number)}};
     same(here, here.at(there.data()), what);
   };
   records(float(), 32, "records of floats");

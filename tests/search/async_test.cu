@@ -12,7 +12,8 @@
 #include <thread>
 
 using namespace testing;
-using clearance::device, clearance::min_distance, clearance::min_distance_async, clearance::min_distance_result, clearance::point_span;
+using clearance::device, clearance::min_distance, clearance::min_distance_async, clearance::min_distance_result,
+    clearance::point_span;
 
 namespace {
 
@@ -37,13 +38,16 @@ __global__ void brake(const min_distance_result* r, float* speed) { *speed = r->
 
 struct robot_and_cloud {
   scene<inner_sphere> s = scenes<inner_sphere>()[1];
-  decltype(make_model<clearance::sphere>(s, {}, clearance::wrapped{})) on_host = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  decltype(make_model<clearance::sphere>(s, {}, clearance::wrapped{})) on_host =
+      make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   min_distance_result expected = min_distance(clearance::host{}, on_host, s.poses, point_span(s.points));
 };
 
 }  // namespace
 
-TEST_CASE("The asynchronous call returns while its stream is held, and a following kernel reads the result without the host") {
+TEST_CASE(
+    "The asynchronous call returns while its stream is held, and a following kernel reads the result without the "
+    "host") {
   const robot_and_cloud given;
   const own_stream stream;
   const device gpu{0, stream.handle};
@@ -83,9 +87,11 @@ TEST_CASE("Part minima arrive in device memory too") {
   const auto points = gpu.copy_in(std::span<const vec3>(given.s.points));
   const answer result(true);
   auto minima = gpu.make_scratch<clearance::part_minimum>(model.size());
-  clearance::min_distance_per_part_async(gpu, model, given.s.poses, point_span(points.data(), points.size()), result.at, minima.data());
+  clearance::min_distance_per_part_async(gpu, model, given.s.poses, point_span(points.data(), points.size()), result.at,
+                                         minima.data());
   const auto got = gpu.copy_out(minima.data(), minima.size());
-  const auto [r, expected] = clearance::min_distance_per_part(clearance::host{}, given.on_host, given.s.poses, point_span(given.s.points));
+  const auto [r, expected] =
+      clearance::min_distance_per_part(clearance::host{}, given.on_host, given.s.poses, point_span(given.s.points));
   CHECK(same_result(result.read(), r));
   REQUIRE(got.size() == expected.size());
   for (std::size_t k = 0; k < got.size(); ++k) CHECK(same_bytes(got[k], expected[k]));
@@ -102,7 +108,8 @@ TEST_CASE("Several streams at once, one of them held, do not disturb one another
   gate held(streams[0].handle);
   for (int round = 0; round < 20; ++round)
     for (int k = 0; k < 3; ++k)
-      min_distance_async(device{0, streams[k].handle}, model, given.s.poses, point_span(points.data(), points.size()), results[k].at);
+      min_distance_async(device{0, streams[k].handle}, model, given.s.poses, point_span(points.data(), points.size()),
+                         results[k].at);
   check(cudaStreamSynchronize(streams[1].handle));
   check(cudaStreamSynchronize(streams[2].handle));
   CHECK(cudaStreamQuery(streams[0].handle) == cudaErrorNotReady);
@@ -119,7 +126,8 @@ TEST_CASE("Points may lie in pageable, pinned or device memory") {
   vec3* pinned = nullptr;
   check(cudaMallocHost(&pinned, given.s.points.size() * sizeof(vec3)));
   std::copy(given.s.points.begin(), given.s.points.end(), pinned);
-  CHECK(same_result(min_distance(gpu, model, given.s.poses, point_span(pinned, given.s.points.size())), given.expected));
+  CHECK(
+      same_result(min_distance(gpu, model, given.s.poses, point_span(pinned, given.s.points.size())), given.expected));
   cudaFreeHost(pinned);
   const auto there = gpu.copy_in(std::span<const vec3>(given.s.points));
   CHECK(same_result(min_distance(gpu, model, given.s.poses, point_span(there.data(), there.size())), given.expected));
@@ -144,7 +152,8 @@ TEST_CASE("Every device works, whichever is current, and the current one stays")
   check(cudaSetDevice(0));
 }
 
-TEST_CASE("A recursion is refused while the stack limit is too small, leaves the limit alone, and runs once it is raised") {
+TEST_CASE(
+    "A recursion is refused while the stack limit is too small, leaves the limit alone, and runs once it is raised") {
   const device gpu;
   std::vector<inner_sphere> line;
   for (int k = 0; k < 60; ++k) line.push_back({{real(k), 0, 0}, 0.25f});
@@ -190,8 +199,11 @@ TEST_CASE("A tree too deep for a stack is refused before anything is launched") 
   using view = clearance::part_view<linked_view<clearance::sphere, inner_sphere>>;
   const clearance::model_view<view> model{nullptr, {&facts, 1}, 64, 2};
   const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()};
-  CHECK_THROWS_AS(min_distance(clearance::plain{gpu, clearance::near_first{}}, model, poses, std::vector<vec3>{{1, 2, 3}}), std::invalid_argument);
-  CHECK_THROWS_AS(min_distance(clearance::plain{gpu, clearance::stack{}}, model, poses, std::vector<vec3>{{1, 2, 3}}), std::invalid_argument);
+  CHECK_THROWS_AS(
+      min_distance(clearance::plain{gpu, clearance::near_first{}}, model, poses, std::vector<vec3>{{1, 2, 3}}),
+      std::invalid_argument);
+  CHECK_THROWS_AS(min_distance(clearance::plain{gpu, clearance::stack{}}, model, poses, std::vector<vec3>{{1, 2, 3}}),
+                  std::invalid_argument);
 }
 
 TEST_CASE("A model may go as soon as its queries are enqueued") {
@@ -232,9 +244,11 @@ TEST_CASE("Clouds of different kinds share one search on the device too") {
     const auto model = on_host.on(gpu);
     const clearance::placed span{all.span, s.cloud_pose};
     const auto clouds = std::tuple(clearance::placed{all.raw, all.camera_pose}, span, span);
-    const auto expected = brute_force(brute_parts(s), s.poses, {brute_cloud(all.raw, all.camera_pose), brute_cloud(all.span, s.cloud_pose),
-                                                               brute_cloud(all.span, s.cloud_pose)});
+    const auto expected = brute_force(brute_parts(s), s.poses,
+                                      {brute_cloud(all.raw, all.camera_pose), brute_cloud(all.span, s.cloud_pose),
+                                       brute_cloud(all.span, s.cloud_pose)});
     require_equal(min_distance(gpu, model, s.poses, clouds), expected, v, s.name);
-    require_equal(min_distance(clearance::plain{gpu, clearance::near_first{}}, model, s.poses, clouds), expected, v, s.name + ", plain");
+    require_equal(min_distance(clearance::plain{gpu, clearance::near_first{}}, model, s.poses, clouds), expected, v,
+                  s.name + ", plain");
   }
 }

@@ -14,7 +14,8 @@ namespace {
 
 /// A ball of radius 1 at the origin of its part, whose solid is known up to `gap` and `tolerance`.
 auto unit_ball(real gap, real tolerance = 0) {
-  return clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 1}}), gap, tolerance);
+  return clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 1}}), gap,
+                              tolerance);
 }
 auto ask(real gap, real x, real tolerance = 0) {
   return min_distance(host{}, unit_ball(gap, tolerance), Eigen::Isometry3d::Identity(), std::vector<vec3>{{x, 0, 0}});
@@ -123,7 +124,8 @@ TEST_CASE("The lower end is the least over all parts, not the winner's") {
 }
 
 TEST_CASE("No valid point is no data, never far away") {
-  for (const auto& points : {std::vector<vec3>{}, std::vector<vec3>(40, {0, clearance::not_a_number, 0}), std::vector<vec3>(3, {0, 1e30f, 0})}) {
+  for (const auto& points : {std::vector<vec3>{}, std::vector<vec3>(40, {0, clearance::not_a_number, 0}),
+                             std::vector<vec3>(3, {0, 1e30f, 0})}) {
     const auto r = min_distance(host{}, unit_ball(0), Eigen::Isometry3d::Identity(), points);
     CHECK(r.state == state::no_data);
     CHECK(r.distance != r.distance);
@@ -134,7 +136,8 @@ TEST_CASE("No valid point is no data, never far away") {
     CHECK(r.valid == 0);
     CHECK(r.dropped[int(clearance::drop_reason::not_finite)] == points.size());
   }
-  for (const state s : {state::free, state::possible, state::collision, state::no_data}) CHECK(std::string(to_string(s)).size() > 3);
+  for (const state s : {state::free, state::possible, state::collision, state::no_data})
+    CHECK(std::string(to_string(s)).size() > 3);
 }
 
 TEST_CASE("A valid point inside a triangle part makes its distance 0, and certainly a collision if it is well inside") {
@@ -171,9 +174,11 @@ TEST_CASE("Points inside triangle parts are brute force too, witness and ties in
   const std::vector<brute_part<triangle, cube_interior>> parts(3, {cube(), surface.facts, {}});
   for (int round = 0; round < 60; ++round) {
     // Far apart, overlapping, or two in one place.
-    const std::vector<Eigen::Isometry3d> poses = {d.pose(round % 3 == 0 ? 1 : 4), shifted(3, 0, 0), round % 2 ? shifted(3, 0, 0) : d.pose(3)};
+    const std::vector<Eigen::Isometry3d> poses = {d.pose(round % 3 == 0 ? 1 : 4), shifted(3, 0, 0),
+                                                  round % 2 ? shifted(3, 0, 0) : d.pose(3)};
     auto points = d.points(round % 4 == 0 ? 3000 : 200, round % 3 == 1 ? 8 : 4);
-    for (std::size_t k = 0; k < 40; ++k) points.push_back({real(d.below(9)) / 2, real(d.below(5)) / 2 - 1, real(d.below(5)) / 2 - 1});
+    for (std::size_t k = 0; k < 40; ++k)
+      points.push_back({real(d.below(9)) / 2, real(d.below(5)) / 2 - 1, real(d.below(5)) / 2 - 1});
     const auto expected = brute_force(parts, poses, {brute_cloud(clearance::point_span(points))});
     require_equal(min_distance(host{}, robot, poses, points), expected, v, "inside");
     const auto [r, minima] = min_distance_per_part(host{}, robot, poses, points);

@@ -27,9 +27,11 @@ TEST_CASE("Chunks that do not divide the cloud are the cloud, before spheres and
   verdict v;
   clearance::triangle_mesh box;
   for (int k = 0; k < 8; ++k) box.vertices.emplace_back(k & 1 ? 0.3 : -0.3, k & 2 ? 0.3 : -0.3, k & 4 ? 1.1 : -1.1);
-  box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   std::vector<decltype(clearance::make_part<clearance::aabb>(clearance::close_mesh(box)))> boxes;
-  for (int k = 0; k < 2; ++k) boxes.push_back(clearance::make_part<clearance::aabb>(clearance::close_mesh(box), {.tolerance = 1e-4}));
+  for (int k = 0; k < 2; ++k)
+    boxes.push_back(clearance::make_part<clearance::aabb>(clearance::close_mesh(box), {.tolerance = 1e-4}));
   const clearance::model solid(std::move(boxes));
   const auto spheres = arm();
   for (const std::size_t n : {0, 1, 4095, 4096, 4097, 50001}) {
@@ -126,13 +128,16 @@ TEST_CASE("A cloud that loads what was not asked for is refused, and one that gr
     std::ptrdiff_t more = 0;
     std::size_t size() const { return 10000 + std::size_t(more); }
     std::size_t room(std::size_t) const { return 0; }
-    point_span load(std::size_t begin, std::size_t end, std::byte*) const { return {points->data() + begin, end - begin + std::size_t(more)}; }
+    point_span load(std::size_t begin, std::size_t end, std::byte*) const {
+      return {points->data() + begin, end - begin + std::size_t(more)};
+    }
   };
   const auto model = arm();
   clearance::chunked_query query(host{}, model);
   for (const int more : {-1, 1}) {
     chunked in_chunks(liar{&points, more}, 4096);
-    CHECK_THROWS_WITH(query(arm_poses, in_chunks), "clearance: a cloud was to load 4096 points, and loaded " + std::to_string(4096 + more));
+    CHECK_THROWS_WITH(query(arm_poses, in_chunks),
+                      "clearance: a cloud was to load 4096 points, and loaded " + std::to_string(4096 + more));
     CHECK(in_chunks.pieces().empty());
   }
   std::size_t there = 10000;
@@ -141,7 +146,9 @@ TEST_CASE("A cloud that loads what was not asked for is refused, and one that gr
     const std::size_t* there;
     std::size_t size() const { return *there; }
     std::size_t room(std::size_t) const { return 0; }
-    point_span load(std::size_t begin, std::size_t end, std::byte*) const { return {points->data() + begin, end - begin}; }
+    point_span load(std::size_t begin, std::size_t end, std::byte*) const {
+      return {points->data() + begin, end - begin};
+    }
   };
   chunked in_chunks(growing{&points, &there});
   const auto expected = min_distance(host{}, model, arm_poses, point_span(points.data(), 10000));
@@ -154,11 +161,13 @@ TEST_CASE("More points than numbers are refused, and so are poses that are none"
   CHECK_THROWS_WITH(chunked(read_records((std::size_t(1) << 32) - 1, 12, none, points_at)),
                     "clearance: a cloud of 4294967295 points; one has at most 2^32 - 2");
   CHECK_THROWS_WITH(read_records(9, 0, none, points_at), "clearance: 9 records of 0 bytes");
-  CHECK_THROWS_WITH(read_records(9, ~std::size_t(0) / 8, none, points_at), "clearance: 9 records of 2305843009213693951 bytes");
+  CHECK_THROWS_WITH(read_records(9, ~std::size_t(0) / 8, none, points_at),
+                    "clearance: 9 records of 2305843009213693951 bytes");
   const auto cloud = wall(9000);
   const auto model = arm();
   for (const std::size_t least : {0, 1}) CHECK(chunked(point_span(cloud), least).all().size() == 3);
-  for (const std::size_t all_at_once : {~std::size_t(0), ~std::size_t(0) - 4096}) CHECK(chunked(point_span(cloud), all_at_once).all().size() == 1);
+  for (const std::size_t all_at_once : {~std::size_t(0), ~std::size_t(0) - 4096})
+    CHECK(chunked(point_span(cloud), all_at_once).all().size() == 1);
   chunked in_chunks{point_span(cloud)};
   clearance::chunked_query query(host{}, model);
   for (int round = 0; round < 2; ++round) {

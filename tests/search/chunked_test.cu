@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clouds in chunks on a device: the host's answer about the whole, in every bit, wherever the points are and whatever is skipped.
+// Clouds in chunks on a device: the host's answer about the whole, in every bit, wherever the points are and whatever
+// is skipped.
 #include "support/chunked.hpp"
 #include "support/product_device.cuh"
 
@@ -51,7 +52,8 @@ TEST_CASE("From pageable, pinned and device memory, and from a reader that may f
         e.forget(), reads = 0, fails_at = k;
         CHECK_THROWS_WITH(query(arm_poses, e), "the link is down");
         fails_at = -1;
-        v.require(same_result(query(arm_poses, e), min_distance(host{}, robot, arm_poses, cloud)), what, ": another answer after a failure");
+        v.require(same_result(query(arm_poses, e), min_distance(host{}, robot, arm_poses, cloud)), what,
+                  ": another answer after a failure");
         const std::uint64_t all = query.loaded();
         query(arm_poses, e);
         v.require(all == n && query.loaded() < n / 2, what, ": nothing was skipped");

@@ -27,14 +27,17 @@ void collect_all_scenes() {
       const auto counts = clearance::collect(host{}, model, s.poses, cloud, tallied{farthest, found.words});
       v.require(found == expected, what, ": other pairs than brute force's");
       const auto r = clearance::min_distance(host{}, model, s.poses, cloud);
-      v.require(counts.seen == r.seen && counts.valid == r.valid && std::ranges::equal(counts.dropped, r.dropped), what, ": other counts");
+      v.require(counts.seen == r.seen && counts.valid == r.valid && std::ranges::equal(counts.dropped, r.dropped), what,
+                ": other counts");
       clearance::collect(host{1}, model, s.poses, cloud, tallied{farthest, one_thread.words});
       v.require(one_thread == expected, what, ": other pairs with one thread");
       clearance::collect_query query(host{}, model);
       for (int frame = 0; frame < 2; ++frame) {
         tally_of_pairs prepared, enqueued;
         clearance::point_counts seen;
-        v.require(query(s.poses, cloud, tallied{farthest, prepared.words}).valid == counts.valid && prepared == expected, what, ": other pairs, prepared");
+        v.require(
+            query(s.poses, cloud, tallied{farthest, prepared.words}).valid == counts.valid && prepared == expected,
+            what, ": other pairs, prepared");
         query.enqueue(s.poses, cloud, tallied{farthest, enqueued.words}, &seen);
         v.require(seen.valid == counts.valid && enqueued == expected, what, ": other pairs, enqueued");
       }
@@ -47,14 +50,20 @@ void collect_all_scenes() {
 
 }  // namespace
 
-TEST_CASE("Every pair of a point and inner spheres within reach comes to an answer once") { collect_all_scenes<clearance::sphere, inner_sphere>(); }
-TEST_CASE("Every pair of a point and triangles within reach comes to an answer once") { collect_all_scenes<clearance::obb, triangle>(); }
+TEST_CASE("Every pair of a point and inner spheres within reach comes to an answer once") {
+  collect_all_scenes<clearance::sphere, inner_sphere>();
+}
+TEST_CASE("Every pair of a point and triangles within reach comes to an answer once") {
+  collect_all_scenes<clearance::obb, triangle>();
+}
 
 TEST_CASE("A point inside a solid is a pair of distance 0 without a primitive") {
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  const auto model = clearance::make_model<clearance::aabb>(std::vector<clearance::closed_mesh>{clearance::close_mesh(m)});
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const auto model =
+      clearance::make_model<clearance::aabb>(std::vector<clearance::closed_mesh>{clearance::close_mesh(m)});
   scene<triangle> s;
   const auto& tree = model.parts()[0].tree;
   s.parts.emplace_back(tree.primitives.size());
@@ -66,8 +75,10 @@ TEST_CASE("A point inside a solid is a pair of distance 0 without a primitive") 
   for (const real farthest : {real(-1), real(0), real(0.5)}) {
     tally_of_pairs expected, found;
     const auto interior = model.parts()[0].interior.view();
-    brute_tally(s, s.points, s.cloud_pose, 0, farthest, [&](std::uint32_t, vec3 q) { return interior.inside(q); }, expected);
-    clearance::collect(host{}, model, s.poses, placed{point_span(s.points), s.cloud_pose}, tallied{farthest, found.words});
+    brute_tally(
+        s, s.points, s.cloud_pose, 0, farthest, [&](std::uint32_t, vec3 q) { return interior.inside(q); }, expected);
+    clearance::collect(host{}, model, s.poses, placed{point_span(s.points), s.cloud_pose},
+                       tallied{farthest, found.words});
     CHECK(found == expected);
     CHECK((farthest < 0 || found.words[0] > 100));
   }

@@ -15,7 +15,8 @@ using clearance::device, clearance::host, clearance::placed, clearance::point_sp
 namespace {
 
 template <class Model, class Clouds>
-void same_pairs(const Model& on_host, const std::vector<Eigen::Isometry3d>& poses, const Clouds& clouds, real farthest, verdict& v, const std::string& what) {
+void same_pairs(const Model& on_host, const std::vector<Eigen::Isometry3d>& poses, const Clouds& clouds, real farthest,
+                verdict& v, const std::string& what) {
   const device gpu;
   const auto model = on_host.on(gpu);
   tally_of_pairs expected;
@@ -25,8 +26,10 @@ void same_pairs(const Model& on_host, const std::vector<Eigen::Isometry3d>& pose
   const auto seen = clearance::collect(gpu, model, poses, clouds, tallied{farthest, words.data()});
   const auto found = gpu.copy_out(words.data(), 2);
   const std::string all = what + ", within " + std::to_string(farthest);
-  v.require(found[0] == expected.words[0] && found[1] == expected.words[1], all, ": other pairs than the host's, ", found[0], " and ", expected.words[0]);
-  v.require(seen.seen == counts.seen && seen.valid == counts.valid && std::ranges::equal(seen.dropped, counts.dropped), all, ": other counts");
+  v.require(found[0] == expected.words[0] && found[1] == expected.words[1], all, ": other pairs than the host's, ",
+            found[0], " and ", expected.words[0]);
+  v.require(seen.seen == counts.seen && seen.valid == counts.valid && std::ranges::equal(seen.dropped, counts.dropped),
+            all, ": other counts");
 }
 
 template <class V, class P>
@@ -37,7 +40,8 @@ void same_in_all_scenes() {
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
     for (const real farthest : {real(0), real(0.3), real(5), clearance::infinity}) {
       same_pairs(model, s.poses, placed{all.span, s.cloud_pose}, farthest, v, s.name);
-      same_pairs(model, s.poses, std::tuple(placed{all.raw, all.camera_pose}, placed{all.span, s.cloud_pose}), farthest, v, s.name + ", two clouds");
+      same_pairs(model, s.poses, std::tuple(placed{all.raw, all.camera_pose}, placed{all.span, s.cloud_pose}), farthest,
+                 v, s.name + ", two clouds");
     }
   }
 }
@@ -47,20 +51,26 @@ void same_in_all_scenes() {
 TEST_CASE("On a device every pair of a point and inner spheres within reach comes to an answer once") {
   same_in_all_scenes<clearance::sphere, inner_sphere>();
 }
-TEST_CASE("On a device every pair of a point and triangles within reach comes to an answer once") { same_in_all_scenes<clearance::aabb, triangle>(); }
+TEST_CASE("On a device every pair of a point and triangles within reach comes to an answer once") {
+  same_in_all_scenes<clearance::aabb, triangle>();
+}
 
-TEST_CASE("Crowds, points inside solids, and more parts than a kernel takes give an answer the host's pairs", "[slow]") {
+TEST_CASE("Crowds, points inside solids, and more parts than a kernel takes give an answer the host's pairs",
+          "[slow]") {
   verdict v;
   dice d(92);
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   const auto box = [&] { return clearance::make_part<clearance::aabb>(clearance::close_mesh(m)); };
   const clearance::model boxes{std::vector{box(), box()}};
   const auto crowd = d.points(300000, 2);
   same_pairs(boxes, {d.pose(0.5), d.pose(0.5)}, point_span(crowd), 0.5f, v, "boxes");
-  auto on_faces = d.points(100000, 1);  // 0 away from triangles, and of every second face inside as well: then no triangle is named
-  for (std::size_t i = 0; i < on_faces.size(); ++i) (i % 3 == 0 ? on_faces[i].x : i % 3 == 1 ? on_faces[i].y : on_faces[i].z) = i % 2 ? 1 : -1;
+  auto on_faces =
+      d.points(100000, 1);  // 0 away from triangles, and of every second face inside as well: then no triangle is named
+  for (std::size_t i = 0; i < on_faces.size(); ++i)
+    (i % 3 == 0 ? on_faces[i].x : i % 3 == 1 ? on_faces[i].y : on_faces[i].z) = i % 2 ? 1 : -1;
   same_pairs(boxes, std::vector(2, Eigen::Isometry3d::Identity()), point_span(on_faces), 0.5f, v, "faces of boxes");
   scene<inner_sphere> s;
   for (int part = 0; part < 200; ++part) {
@@ -69,5 +79,6 @@ TEST_CASE("Crowds, points inside solids, and more parts than a kernel takes give
     s.poses.push_back(d.pose(1));
   }
   const auto some = d.points(5000, 1.5);
-  same_pairs(make_model<clearance::sphere>(s, {}, clearance::wrapped{}), s.poses, point_span(some), 0.2f, v, "200 parts");
+  same_pairs(make_model<clearance::sphere>(s, {}, clearance::wrapped{}), s.poses, point_span(some), 0.2f, v,
+             "200 parts");
 }

@@ -23,7 +23,9 @@ clearance::collision_result brute(const scene<P>& s, const clouds& all, const st
   if (r.counts.valid != 0) r.state = state::free;
   for_each_pair(s, all, [&](const clearance::pair_distance& pair) {
     const long double d = pair.distance, off = error.here + (long double)(error.per_metre) * std::abs(d);
-    const state its = d + off <= margins[pair.part] ? state::collision : d - off <= margins[pair.part] ? state::possible : state::free;
+    const state its = d + off <= margins[pair.part]   ? state::collision
+                      : d - off <= margins[pair.part] ? state::possible
+                                                      : state::free;
     if (its == state::free || r.state == state::collision || its == r.state) return;
     r.state = its, r.cloud = pair.cloud, r.point = pair.point, r.part = pair.part;
   });
@@ -43,11 +45,13 @@ void all_scenes() {
         if (own) margins[0] = 2 * margin * s.size;
         const auto expected = brute(s, two, margins);
         for (const unsigned threads : {0u, 1u}) {
-          const auto r = own ? in_collision(host{threads}, model, s.poses, two, margins) : in_collision(host{threads}, model, s.poses, two, margins[0]);
-          v.require(r.state == expected.state && r.cloud == expected.cloud && r.point == expected.point && r.part == expected.part &&
-                        r.counts.valid == expected.counts.valid,
-                    s.name, ", margin ", margin, own ? ", one a part" : "", ": ", to_string(r.state), " and not ", to_string(expected.state), ", point ", r.point,
-                    " and not ", expected.point, ", part ", r.part, " and not ", expected.part);
+          const auto r = own ? in_collision(host{threads}, model, s.poses, two, margins)
+                             : in_collision(host{threads}, model, s.poses, two, margins[0]);
+          v.require(r.state == expected.state && r.cloud == expected.cloud && r.point == expected.point &&
+                        r.part == expected.part && r.counts.valid == expected.counts.valid,
+                    s.name, ", margin ", margin, own ? ", one a part" : "", ": ", to_string(r.state), " and not ",
+                    to_string(expected.state), ", point ", r.point, " and not ", expected.point, ", part ", r.part,
+                    " and not ", expected.part);
         }
         ++states[int(expected.state)];
       }
@@ -58,8 +62,12 @@ void all_scenes() {
 
 }  // namespace
 
-TEST_CASE("A point within a margin of inner spheres is found, the first that is certain") { all_scenes<clearance::sphere, inner_sphere>(); }
-TEST_CASE("A point within a margin of triangles is found, the first that is certain") { all_scenes<clearance::aabb, triangle>(); }
+TEST_CASE("A point within a margin of inner spheres is found, the first that is certain") {
+  all_scenes<clearance::sphere, inner_sphere>();
+}
+TEST_CASE("A point within a margin of triangles is found, the first that is certain") {
+  all_scenes<clearance::aabb, triangle>();
+}
 
 TEST_CASE("What rounding leaves open of a depth is possible, too") {
   const std::vector<inner_sphere> ball{{{0, 0, 0}, 4}};
@@ -74,10 +82,13 @@ TEST_CASE("What rounding leaves open of a depth is possible, too") {
     const double off = error.at(real(computed));
     const auto ask = [&](double margin) { return in_collision(host{}, robot, poses, point_span(point), margin).state; };
     for (const double part : {0.2, 0.9, 0.999}) {
-      v.require(ask(computed - part * off) == state::possible, computed, " m deep, margin less by ", part, " of its error: ", to_string(ask(computed - part * off)));
-      v.require(ask(computed + part * off) == state::possible, computed, " m deep, margin more by ", part, " of its error");
+      v.require(ask(computed - part * off) == state::possible, computed, " m deep, margin less by ", part,
+                " of its error: ", to_string(ask(computed - part * off)));
+      v.require(ask(computed + part * off) == state::possible, computed, " m deep, margin more by ", part,
+                " of its error");
     }
-    v.require(ask(computed - 1.1 * off) == state::free && ask(computed + 1.1 * off) == state::collision, computed, " m deep: what is certain");
+    v.require(ask(computed - 1.1 * off) == state::free && ask(computed + 1.1 * off) == state::collision, computed,
+              " m deep: what is certain");
   }
 }
 
@@ -86,13 +97,15 @@ TEST_CASE("What gap and tolerance leave open is possible, and no point says noth
   const std::vector poses{Eigen::Isometry3d::Identity()};
   const std::vector<vec3> far{{3, 0, 0}, {1.5f, 0, 0}}, near{{1.2f, 0, 0}, {1.05f, 0, 0}};
   const auto ask = [&](double gap, double tolerance, const std::vector<vec3>& points, double margin) {
-    const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball), gap, tolerance)}};
+    const clearance::model robot{
+        std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball), gap, tolerance)}};
     return in_collision(host{}, robot, poses, point_span(points), margin);
   };
   CHECK(ask(0, 0, far, 0.49).state == state::free);
   CHECK((ask(0.02, 0, far, 0.49).state == state::possible && ask(0.02, 0, far, 0.49).point == 1));
   CHECK((ask(0.02, 0, far, 0.51).state == state::collision && ask(0, 0.02, far, 0.51).state == state::possible));
-  CHECK((ask(0.2, 0, near, 0.1).state == state::collision && ask(0.2, 0, near, 0.1).point == 1));  // the first is only possible
+  CHECK((ask(0.2, 0, near, 0.1).state == state::collision &&
+         ask(0.2, 0, near, 0.1).point == 1));  // the first is only possible
   CHECK(ask(clearance::infinity, 0, far, 0).state == state::possible);
   CHECK(ask(0, 0, {}, 1).state == state::no_data);
   CHECK_THROWS_AS(ask(0, 0, far, clearance::not_a_number), std::invalid_argument);
@@ -112,13 +125,15 @@ TEST_CASE("Of a robot without parts nothing is known, whatever is asked") {
   CHECK((near.state == state::no_data && near.counts.valid == 1 && near.point == clearance::none));
 }
 
-TEST_CASE("A prepared question of collision says in every frame what one call says, and goes on after one that is refused") {
+TEST_CASE(
+    "A prepared question of collision says in every frame what one call says, and goes on after one that is refused") {
   verdict v;
   moving_frames f(5, 113);
   const auto model = f.model();
   clearance::in_collision_query query(host{}, model);
   const auto same = [](const clearance::collision_result& a, const clearance::collision_result& b) {
-    return a.state == b.state && a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.counts.valid == b.counts.valid;
+    return a.state == b.state && a.cloud == b.cloud && a.point == b.point && a.part == b.part &&
+           a.counts.valid == b.counts.valid;
   };
   std::size_t states[4] = {};
   for (; f.there(); f.next()) {
@@ -128,7 +143,8 @@ TEST_CASE("A prepared question of collision says in every frame what one call sa
     v.require(same(query(f.s.poses, f.here(), margins), expected), "frame ", f.number, ": ", to_string(expected.state));
     clearance::collision_result enqueued;
     query.enqueue(f.s.poses, f.here(), margins, &enqueued);
-    v.require(same(enqueued, expected), "frame ", f.number, ", enqueued: ", to_string(enqueued.state), " and not ", to_string(expected.state));
+    v.require(same(enqueued, expected), "frame ", f.number, ", enqueued: ", to_string(enqueued.state), " and not ",
+              to_string(expected.state));
     CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
     CHECK_THROWS_AS(query(f.s.poses, f.here(), std::vector{0.1, 0.2}), std::invalid_argument);
   }

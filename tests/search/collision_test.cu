@@ -9,12 +9,14 @@
 #include <clearance/volume/sphere.hpp>
 
 using namespace testing;
-using clearance::device, clearance::host, clearance::in_collision, clearance::placed, clearance::point_span, clearance::state;
+using clearance::device, clearance::host, clearance::in_collision, clearance::placed, clearance::point_span,
+    clearance::state;
 
 namespace {
 
 bool same(const clearance::collision_result& a, const clearance::collision_result& b) {
-  return a.state == b.state && a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.counts.valid == b.counts.valid;
+  return a.state == b.state && a.cloud == b.cloud && a.point == b.point && a.part == b.part &&
+         a.counts.valid == b.counts.valid;
 }
 
 }  // namespace
@@ -27,8 +29,9 @@ TEST_CASE("On a device a point within a margin is the host's, in all scenes") {
     const auto there = model.on(gpu);
     const auto two = two_clouds(s);
     for (const double margin : {-0.1, 0.0, 1e-7, 0.02, 0.3})
-      v.require(same(in_collision(gpu, there, s.poses, two, margin * s.size), in_collision(host{}, model, s.poses, two, margin * s.size)), s.name, ", margin ",
-                margin, ": differs from the host's");
+      v.require(same(in_collision(gpu, there, s.poses, two, margin * s.size),
+                     in_collision(host{}, model, s.poses, two, margin * s.size)),
+                s.name, ", margin ", margin, ": differs from the host's");
   }
 }
 
@@ -57,7 +60,8 @@ TEST_CASE("A prepared question of collision says on a device in every frame what
     const auto result = room_on<clearance::collision_result>(gpu, 1);
     const auto look = [&](const std::vector<double>& margins, const std::string& when) {
       const auto expected = in_collision(host{}, model, f.s.poses, f.here(), margins);
-      v.require(same(gpu.copy_out(result)[0], expected), parts, " parts, ", when, ", enqueued: differs from the host's");
+      v.require(same(gpu.copy_out(result)[0], expected), parts, " parts, ", when,
+                ", enqueued: differs from the host's");
       ++states[int(expected.state)];
       return expected;
     };
@@ -66,11 +70,13 @@ TEST_CASE("A prepared question of collision says on a device in every frame what
       const frame_there seen(gpu, f);
       query.enqueue(f.s.poses, seen.all, margins, result.data());
       const auto expected = look(margins, "frame " + std::to_string(f.number));
-      v.require(same(query(f.s.poses, f.here(), margins), expected), parts, " parts, frame ", f.number, ": differs from the host's");
+      v.require(same(query(f.s.poses, f.here(), margins), expected), parts, " parts, frame ", f.number,
+                ": differs from the host's");
       CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
     }
-    replay(stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, 0.02, result.data()); },
-           [&](const std::string& what) { look({0.02}, what); });
+    replay(
+        stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, 0.02, result.data()); },
+        [&](const std::string& what) { look({0.02}, what); });
   }
   CHECK((states[int(state::free)] > 0 && states[int(state::collision)] > 0 && states[int(state::no_data)] > 0));
 }

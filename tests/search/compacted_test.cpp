@@ -12,8 +12,9 @@ TEST_CASE("What is left of a cloud are its valid points, in their order") {
   for_each_compacted([&](const auto& source, const auto& points, const auto& numbers, const std::string& what) {
     const auto found = clearance::compacted(clearance::host{}, source);
     v.require(found.numbers == numbers, what, ": ", found.numbers.size(), " are left, and not ", numbers.size());
-    v.require(found.points.size() == points.size() && std::ranges::equal(found.points, points, [](vec3 a, vec3 b) { return same_bytes(a, b); }), what,
-              ": some point differs");
+    v.require(found.points.size() == points.size() &&
+                  std::ranges::equal(found.points, points, [](vec3 a, vec3 b) { return same_bytes(a, b); }),
+              what, ": some point differs");
   });
 }
 

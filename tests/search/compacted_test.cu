@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // On a device what is left of a cloud is the host's, and goes into a graph.
+#include "support/catch.hpp"
 #include "support/compacts.hpp"
 #include "support/held_stream.cuh"
-#include "support/catch.hpp"
 
 #include <clearance/compacted.cuh>
 
@@ -17,8 +17,9 @@ TEST_CASE("On a device, too, what is left of a cloud are its valid points, in th
     const auto require = [&](const auto& there) {
       const auto found = clearance::compacted(gpu, there);
       v.require(found.numbers == numbers, what, ": ", found.numbers.size(), " are left, and not ", numbers.size());
-      v.require(found.points.size() == points.size() && std::ranges::equal(found.points, points, [](vec3 a, vec3 b) { return same_bytes(a, b); }), what,
-                ": some point differs");
+      v.require(found.points.size() == points.size() &&
+                    std::ranges::equal(found.points, points, [](vec3 a, vec3 b) { return same_bytes(a, b); }),
+                what, ": some point differs");
     };
     if constexpr (requires { source.labels; }) {
       const auto labels = gpu.copy_in(std::span<const clearance::point_label>(source.labels, source.size()));
@@ -38,7 +39,8 @@ TEST_CASE("A graph leaves out what is invalid when it runs") {
   const clearance::device_buffer<vec3> left(5000, gpu.id);
   const clearance::device_buffer<std::uint32_t> numbers(5000, gpu.id), count(1, gpu.id);
   const auto enqueue = [&] {
-    clearance::compacted_async(gpu, clearance::point_span(there.data(), 5000), left.data(), numbers.data(), count.data());
+    clearance::compacted_async(gpu, clearance::point_span(there.data(), 5000), left.data(), numbers.data(),
+                               count.data());
   };
   enqueue();  // once, as loading a kernel is not for a graph
   const captured_graph graph(stream.handle, enqueue);

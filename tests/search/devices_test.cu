@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several devices say together what the host says, in every bit. One GPU is named more than once, and so is several of them; where there
-// are two, both are asked, and the second alone.
+// Several devices say together what the host says, in every bit. One GPU is named more than once, and so is several of
+// them; where there are two, both are asked, and the second alone.
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"
 
@@ -10,7 +10,8 @@
 #include <clearance/volume/sphere.hpp>
 
 using namespace testing;
-using clearance::device, clearance::devices, clearance::host, clearance::min_distance, clearance::placed, clearance::point_span, clearance::sharded;
+using clearance::device, clearance::devices, clearance::host, clearance::min_distance, clearance::placed,
+    clearance::point_span, clearance::sharded;
 
 namespace {
 
@@ -43,10 +44,11 @@ bool same_minimum(const clearance::part_minimum& a, const clearance::part_minimu
   return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
 }
 
-/// Cold, warm, moved and moved back; one call, and every part's minimum. `clouds` is for the devices, `same` for the host.
+/// Cold, warm, moved and moved back; one call, and every part's minimum. `clouds` is for the devices, `same` for the
+/// host.
 template <class Model, class Clouds, class Same>
-void ask_often(const devices& on, const Model& on_host, std::vector<Eigen::Isometry3d> poses, const Clouds& clouds, const Same& same, verdict& v,
-               const std::string& what) {
+void ask_often(const devices& on, const Model& on_host, std::vector<Eigen::Isometry3d> poses, const Clouds& clouds,
+               const Same& same, verdict& v, const std::string& what) {
   const auto model = on_host.on(on);
   clearance::min_distance_query query(on, model);
   const auto ask = [&](const std::string& when) {
@@ -54,7 +56,8 @@ void ask_often(const devices& on, const Model& on_host, std::vector<Eigen::Isome
     v.require(same_result(query(poses, clouds), expected), what, ", ", when, ": differs from the host's result");
     const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, same);
     std::vector<clearance::part_minimum> minima(poses.size());
-    v.require(same_result(query.per_part(poses, clouds, minima), robot), what, ", ", when, ": differs from the host's result by parts");
+    v.require(same_result(query.per_part(poses, clouds, minima), robot), what, ", ", when,
+              ": differs from the host's result by parts");
     v.require(std::ranges::equal(minima, each, same_minimum), what, ", ", when, ": some part's minimum differs");
   };
   ask("cold");
@@ -65,10 +68,12 @@ void ask_often(const devices& on, const Model& on_host, std::vector<Eigen::Isome
   ask("moved far");
   query.forget();
   ask("cold again");
-  v.require(same_result(min_distance(on, model, poses, clouds), min_distance(host{}, on_host, poses, same)), what, ": one call differs");
+  v.require(same_result(min_distance(on, model, poses, clouds), min_distance(host{}, on_host, poses, same)), what,
+            ": one call differs");
   const auto [robot, each] = clearance::min_distance_per_part(on, model, poses, clouds);
   const auto [expected, its] = clearance::min_distance_per_part(host{}, on_host, poses, same);
-  v.require(same_result(robot, expected) && std::ranges::equal(each, its, same_minimum), what, ": one call differs by parts");
+  v.require(same_result(robot, expected) && std::ranges::equal(each, its, same_minimum), what,
+            ": one call differs by parts");
 }
 
 template <class P, class V>
@@ -79,7 +84,8 @@ auto model_of(const scene<P>& s) {
 auto robot_of(dice& d, int parts, int spheres) {
   std::vector<clearance::part<clearance::bvh<clearance::sphere, inner_sphere>>> made;
   for (int k = 0; k < parts; ++k)
-    made.push_back(clearance::make_part(clearance::build<clearance::sphere>(random_primitives<inner_sphere>(d, spheres, 0.3, 0.02))));
+    made.push_back(clearance::make_part(
+        clearance::build<clearance::sphere>(random_primitives<inner_sphere>(d, spheres, 0.3, 0.02))));
   return clearance::model(std::move(made));
 }
 std::vector<Eigen::Isometry3d> poses_of(dice& d, int parts) {
@@ -91,7 +97,8 @@ std::vector<Eigen::Isometry3d> poses_of(dice& d, int parts) {
 clearance::triangle_mesh box(double half) {
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return m;
 }
 
@@ -129,13 +136,15 @@ TEST_CASE("Several devices equal the host in all scenes: spheres, from points an
     }
 }
 
-TEST_CASE("Several devices equal the host in all scenes: triangles in boxes, of which points stay on the devices", "[slow]") {
+TEST_CASE("Several devices equal the host in all scenes: triangles in boxes, of which points stay on the devices",
+          "[slow]") {
   verdict v;
   for (const auto& [name, on] : all_devices())
     for (const auto& s : scenes<triangle>()) {
       const auto model = model_of<triangle, clearance::aabb>(s);
       const auto there = clearance::shard(on, s.points);
-      ask_often(on, model, s.poses, placed{there.view(), s.cloud_pose}, placed{point_span(s.points), s.cloud_pose}, v, s.name + " on " + name);
+      ask_often(on, model, s.poses, placed{there.view(), s.cloud_pose}, placed{point_span(s.points), s.cloud_pose}, v,
+                s.name + " on " + name);
     }
 }
 
@@ -143,7 +152,8 @@ TEST_CASE("Points inside triangle parts are found on any device") {
   dice d(7);
   verdict v;
   std::vector<decltype(clearance::make_part<clearance::aabb>(clearance::close_mesh(box(1))))> parts;
-  for (const double half : {0.2, 0.3, 0.1}) parts.push_back(clearance::make_part<clearance::aabb>(clearance::close_mesh(box(half)), {.tolerance = 1e-4}));
+  for (const double half : {0.2, 0.3, 0.1})
+    parts.push_back(clearance::make_part<clearance::aabb>(clearance::close_mesh(box(half)), {.tolerance = 1e-4}));
   const clearance::model robot(std::move(parts));
   const auto poses = poses_of(d, 3);
   for (const auto& [name, on] : all_devices())
@@ -178,8 +188,10 @@ TEST_CASE("Shards of any size are one cloud: unequal ones, empty ones, odd addre
   const auto robot = robot_of(d, 3, 60);
   const auto poses = poses_of(d, 3);
   const auto points = d.points(20011, 2);
-  const std::vector<std::vector<std::size_t>> all_cuts = {
-      {0, 1, 20011, 20011, 20011, 20011}, {0, 0, 0, 0, 0, 20011}, {0, 4001, 4002, 4002, 19999, 20011}, {0, 20011, 20011, 20011, 20011, 20011}};
+  const std::vector<std::vector<std::size_t>> all_cuts = {{0, 1, 20011, 20011, 20011, 20011},
+                                                          {0, 0, 0, 0, 0, 20011},
+                                                          {0, 4001, 4002, 4002, 19999, 20011},
+                                                          {0, 20011, 20011, 20011, 20011, 20011}};
   for (const auto& [name, on] : all_devices())
     for (auto cuts : all_cuts) {
       cuts[on.size()] = points.size();
@@ -204,10 +216,12 @@ TEST_CASE("Several clouds of several kinds, resident or not, are numbered and co
     const auto shards = clearance::shard(on, far);
     const auto few = clearance::shard(on, one);
     const auto clouds = [&](const auto& far_points, const auto& one_point) {
-      return std::tuple(placed{point_span(near), stands[0]}, placed{point_span(empty), stands[1]}, placed{point_span(blind), stands[2]},
-                        placed{one_point, stands[3]}, placed{far_points, stands[4]}, placed{image.raw, stands[5]});
+      return std::tuple(placed{point_span(near), stands[0]}, placed{point_span(empty), stands[1]},
+                        placed{point_span(blind), stands[2]}, placed{one_point, stands[3]},
+                        placed{far_points, stands[4]}, placed{image.raw, stands[5]});
     };
-    ask_often(on, robot, poses, clouds(shards.view(), few.view()), clouds(point_span(far), point_span(one)), v, "six clouds on " + name);
+    ask_often(on, robot, poses, clouds(shards.view(), few.view()), clouds(point_span(far), point_span(one)), v,
+              "six clouds on " + name);
     std::vector<placed<point_span>> some;
     for (const auto* points : {&blind, &far, &empty, &near}) some.push_back({point_span(*points), stands[some.size()]});
     ask_often(on, robot, poses, some, some, v, "a vector of clouds on " + name);
@@ -227,7 +241,8 @@ TEST_CASE("Equally near points in all shards: the lowest wins") {
     for (const auto& [name, on] : all_devices()) {
       const auto model = robot.on(on);
       const auto r = min_distance(on, model, poses, same);
-      v.require(r.point == first && r.part == 0 && r.distance == 1.5f, "from ", first, " on ", name, ": point ", r.point);
+      v.require(r.point == first && r.part == 0 && r.distance == 1.5f, "from ", first, " on ", name, ": point ",
+                r.point);
       ask_often(on, robot, poses, same, same, v, "ties from " + std::to_string(first) + " on " + name);
     }
   }
@@ -245,7 +260,8 @@ TEST_CASE("Only the nearest pair says whether a point is certainly inside a part
   for (const auto& [name, on] : all_devices()) ask_often(on, robot, poses, points, points, v, name);
 }
 
-TEST_CASE("Clouds in pinned memory and in any device's memory are found where they are, and where they have become others") {
+TEST_CASE(
+    "Clouds in pinned memory and in any device's memory are found where they are, and where they have become others") {
   dice d(13);
   verdict v;
   const auto robot = robot_of(d, 3, 60);
@@ -258,12 +274,15 @@ TEST_CASE("Clouds in pinned memory and in any device's memory are found where th
       const auto points = d.points(pinned.size(), 2);
       std::ranges::copy(points, pinned.data());
       const auto expected = min_distance(host{}, robot, poses, points);
-      v.require(same_result(query(poses, point_span(pinned.data(), pinned.size())), expected), "pinned, on ", name, ": differs");
+      v.require(same_result(query(poses, point_span(pinned.data(), pinned.size())), expected), "pinned, on ", name,
+                ": differs");
       for (int id = 0; id < gpus(); ++id) {
         const auto there = device{id}.copy_in(std::span<const vec3>(points));
-        v.require(same_result(query(poses, point_span(there.data(), there.size())), expected), "in the memory of ", id, ", on ", name, ": differs");
+        v.require(same_result(query(poses, point_span(there.data(), there.size())), expected), "in the memory of ", id,
+                  ", on ", name, ": differs");
         const auto shards = clearance::shard(on, point_span(there.data(), there.size()));
-        v.require(same_result(query(poses, shards.view()), expected), "sharded from the memory of ", id, ", on ", name, ": differs");
+        v.require(same_result(query(poses, shards.view()), expected), "sharded from the memory of ", id, ", on ", name,
+                  ": differs");
       }
     }
   }
@@ -313,7 +332,8 @@ TEST_CASE("Streams of the caller's are taken, and the caller's device stays", "[
       const auto shards = clearance::shard(on, points);
       CHECK(current() == id);
       clearance::min_distance_query query(on, model);
-      v.require(same_result(query(poses, shards.view()), min_distance(host{}, robot, poses, points)), name, " from device ", id, ": differs");
+      v.require(same_result(query(poses, shards.view()), min_distance(host{}, robot, poses, points)), name,
+                " from device ", id, ": differs");
       CHECK(current() == id);
       CHECK_THROWS_AS(query(std::span(poses).first(1), points), std::invalid_argument);
       CHECK(current() == id);
@@ -330,10 +350,12 @@ TEST_CASE("Streams of one's own come behind what is in a device's default stream
   const devices on{0, 0};
   const auto model = robot.on(on);
   clearance::min_distance_query query(on, model);
-  const auto there = device{}.copy_in(std::span<const vec3>(before)), next = device{}.copy_in(std::span<const vec3>(after));
+  const auto there = device{}.copy_in(std::span<const vec3>(before)),
+             next = device{}.copy_in(std::span<const vec3>(after));
   const sharded cloud(std::vector{point_span(there.data(), 1500), point_span(there.data() + 1500, 1500)});
   CHECK(same_result(query(poses, cloud), min_distance(host{}, robot, poses, before)));
-  check(cudaLaunchHostFunc(nullptr, [](void*) { std::this_thread::sleep_for(std::chrono::milliseconds(30)); }, nullptr));
+  check(
+      cudaLaunchHostFunc(nullptr, [](void*) { std::this_thread::sleep_for(std::chrono::milliseconds(30)); }, nullptr));
   check(cudaMemcpyAsync(there.data(), next.data(), 3000 * sizeof(vec3), cudaMemcpyDeviceToDevice, nullptr));
   CHECK(same_result(query(poses, cloud), min_distance(host{}, robot, poses, after)));
 }
@@ -374,7 +396,8 @@ TEST_CASE("What cannot be is refused with a sentence, and leaves nothing behind"
   static_assert(!std::is_default_constructible_v<devices>);
   CHECK(refused([] { devices(std::vector<int>()); }) == "clearance: devices, but not one of them");
   CHECK(refused([] { devices(std::vector<device>()); }) == "clearance: devices, but not one of them");
-  const std::string none = "clearance: there is no CUDA device " + std::to_string(there) + "; this process sees " + std::to_string(there);
+  const std::string none =
+      "clearance: there is no CUDA device " + std::to_string(there) + "; this process sees " + std::to_string(there);
   CHECK(refused([&] { devices{0, there}; }) == none);
   CHECK(refused([&] { devices(std::vector{device{there}}); }) == none);
   CHECK(refused([] { devices{-1}; }).find("no CUDA device -1") != std::string::npos);
@@ -392,11 +415,15 @@ TEST_CASE("What cannot be is refused with a sentence, and leaves nothing behind"
   const auto poses = poses_of(d, 2);
   const auto cloud = d.points(1000, 2);
   const auto model = robot.on(on), on_three = robot.on(devices{0, 0, 0});
-  CHECK(refused([&] { clearance::min_distance_query(on, on_three); }) == "clearance: the robot is on 3 devices, but 2 are asked");
-  if (there > 1) CHECK(refused([&] { clearance::min_distance_query(devices{0, 1}, model); }) == "clearance: the robot is not on device 1, which is asked");
+  CHECK(refused([&] { clearance::min_distance_query(on, on_three); }) ==
+        "clearance: the robot is on 3 devices, but 2 are asked");
+  if (there > 1)
+    CHECK(refused([&] { clearance::min_distance_query(devices{0, 1}, model); }) ==
+          "clearance: the robot is not on device 1, which is asked");
   counting_resource first, second;
   const std::vector<std::pmr::memory_resource*> both = {&first, &second};
-  CHECK(refused([&] { clearance::min_distance_query(on, model, std::span(both).first(1)); }) == "clearance: 1 memory resources for 2 devices");
+  CHECK(refused([&] { clearance::min_distance_query(on, model, std::span(both).first(1)); }) ==
+        "clearance: 1 memory resources for 2 devices");
   {
     clearance::min_distance_query query(on, model, both);
     const auto expected = min_distance(host{}, robot, poses, cloud);
@@ -409,10 +436,13 @@ TEST_CASE("What cannot be is refused with a sentence, and leaves nothing behind"
     std::vector<clearance::part_minimum> minima(3);
     for (int round = 0; round < 3; ++round) {
       CHECK(refused([&] { query(poses, three.view()); }) == "clearance: a cloud of 3 pieces for 2 devices");
-      CHECK(refused([&] { query(std::span(poses).first(1), cloud); }).find("2 parts, but 1 poses") != std::string::npos);
+      CHECK(refused([&] { query(std::span(poses).first(1), cloud); }).find("2 parts, but 1 poses") !=
+            std::string::npos);
       CHECK(refused([&] { query(std::vector{skewed, poses[1]}, cloud); }).find("clearance: ") == 0);
       CHECK(refused([&] { query(poses, point_span(cloud), skewed); }).find("clearance: ") == 0);
-      CHECK(refused([&] { query(poses, std::vector{placed{point_span(cloud), poses[0]}, placed{point_span(cloud), skewed}}); }).find("clearance: ") == 0);
+      CHECK(refused([&] {
+              query(poses, std::vector{placed{point_span(cloud), poses[0]}, placed{point_span(cloud), skewed}});
+            }).find("clearance: ") == 0);
       CHECK(refused([&] { query.per_part(poses, cloud, minima); }).find("room for 3 minima") != std::string::npos);
       CHECK(same_result(query(poses, cloud), expected));
     }

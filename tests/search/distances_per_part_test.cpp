@@ -24,8 +24,8 @@ TEST_CASE("Every part's distance to every point is brute force's, to the bit, an
       for (std::size_t i = 0; i < found.points; ++i) {
         real nearest = found.of(0)[i];
         for (std::size_t k = 1; k < s.parts.size(); ++k) nearest = found.of(k)[i] < nearest ? found.of(k)[i] : nearest;
-        v.require(nearest != nearest ? least.distance[i] != least.distance[i] : nearest == least.distance[i], what, ": the least of point", i, " is", nearest,
-                  " and not", least.distance[i]);
+        v.require(nearest != nearest ? least.distance[i] != least.distance[i] : nearest == least.distance[i], what,
+                  ": the least of point", i, " is", nearest, " and not", least.distance[i]);
         near += nearest <= d_max, far += nearest == clearance::infinity;
       }
       v.require(same_bits(found.certain.lower(1), least.certain.lower(1)), what, ": another certainty");
@@ -41,7 +41,8 @@ TEST_CASE("No point, no part in reach, and d_max that is no number") {
   CHECK(distances_per_part(host{}, model, poses, std::vector<vec3>{}).distance.empty());
   const auto one = distances_per_part(host{}, model, poses, std::vector<vec3>{{3, 0, 0}}, 2.5f);
   CHECK((one.of(0)[0] == 2 && one.of(1)[0] == clearance::infinity && one.counts.valid == 1));
-  CHECK_THROWS_AS(distances_per_part(host{}, model, poses, std::vector<vec3>{{3, 0, 0}}, clearance::not_a_number), std::invalid_argument);
+  CHECK_THROWS_AS(distances_per_part(host{}, model, poses, std::vector<vec3>{{3, 0, 0}}, clearance::not_a_number),
+                  std::invalid_argument);
 }
 
 TEST_CASE("Prepared, every part's distances are in every frame what one call says, and after one that is refused") {

@@ -20,7 +20,8 @@ TEST_CASE("On a device every part's distances are the host's, to the bit") {
     const auto two = two_clouds(s);
     for (const real d_max : {real(0.2 * s.size), clearance::infinity}) {
       const std::string what = s.name + ", d_max " + std::to_string(d_max);
-      require_same(distances_per_part(gpu, model.on(gpu), s.poses, two, d_max), distances_per_part(host{}, model, s.poses, two, d_max), v, what);
+      require_same(distances_per_part(gpu, model.on(gpu), s.poses, two, d_max),
+                   distances_per_part(host{}, model, s.poses, two, d_max), v, what);
     }
   }
 }
@@ -39,7 +40,9 @@ TEST_CASE("Prepared, every part's distances are on a device in every frame the h
     const auto look = [&](real d_max, const std::string& when) {
       const auto expected = distances_per_part(host{}, model, f.s.poses, f.here(), d_max);
       const std::string what = std::to_string(parts) + " parts, " + when;
-      require_same({gpu.copy_out(distance.data(), expected.distance.size()), expected.points, gpu.copy_out(counts)[0], {}}, expected, v, what + ", enqueued");
+      require_same(
+          {gpu.copy_out(distance.data(), expected.distance.size()), expected.points, gpu.copy_out(counts)[0], {}},
+          expected, v, what + ", enqueued");
       return expected;
     };
     for (; f.there(); f.next()) {
@@ -50,7 +53,8 @@ TEST_CASE("Prepared, every part's distances are on a device in every frame the h
       require_same(query(f.s.poses, f.here(), d_max), expected, v, "waited for");
       CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
     }
-    replay(stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, distance.data(), counts.data(), 0.3f); },
-           [&](const std::string& what) { look(0.3f, what); });
+    replay(
+        stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, distance.data(), counts.data(), 0.3f); },
+        [&](const std::string& what) { look(0.3f, what); });
   }
 }

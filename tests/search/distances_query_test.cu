@@ -16,12 +16,14 @@ using clearance::device, clearance::distances, clearance::host, clearance::place
 namespace {
 
 template <class Model, class Clouds>
-void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const Clouds& clouds, verdict& v, const std::string& what) {
+void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const Clouds& clouds, verdict& v,
+               const std::string& what) {
   const device gpu;
   const auto model = on_host.on(gpu);
   clearance::distances_query query(gpu, model);
   const auto same = [&](const std::string& when, real d_max, bool which = true) {
-    require_same(query(poses, clouds, {d_max, which}), distances(host{}, on_host, poses, clouds, {d_max, which}), v, what + ", " + when);
+    require_same(query(poses, clouds, {d_max, which}), distances(host{}, on_host, poses, clouds, {d_max, which}), v,
+                 what + ", " + when);
   };
   same("cold", clearance::infinity);
   same("warm", clearance::infinity);
@@ -31,7 +33,8 @@ void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const
   poses.back().translation().z() -= 5;
   same("moved far", clearance::infinity);
   same("within nothing", 0);
-  require_same(query(poses, point_span{}, {}), distances(host{}, on_host, poses, point_span{}), v, what + ", no points");
+  require_same(query(poses, point_span{}, {}), distances(host{}, on_host, poses, point_span{}), v,
+               what + ", no points");
   same("warm again, inside alone", -0.001f);
   same("warm again", clearance::infinity);
   query.forget();
@@ -60,10 +63,13 @@ TEST_CASE("Warm distances of points inside solids, and of equally near primitive
   dice d(97);
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   const auto boxes = clearance::make_model<clearance::aabb>(std::vector(3, clearance::close_mesh(m)));
   std::vector<vec3> points = d.points(4000, 3);
-  for (int k = 0; k < 3000; ++k) points.push_back({real(d.below(9)) - 4, real(d.below(9)) - 4, real(d.below(9)) - 4});  // on faces, edges and corners
+  for (int k = 0; k < 3000; ++k)
+    points.push_back(
+        {real(d.below(9)) - 4, real(d.below(9)) - 4, real(d.below(9)) - 4});  // on faces, edges and corners
   const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
   ask_often(boxes, {here, here, d.pose(0.5)}, point_span(points), v, "boxes, two of them the same");
 }
@@ -87,7 +93,8 @@ TEST_CASE("More parts than a kernel takes, and points that come and go: warm dis
     std::ranges::shuffle(points, std::mt19937(unsigned(count)));
     for (std::size_t i = 0; i < count; i += 7) points[i].y = i % 2 == 0 ? clearance::not_a_number : real(i);
     const point_span some(points.data(), count);
-    require_same(query(s.poses, some, {clearance::infinity, true}), distances(host{}, many, s.poses, some, {clearance::infinity, true}), v,
+    require_same(query(s.poses, some, {clearance::infinity, true}),
+                 distances(host{}, many, s.poses, some, {clearance::infinity, true}), v,
                  std::to_string(count) + " points");
   }
 }
@@ -98,14 +105,18 @@ TEST_CASE("A picture's pixels are taken in tiles, and each distance is at its ow
   const device gpu;
   std::vector<clearance::inner_sphere> spheres;
   for (int k = 0; k < 300; ++k) spheres.push_back({d.point(0.4f), d.number(0.005, 0.05)});
-  const auto model = clearance::make_model<clearance::sphere>(std::vector<std::vector<clearance::inner_sphere>>{spheres});
+  const auto model =
+      clearance::make_model<clearance::sphere>(std::vector<std::vector<clearance::inner_sphere>>{spheres});
   const std::vector poses{d.pose(0.1)};
   Eigen::Isometry3d camera = Eigen::Isometry3d::Identity();
   camera.translation().z() = -1.5;
-  for (const auto& [width, height] : {std::pair(64, 48), std::pair(40, 4), std::pair(8, 36), std::pair(65, 48), std::pair(64, 47), std::pair(12, 16)}) {
+  for (const auto& [width, height] : {std::pair(64, 48), std::pair(40, 4), std::pair(8, 36), std::pair(65, 48),
+                                      std::pair(64, 47), std::pair(12, 16)}) {
     std::vector<std::uint16_t> depth;
-    for (int i = 0; i < width * height; ++i) depth.push_back(std::uint16_t(i % 11 == 0 ? 0 : 700 + 13 * (i % width) + 7 * (i / width)));
-    const clearance::depth_image image(depth.data(), std::uint32_t(width), std::uint32_t(height), {50, 50, width / 2.0, height / 2.0});
+    for (int i = 0; i < width * height; ++i)
+      depth.push_back(std::uint16_t(i % 11 == 0 ? 0 : 700 + 13 * (i % width) + 7 * (i / width)));
+    const clearance::depth_image image(depth.data(), std::uint32_t(width), std::uint32_t(height),
+                                       {50, 50, width / 2.0, height / 2.0});
     std::vector<clearance::ray> rays;
     for (int i = 0; i < width * height; ++i) rays.push_back({real(i % width) / 50 - 0.5f, real(i / width) / 50 - 0.5f});
     const auto rays_there = gpu.copy_in(std::span<const clearance::ray>(rays));
@@ -114,10 +125,13 @@ TEST_CASE("A picture's pixels are taken in tiles, and each distance is at its ow
     for (const real d_max : {real(0.3), clearance::infinity}) {
       const auto expected = distances(host{}, model, poses, cloud, {d_max, true});
       require_same(distances(gpu, model.on(gpu), poses, cloud, {d_max, true}), expected, v, what);
-      const placed seen{clearance::ray_image(depth.data(), rays.data(), std::uint32_t(width), std::uint32_t(height)), camera};
-      const placed seen_there{clearance::ray_image(depth.data(), rays_there.data(), std::uint32_t(width), std::uint32_t(height)), camera};
+      const placed seen{clearance::ray_image(depth.data(), rays.data(), std::uint32_t(width), std::uint32_t(height)),
+                        camera};
+      const placed seen_there{
+          clearance::ray_image(depth.data(), rays_there.data(), std::uint32_t(width), std::uint32_t(height)), camera};
       require_same(distances(gpu, model.on(gpu), poses, std::tuple(cloud, seen_there), {d_max, true}),
-                   distances(host{}, model, poses, std::tuple(cloud, seen), {d_max, true}), v, what + ", and with rays");
+                   distances(host{}, model, poses, std::tuple(cloud, seen), {d_max, true}), v,
+                   what + ", and with rays");
     }
   }
 }

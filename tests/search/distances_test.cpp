@@ -25,9 +25,12 @@ void all_scenes() {
       auto expected = brute_distances(s, all.span, s.cloud_pose, d_max, nothing_inside);
       const placed cloud{all.span, s.cloud_pose};
       require_same(distances(host{}, model, s.poses, cloud, {d_max, true}), expected, v, what);
-      require_same(distances(host{1}, model, s.poses, cloud, {d_max}), expected, v, what + ", one thread, distances alone");
+      require_same(distances(host{1}, model, s.poses, cloud, {d_max}), expected, v,
+                   what + ", one thread, distances alone");
       append(expected, brute_distances(s, all.raw, all.camera_pose, d_max, nothing_inside));
-      require_same(distances(host{}, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), {d_max, true}), expected, v, what + ", two clouds");
+      require_same(
+          distances(host{}, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), {d_max, true}),
+          expected, v, what + ", two clouds");
     }
   }
 }
@@ -46,8 +49,8 @@ std::vector<vec3> raster(dice& d, const Eigen::Isometry3d& pose, double size) {
   return points;
 }
 
-/// Parts among them and parts behind them; and robots whose parts lie far from their own origins, so that rounding is coarser than
-/// the way between neighbours.
+/// Parts among them and parts behind them; and robots whose parts lie far from their own origins, so that rounding is
+/// coarser than the way between neighbours.
 template <class V, class P>
 void as_seen(double far) {
   dice d(97);
@@ -68,9 +71,11 @@ void as_seen(double far) {
     const clearance::point_span span(s.points);
     for (const real d_max : {real(-0.01), real(0.1), clearance::infinity}) {
       const auto expected = brute_distances(s, span, s.cloud_pose, d_max, nothing_inside);
-      const std::string what = "round " + std::to_string(round) + ", " + std::to_string(far) + " m off, d_max " + std::to_string(d_max);
+      const std::string what =
+          "round " + std::to_string(round) + ", " + std::to_string(far) + " m off, d_max " + std::to_string(d_max);
       require_same(distances(host{}, model, s.poses, placed{span, s.cloud_pose}, {d_max, true}), expected, v, what);
-      require_same(distances(host{1}, model, s.poses, placed{span, s.cloud_pose}, {d_max, true}), expected, v, what + ", one thread");
+      require_same(distances(host{1}, model, s.poses, placed{span, s.cloud_pose}, {d_max, true}), expected, v,
+                   what + ", one thread");
     }
   }
 }
@@ -114,19 +119,22 @@ TEST_CASE("A prepared question of distances on the host says the same") {
   }
   const auto model = make_model<clearance::aabb>(scenes<triangle>()[0], {}, clearance::wrapped{});
   clearance::distances_query query(host{}, model);
-  CHECK_THROWS_AS(query(scenes<triangle>()[0].poses, std::vector<vec3>{}, {clearance::not_a_number}), std::invalid_argument);
+  CHECK_THROWS_AS(query(scenes<triangle>()[0].poses, std::vector<vec3>{}, {clearance::not_a_number}),
+                  std::invalid_argument);
 }
 
 TEST_CASE("A point inside a solid is 0 away, of the first part that it is in, and of none of its primitives") {
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   const auto model = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(m)));
   scene<triangle> s;
   dice d(93);
   for (const auto& part : model.parts()) {
     s.parts.emplace_back(part.tree.primitives.size());
-    for (std::size_t k = 0; k < part.tree.primitives.size(); ++k) s.parts.back()[part.tree.ids[k]] = part.tree.primitives[k];
+    for (std::size_t k = 0; k < part.tree.primitives.size(); ++k)
+      s.parts.back()[part.tree.ids[k]] = part.tree.primitives[k];
     s.poses.push_back(d.pose(0.5));
   }
   const auto points = d.points(3000, 2.5);
@@ -134,7 +142,8 @@ TEST_CASE("A point inside a solid is 0 away, of the first part that it is in, an
   const clearance::point_span span(points);
   verdict v;
   for (const real d_max : {real(-1), real(0), real(0.5), clearance::infinity}) {
-    const auto expected = brute_distances(s, span, pose, d_max, [&](std::uint32_t k, vec3 q) { return model.parts()[k].interior.view().inside(q); });
+    const auto expected = brute_distances(
+        s, span, pose, d_max, [&](std::uint32_t k, vec3 q) { return model.parts()[k].interior.view().inside(q); });
     const auto found = distances(host{}, model, s.poses, placed{span, pose}, {d_max, true});
     require_same(found, expected, v, "d_max " + std::to_string(d_max));
     CHECK((d_max < 0 || std::ranges::count(found.distance, 0.0f) > 100));
@@ -152,7 +161,8 @@ TEST_CASE("What a distance leaves certain holds: no primitive is nearer than the
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d q = s.poses[0].inverse() * Eigen::Vector3d(points[i].x, points[i].y, points[i].z);
     double least = 1e9;
-    for (const auto& b : s.parts[0]) least = std::min(least, (q - Eigen::Vector3d(b.center.x, b.center.y, b.center.z)).norm() - b.radius);
+    for (const auto& b : s.parts[0])
+      least = std::min(least, (q - Eigen::Vector3d(b.center.x, b.center.y, b.center.z)).norm() - b.radius);
     const double lower = found.certain.lower(found.distance[i]);
     positive += lower > 0;
     CHECK(lower <= std::max(0.0, least - 0.012));

@@ -21,26 +21,33 @@ void all_scenes(std::uint32_t width, bool layered = false) {
   for (const auto& s : scenes<P>()) {
     const sources<P> all(s);
     const clearance::build_options build{.width = width, .leaf_size = width == 4 ? 1u : 4u};
-    const auto model = (layered ? make_model<V>(s, build, clearance::layered{}) : make_model<V>(s, build, clearance::wrapped{})).on(gpu);
+    const auto model =
+        (layered ? make_model<V>(s, build, clearance::layered{}) : make_model<V>(s, build, clearance::wrapped{}))
+            .on(gpu);
     for (const real d_max : {real(-0.05), real(0), real(0.2), clearance::infinity}) {
       const std::string what = s.name + ", d_max " + std::to_string(d_max);
       auto expected = brute_distances(s, all.span, s.cloud_pose, d_max, nothing_inside);
       const placed cloud{all.span, s.cloud_pose};
       require_same(distances(gpu, model, s.poses, cloud, {d_max, true}), expected, v, what);
       append(expected, brute_distances(s, all.raw, all.camera_pose, d_max, nothing_inside));
-      require_same(distances(gpu, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), {d_max}), expected, v, what + ", two clouds");
+      require_same(distances(gpu, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), {d_max}),
+                   expected, v, what + ", two clouds");
     }
   }
 }
 
 }  // namespace
 
-TEST_CASE("On a device every point's distance to inner spheres is the least of all") { all_scenes<clearance::sphere, inner_sphere>(8); }
+TEST_CASE("On a device every point's distance to inner spheres is the least of all") {
+  all_scenes<clearance::sphere, inner_sphere>(8);
+}
 TEST_CASE("On a device every point's distance to triangles is the least of all") {
   all_scenes<clearance::aabb, triangle>(8);
   all_scenes<clearance::aabb, triangle>(4);
 }
-TEST_CASE("On a device every point's distance is the least of all in layered trees of two children") { all_scenes<clearance::obb, triangle>(2, true); }
+TEST_CASE("On a device every point's distance is the least of all in layered trees of two children") {
+  all_scenes<clearance::obb, triangle>(2, true);
+}
 
 TEST_CASE("Walls, crowds, neighbours and strangers: every point's distance on a device is the host's", "[slow]") {
   verdict v;
@@ -48,19 +55,23 @@ TEST_CASE("Walls, crowds, neighbours and strangers: every point's distance on a 
   const device gpu;
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   const auto boxes = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(m)));
   const std::vector poses{d.pose(0.5), d.pose(0.5)};
   std::vector<vec3> wall, edge;
   for (int i = 0; i < 200; ++i)
-    for (int j = 0; j < 300; ++j) wall.push_back({1.5f + 0.001f * float(i % 7), 0.01f * float(i - 100), 0.01f * float(j - 150)});
-  for (std::size_t i = 0; i < wall.size(); ++i) edge.push_back(i / 20 % 2 == 0 ? wall[i] : wall[wall.size() - 1 - i] + vec3{3, 0, 0});
+    for (int j = 0; j < 300; ++j)
+      wall.push_back({1.5f + 0.001f * float(i % 7), 0.01f * float(i - 100), 0.01f * float(j - 150)});
+  for (std::size_t i = 0; i < wall.size(); ++i)
+    edge.push_back(i / 20 % 2 == 0 ? wall[i] : wall[wall.size() - 1 - i] + vec3{3, 0, 0});
   const std::vector<vec3> crowd = d.points(20000, 2);
   const auto there = boxes.on(gpu);
   for (const std::vector<vec3>* points : {&std::as_const(wall), &std::as_const(edge), &crowd})
     for (const real d_max : {real(0.3), clearance::infinity}) {
       const auto expected = distances(host{}, boxes, poses, point_span(*points), {d_max, true});
-      require_same(distances(gpu, there, poses, point_span(*points), {d_max, true}), expected, v, std::to_string(points->size()) + " points within " + std::to_string(d_max));
+      require_same(distances(gpu, there, poses, point_span(*points), {d_max, true}), expected, v,
+                   std::to_string(points->size()) + " points within " + std::to_string(d_max));
     }
   scene<inner_sphere> s;
   for (int part = 0; part < 200; ++part) {
@@ -71,6 +82,7 @@ TEST_CASE("Walls, crowds, neighbours and strangers: every point's distance on a 
   const auto many = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto some = d.points(5000, 1.5);
   for (const real d_max : {real(0.2), clearance::infinity})
-    require_same(distances(gpu, many.on(gpu), s.poses, point_span(some), {d_max, true}), distances(host{}, many, s.poses, point_span(some), {d_max, true}), v,
+    require_same(distances(gpu, many.on(gpu), s.poses, point_span(some), {d_max, true}),
+                 distances(host{}, many, s.poses, point_span(some), {d_max, true}), v,
                  "200 parts within " + std::to_string(d_max));
 }

@@ -18,7 +18,8 @@ inline constexpr std::size_t very_many = 100000;
 #endif
 
 /// Parts around the origin, about a metre across together.
-inline void add_robot(scene<inner_sphere>& s, dice& d, int parts, int spheres, const Eigen::Isometry3d& at = shifted(0, 0, 0)) {
+inline void add_robot(scene<inner_sphere>& s, dice& d, int parts, int spheres,
+                      const Eigen::Isometry3d& at = shifted(0, 0, 0)) {
   for (int k = 0; k < parts; ++k) {
     s.parts.push_back(random_spheres(d, std::size_t(spheres), 0.15, 0.05));
     s.poses.push_back(at * d.pose(0.4));
@@ -49,7 +50,8 @@ inline std::vector<inner_sphere> towards_the_origin(std::size_t n) {
   std::vector<inner_sphere> all;
   for (std::size_t k = 0; k < n; ++k) {
     const double away = std::exp(-60.0 * double(k) / double(n)), turn = 0.7 * double(k);
-    all.push_back({{real(away * std::cos(turn)), real(away * std::sin(turn)), real(away * std::cos(0.37 * turn))}, real(away * 0.01)});
+    all.push_back({{real(away * std::cos(turn)), real(away * std::sin(turn)), real(away * std::cos(0.37 * turn))},
+                   real(away * 0.01)});
   }
   return all;
 }
@@ -62,8 +64,20 @@ inline std::vector<inner_sphere> shell(dice& d, std::size_t n) {
 
 /// Every number that is no coordinate, and those that are only just one.
 inline std::vector<vec3> strange_points() {
-  const real odd[] = {clearance::not_a_number, clearance::infinity, -clearance::infinity, 1e30f, -1e30f, FLT_MAX, 1.001e18f, -1.001e18f,
-                      1e18f, -1e18f, FLT_TRUE_MIN, -FLT_TRUE_MIN, FLT_MIN, -0.0f};
+  const real odd[] = {clearance::not_a_number,
+                      clearance::infinity,
+                      -clearance::infinity,
+                      1e30f,
+                      -1e30f,
+                      FLT_MAX,
+                      1.001e18f,
+                      -1.001e18f,
+                      1e18f,
+                      -1e18f,
+                      FLT_TRUE_MIN,
+                      -FLT_TRUE_MIN,
+                      FLT_MIN,
+                      -0.0f};
   std::vector<vec3> all;
   for (const real a : odd)
     for (const real b : {0.5f, a})
@@ -123,7 +137,8 @@ inline std::vector<scene<inner_sphere>> edge_scenes() {
   {
     auto& s = start("points that are only just finite");
     add_robot(s, d, 3, 40);
-    for (int k = 0; k < 3000; ++k) s.points.push_back({k % 2 ? 1e18f : -1e18f, k % 3 ? 1e18f : real(k) * 1e14f, -1e18f});
+    for (int k = 0; k < 3000; ++k)
+      s.points.push_back({k % 2 ? 1e18f : -1e18f, k % 3 ? 1e18f : real(k) * 1e14f, -1e18f});
   }
   {
     auto& s = start("no valid point");
@@ -209,7 +224,10 @@ static_assert(clearance::point_source<endless_points>);
 /// Three small parts within a metre of the origin: each of endless_points but the planted one is 2 m and more away.
 inline scene<inner_sphere> small_robot() {
   dice d(78);
-  scene<inner_sphere> s{"small", {random_spheres(d, 5, 0.2), random_spheres(d, 1, 0.2), random_spheres(d, 8, 0.2)}, {}, {endless_points::near()}};
+  scene<inner_sphere> s{"small",
+                        {random_spheres(d, 5, 0.2), random_spheres(d, 1, 0.2), random_spheres(d, 8, 0.2)},
+                        {},
+                        {endless_points::near()}};
   s.poses = {d.pose(0.3), d.pose(0.3), d.pose(0.3)};
   return s;
 }

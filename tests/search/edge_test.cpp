@@ -49,7 +49,8 @@ void ask(const Model& model, const scene<inner_sphere>& s, verdict& v, const std
     if (expected.part == none || (poses.size() < 4 && when != "cold")) return;  // the large parts' truth takes long
     const wide truth = truth_of(s, poses), to_solid = std::max(truth, wide(0));
     const auto r = query(poses, cloud);
-    v.require(r.lower <= to_solid && to_solid <= r.upper, what, ", ", when, ": bracket", r.lower, " to", r.upper, " misses", truth);
+    v.require(r.lower <= to_solid && to_solid <= r.upper, what, ", ", when, ": bracket", r.lower, " to", r.upper,
+              " misses", truth);
     v.require(std::isfinite(r.distance), what, ", ", when, ": not finite");
   };
   moved("cold");
@@ -64,7 +65,8 @@ void ask(const Model& model, const scene<inner_sphere>& s, verdict& v, const std
 clearance::closed_mesh box(double half) {
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return clearance::close_mesh(m);
 }
 
@@ -77,7 +79,8 @@ TEST_CASE("Extreme numbers of parts, spheres, points and metres are exact on the
     ask(model, s, v, s.name);
     if (s.name != deep_scene) continue;
     const auto binary = edge_model(s, {.width = 2});
-    for (const auto& deep : {model.parts()[0].view().tree, binary.parts()[0].view().tree}) CHECK(clearance::stack_need(deep) >= 60);
+    for (const auto& deep : {model.parts()[0].view().tree, binary.parts()[0].view().tree})
+      CHECK(clearance::stack_need(deep) >= 60);
     ask(binary, s, v, s.name + ", width 2");
   }
 }
@@ -90,7 +93,8 @@ TEST_CASE("Where every point is inside a solid the distance is 0, at the first p
   for (const double half : {2.0, 1.0, 3.0}) parts.push_back(clearance::make_part<clearance::obb>(box(half)));
   for (const auto& part : parts) brute.push_back({part.tree.primitives, part.facts, part.view().interior});
   for (std::size_t k = 0; k < brute.size(); ++k)  // in the user's order, as brute force counts
-    for (std::size_t i = 0; i < brute[k].primitives.size(); ++i) brute[k].primitives[parts[k].tree.ids[i]] = parts[k].tree.primitives[i];
+    for (std::size_t i = 0; i < brute[k].primitives.size(); ++i)
+      brute[k].primitives[parts[k].tree.ids[i]] = parts[k].tree.primitives[i];
   const clearance::model model(std::move(parts));
   for (const double off : {0.0, 1000.0}) {  // the second box
     const std::vector<Eigen::Isometry3d> poses = {d.pose(0.1), shifted(off, 0, 0) * d.pose(0.1), d.pose(0.1)};
@@ -101,7 +105,8 @@ TEST_CASE("Where every point is inside a solid the distance is 0, at the first p
     for (const char* when : {"cold", "warm"}) {
       const auto r = query(poses, points);
       require_equal(r, expected, v, when);
-      CHECK((r.distance == 0 && r.point == 1 && r.part == 0 && r.state == clearance::state::collision && r.upper == 0 && r.lower == 0));
+      CHECK((r.distance == 0 && r.point == 1 && r.part == 0 && r.state == clearance::state::collision && r.upper == 0 &&
+             r.lower == 0));
       std::vector<clearance::part_minimum> minima(3);
       require_equal(query.per_part(poses, points, minima), expected, v, when);
       require_equal(minima, expected, v, when);
@@ -109,7 +114,8 @@ TEST_CASE("Where every point is inside a solid the distance is 0, at the first p
   }
 }
 
-TEST_CASE("Poses so far away that distances in float would overflow are refused; up to there every distance is finite") {
+TEST_CASE(
+    "Poses so far away that distances in float would overflow are refused; up to there every distance is finite") {
   const auto s = small_robot();
   const auto model = edge_model(s);
   min_distance_query query(host{}, model);
@@ -145,7 +151,8 @@ TEST_CASE("Ten million points: the one that is near is found wherever it is", "[
     const endless_points all{n, at};
     const vec3 before = cloud[at];
     cloud[at] = endless_points::near();
-    for (const auto& r : {query(s.poses, cloud), query(s.poses, all, Eigen::Isometry3d::Identity()), min_distance(host{}, model, s.poses, cloud)}) {
+    for (const auto& r : {query(s.poses, cloud), query(s.poses, all, Eigen::Isometry3d::Identity()),
+                          min_distance(host{}, model, s.poses, cloud)}) {
       CHECK(same_bits(r.distance, expected.best.distance));
       CHECK((r.point == at && r.part == expected.part && r.primitive == expected.best.primitive));
       CHECK((r.seen == n && r.valid == all.valid()));
@@ -155,5 +162,6 @@ TEST_CASE("Ten million points: the one that is near is found wherever it is", "[
   const auto r = query(s.poses, cloud);
   CHECK(r.distance >= 2);
   const auto same = min_distance(host{1}, model, s.poses, endless_points{n});
-  CHECK((same_bits(r.distance, same.distance) && r.point == same.point && r.primitive == same.primitive && r.valid == same.valid));
+  CHECK((same_bits(r.distance, same.distance) && r.point == same.point && r.primitive == same.primitive &&
+         r.valid == same.valid));
 }

@@ -19,8 +19,8 @@ bool same_minimum(const clearance::part_minimum& a, const clearance::part_minimu
 }
 
 template <class Model>
-void ask(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const std::vector<vec3>& points, const Eigen::Isometry3d& pose, verdict& v,
-         const std::string& what) {
+void ask(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const std::vector<vec3>& points,
+         const Eigen::Isometry3d& pose, verdict& v, const std::string& what) {
   const device gpu;
   const auto model = on_host.on(gpu);
   const auto there = gpu.copy_in(std::span<const vec3>(points));
@@ -31,14 +31,17 @@ void ask(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const std::
   const auto same = [&](const std::string& when, int times) {
     const auto expected = min_distance(host{}, on_host, poses, here);
     const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, here);
-    v.require(same_result(min_distance(gpu, model, poses, cloud), expected), what, ", plain, " + when, ": differs from the host's result");
+    v.require(same_result(min_distance(gpu, model, poses, cloud), expected), what, ", plain, " + when,
+              ": differs from the host's result");
     const auto [plain, own] = clearance::min_distance_per_part(gpu, model, poses, cloud);
-    v.require(same_result(plain, robot) && std::ranges::equal(own, each, same_minimum), what, ", plain, by parts, " + when, ": differs");
+    v.require(same_result(plain, robot) && std::ranges::equal(own, each, same_minimum), what,
+              ", plain, by parts, " + when, ": differs");
     for (int k = 0; query && k < times; ++k) {
       const std::string at = ", " + when + std::to_string(k);
       v.require(same_result((*query)(poses, cloud), expected), what, at, ": differs from the host's result");
       std::vector<clearance::part_minimum> minima(poses.size());
-      v.require(same_result(query->per_part(poses, cloud, minima), robot), what, at, ": differs from the host's result by parts");
+      v.require(same_result(query->per_part(poses, cloud, minima), robot), what, at,
+                ": differs from the host's result by parts");
       v.require(std::ranges::equal(minima, each, same_minimum), what, at, ": some part's minimum differs");
     }
   };
@@ -54,7 +57,8 @@ void ask(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const std::
 clearance::closed_mesh box(double half) {
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return clearance::close_mesh(m);
 }
 
@@ -70,15 +74,18 @@ TEST_CASE("Extreme numbers of parts, spheres, points and metres are exact on the
   verdict v;
   for (const auto& s : edge_scenes()) {
     ask(edge_model(s), s.poses, s.points, s.cloud_pose, v, s.name);
-    if (s.name == deep_scene) ask(edge_model(s, {.width = 2}), s.poses, s.points, s.cloud_pose, v, s.name + ", width 2");
+    if (s.name == deep_scene)
+      ask(edge_model(s, {.width = 2}), s.poses, s.points, s.cloud_pose, v, s.name + ", width 2");
   }
 }
 
-TEST_CASE("Crowds before very deep and very large trees are exact on the device: more pairs than a block keeps", "[slow]") {
+TEST_CASE("Crowds before very deep and very large trees are exact on the device: more pairs than a block keeps",
+          "[slow]") {
   verdict v;
   for (auto s : edge_scenes()) {
     if (std::ranges::none_of(s.parts, [](const auto& p) { return p.size() == very_many; })) continue;
-    for (std::size_t k = 0; s.points.size() < 500; ++k) s.points.push_back(clearance::scaled(real(k % 7) / 7, s.points[k]));
+    for (std::size_t k = 0; s.points.size() < 500; ++k)
+      s.points.push_back(clearance::scaled(real(k % 7) / 7, s.points[k]));
     ask(edge_model(s), s.poses, s.points, s.cloud_pose, v, s.name + ", crowded");
   }
 }
@@ -98,7 +105,8 @@ TEST_CASE("Where every point is inside a solid the device says 0, at the first p
   const auto there = model.on(gpu);
   clearance::min_distance_query query(gpu, there);
   const auto r = query(std::vector{d.pose(0.1), d.pose(0.1), d.pose(0.1)}, points);
-  CHECK((r.distance == 0 && r.point == 1 && r.part == 0 && r.state == clearance::state::collision && r.upper == 0 && r.lower == 0));
+  CHECK((r.distance == 0 && r.point == 1 && r.part == 0 && r.state == clearance::state::collision && r.upper == 0 &&
+         r.lower == 0));
 }
 
 TEST_CASE("A hundred million points: the one that is near is found wherever it is", "[slow]") {
@@ -129,13 +137,19 @@ TEST_CASE("A hundred million points: the one that is near is found wherever it i
     const std::string what = "point " + std::to_string(at);
     put(at, endless_points::near());
     const auto plain = min_distance(gpu, model, s.poses, all);
-    v.require(same_bits(plain.distance, near.distance) && plain.point == at && plain.part == near.part && plain.primitive == near.primitive, what);
+    v.require(same_bits(plain.distance, near.distance) && plain.point == at && plain.part == near.part &&
+                  plain.primitive == near.primitive,
+              what);
     v.require(plain.seen == n && plain.valid == endless_points{n, at}.valid(), what, ": the counts");
-    for (const char* when : {", before this one was there", ", warm"}) v.require(same_result(query(s.poses, all), plain), what, when);
+    for (const char* when : {", before this one was there", ", warm"})
+      v.require(same_result(query(s.poses, all), plain), what, when);
     const auto [robot, each] = clearance::min_distance_per_part(gpu, model, s.poses, all);
-    v.require(same_result(query.per_part(s.poses, all, minima), robot) && std::ranges::equal(minima, each, same_minimum), what, ": by parts");
+    v.require(
+        same_result(query.per_part(s.poses, all, minima), robot) && std::ranges::equal(minima, each, same_minimum),
+        what, ": by parts");
     if (at == n - 1) {
-      v.require(same_result(min_distance(host{}, on_host, s.poses, endless_points{n, at}), plain), what, ": differs from the host's result");
+      v.require(same_result(min_distance(host{}, on_host, s.poses, endless_points{n, at}), plain), what,
+                ": differs from the host's result");
       const point_span but_one(cloud.data() + 1, n - 1);
       v.require(same_result(query(s.poses, but_one), min_distance(gpu, model, s.poses, but_one)), what, ": unaligned");
       put(n / 2, endless_points::near());
@@ -146,6 +160,7 @@ TEST_CASE("A hundred million points: the one that is near is found wherever it i
   }
   clearance::check_cuda(cudaMemset(cloud.data(), 0xff, n * sizeof(vec3)), "cudaMemset");  // all bits set: no numbers
   const auto r = query.per_part(s.poses, all, minima);
-  CHECK((r.state == clearance::state::no_data && r.seen == n && r.valid == 0 && r.dropped[int(clearance::drop_reason::not_finite)] == n));
+  CHECK((r.state == clearance::state::no_data && r.seen == n && r.valid == 0 &&
+         r.dropped[int(clearance::drop_reason::not_finite)] == n));
   CHECK((minima[0].point == clearance::none && minima[2].point == clearance::none));
 }

@@ -26,11 +26,13 @@ struct given {
   device gpu{0, stream.handle};
   scene<inner_sphere> s = scenes<inner_sphere>()[1];
   sources<inner_sphere> all{s};
-  decltype(make_model<clearance::sphere>(s, {}, clearance::wrapped{})) on_host = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  decltype(make_model<clearance::sphere>(s, {}, clearance::wrapped{})) on_host =
+      make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   decltype(on_host.on(gpu)) model = on_host.on(gpu);
   device::buffer<std::byte> points = gpu.copy_in(all.span.bytes()), pixels = gpu.copy_in(all.raw.bytes());
   placed<point_span> cloud{all.span.at(points.data()), s.cloud_pose};
-  std::tuple<placed<point_span>, placed<clearance::depth_image<std::uint16_t>>> clouds{cloud, {all.raw.at(pixels.data()), all.camera_pose}};
+  std::tuple<placed<point_span>, placed<clearance::depth_image<std::uint16_t>>> clouds{
+      cloud, {all.raw.at(pixels.data()), all.camera_pose}};
   clearance::pinned_buffer<clearance::min_distance_result> result{1, 0};
   clearance::pinned_buffer<clearance::part_minimum> minima{model.size(), 0};
   clearance::pinned_buffer<clearance::world_transform> poses{s.poses.size() + 1, 0};
@@ -49,22 +51,32 @@ struct given {
     const placed here{all.span, s.cloud_pose};
     const std::tuple both(here, placed{all.raw, all.camera_pose});
     const auto one = [&](const auto& there, const auto& same, const std::string& what) {
-      each("min_distance_async" + what, [&] { clearance::min_distance_async(gpu, model, s.poses, there, result.data()); }, same);
-      each("min_distance_per_part_async" + what, [&] { clearance::min_distance_per_part_async(gpu, model, s.poses, there, result.data(), minima.data()); }, same);
+      each(
+          "min_distance_async" + what,
+          [&] { clearance::min_distance_async(gpu, model, s.poses, there, result.data()); }, same);
+      each(
+          "min_distance_per_part_async" + what,
+          [&] { clearance::min_distance_per_part_async(gpu, model, s.poses, there, result.data(), minima.data()); },
+          same);
       each("enqueue" + what, [&] { query.enqueue(s.poses, there, result.data()); }, same);
-      each("enqueue_per_part" + what, [&] { query.enqueue_per_part(s.poses, there, result.data(), minima.data()); }, same);
+      each(
+          "enqueue_per_part" + what, [&] { query.enqueue_per_part(s.poses, there, result.data(), minima.data()); },
+          same);
     };
     one(cloud, here, "");
     one(clouds, both, " of two clouds");
     const auto* const of_cloud = poses.data() + s.poses.size();
     each("enqueue of poses there", [&] { query.enqueue(poses.data(), cloud.source, of_cloud, result.data()); }, here);
-    each("enqueue_per_part of poses there", [&] { query.enqueue_per_part(poses.data(), cloud.source, of_cloud, result.data(), minima.data()); }, here);
+    each(
+        "enqueue_per_part of poses there",
+        [&] { query.enqueue_per_part(poses.data(), cloud.source, of_cloud, result.data(), minima.data()); }, here);
   }
 };
 
 }  // namespace
 
-TEST_CASE("Every frame that is enqueued returns while its stream is held, and is right when it is released", "[concurrent]") {
+TEST_CASE("Every frame that is enqueued returns while its stream is held, and is right when it is released",
+          "[concurrent]") {
   given g;
   verdict v;
   g.every_way([&](const std::string& name, auto enqueue, const auto& same) {
@@ -87,7 +99,9 @@ TEST_CASE("An answer of one's own is enqueued without waiting, too", "[concurren
   tally_of_pairs expected;
   const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});
   clearance::collect(host{}, g.on_host, g.s.poses, both, tallied{1, expected.words});
-  const auto enqueue = [&] { clearance::collect_async(g.gpu, g.model, g.s.poses, g.clouds, tallied{1, g.words.data()}, g.counts.data()); };
+  const auto enqueue = [&] {
+    clearance::collect_async(g.gpu, g.model, g.s.poses, g.clouds, tallied{1, g.words.data()}, g.counts.data());
+  };
   enqueue();
   g.gpu.wait();
   g.words.data()[0] = g.words.data()[1] = 0;
@@ -100,10 +114,12 @@ TEST_CASE("An answer of one's own is enqueued without waiting, too", "[concurren
   clearance::collect_query query(g.gpu, g.model);
   g.words.data()[0] = g.words.data()[1] = 0;
   const auto counts = query(g.s.poses, both, tallied{1, g.words.data()});
-  CHECK((g.words.data()[0] == expected.words[0] && g.words.data()[1] == expected.words[1] && counts.valid == g.counts.data()->valid));
+  CHECK((g.words.data()[0] == expected.words[0] && g.words.data()[1] == expected.words[1] &&
+         counts.valid == g.counts.data()->valid));
   query.enqueue(g.s.poses, g.clouds, tallied{1, g.words.data()}, g.counts.data());
   g.gpu.wait();
-  CHECK((g.words.data()[0] == 2 * expected.words[0] && g.words.data()[1] == 2 * expected.words[1] && counts.valid == g.counts.data()->valid));
+  CHECK((g.words.data()[0] == 2 * expected.words[0] && g.words.data()[1] == 2 * expected.words[1] &&
+         counts.valid == g.counts.data()->valid));
 }
 
 TEST_CASE("Several robots are asked in one call, each with its own result") {
@@ -115,7 +131,8 @@ TEST_CASE("Several robots are asked in one call, each with its own result") {
   const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});  // to be copied
   const auto results = clearance::min_distance_per_robot(g.gpu, robots, poses, both);
   REQUIRE(results.size() == 3);
-  for (std::size_t k = 0; k < 3; ++k) CHECK(same_result(results[k], clearance::min_distance(host{}, g.on_host, poses[k], both)));
+  for (std::size_t k = 0; k < 3; ++k)
+    CHECK(same_result(results[k], clearance::min_distance(host{}, g.on_host, poses[k], both)));
 }
 
 TEST_CASE("Distances are enqueued without waiting, too", "[concurrent]") {
@@ -123,7 +140,9 @@ TEST_CASE("Distances are enqueued without waiting, too", "[concurrent]") {
   const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});
   const auto expected = clearance::distances(host{}, g.on_host, g.s.poses, both, {.d_max = 1});
   clearance::pinned_buffer<real> distance(expected.distance.size(), 0);
-  const auto enqueue = [&] { return clearance::distances_async(g.gpu, g.model, g.s.poses, g.clouds, {distance.data()}, g.counts.data(), 1); };
+  const auto enqueue = [&] {
+    return clearance::distances_async(g.gpu, g.model, g.s.poses, g.clouds, {distance.data()}, g.counts.data(), 1);
+  };
   enqueue();
   g.gpu.wait();
   std::fill_n(distance.data(), distance.size(), real(-1));
@@ -133,7 +152,8 @@ TEST_CASE("Distances are enqueued without waiting, too", "[concurrent]") {
   held.release();
   CHECK((certain.error.here == expected.certain.error.here && certain.slop == expected.certain.slop));
   verdict v;
-  require_same({{distance.data(), distance.data() + distance.size()}, {}, {}, *g.counts.data(), certain}, expected, v, "enqueued");
+  require_same({{distance.data(), distance.data() + distance.size()}, {}, {}, *g.counts.data(), certain}, expected, v,
+               "enqueued");
 }
 
 TEST_CASE("Every frame that is enqueued by a prepared query can be captured and launched again") {
@@ -156,7 +176,8 @@ TEST_CASE("Every frame that is enqueued by a prepared query can be captured and 
   });
 }
 
-TEST_CASE("Questions that want memory for a call are enqueued without waiting, and can be captured and launched again", "[concurrent]") {
+TEST_CASE("Questions that want memory for a call are enqueued without waiting, and can be captured and launched again",
+          "[concurrent]") {
   given g;
   verdict v;
   const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});
@@ -175,11 +196,13 @@ TEST_CASE("Questions that want memory for a call are enqueued without waiting, a
     *found.data() = {}, *g.counts.data() = {};
   };
   const auto look = [&](const std::string& what) {
-    require_same({{distance.data(), distance.data() + distance.size()}, {}, {}, *g.counts.data(), distances.certain}, distances, v, what);
+    require_same({{distance.data(), distance.data() + distance.size()}, {}, {}, *g.counts.data(), distances.certain},
+                 distances, v, what);
     require_same({zones.per_part, 1, {zone.data(), zone.data() + zone.size()}, *g.counts.data()}, zones, v, what);
     const auto& c = *found.data();
-    v.require(c.state == collision.state && c.cloud == collision.cloud && c.point == collision.point && c.part == collision.part &&
-                  c.counts.valid == collision.counts.valid && g.counts.data()->valid == zones.counts.valid,
+    v.require(c.state == collision.state && c.cloud == collision.cloud && c.point == collision.point &&
+                  c.part == collision.part && c.counts.valid == collision.counts.valid &&
+                  g.counts.data()->valid == zones.counts.valid,
               what, ": in_collision differs");
   };
   const auto enqueue = [&] {

@@ -38,8 +38,10 @@ struct box_body {
   }
   part_type part() const {
     clearance::triangle_mesh m;
-    for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? half[0] : -half[0], k & 2 ? half[1] : -half[1], k & 4 ? half[2] : -half[2]);
-    m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    for (int k = 0; k < 8; ++k)
+      m.vertices.emplace_back(k & 1 ? half[0] : -half[0], k & 2 ? half[1] : -half[1], k & 4 ? half[2] : -half[2]);
+    m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
     return clearance::make_part<clearance::obb>(clearance::close_mesh(m));
   }
   wide distance(oracle::vec q) const {
@@ -58,15 +60,17 @@ struct truth {
     wide least = infinity;
     for (const auto& p : points)
       for (std::size_t k = 0; p && k < robot.size(); ++k)
-        least = std::min(least, robot[k].distance(oracle::moved_back(poses[k].matrix(), oracle::moved(pose.matrix(), *p))));
+        least =
+            std::min(least, robot[k].distance(oracle::moved_back(poses[k].matrix(), oracle::moved(pose.matrix(), *p))));
     return least;
   }
 };
 
-inline void require_bracket(const clearance::min_distance_result& r, wide distance, verdict& v, const std::string& what) {
+inline void require_bracket(const clearance::min_distance_result& r, wide distance, verdict& v,
+                            const std::string& what) {
   using clearance::state;
-  v.require(r.state != state::no_data && r.lower <= distance && distance <= r.upper, what, ": the distance is", distance, ", not from", r.lower, " to",
-            r.upper);
+  v.require(r.state != state::no_data && r.lower <= distance && distance <= r.upper, what, ": the distance is",
+            distance, ", not from", r.lower, " to", r.upper);
   v.require(r.state != state::collision || distance == 0, what, ": no collision, but", distance);
   v.require((r.state == state::free) == (r.lower > 0) && !(r.lower > r.upper), what, ": the state");
 }
@@ -87,7 +91,8 @@ struct far_scene {
   Eigen::Vector3d middle, cluster;  // of the robot and of the far points, in the cloud's frame
   std::vector<Eigen::Vector3d> points;
 
-  far_scene(dice& d, int round) : name("scene " + std::to_string(round)), world_from_cloud(d.pose(round % 3 == 0 ? 1 : magnitude(d, 0, 7))) {
+  far_scene(dice& d, int round)
+      : name("scene " + std::to_string(round)), world_from_cloud(d.pose(round % 3 == 0 ? 1 : magnitude(d, 0, 7))) {
     middle = round % 4 == 0 ? Eigen::Vector3d::Zero().eval() : away(d, magnitude(d, -1, 7));
     cluster = middle + away(d, magnitude(d, 0, 9));
     for (int k = 0; k < 2; ++k) {
@@ -98,7 +103,8 @@ struct far_scene {
     for (int k = 0; k < 40; ++k) points.push_back(cluster + (k % 2 ? 0 : 1) * away(d, spread));
     // One a metre or so off, inside, or at a surface; or none.
     for (unsigned k = 0; k < 1 + d.below(3); ++k)
-      if (round % 5 != 4) points.insert(points.begin() + d.below(40), middle + away(d, d.uniform(0, round % 2 ? 0.3 : 2)));
+      if (round % 5 != 4)
+        points.insert(points.begin() + d.below(40), middle + away(d, d.uniform(0, round % 2 ? 0.3 : 2)));
   }
 
   /// `use(source, truth, name)` for records and floats relative to the robot, to the far points, and to nothing.
@@ -108,14 +114,16 @@ struct far_scene {
         {"the robot", middle.array().round()}, {"the far points", cluster}, {"nothing", Eigen::Vector3d::Zero()}};
     for (const auto& [from, at] : origins) {
       clearance::strided_points<double> records;
-      records.data = reinterpret_cast<const std::byte*>(points.data()), records.count = points.size(), records.step = sizeof points[0];
+      records.data = reinterpret_cast<const std::byte*>(points.data()), records.count = points.size(),
+      records.step = sizeof points[0];
       records.offset[1] = 8, records.offset[2] = 16;
       records.origin = {real(at.x()), real(at.y()), real(at.z())};
       truth t{{}, world_from_cloud};
       t.pose.translation() = world_from_cloud * Eigen::Vector3d(records.origin.x, records.origin.y, records.origin.z);
       std::vector<vec3> floats;
       for (const auto& p : points) {
-        t.points.push_back(oracle::vec{wide(p.x()) - records.origin.x, wide(p.y()) - records.origin.y, wide(p.z()) - records.origin.z});
+        t.points.push_back(oracle::vec{wide(p.x()) - records.origin.x, wide(p.y()) - records.origin.y,
+                                       wide(p.z()) - records.origin.z});
         floats.push_back({real(t.points.back()->x), real(t.points.back()->y), real(t.points.back()->z)});
       }
       use(records, t, name + ", doubles less " + from);
@@ -140,7 +148,8 @@ struct camera_scene {
   std::vector<clearance::ray> rays;
   static constexpr std::uint32_t width = 16, height = 8;
 
-  camera_scene(dice& d, int round) : name("camera " + std::to_string(round)), world_from_camera(d.pose(magnitude(d, 0, 6))) {
+  camera_scene(dice& d, int round)
+      : name("camera " + std::to_string(round)), world_from_camera(d.pose(magnitude(d, 0, 6))) {
     const double f = magnitude(d, 1, 3), off = round % 3 ? 1 : magnitude(d, 0, 6);
     camera = {f, f * d.uniform(0.9, 1.1), off * d.uniform(0, width), off * d.uniform(0, height)};
     scale = round % 2 ? 0.001 : magnitude(d, -4, 0);
@@ -162,7 +171,8 @@ struct camera_scene {
       truth t{{}, world_from_camera};
       for (std::uint32_t i = 0; i < width * height; ++i) {
         const auto pixel = source.pixels[i];
-        t.points.push_back(at(i, wide(pixel) * (std::is_same_v<decltype(pixel), const float> ? wide(1) : wide(scale)), by_ray));
+        t.points.push_back(
+            at(i, wide(pixel) * (std::is_same_v<decltype(pixel), const float> ? wide(1) : wide(scale)), by_ray));
       }
       std::uint32_t seen = d.below(width * height);
       while (!t.points[seen]) seen = (seen + 1) % (width * height);
@@ -170,7 +180,10 @@ struct camera_scene {
       robot.clear(), poses.clear();
       for (int k = 0; k < 2; ++k) {
         robot.emplace_back(d);
-        poses.push_back(world_from_camera * Eigen::Translation3d(Eigen::Vector3d(double(p.x), double(p.y), double(p.z)) + away(d, d.uniform(0, 2))) * d.pose(0.3));
+        poses.push_back(
+            world_from_camera *
+            Eigen::Translation3d(Eigen::Vector3d(double(p.x), double(p.y), double(p.z)) + away(d, d.uniform(0, 2))) *
+            d.pose(0.3));
       }
       use(source, t, name + what);
     };
@@ -194,9 +207,12 @@ void each_far_question(int rounds, Use use) {
   dice d(91);
   for (int round = 0; round < rounds; ++round) {
     far_scene<Body> s(d, round);
-    s.each_source([&](const auto& source, const truth& t, const std::string& name) { use(s.robot, s.poses, source, t, name); });
+    s.each_source(
+        [&](const auto& source, const truth& t, const std::string& name) { use(s.robot, s.poses, source, t, name); });
     camera_scene<Body> c(d, round);
-    c.each_source(d, [&](const auto& source, const truth& t, const std::string& name) { use(c.robot, c.poses, source, t, name); });
+    c.each_source(d, [&](const auto& source, const truth& t, const std::string& name) {
+      use(c.robot, c.poses, source, t, name);
+    });
   }
 }
 

@@ -15,23 +15,26 @@ struct ask_host {
   verdict& v;
 
   template <class Body, class Source>
-  void operator()(const std::vector<Body>& robot, const std::vector<Eigen::Isometry3d>& poses, const Source& source, const truth& t,
-                  const std::string& name) const {
+  void operator()(const std::vector<Body>& robot, const std::vector<Eigen::Isometry3d>& poses, const Source& source,
+                  const truth& t, const std::string& name) const {
     const auto model = model_of(robot);
     const wide distance = t.distance(robot, poses);
     const placed cloud{source, t.pose};
     require_bracket(clearance::min_distance(host{}, model, poses, cloud), distance, v, name);
-    require_bracket(clearance::min_distance_per_part(host{}, model, poses, cloud).first, distance, v, name + ", by parts");
+    require_bracket(clearance::min_distance_per_part(host{}, model, poses, cloud).first, distance, v,
+                    name + ", by parts");
     clearance::min_distance_query query(host{}, model);
     for (const char* when : {", cold", ", warm"}) require_bracket(query(poses, cloud), distance, v, name + when);
-    // A cloud whose floats are exact comes before or after it, near the robot but a little farther: the error is that of both.
+    // A cloud whose floats are exact comes before or after it, near the robot but a little farther: the error is that
+    // of both.
     const std::vector<vec3> other = {{0, 0, real(distance) + 3}};
     for (const bool before : {true, false}) {
       clearance::min_distance_result r;
       const placed beside{clearance::point_span(other), poses[0]};
       r = before ? clearance::min_distance(host{}, model, poses, std::tuple(beside, cloud))
                  : clearance::min_distance(host{}, model, poses, std::tuple(cloud, beside));
-      const wide both = std::min(distance, truth{{oracle::vec{0, 0, wide(other[0].z)}}, poses[0]}.distance(robot, poses));
+      const wide both =
+          std::min(distance, truth{{oracle::vec{0, 0, wide(other[0].z)}}, poses[0]}.distance(robot, poses));
       require_bracket(r, both, v, name + (before ? ", the second" : ", the first"));
     }
   }
@@ -60,8 +63,9 @@ TEST_CASE("A robot near the origin of the floats has a bracket of micrometres, w
     s.each_source([&](const auto& source, const truth& t, const std::string& name) {
       if (name.find("less the robot") == name.npos) return;
       const auto r = clearance::min_distance(host{}, model, s.poses, placed{source, t.pose});
-      if (r.distance < 5) v.require(r.upper - r.lower < 100e-6f + 0x1p-42f * (s.world_from_cloud.translation().norm() + s.middle.norm()), name, ": from",
-                                    r.lower, " to", r.upper);
+      if (r.distance < 5)
+        v.require(r.upper - r.lower < 100e-6f + 0x1p-42f * (s.world_from_cloud.translation().norm() + s.middle.norm()),
+                  name, ": from", r.lower, " to", r.upper);
     });
   }
 }
@@ -80,8 +84,9 @@ TEST_CASE("A source that may be off by about as much as it measures, or says no 
   };
   const std::tuple nothing(clearance::state::possible, clearance::state::possible, real(0));
   const double no = clearance::not_a_number;
-  const std::vector<clearance::position_error> offs{{0, 0.25}, {0, 0.4999}, {0, 0.49999999}, {0, 0.5}, {0, 0.5000003}, {0, 3}, {0, no},
-                                                    {no, 0}, {no, 0.01}, {-1, 0}, {0, -1}};
+  const std::vector<clearance::position_error> offs{{0, 0.25},      {0, 0.4999}, {0, 0.49999999}, {0, 0.5},
+                                                    {0, 0.5000003}, {0, 3},      {0, no},         {no, 0},
+                                                    {no, 0.01},     {-1, 0},     {0, -1}};
   for (const clearance::position_error& off : offs) {
     INFO(off.absolute << " and " << off.relative);
     CHECK(asked(off) == nothing);
@@ -99,7 +104,8 @@ TEST_CASE("What a source's positions have lost is no more than it says") {
     for (std::size_t i = 0; i < source.size(); ++i) {
       if (!t.points[i]) continue;
       const auto p = wider(source[i].position);
-      v.require(oracle::between(p, *t.points[i]) <= off.absolute + off.relative * oracle::length(*t.points[i]), name, ", point", i);
+      v.require(oracle::between(p, *t.points[i]) <= off.absolute + off.relative * oracle::length(*t.points[i]), name,
+                ", point", i);
     }
   };
   each_far_question<ball_body>(300, check);

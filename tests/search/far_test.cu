@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// On a device the bracket is true wherever most points, the origin of their floats, or the poses are: plain, prepared, by
-// parts, of several clouds, and with poses in device memory.
+// On a device the bracket is true wherever most points, the origin of their floats, or the poses are: plain, prepared,
+// by parts, of several clouds, and with poses in device memory.
 #pragma nv_diag_suppress 20208  // the truth is in long double, on the host
 #include "search/far_scenes.hpp"
 #include "support/product_device.cuh"
@@ -16,8 +16,8 @@ struct ask_device {
   verdict& v;
 
   template <class Body, class Source>
-  void operator()(const std::vector<Body>& robot, const std::vector<Eigen::Isometry3d>& poses, const Source& source, const truth& t,
-                  const std::string& name) const {
+  void operator()(const std::vector<Body>& robot, const std::vector<Eigen::Isometry3d>& poses, const Source& source,
+                  const truth& t, const std::string& name) const {
     const auto on_host = model_of(robot);
     const wide distance = t.distance(robot, poses);
     const placed cloud{source, t.pose};
@@ -25,7 +25,8 @@ struct ask_device {
     const auto by_parts = clearance::min_distance_per_part(host{}, on_host, poses, cloud).first;
     const device gpu;
     const auto model = on_host.on(gpu);
-    const auto check = [&](const clearance::min_distance_result& r, const clearance::min_distance_result& as, const char* how) {
+    const auto check = [&](const clearance::min_distance_result& r, const clearance::min_distance_result& as,
+                           const char* how) {
       require_bracket(r, distance, v, name + how);
       v.require(same_result(r, as), name, how, ": differs from the host's result");
     };
@@ -54,7 +55,8 @@ struct ask_device {
 
 }  // namespace
 
-TEST_CASE("On a device the bracket contains the distance however far most points, and the origin of their floats, are") {
+TEST_CASE(
+    "On a device the bracket contains the distance however far most points, and the origin of their floats, are") {
   verdict v;
   each_far_question<ball_body>(60, ask_device{v});
   each_far_question<box_body>(60, ask_device{v});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trees that are not ours in the kernel of a scan: linked, flat, deeper and wider than its stacks. They say what brute force and
-// the host say, in every bit, and so do more parts than a kernel takes.
+// Trees that are not ours in the kernel of a scan: linked, flat, deeper and wider than its stacks. They say what brute
+// force and the host say, in every bit, and so do more parts than a kernel takes.
 #include "support/brute_distances.hpp"
 #include "support/linked_tree.hpp"
 #include "support/product_device.cuh"
@@ -25,21 +25,25 @@ bool same_minimum(const clearance::part_minimum& a, const clearance::part_minimu
 
 /// One call and a prepared query, cold and warm, with a bound for all and one a part, as the host says it.
 template <class Here, class There, class Cloud>
-void ask(const Here& on_host, const There& model, const std::vector<Eigen::Isometry3d>& poses, const Cloud& cloud, verdict& v, const std::string& what) {
+void ask(const Here& on_host, const There& model, const std::vector<Eigen::Isometry3d>& poses, const Cloud& cloud,
+         verdict& v, const std::string& what) {
   const device gpu;
   const auto expected = min_distance(host{}, on_host, poses, cloud);
   const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, cloud);
-  v.require(same_result(min_distance(gpu, model, poses, cloud), expected), what, ", one call: differs from the host's result");
+  v.require(same_result(min_distance(gpu, model, poses, cloud), expected), what,
+            ", one call: differs from the host's result");
   const auto [by_parts, own] = clearance::min_distance_per_part(gpu, model, poses, cloud);
-  v.require(same_result(by_parts, robot) && std::ranges::equal(own, each, same_minimum), what, ", one call, per part: differs");
+  v.require(same_result(by_parts, robot) && std::ranges::equal(own, each, same_minimum), what,
+            ", one call, per part: differs");
   for (const real d_max : {real(0.3), clearance::infinity})
-    require_same(clearance::distances(gpu, model, poses, cloud, {d_max, true}), clearance::distances(host{}, on_host, poses, cloud, {d_max, true}), v,
-                 what + ", distances");
+    require_same(clearance::distances(gpu, model, poses, cloud, {d_max, true}),
+                 clearance::distances(host{}, on_host, poses, cloud, {d_max, true}), v, what + ", distances");
   clearance::min_distance_query query(gpu, model);
   std::vector<clearance::part_minimum> minima(poses.size());
   for (const char* when : {", cold", ", warm"}) {
     v.require(same_result(query(poses, cloud), expected), what + when, ": differs from the host's result");
-    v.require(same_result(query.per_part(poses, cloud, minima), robot), what + when, ": differs from the host's result by parts");
+    v.require(same_result(query.per_part(poses, cloud, minima), robot), what + when,
+              ": differs from the host's result by parts");
     v.require(std::ranges::equal(minima, each, same_minimum), what + when, ": some part's minimum differs");
   }
 }
@@ -69,7 +73,8 @@ void ask_linked(const scene<P>& s, bool lopsided, verdict& v, const std::string&
   const auto parts = gpu.copy_in(std::span<const view>(there));
   const placed cloud{point_span(s.points), s.cloud_pose};
   const clearance::model_view<view> on_host{here.data(), facts, depth, 2}, model{parts.data(), facts, depth, 2};
-  require_equal(min_distance(gpu, model, s.poses, cloud), brute_force(brute_parts(s), s.poses, {brute_cloud(cloud.source, cloud.pose)}), v, what);
+  require_equal(min_distance(gpu, model, s.poses, cloud),
+                brute_force(brute_parts(s), s.poses, {brute_cloud(cloud.source, cloud.pose)}), v, what);
   ask(on_host, model, s.poses, cloud, v, what);
 }
 
@@ -117,7 +122,8 @@ TEST_CASE("A tree wider than eight, and a flat list, are walked eight children a
       const view here{tree, {}, facts}, there{tree_there, {}, facts};
       const auto part = gpu.copy_in(std::span<const view>(&there, 1));
       ask(clearance::model_view<view>{&here, {&facts, 1}, tree.depth(), tree.width()},
-          clearance::model_view<view>{part.data(), {&facts, 1}, tree.depth(), tree.width()}, poses, cloud, v, what + ", " + std::to_string(count));
+          clearance::model_view<view>{part.data(), {&facts, 1}, tree.depth(), tree.width()}, poses, cloud, v,
+          what + ", " + std::to_string(count));
     };
     compare(wide_view<clearance::sphere, inner_sphere>{volumes.data(), balls.data(), count},
             wide_view<clearance::sphere, inner_sphere>{volumes_there.data(), balls_there.data(), count}, "wide");
@@ -127,7 +133,8 @@ TEST_CASE("A tree wider than eight, and a flat list, are walked eight children a
     clearance::bvh<clearance::sphere, inner_sphere> tree;
     tree.volumes = volumes, tree.primitives = balls, tree.depth = 1, tree.width = count;
     tree.nodes.push_back({1, count});
-    for (std::uint32_t k = 0; k < count; ++k) tree.nodes.push_back({k, 1 | clearance::bvh_node::leaf_bit}), tree.ids.push_back(k);
+    for (std::uint32_t k = 0; k < count; ++k)
+      tree.nodes.push_back({k, 1 | clearance::bvh_node::leaf_bit}), tree.ids.push_back(k);
     const auto tree_there = tree.on(gpu);
     compare(clearance::any_tree{tree.view()}, clearance::any_tree{tree_there.view()}, "arrays");
     const clearance::model on_host(std::vector{clearance::make_part(std::move(tree))});
@@ -140,13 +147,16 @@ namespace {
 
 /// A tree of a wide root and, below it, `groups` nodes of `width` leaves each.
 clearance::bvh<clearance::sphere, inner_sphere> wide_below_wide(dice& d, std::uint32_t groups, std::uint32_t width) {
-  const auto volume = [](std::span<const ball> balls) { return clearance::bounding_volume_traits<clearance::sphere>::fit(balls); };
+  const auto volume = [](std::span<const ball> balls) {
+    return clearance::bounding_volume_traits<clearance::sphere>::fit(balls);
+  };
   clearance::bvh<clearance::sphere, inner_sphere> tree;
   auto& all = tree.primitives;
   std::vector<ball> balls;
   for (std::uint32_t group = 0; group < groups; ++group) {
     const vec3 about = d.point(1);
-    for (std::uint32_t k = 0; k < width; ++k) all.push_back({about + d.point(0.2), 0.01f + d.number(0, 0.02)}), balls.push_back(all.back().balls()[0]);
+    for (std::uint32_t k = 0; k < width; ++k)
+      all.push_back({about + d.point(0.2), 0.01f + d.number(0, 0.02)}), balls.push_back(all.back().balls()[0]);
   }
   tree.depth = 2, tree.width = std::max(groups, width);
   tree.nodes.push_back({1, groups}), tree.volumes.push_back(volume(balls));
@@ -182,19 +192,22 @@ void ask_wide(dice& d, int parts, std::uint32_t groups, std::uint32_t width, int
   }
   const auto views = gpu.copy_in(std::span<const view>(there));
   const std::uint32_t most = std::max(groups, width);
-  const std::string what = std::to_string(parts) + " parts, " + std::to_string(width) + " below " + std::to_string(groups);
+  const std::string what =
+      std::to_string(parts) + " parts, " + std::to_string(width) + " below " + std::to_string(groups);
   for (const real far : {2, 30}) {  // from 30 m much is nearly equally far
     s.points = d.points(3000, far);
     for (int again = 0; again < often; ++again) {
       const placed cloud{point_span(s.points), d.pose(0.1)};
       const clearance::model_view<view> on_host{here.data(), facts, 2, most}, model{views.data(), facts, 2, most};
       if (again == 0)
-        require_equal(min_distance(gpu, model, s.poses, cloud), brute_force(brute_parts(s), s.poses, {brute_cloud(cloud.source, cloud.pose)}), v, what);
+        require_equal(min_distance(gpu, model, s.poses, cloud),
+                      brute_force(brute_parts(s), s.poses, {brute_cloud(cloud.source, cloud.pose)}), v, what);
       ask(on_host, model, s.poses, cloud, v, what);
     }
   }
-  CHECK_THROWS_WITH(min_distance(gpu, clearance::model_view<view>{views.data(), facts, 2, 262'145}, s.poses, point_span{}),
-                    "clearance: a node has 262145 children; a device takes 262144");
+  CHECK_THROWS_WITH(
+      min_distance(gpu, clearance::model_view<view>{views.data(), facts, 2, 262'145}, s.poses, point_span{}),
+      "clearance: a node has 262145 children; a device takes 262144");
 }
 
 }  // namespace
@@ -217,10 +230,15 @@ TEST_CASE("A point inside a solid whose triangles hang on a deep tree is certain
   clearance::triangle_mesh m;
   const int around = 24;
   for (const double z : {-1.0, 1.0})
-    for (int k = 0; k < around; ++k) m.vertices.emplace_back(std::cos(2 * M_PI * k / around), std::sin(2 * M_PI * k / around), z);
+    for (int k = 0; k < around; ++k)
+      m.vertices.emplace_back(std::cos(2 * M_PI * k / around), std::sin(2 * M_PI * k / around), z);
   const auto at = [&](int k, int ring) { return std::uint32_t(ring * around + (k + around) % around); };
-  for (int k = 0; k < around; ++k) m.triangles.push_back({at(k, 0), at(k + 1, 0), at(k, 1)}), m.triangles.push_back({at(k, 1), at(k + 1, 0), at(k + 1, 1)});
-  for (int k = 1; k + 1 < around; ++k) m.triangles.push_back({at(0, 0), at(k + 1, 0), at(k, 0)}), m.triangles.push_back({at(0, 1), at(k, 1), at(k + 1, 1)});
+  for (int k = 0; k < around; ++k)
+    m.triangles.push_back({at(k, 0), at(k + 1, 0), at(k, 1)}),
+        m.triangles.push_back({at(k, 1), at(k + 1, 0), at(k + 1, 1)});
+  for (int k = 1; k + 1 < around; ++k)
+    m.triangles.push_back({at(0, 0), at(k + 1, 0), at(k, 0)}),
+        m.triangles.push_back({at(0, 1), at(k, 1), at(k + 1, 1)});
   const auto closed = clearance::close_mesh(m);
   const auto whole = clearance::make_part<clearance::aabb>(closed);
   std::vector<triangle> triangles(whole.tree.primitives.size());
@@ -231,15 +249,16 @@ TEST_CASE("A point inside a solid whose triangles hang on a deep tree is certain
   gpu.stage(std::span<const linked_node<clearance::aabb, triangle>>(moved), nodes.data());
   const auto interior_there = whole.interior.on(gpu);
   using view = clearance::part_view<linked_view<clearance::aabb, triangle>, decltype(whole.interior.view())>;
-  const view here{tree.view(), whole.interior.view(), whole.facts}, there{{nodes.data(), tree.view().depth()}, interior_there.view(), whole.facts};
+  const view here{tree.view(), whole.interior.view(), whole.facts},
+      there{{nodes.data(), tree.view().depth()}, interior_there.view(), whole.facts};
   REQUIRE(clearance::stack_need(tree.view()) > 64);
   const auto part = gpu.copy_in(std::span<const view>(&there, 1));
   dice d(33);
   for (const real size : {real(0.5), real(3)}) {
     const std::vector<vec3> points = d.points(2000, size);
     ask(clearance::model_view<view>{&here, {&whole.facts, 1}, tree.view().depth(), 2},
-        clearance::model_view<view>{part.data(), {&whole.facts, 1}, tree.view().depth(), 2}, {Eigen::Isometry3d::Identity()}, point_span(points), v,
-        "cylinder");
+        clearance::model_view<view>{part.data(), {&whole.facts, 1}, tree.view().depth(), 2},
+        {Eigen::Isometry3d::Identity()}, point_span(points), v, "cylinder");
   }
 }
 
@@ -258,10 +277,12 @@ TEST_CASE("More parts than a kernel takes are looked at in groups", "[slow]") {
     const auto pose = d.pose(0.1);
     const auto model = on_host.on(device{});
     ask(on_host, model, s.poses, placed{point_span(first), pose}, v, std::to_string(parts) + " parts");
-    ask(on_host, model, s.poses, std::tuple(placed{point_span(first), pose}, point_span(second)), v, std::to_string(parts) + " parts, two clouds");
+    ask(on_host, model, s.poses, std::tuple(placed{point_span(first), pose}, point_span(second)), v,
+        std::to_string(parts) + " parts, two clouds");
     s.poses[128] = s.poses[0], s.parts[128] = s.parts[0];  // a tie goes to the lower part, of another group
-    ask(make_model<clearance::sphere>(s, {}, clearance::wrapped{}), make_model<clearance::sphere>(s, {}, clearance::wrapped{}).on(device{}), s.poses,
-        point_span(first), v, std::to_string(parts) + " parts, tied");
+    ask(make_model<clearance::sphere>(s, {}, clearance::wrapped{}),
+        make_model<clearance::sphere>(s, {}, clearance::wrapped{}).on(device{}), s.poses, point_span(first), v,
+        std::to_string(parts) + " parts, tied");
   }
 }
 
@@ -271,13 +292,16 @@ TEST_CASE("Parts of unequal tolerance are one robot, in groups too") {
   std::vector<std::vector<inner_sphere>> bodies(130, {{{50, 50, 50}, 0.1f}});
   bodies[0] = {{{0, 0, 0}, 1}}, bodies[128] = {{{5, 0, 0}, 1}};
   const std::vector<Eigen::Isometry3d> poses(bodies.size(), Eigen::Isometry3d::Identity());
-  const std::vector<vec3> points = {{0.4f, 0, 0}, {5.5f, 0, 0}};  // deepest in the first part, and certainly inside the other alone
+  const std::vector<vec3> points = {{0.4f, 0, 0},
+                                    {5.5f, 0, 0}};  // deepest in the first part, and certainly inside the other alone
   for (const double tolerance : {0.0, 0.7}) {
-    const auto on_host = clearance::make_model<clearance::sphere>(bodies, [&](std::size_t k) -> clearance::part_options {
-      return {.build = {}, .tolerance = k == 0 ? tolerance : 0};
-    });
+    const auto on_host = clearance::make_model<clearance::sphere>(
+        bodies,
+        [&](std::size_t k) -> clearance::part_options { return {.build = {}, .tolerance = k == 0 ? tolerance : 0}; });
     const auto expected = min_distance(host{}, on_host, poses, point_span(points));
-    v.require(expected.part == 0 && expected.state == (tolerance > 0 ? clearance::state::possible : clearance::state::collision), "the scene is not what it was meant to be");
+    v.require(expected.part == 0 &&
+                  expected.state == (tolerance > 0 ? clearance::state::possible : clearance::state::collision),
+              "the scene is not what it was meant to be");
     ask(on_host, on_host.on(gpu), poses, point_span(points), v, "tolerance " + std::to_string(tolerance));
   }
 }

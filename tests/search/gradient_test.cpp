@@ -11,13 +11,14 @@
 #include <clearance/volume/sphere.hpp>
 
 using namespace testing;
-using clearance::gradient, clearance::gradient_state, clearance::host, clearance::min_distance_per_part, clearance::part_minimum, clearance::part_witness,
-    clearance::part_witnesses, clearance::smooth_minimum_of;
+using clearance::gradient, clearance::gradient_state, clearance::host, clearance::min_distance_per_part,
+    clearance::part_minimum, clearance::part_witness, clearance::part_witnesses, clearance::smooth_minimum_of;
 
 namespace {
 
 /// A pose that moves with `v` at `about` and turns by `w`, for a time `h`.
-Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Eigen::Vector3d& v, const Eigen::Vector3d& w, const Eigen::Vector3d& about, double h) {
+Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Eigen::Vector3d& v, const Eigen::Vector3d& w,
+                        const Eigen::Vector3d& about, double h) {
   const Eigen::AngleAxisd turn(h * w.norm(), w.normalized());
   Eigen::Isometry3d there = Eigen::Isometry3d::Identity();
   there.linear() = turn * pose.linear();
@@ -25,7 +26,9 @@ Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Eigen::Vector3d& v,
   return there;
 }
 
-Eigen::Vector3d any(dice& d, double half) { return {d.uniform(-half, half), d.uniform(-half, half), d.uniform(-half, half)}; }
+Eigen::Vector3d any(dice& d, double half) {
+  return {d.uniform(-half, half), d.uniform(-half, half), d.uniform(-half, half)};
+}
 vec3 floats(const Eigen::Vector3d& v) { return {real(v.x()), real(v.y()), real(v.z())}; }
 
 /// Few primitives and few points, so that what is nearest stays so in a small motion.
@@ -56,15 +59,19 @@ void against_differences() {
     };
     const auto before = ask(-h), after = ask(h);
     for (std::size_t k = 0; k < minima.size(); ++k) {
-      const auto same = [&](const part_minimum& m) { return m.point == minima[k].point && m.primitive == minima[k].primitive; };
+      const auto same = [&](const part_minimum& m) {
+        return m.point == minima[k].point && m.primitive == minima[k].primitive;
+      };
       if (!same(before[k]) || !same(after[k]) || std::abs(minima[k].distance) < 0.02) continue;
-      // Between a face and its edge the second derivative jumps, and is at most the square of the speed by the distance.
+      // Between a face and its edge the second derivative jumps, and is at most the square of the speed by the
+      // distance.
       const Eigen::Vector3d arm = Eigen::Vector3d(witnesses[k].at.x, witnesses[k].at.y, witnesses[k].at.z) - about;
       const double remainder = h * (velocity + turning.cross(arm)).squaredNorm() / std::abs(double(minima[k].distance));
       const auto g = gradient(witnesses[k], about);
       const double rate = (double(after[k].distance) - double(before[k].distance)) / (2 * h);
       const double said = g.along(floats(velocity), floats(turning));
-      v.require(bool(g) && std::abs(said - rate) < 2e-3 + remainder, "part", k, " has", said, " instead of", rate, " at", minima[k].distance);
+      v.require(bool(g) && std::abs(said - rate) < 2e-3 + remainder, "part", k, " has", said, " instead of", rate,
+                " at", minima[k].distance);
       ++compared, negative += minima[k].distance < 0;
       if (least.part == k) {
         const auto robots = gradient(least, about);
@@ -87,21 +94,27 @@ void of_all_scenes() {
     v.require(all.size() == minima.size(), s.name);
     for (std::size_t k = 0; k < all.size(); ++k) {
       const part_witness& w = all[k];
-      v.require(same_bits(w.distance, minima[k].distance) && w.cloud == minima[k].cloud && w.point == minima[k].point && w.primitive == minima[k].primitive &&
+      v.require(same_bits(w.distance, minima[k].distance) && w.cloud == minima[k].cloud && w.point == minima[k].point &&
+                    w.primitive == minima[k].primitive &&
                     (w.part == k || (w.part == clearance::none && w.point == clearance::none)),
                 s.name, ": the witness of part", k);
       if (least.part == k)
-        v.require(same_bytes(w.at, least.at) && same_bytes(w.nearest, least.nearest) && same_bytes(w.normal, least.normal),
-                  s.name, ": where the robot's minimum is");
+        v.require(
+            same_bytes(w.at, least.at) && same_bytes(w.nearest, least.nearest) && same_bytes(w.normal, least.normal),
+            s.name, ": where the robot's minimum is");
       if (w.part == clearance::none) continue;
-      const double away = (Eigen::Vector3d(w.at.x, w.at.y, w.at.z) - Eigen::Vector3d(w.nearest.x, w.nearest.y, w.nearest.z)).norm();
-      const double size = std::abs(double(w.distance)) + Eigen::Vector3d(w.at.x, w.at.y, w.at.z).cwiseAbs().maxCoeff() + 100;
-      v.require(std::abs(away - std::abs(double(w.distance))) <= 1e-5 * size, s.name, ": nearest and point are", away, " apart, not", w.distance);
+      const double away =
+          (Eigen::Vector3d(w.at.x, w.at.y, w.at.z) - Eigen::Vector3d(w.nearest.x, w.nearest.y, w.nearest.z)).norm();
+      const double size =
+          std::abs(double(w.distance)) + Eigen::Vector3d(w.at.x, w.at.y, w.at.z).cwiseAbs().maxCoeff() + 100;
+      v.require(std::abs(away - std::abs(double(w.distance))) <= 1e-5 * size, s.name, ": nearest and point are", away,
+                " apart, not", w.distance);
     }
     const auto same = [&](const std::vector<part_witness>& other) {
       return std::equal(all.begin(), all.end(), other.begin(), other.end(), same_witness);
     };
-    v.require(same(part_witnesses(clearance::host{1}, model, s.poses, std::tuple(two[0], two[1]), minima)), s.name, ", clouds of several kinds");
+    v.require(same(part_witnesses(clearance::host{1}, model, s.poses, std::tuple(two[0], two[1]), minima)), s.name,
+              ", clouds of several kinds");
     clearance::part_witnesses_query query(host{}, model);
     query(s.poses, two[0], min_distance_per_part(host{}, model, s.poses, two[0]).second);
     v.require(same(query(s.poses, two, minima)), s.name, ", prepared");
@@ -109,21 +122,32 @@ void of_all_scenes() {
     query.enqueue(s.poses, two, minima.data(), room.data());
     v.require(same(room), s.name, ", enqueued");
     query.enqueue(s.poses, std::vector<vec3>(), minima.data(), room.data());
-    v.require(std::all_of(room.begin(), room.end(), [](const part_witness& w) { return w.part == clearance::none; }), s.name, ", of another cloud");
+    v.require(std::all_of(room.begin(), room.end(), [](const part_witness& w) { return w.part == clearance::none; }),
+              s.name, ", of another cloud");
   }
 }
 
 /// A cube of half edge 1 that knows its inside.
 struct cube_interior {
-  CLEARANCE_HD bool inside(vec3 p) const { return clearance::absolute(p.x) < 1 && clearance::absolute(p.y) < 1 && clearance::absolute(p.z) < 1; }
+  CLEARANCE_HD bool inside(vec3 p) const {
+    return clearance::absolute(p.x) < 1 && clearance::absolute(p.y) < 1 && clearance::absolute(p.z) < 1;
+  }
 };
 
 }  // namespace
 
-TEST_CASE("Gradients of distances to inner spheres are those of differences") { against_differences<clearance::sphere, inner_sphere>(); }
-TEST_CASE("Gradients of distances to triangles are those of differences") { against_differences<clearance::obb, triangle>(); }
-TEST_CASE("Every part's witness to spheres has the numbers of its minimum") { of_all_scenes<clearance::aabb, inner_sphere>(); }
-TEST_CASE("Every part's witness to triangles has the numbers of its minimum") { of_all_scenes<clearance::sphere, triangle>(); }
+TEST_CASE("Gradients of distances to inner spheres are those of differences") {
+  against_differences<clearance::sphere, inner_sphere>();
+}
+TEST_CASE("Gradients of distances to triangles are those of differences") {
+  against_differences<clearance::obb, triangle>();
+}
+TEST_CASE("Every part's witness to spheres has the numbers of its minimum") {
+  of_all_scenes<clearance::aabb, inner_sphere>();
+}
+TEST_CASE("Every part's witness to triangles has the numbers of its minimum") {
+  of_all_scenes<clearance::sphere, triangle>();
+}
 
 TEST_CASE("Turning about a point counts by the arm, and pulling away by the normal") {
   part_witness w;
@@ -138,7 +162,8 @@ TEST_CASE("Turning about a point counts by the arm, and pulling away by the norm
 
 TEST_CASE("What has no gradient says why, and has no numbers") {
   const auto nothing = [](const clearance::pose_gradient& g, gradient_state why) {
-    return g.state == why && !g && g.linear.x != g.linear.x && g.angular.z != g.angular.z && !(g.along({1, 1, 1}, {1, 1, 1}) == g.along({1, 1, 1}, {1, 1, 1}));
+    return g.state == why && !g && g.linear.x != g.linear.x && g.angular.z != g.angular.z &&
+           !(g.along({1, 1, 1}, {1, 1, 1}) == g.along({1, 1, 1}, {1, 1, 1}));
   };
   const clearance::position origin{0, 0, 0};
   CHECK(nothing(gradient(clearance::min_distance_result{}, origin), gradient_state::no_data));
@@ -153,7 +178,8 @@ TEST_CASE("What has no gradient says why, and has no numbers") {
     CHECK(of_part.state == of_robot.state);
     return of_robot;
   };
-  const auto ball = clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 1}}));
+  const auto ball =
+      clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 1}}));
   CHECK(nothing(ask(ball, {0, 0, 0}), gradient_state::no_direction));
   CHECK(ask(ball, {0.25f, 0, 0}).linear == vec3{-1, 0, 0});  // deeper or not, the distance grows away from the centre
   CHECK(nothing(ask(ball, {0, clearance::not_a_number, 0}), gradient_state::no_data));
@@ -214,7 +240,8 @@ TEST_CASE("The smooth minimum is never above the least, near it, and its weights
     const double up = minima[k].distance, above = smooth_minimum_of(minima, temperature).value;
     minima[k].distance = distance - h;
     const double down = minima[k].distance, below = smooth_minimum_of(minima, temperature).value;
-    v.require(std::abs((above - below) / (up - down) - smooth.weights[k]) < 1e-5, "the slope", (above - below) / (up - down), " instead of", smooth.weights[k]);
+    v.require(std::abs((above - below) / (up - down) - smooth.weights[k]) < 1e-5, "the slope",
+              (above - below) / (up - down), " instead of", smooth.weights[k]);
   }
   std::vector<part_minimum> far(3);
   const auto nothing = smooth_minimum_of(far, 0.1);

@@ -10,11 +10,13 @@ TEST_CASE("Triangles in axis-aligned boxes, stack, from a span: the device is br
   check_on_device<triangle, aabb, clearance::stack>(pick_span{});
 }
 
-TEST_CASE("Inner spheres in axis-aligned boxes, near first, from records of floats: the device is brute force, bit for bit") {
+TEST_CASE(
+    "Inner spheres in axis-aligned boxes, near first, from records of floats: the device is brute force, bit for bit") {
   check_on_device<inner_sphere, aabb, clearance::near_first>(pick_floats{});
 }
 
-TEST_CASE("Triangles in axis-aligned boxes, recursive, from records of doubles: the device is brute force, bit for bit") {
+TEST_CASE(
+    "Triangles in axis-aligned boxes, recursive, from records of doubles: the device is brute force, bit for bit") {
   check_on_device<triangle, aabb, clearance::recursive>(pick_doubles{});
 }
 

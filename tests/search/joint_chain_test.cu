@@ -22,7 +22,8 @@ TEST_CASE("Joint vectors on a device have the host's answers, from the host's me
     const auto [tree, one] = random_tree(d, 7, 0.3);
     std::vector<std::vector<inner_sphere>> bodies;
     std::vector<std::size_t> links;
-    for (std::size_t k = 0; k < tree.links().size(); ++k) bodies.push_back(random_primitives<inner_sphere>(d, 8, 0.1, 0.05)), links.push_back(k);
+    for (std::size_t k = 0; k < tree.links().size(); ++k)
+      bodies.push_back(random_primitives<inner_sphere>(d, 8, 0.1, 0.05)), links.push_back(k);
     const auto model = clearance::make_model<clearance::sphere>(bodies);
     const auto there = model.on(gpu);
     const auto chain = clearance::io::joint_chain_of(tree, links, {.ignore_limits = true}, d.pose(0.5));
@@ -31,7 +32,8 @@ TEST_CASE("Joint vectors on a device have the host's answers, from the host's me
     const auto row = [&](bool far) {
       std::vector<double> values;
       for (std::size_t i = 0; i < tree.size(); ++i)
-        values.push_back(far && tree.movable(i).kind != clearance::io::joint_kind::prismatic ? d.uniform(-1e6, 1e6) : d.uniform(-3, 3));
+        values.push_back(far && tree.movable(i).kind != clearance::io::joint_kind::prismatic ? d.uniform(-1e6, 1e6)
+                                                                                             : d.uniform(-3, 3));
       return values;
     };
     for (int c = 0; c < 50; ++c) {
@@ -49,7 +51,8 @@ TEST_CASE("Joint vectors on a device have the host's answers, from the host's me
     clearance::min_distances_query query(gpu, there);
     const auto same = [&](const std::vector<clearance::min_distance_result>& found, const char* what) {
       v.require(found.size() == 50, what, ":", found.size(), " results");
-      for (std::size_t c = 0; c < found.size() && c < 50; ++c) v.require(same_result(found[c], expected.of[c]), what, ", configuration", c);
+      for (std::size_t c = 0; c < found.size() && c < 50; ++c)
+        v.require(same_result(found[c], expected.of[c]), what, ", configuration", c);
     };
     same(query(moved, q, points).of, "from the host");
     const auto q_there = gpu.copy_in(std::span<const double>(q));
@@ -72,10 +75,12 @@ TEST_CASE("A joint vector on a device that is not allowed is refused, and never 
   slide.value = 0, slide.factor = 1, slide.slides = true;
   const clearance::joint_chain<> chain({slide}, {0}, {{"slide", {-1, 1}}});
   const auto moved = chain.on(gpu);
-  const auto model = clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{{{{0, 0, 0}, 0.1f}}}).on(gpu);
+  const auto model =
+      clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{{{{0, 0, 0}, 0.1f}}}).on(gpu);
   const std::vector<vec3> points{{3, 0, 0}};
   clearance::min_distances_query query(gpu, model);
-  CHECK_THROWS_WITH(query(moved, std::vector<double>{0, 2}, points), "clearance: configuration 1: joint \"slide\" at 2.000000 is outside -1.000000 to 1.000000");
+  CHECK_THROWS_WITH(query(moved, std::vector<double>{0, 2}, points),
+                    "clearance: configuration 1: joint \"slide\" at 2.000000 is outside -1.000000 to 1.000000");
   const std::vector<double> q{0, 2};
   const auto q_there = gpu.copy_in(std::span<const double>(q));
   query.place(moved, q_there.data(), 2);
@@ -86,5 +91,6 @@ TEST_CASE("A joint vector on a device that is not allowed is refused, and never 
   CHECK((found[0].state == clearance::state::free && found[0].distance == Approx(2.9)));
   CHECK((found[1].state == clearance::state::possible && std::isnan(found[1].distance)));
   const clearance::joint_chain<> two({slide, slide}, {0, 1}, {{"slide", {}}});
-  CHECK_THROWS_WITH(query(two.on(gpu), std::vector<double>{0}, points), "clearance: there are 1 parts, but a joint chain of 2");
+  CHECK_THROWS_WITH(query(two.on(gpu), std::vector<double>{0}, points),
+                    "clearance: there are 1 parts, but a joint chain of 2");
 }

@@ -9,8 +9,8 @@
 #include <clearance/volume/sphere.hpp>
 
 using namespace testing;
-using clearance::host, clearance::merge, clearance::min_distance, clearance::min_distance_result, clearance::part_minimum, clearance::placed,
-    clearance::point_span, clearance::renumbered, clearance::slice;
+using clearance::host, clearance::merge, clearance::min_distance, clearance::min_distance_result,
+    clearance::part_minimum, clearance::placed, clearance::point_span, clearance::renumbered, clearance::slice;
 
 namespace {
 
@@ -18,8 +18,9 @@ bool same_minimum(const part_minimum& a, const part_minimum& b) {
   return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
 }
 bool same_witness(const min_distance_result& a, const min_distance_result& b) {
-  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.primitive == b.primitive &&
-         same_bytes(a.at, b.at) && same_bytes(a.nearest, b.nearest) && same_bytes(a.normal, b.normal);
+  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.part == b.part &&
+         a.primitive == b.primitive && same_bytes(a.at, b.at) && same_bytes(a.nearest, b.nearest) &&
+         same_bytes(a.normal, b.normal);
 }
 bool same_counts(const min_distance_result& a, const min_distance_result& b) {
   return a.seen == b.seen && a.valid == b.valid && std::ranges::equal(a.dropped, b.dropped);
@@ -30,8 +31,8 @@ bool same_bracket(const min_distance_result& a, const min_distance_result& b) {
 
 /// All orders and groupings of pieces give one answer.
 template <class Model, class S>
-void cut(const Model& model, const std::vector<Eigen::Isometry3d>& poses, const S& source, const Eigen::Isometry3d& pose, dice& d, verdict& v,
-         const std::string& what) {
+void cut(const Model& model, const std::vector<Eigen::Isometry3d>& poses, const S& source,
+         const Eigen::Isometry3d& pose, dice& d, verdict& v, const std::string& what) {
   const placed whole{source, pose};
   const auto expected = min_distance(host{}, model, poses, whole);
   const auto [by_parts, own] = clearance::min_distance_per_part(host{}, model, poses, whole);
@@ -60,7 +61,8 @@ void cut(const Model& model, const std::vector<Eigen::Isometry3d>& poses, const 
     v.require(same_witness(all, expected), what, ": another witness");
     v.require(same_counts(all, expected), what, ": other counts");
     v.require(same_bracket(all, expected), what, ": another bracket");
-    v.require(same_witness(parts, by_parts) && same_bracket(parts, by_parts) && same_counts(parts, by_parts), what, ": differs by parts");
+    v.require(same_witness(parts, by_parts) && same_bracket(parts, by_parts) && same_counts(parts, by_parts), what,
+              ": differs by parts");
     v.require(std::ranges::equal(each, own, same_minimum), what, ": some part's minimum differs");
     std::ranges::reverse(pieces), std::ranges::reverse(piece_by_parts), std::ranges::reverse(minima);
   }
@@ -91,12 +93,14 @@ TEST_CASE("Answers about several clouds have the witness and counts of one call,
     const placed first{all.span, s.cloud_pose};
     const placed second{all.raw, all.camera_pose};
     const auto expected = min_distance(host{}, model, s.poses, std::tuple(first, second));
-    const auto a = min_distance(host{}, model, s.poses, first), b = renumbered(min_distance(host{}, model, s.poses, second), 1);
+    const auto a = min_distance(host{}, model, s.poses, first),
+               b = renumbered(min_distance(host{}, model, s.poses, second), 1);
     for (const auto& r : {merge(a, b), merge(b, a)}) {
       v.require(same_witness(r, expected) && same_counts(r, expected), s.name, ": another witness");
       v.require(r.lower >= expected.lower && r.upper <= expected.upper, s.name, ": a wider bracket");
-      v.require(r.state == expected.state || (expected.state == clearance::state::possible && r.state == clearance::state::free), s.name,
-                ": another state");
+      v.require(r.state == expected.state ||
+                    (expected.state == clearance::state::possible && r.state == clearance::state::free),
+                s.name, ": another state");
     }
   }
 }
@@ -108,7 +112,8 @@ TEST_CASE("Some point certainly inside is a collision of all, and no valid point
   const std::vector<vec3> inside = {{0.1f, 0, 0}}, apart = {{3, 0, 0}}, none = {{clearance::not_a_number, 0, 0}};
   const auto ask = [&](const std::vector<vec3>& points) { return min_distance(host{}, model, poses, points); };
   const auto hit = merge(ask(apart), renumbered(ask(inside), 1));
-  CHECK((hit.state == clearance::state::collision && hit.upper == 0 && hit.lower == 0 && hit.cloud == 1 && hit.valid == 2));
+  CHECK((hit.state == clearance::state::collision && hit.upper == 0 && hit.lower == 0 && hit.cloud == 1 &&
+         hit.valid == 2));
   for (const auto& r : {merge(ask(apart), ask(none)), merge(ask(none), ask(apart))}) {
     CHECK((r.state == clearance::state::free && r.distance == 2 && r.lower > 1.99f && r.seen == 2 && r.valid == 1));
     CHECK(r.dropped[int(clearance::drop_reason::not_finite)] == 1);
@@ -117,5 +122,6 @@ TEST_CASE("Some point certainly inside is a collision of all, and no valid point
   // A pose on a device that was none leaves nothing known, whatever else was seen.
   min_distance_result lost;
   lost.state = clearance::state::possible;
-  for (const auto& r : {merge(ask(apart), lost), merge(lost, ask(apart)), merge(lost, ask(none))}) CHECK((r.state == clearance::state::possible && r.lower == 0));
+  for (const auto& r : {merge(ask(apart), lost), merge(lost, ask(apart)), merge(lost, ask(none))})
+    CHECK((r.state == clearance::state::possible && r.lower == 0));
 }

@@ -14,8 +14,8 @@
 
 using namespace testing;
 using namespace std::chrono_literals;
-using clearance::host, clearance::min_distance, clearance::min_distance_by, clearance::min_distance_query, clearance::min_distance_while, clearance::placed,
-    clearance::point_label, clearance::point_span;
+using clearance::host, clearance::min_distance, clearance::min_distance_by, clearance::min_distance_query,
+    clearance::min_distance_while, clearance::placed, clearance::point_label, clearance::point_span;
 
 namespace {
 
@@ -44,15 +44,19 @@ void cut_everywhere() {
     for (std::size_t pieces = 0;; ++pieces) {
       std::vector<point_label> labels(s.points.size(), point_label::own);
       const placed cloud{watched{point_span(s.points), labels.data()}, s.cloud_pose};
-      const auto r = min_distance_while(query, s.poses, cloud, [left = pieces]() mutable { return left-- > 0; }, {.piece = 100});
+      const auto r =
+          min_distance_while(query, s.poses, cloud, [left = pieces]() mutable { return left-- > 0; }, {.piece = 100});
       const std::size_t unseen = std::size_t(std::ranges::count(labels, point_label::own));
       const std::string what = s.name + " after " + std::to_string(pieces) + " pieces";
       v.require(r.unseen == unseen && r.seen == s.points.size() - unseen, what, ": other counts");
-      auto expected = min_distance(host{1}, model, s.poses, placed{clearance::masked(point_span(s.points), labels.data()), s.cloud_pose});
+      auto expected = min_distance(host{1}, model, s.poses,
+                                   placed{clearance::masked(point_span(s.points), labels.data()), s.cloud_pose});
       std::uint64_t bad = 0;
-      for (std::size_t i = 0; i < labels.size(); ++i) bad += labels[i] == point_label::rest && !point_span(s.points)[i].valid();
+      for (std::size_t i = 0; i < labels.size(); ++i)
+        bad += labels[i] == point_label::rest && !point_span(s.points)[i].valid();
       expected.seen -= unseen, expected.valid = expected.seen - bad;
-      expected.dropped[int(clearance::drop_reason::masked)] = 0, expected.dropped[int(clearance::drop_reason::not_finite)] = bad;
+      expected.dropped[int(clearance::drop_reason::masked)] = 0,
+      expected.dropped[int(clearance::drop_reason::not_finite)] = bad;
       if (unseen != 0) expected.lower = 0;
       if (unseen != 0 && expected.state == clearance::state::free) expected.state = clearance::state::possible;
       v.require(same_result(r, expected), what, ": another answer");
@@ -68,15 +72,20 @@ void cut_everywhere() {
 
 }  // namespace
 
-TEST_CASE("Cut after any piece it is the answer about the points that were looked at: inner spheres") { cut_everywhere<clearance::sphere, inner_sphere>(); }
-TEST_CASE("Cut after any piece it is the answer about the points that were looked at: triangles") { cut_everywhere<clearance::aabb, triangle>(); }
+TEST_CASE("Cut after any piece it is the answer about the points that were looked at: inner spheres") {
+  cut_everywhere<clearance::sphere, inner_sphere>();
+}
+TEST_CASE("Cut after any piece it is the answer about the points that were looked at: triangles") {
+  cut_everywhere<clearance::aabb, triangle>();
+}
 
 TEST_CASE("In time it is the least distance, of clouds of any kind and in any pieces") {
   verdict v;
   for (const auto& s : scenes<inner_sphere>()) {
     const sources<inner_sphere> all(s);
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
-    const std::tuple clouds(placed{all.raw, all.camera_pose}, placed{all.span, s.cloud_pose}, placed{all.doubles, s.cloud_pose});
+    const std::tuple clouds(placed{all.raw, all.camera_pose}, placed{all.span, s.cloud_pose},
+                            placed{all.doubles, s.cloud_pose});
     const auto expected = min_distance(host{}, model, s.poses, clouds);
     for (const std::size_t piece : {1, 37, 1000, 0}) {
       const auto r = min_distance_by(host{2}, model, s.poses, clouds, ever, {.piece = piece});
@@ -94,12 +103,16 @@ TEST_CASE("Points inside a closed mesh are found in whatever piece") {
     auto points = d.points(1000, 4);
     const std::size_t from = d.below(990);
     for (std::size_t i = 0; k % 2 && i < 10; ++i) points[from + i] = d.point(0.3);
-    v.require(same_result(min_distance_by(host{1}, model, poses, points, ever, {.piece = 50}), min_distance(host{1}, model, poses, points)), "cloud", k);
+    v.require(same_result(min_distance_by(host{1}, model, poses, points, ever, {.piece = 50}),
+                          min_distance(host{1}, model, poses, points)),
+              "cloud", k);
   }
   min_distance_query query(host{1}, model);
   const auto crowd = d.points(2000, 0.5);
-  const auto some = min_distance_while(query, poses, crowd, [left = 20]() mutable { return left-- > 0; }, {.piece = 50});
-  CHECK((some.state == clearance::state::collision && some.lower == 0 && some.upper == 0 && some.unseen > 0));  // what is certain stays so
+  const auto some =
+      min_distance_while(query, poses, crowd, [left = 20]() mutable { return left-- > 0; }, {.piece = 50});
+  CHECK((some.state == clearance::state::collision && some.lower == 0 && some.upper == 0 &&
+         some.unseen > 0));  // what is certain stays so
   CHECK(same_result(query(poses, crowd), min_distance(host{1}, model, poses, crowd)));
   // A bound that the query was given for some other frame is none of this one's.
   const std::vector<vec3> two{{9, 0, 0}, {9, 0, 0}, {9, 0, 0}, {9, 0, 0}, {99, 0, 0}};
@@ -113,7 +126,8 @@ TEST_CASE("No time, little time, and deadlines that are none") {
   const std::vector poses{Eigen::Isometry3d::Identity()};
   const std::vector<vec3> points(100000, vec3{3, 0, 0});
   const auto none = min_distance_by(host{}, model, poses, points, 0s);
-  CHECK((none.unseen == 100000 && none.seen == 0 && none.state == clearance::state::no_data && none.lower == 0 && none.upper == infinity));
+  CHECK((none.unseen == 100000 && none.seen == 0 && none.state == clearance::state::no_data && none.lower == 0 &&
+         none.upper == infinity));
   const auto empty = min_distance_by(host{}, model, poses, std::vector<vec3>{}, 0s);
   CHECK((same_result(empty, min_distance(host{}, model, poses, std::vector<vec3>{})) && empty.unseen == 0));
   CHECK(same_result(min_distance_by(host{}, model, poses, points, 1h), min_distance(host{}, model, poses, points)));
@@ -121,7 +135,8 @@ TEST_CASE("No time, little time, and deadlines that are none") {
   CHECK(some.seen + some.unseen == 100000);
   CHECK((some.unseen == 0 || !(some.lower > 0)));
   for (const double seconds : {-1e-9, -1.0, std::numeric_limits<double>::quiet_NaN()})
-    CHECK_THROWS_AS(min_distance_by(host{}, model, poses, points, std::chrono::duration<double>(seconds)), std::invalid_argument);
+    CHECK_THROWS_AS(min_distance_by(host{}, model, poses, points, std::chrono::duration<double>(seconds)),
+                    std::invalid_argument);
   CHECK_THROWS_AS(min_distance_by(host{}, model, std::vector(2, poses[0]), points, 0s), std::invalid_argument);
 }
 
@@ -130,7 +145,8 @@ TEST_CASE("Asked per part, an answer with time for all is min_distance_per_part'
   std::size_t higher = 0;
   for (const auto& s : scenes<inner_sphere>()) {
     std::vector<clearance::part<clearance::bvh<clearance::sphere, inner_sphere>>> parts;
-    for (std::size_t k = 0; k < s.parts.size(); ++k) parts.push_back(clearance::make_part(clearance::build<clearance::sphere>(s.parts[k]), 0.01 * double(k) * s.size));
+    for (std::size_t k = 0; k < s.parts.size(); ++k)
+      parts.push_back(clearance::make_part(clearance::build<clearance::sphere>(s.parts[k]), 0.01 * double(k) * s.size));
     const clearance::model model{parts};
     const placed cloud{point_span(s.points), s.cloud_pose};
     const auto whole = clearance::min_distance_per_part(host{}, model, s.poses, cloud).first;

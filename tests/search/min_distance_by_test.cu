@@ -10,15 +10,15 @@
 
 using namespace testing;
 using namespace std::chrono_literals;
-using clearance::device, clearance::host, clearance::min_distance, clearance::min_distance_by, clearance::min_distance_query, clearance::min_distance_while,
-    clearance::placed, clearance::point_span;
+using clearance::device, clearance::host, clearance::min_distance, clearance::min_distance_by,
+    clearance::min_distance_query, clearance::min_distance_while, clearance::placed, clearance::point_span;
 
 namespace {
 
 /// After every other number of pieces, and of all.
 template <class Model, class Clouds>
-void same_cuts(const Model& on_host, const std::vector<Eigen::Isometry3d>& poses, const Clouds& clouds, std::size_t piece, verdict& v,
-               const std::string& what) {
+void same_cuts(const Model& on_host, const std::vector<Eigen::Isometry3d>& poses, const Clouds& clouds,
+               std::size_t piece, verdict& v, const std::string& what) {
   const device gpu;
   const auto model = on_host.on(gpu);
   min_distance_query query(gpu, model);
@@ -30,8 +30,10 @@ void same_cuts(const Model& on_host, const std::vector<Eigen::Isometry3d>& poses
     v.require(same_result(r, e) && r.unseen == e.unseen, what, " after", pieces, " pieces");
     unseen = r.unseen;
   }
-  v.require(same_result(query(poses, clouds), min_distance(host{1}, on_host, poses, clouds)), what, ": a frame without a deadline, afterwards");
-  v.require(same_result(min_distance_by(gpu, model, poses, clouds, 1h), min_distance(host{1}, on_host, poses, clouds)), what, ", one call");
+  v.require(same_result(query(poses, clouds), min_distance(host{1}, on_host, poses, clouds)), what,
+            ": a frame without a deadline, afterwards");
+  v.require(same_result(min_distance_by(gpu, model, poses, clouds, 1h), min_distance(host{1}, on_host, poses, clouds)),
+            what, ", one call");
 }
 
 }  // namespace
@@ -41,7 +43,8 @@ TEST_CASE("A device that is stopped after some pieces says what the host says") 
   for (const auto& s : scenes<inner_sphere>()) {
     const sources<inner_sphere> all(s);
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
-    same_cuts(model, s.poses, std::tuple(placed{all.raw, all.camera_pose}, placed{all.span, s.cloud_pose}), 100, v, s.name);
+    same_cuts(model, s.poses, std::tuple(placed{all.raw, all.camera_pose}, placed{all.span, s.cloud_pose}), 100, v,
+              s.name);
   }
 }
 
@@ -49,7 +52,8 @@ TEST_CASE("Points inside closed meshes, and more parts than a kernel takes, in p
   verdict v;
   dice d(84);
   const auto [meshes, poses] = closed_scene(82);
-  for (const double half : {0.5, 4.0}) same_cuts(clearance::make_model<clearance::aabb>(meshes), poses, d.points(30000, half), 1000, v, "meshes");
+  for (const double half : {0.5, 4.0})
+    same_cuts(clearance::make_model<clearance::aabb>(meshes), poses, d.points(30000, half), 1000, v, "meshes");
   scene<inner_sphere> many{"many parts", {}, {}, d.points(20000, 3)};
   for (int k = 0; k < 300; ++k) many.parts.push_back({{{0, 0, 0}, 0.05f}}), many.poses.push_back(d.pose(2));
   same_cuts(make_model<clearance::sphere>(many, {}, clearance::wrapped{}), many.poses, many.points, 1000, v, many.name);
@@ -57,12 +61,14 @@ TEST_CASE("Points inside closed meshes, and more parts than a kernel takes, in p
 
 TEST_CASE("A device has no time, or deadlines that are none") {
   const device gpu;
-  const auto on_host = clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{{{{0, 0, 0}, 1}}});
+  const auto on_host =
+      clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{{{{0, 0, 0}, 1}}});
   const auto model = on_host.on(gpu);
   const std::vector poses{Eigen::Isometry3d::Identity()};
   const std::vector<vec3> points(100000, vec3{3, 0, 0});
   const auto none = min_distance_by(gpu, model, poses, points, 0s);
-  CHECK((none.unseen == 100000 && none.seen == 0 && none.state == clearance::state::no_data && none.lower == 0 && none.upper == infinity));
+  CHECK((none.unseen == 100000 && none.seen == 0 && none.state == clearance::state::no_data && none.lower == 0 &&
+         none.upper == infinity));
   CHECK_THROWS_AS(min_distance_by(gpu, model, poses, points, -1s), std::invalid_argument);
   CHECK_THROWS_AS(min_distance_by(gpu, model, std::vector(2, poses[0]), points, 0s), std::invalid_argument);
 }

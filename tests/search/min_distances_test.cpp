@@ -16,13 +16,15 @@
 #include <clearance/volume/sphere.hpp>
 
 using namespace testing;
-using clearance::host, clearance::infinity, clearance::min_distance, clearance::min_distances, clearance::placed, clearance::point_span, clearance::state;
+using clearance::host, clearance::infinity, clearance::min_distance, clearance::min_distances, clearance::placed,
+    clearance::point_span, clearance::state;
 
 namespace {
 
 /// Against one at a time, for a few reaches; one prepared question for all of them, frame after frame.
 template <class Model, class Clouds>
-void check(const Model& model, std::size_t parts, const configurations& poses, const Clouds& clouds, double size, verdict& v, const std::string& what) {
+void check(const Model& model, std::size_t parts, const configurations& poses, const Clouds& clouds, double size,
+           verdict& v, const std::string& what) {
   clearance::min_distances_query query(host{}, model);
   const auto one = [&](auto own) { return min_distance(host{1}, model, own, clouds); };
   for (const double d_max : {-0.05, 0.0, 0.2, 1.0, double(infinity)}) {
@@ -43,7 +45,9 @@ void all_scenes() {
     for (const std::uint32_t width : {2, 8}) {
       const auto model = make_model<V>(s, {.width = width}, clearance::wrapped{});
       check(model, s.parts.size(), poses, placed{all.span, s.cloud_pose}, s.size, v, s.name);
-      const auto several = std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}), placed{all.metres, all.camera_pose});
+      const auto several =
+          std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}),
+                     placed{all.metres, all.camera_pose});
       check(model, s.parts.size(), poses, several, s.size, v, s.name + ", several clouds");
     }
   }
@@ -65,20 +69,25 @@ void all_parts() {
       const clearance::min_distances_options options{real(d_max * s.size)};
       const auto found = clearance::min_distances_per_part(host{1}, model, poses, clouds, options);
       const auto& prepared = query(poses, clouds, options);
-      v.require(found.size() == poses.size() / parts && prepared.size() == found.size(), s.name, ": another number of configurations");
+      v.require(found.size() == poses.size() / parts && prepared.size() == found.size(), s.name,
+                ": another number of configurations");
       for (std::size_t k = 0; k < parts; ++k) {
         clearance::min_distances_result its;
         configurations own;
         for (std::size_t c = 0; c < found.size() && c < prepared.size(); ++c) {
           auto r = found.of(c)[k];
-          v.require(same_result(r, prepared.of(c)[k]), s.name, ", configuration", c, ", part", k, ": another result, prepared");
-          v.require(r.part == k || (r.part == clearance::none && r.point == clearance::none), s.name, ": part", r.part, " and not", k);
+          v.require(same_result(r, prepared.of(c)[k]), s.name, ", configuration", c, ", part", k,
+                    ": another result, prepared");
+          v.require(r.part == k || (r.part == clearance::none && r.point == clearance::none), s.name, ": part", r.part,
+                    " and not", k);
           if (r.part == k) r.part = 0;
           its.of.push_back(r);
           own.push_back(poses[c * parts + k]);
         }
-        require_same(its, own, 1, options.d_max, [&](auto pose) { return min_distance(host{1}, model.parts()[k], pose[0], clouds); }, v,
-                     s.name + ", part " + std::to_string(k));
+        require_same(
+            its, own, 1, options.d_max,
+            [&](auto pose) { return min_distance(host{1}, model.parts()[k], pose[0], clouds); }, v,
+            s.name + ", part " + std::to_string(k));
       }
     }
   }
@@ -86,20 +95,23 @@ void all_parts() {
 
 /// Which are in collision: in_collision's states, for a few margins; one a part too, of which one is another.
 template <class Model, class Clouds>
-void check_states(const Model& model, std::size_t parts, const configurations& poses, const Clouds& clouds, double size, verdict& v, const std::string& what,
-                  std::size_t (&states)[4]) {
+void check_states(const Model& model, std::size_t parts, const configurations& poses, const Clouds& clouds, double size,
+                  verdict& v, const std::string& what, std::size_t (&states)[4]) {
   clearance::in_collisions_query query(host{}, model);
   for (const double margin : {-0.1, -0.01, 0.0, 1e-7, 0.02, 0.3, double(infinity)})
     for (const bool own : {false, true}) {
       std::vector<double> margins(own ? parts : 1, margin * size);
       if (own) margins[0] *= 3;
       const auto found = clearance::in_collisions(host{1}, model, poses, clouds, margins);
-      v.require(found.of.size() * parts == poses.size() && query(poses, clouds, margins).of == found.of, what, ": another number, or other states if prepared");
+      v.require(found.of.size() * parts == poses.size() && query(poses, clouds, margins).of == found.of, what,
+                ": another number, or other states if prepared");
       for (std::size_t c = 0; c < found.of.size(); ++c) {
-        const auto one = clearance::in_collision(host{1}, model, std::span(poses).subspan(c * parts, parts), clouds, margins);
-        v.require(found.of[c] == one.state, what, ", margin", margins[0], ", configuration", c, ": ", to_string(found.of[c]), " and not ",
-                  to_string(one.state));
-        v.require(found.counts.seen == one.counts.seen && found.counts.valid == one.counts.valid, what, ": other counts");
+        const auto one =
+            clearance::in_collision(host{1}, model, std::span(poses).subspan(c * parts, parts), clouds, margins);
+        v.require(found.of[c] == one.state, what, ", margin", margins[0], ", configuration", c, ": ",
+                  to_string(found.of[c]), " and not ", to_string(one.state));
+        v.require(found.counts.seen == one.counts.seen && found.counts.valid == one.counts.valid, what,
+                  ": other counts");
         ++states[int(one.state)];
       }
     }
@@ -114,7 +126,8 @@ void all_states() {
     const auto poses = configurations_of(s, d);
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
     check_states(model, s.parts.size(), poses, placed{all.span, s.cloud_pose}, s.size, v, s.name, states);
-    const auto several = std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, shifted(1000, 0, 0) * s.cloud_pose}));
+    const auto several = std::tuple(placed{all.raw, all.camera_pose},
+                                    std::vector(2, placed{all.doubles, shifted(1000, 0, 0) * s.cloud_pose}));
     check_states(model, s.parts.size(), poses, several, s.size, v, s.name + ", several clouds", states);
   }
   CHECK((states[int(state::free)] > 20 && states[int(state::collision)] > 20));
@@ -148,11 +161,19 @@ TEST_CASE("Least distances of many configurations of triangles are those of each
   all_scenes<clearance::aabb, triangle>();
 }
 
-TEST_CASE("Each part's least distances of many configurations of inner spheres are those of the part alone") { all_parts<clearance::sphere, inner_sphere>(); }
-TEST_CASE("Each part's least distances of many configurations of triangles are those of the part alone") { all_parts<clearance::aabb, triangle>(); }
+TEST_CASE("Each part's least distances of many configurations of inner spheres are those of the part alone") {
+  all_parts<clearance::sphere, inner_sphere>();
+}
+TEST_CASE("Each part's least distances of many configurations of triangles are those of the part alone") {
+  all_parts<clearance::aabb, triangle>();
+}
 
-TEST_CASE("Which of many configurations of inner spheres are in collision is what each says") { all_states<clearance::sphere, inner_sphere>(); }
-TEST_CASE("Which of many configurations of triangles are in collision is what each says") { all_states<clearance::aabb, triangle>(); }
+TEST_CASE("Which of many configurations of inner spheres are in collision is what each says") {
+  all_states<clearance::sphere, inner_sphere>();
+}
+TEST_CASE("Which of many configurations of triangles are in collision is what each says") {
+  all_states<clearance::aabb, triangle>();
+}
 
 TEST_CASE("So they are of robots and clouds of extreme numbers") {
   verdict v;
@@ -169,12 +190,14 @@ TEST_CASE("So they are of robots and clouds of extreme numbers") {
 TEST_CASE("Points inside solids are 0 away of every configuration, certainly or perhaps, and the lowest goes first") {
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   verdict v;
   dice d(413);
   std::size_t inside = 0, uncertain = 0, states[4] = {};
   for (const double tolerance : {0.0, 0.3, 2.0}) {
-    const auto model = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(m)), clearance::part_options{.tolerance = tolerance});
+    const auto model = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(m)),
+                                                              clearance::part_options{.tolerance = tolerance});
     configurations poses;
     for (int c = 0; c < 60; ++c)
       for (int k = 0; k < 2; ++k) poses.push_back(d.pose(0.1 * c));
@@ -182,7 +205,8 @@ TEST_CASE("Points inside solids are 0 away of every configuration, certainly or 
       const auto cloud = d.points(points, 3);
       check(model, 2, poses, placed{point_span(cloud), d.pose(0.1)}, 1, v, std::to_string(points) + " points");
       check_states(model, 2, poses, point_span(cloud), 1, v, std::to_string(points) + " points", states);
-      for (const auto& r : min_distances(host{}, model, poses, cloud).of) inside += r.distance == 0, uncertain += r.distance == 0 && r.state == state::possible;
+      for (const auto& r : min_distances(host{}, model, poses, cloud).of)
+        inside += r.distance == 0, uncertain += r.distance == 0 && r.state == state::possible;
     }
   }
   CHECK(inside > 100);
@@ -206,18 +230,21 @@ TEST_CASE("A tree of somebody else's, however deep or wide, is a robot's") {
   }
   const auto volumes = wide_volumes<clearance::sphere>(spheres);
   const wide_view<clearance::sphere, inner_sphere> wide{volumes.data(), spheres.data(), 200};
-  check(clearance::model{std::vector{clearance::part{wide, clearance::no_interior{}, facts}}}, 1, poses, point_span(points), 1, v, "a wide tree");
+  check(clearance::model{std::vector{clearance::part{wide, clearance::no_interior{}, facts}}}, 1, poses,
+        point_span(points), 1, v, "a wide tree");
 }
 
 TEST_CASE("A volume is a ball if it says so, and not because it has a middle and a radius") {
-  static_assert(clearance::round_volume<clearance::sphere> && clearance::bounding_volume<padded> && !clearance::round_volume<padded>);
+  static_assert(clearance::round_volume<clearance::sphere> && clearance::bounding_volume<padded> &&
+                !clearance::round_volume<padded>);
   verdict v;
   const auto s = scenes<inner_sphere>()[0];
   dice d(419);
   const auto model = make_model<padded>(s, {}, clearance::wrapped{});
   const auto poses = configurations_of(s, d, 40);
-  require_same(min_distances(host{}, model, poses, point_span(s.points)), poses, s.parts.size(), infinity,
-               [&](auto own) { return min_distance(host{}, model, own, point_span(s.points)); }, v, "padded");
+  require_same(
+      min_distances(host{}, model, poses, point_span(s.points)), poses, s.parts.size(), infinity,
+      [&](auto own) { return min_distance(host{}, model, own, point_span(s.points)); }, v, "padded");
 }
 
 TEST_CASE("Clouds in order and in none, large ones, and one point far from all others") {
@@ -229,7 +256,8 @@ TEST_CASE("Clouds in order and in none, large ones, and one point far from all o
   s.points.push_back({1e6f, -1e6f, 1e5f});
   check(model, 3, poses, point_span(s.points), 1, v, "a crowd");
   std::vector<std::uint16_t> pixels(320 * 240);
-  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = i % 13 == 5 ? 0 : std::uint16_t(900 + 300 * std::sin(double(i % 320) / 40) + d.number(0, 3));
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    pixels[i] = i % 13 == 5 ? 0 : std::uint16_t(900 + 300 * std::sin(double(i % 320) / 40) + d.number(0, 3));
   const clearance::depth_image<std::uint16_t> image(pixels.data(), 320, 240, {260, 260, 159.5, 119.5});
   check(model, 3, poses, placed{image, shifted(0, 0, -1.5)}, 1, v, "an image");
 }
@@ -253,26 +281,30 @@ TEST_CASE("The monitor of a trajectory: every frame is new, and its answer does 
 }
 
 TEST_CASE("The first waypoint below a margin, and nothing known is below it") {
-  const auto part = clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 0.5f}}), 0.01, 0);
+  const auto part =
+      clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 0.5f}}), 0.01, 0);
   const clearance::model model{std::vector{part}};
   configurations poses;
   for (int c = 0; c < 10; ++c) poses.push_back(shifted(0.5 * c, 0, 0));
   const std::vector<vec3> wall{{4, 0, 0}};
   const auto found = min_distances(host{}, model, poses, wall);
-  CHECK(found.first_below(0.0) == 7);   // 4 - 3.5 - 0.5, less the gap
+  CHECK(found.first_below(0.0) == 7);  // 4 - 3.5 - 0.5, less the gap
   CHECK(found.first_below(0.48) == 7);
   CHECK(found.first_below(0.495) == 6);
   CHECK(found.first_below(clearance::infinity) == 0);
-  for (const double nonsense : {-1.0, -1e-9, double(clearance::not_a_number)}) {  // the waypoint at the wall is a collision, and its lower is 0
+  for (const double nonsense :
+       {-1.0, -1e-9, double(clearance::not_a_number)}) {  // the waypoint at the wall is a collision, and its lower is 0
     CHECK_THROWS_AS(found.first_below(nonsense), std::invalid_argument);
     CHECK_THROWS_AS(found.first_below(nonsense, 5), std::invalid_argument);
     CHECK_THROWS_AS(clearance::min_distances_result{}.first_below(nonsense, 5), std::invalid_argument);
   }
   const auto nearby = min_distances(host{}, model, poses, wall, {0.6f});
   CHECK(nearby.first_below(0.495) == 6);
-  CHECK((nearby.of[0].state == state::free && nearby.of[0].distance == infinity && nearby.of[0].lower > 0.589f && nearby.of[0].lower <= 0.59f));
+  CHECK((nearby.of[0].state == state::free && nearby.of[0].distance == infinity && nearby.of[0].lower > 0.589f &&
+         nearby.of[0].lower <= 0.59f));
   CHECK(min_distances(host{}, model, poses, std::vector<vec3>{}).first_below(0) == 0);
-  CHECK(min_distances(host{}, model, poses, std::vector<vec3>{{clearance::not_a_number, 0, 0}}).of[3].state == state::no_data);
+  CHECK(min_distances(host{}, model, poses, std::vector<vec3>{{clearance::not_a_number, 0, 0}}).of[3].state ==
+        state::no_data);
 }
 
 TEST_CASE("What is no batch is refused, and an empty one is one") {
@@ -282,28 +314,37 @@ TEST_CASE("What is no batch is refused, and an empty one is one") {
   configurations poses = s.poses;
   poses.insert(poses.end(), s.poses.begin(), s.poses.end());
   CHECK(min_distances(host{}, model, configurations{}, cloud).of.empty());
-  CHECK_THROWS_WITH(min_distances(host{}, model, std::span(poses).first(4), cloud), "clearance: 4 poses are no whole configurations of 3 parts");
+  CHECK_THROWS_WITH(min_distances(host{}, model, std::span(poses).first(4), cloud),
+                    "clearance: 4 poses are no whole configurations of 3 parts");
   CHECK_THROWS_AS(min_distances(host{}, model, poses, cloud, {clearance::not_a_number}), std::invalid_argument);
-  CHECK_THROWS_AS(min_distances(host{}, model, poses, placed{cloud, Eigen::Isometry3d(Eigen::Scaling(2.0))}), std::invalid_argument);
+  CHECK_THROWS_AS(min_distances(host{}, model, poses, placed{cloud, Eigen::Isometry3d(Eigen::Scaling(2.0))}),
+                  std::invalid_argument);
   CHECK(clearance::min_distances_per_part(host{}, model, configurations{}, cloud).size() == 0);
   CHECK_THROWS_WITH(clearance::min_distances_per_part(host{}, model, std::span(poses).first(4), cloud),
                     "clearance: 4 poses are no whole configurations of 3 parts");
-  CHECK_THROWS_AS(clearance::min_distances_per_part(host{}, model, poses, cloud, {clearance::not_a_number}), std::invalid_argument);
+  CHECK_THROWS_AS(clearance::min_distances_per_part(host{}, model, poses, cloud, {clearance::not_a_number}),
+                  std::invalid_argument);
   poses[4].linear() *= 1.5;
-  CHECK_THROWS_WITH(clearance::min_distances_per_part(host{}, model, poses, cloud),
-                    Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
-  CHECK_THROWS_WITH(min_distances(host{}, model, poses, cloud),
-                    Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
+  CHECK_THROWS_WITH(
+      clearance::min_distances_per_part(host{}, model, poses, cloud),
+      Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
+  CHECK_THROWS_WITH(
+      min_distances(host{}, model, poses, cloud),
+      Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
 }
 
-TEST_CASE("Which configurations are in collision: what gap and tolerance leave open, what is too close, and what is refused") {
-  const auto part = clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 0.5f}}), 0.01, 0.02);
+TEST_CASE(
+    "Which configurations are in collision: what gap and tolerance leave open, what is too close, and what is "
+    "refused") {
+  const auto part = clearance::make_part(
+      clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 0.5f}}), 0.01, 0.02);
   const clearance::model model{std::vector{part}};
   configurations poses;
   for (const double x : {0.0, 2.0, 2.475, 2.485, 2.5, 2.6, 3.0}) poses.push_back(shifted(x, 0, 0));
   const std::vector<vec3> wall{{3, 0, 0}};
   const auto found = clearance::in_collisions(host{}, model, poses, wall, 0.005);
-  CHECK((found.of == std::vector{state::free, state::free, state::possible, state::possible, state::possible, state::collision, state::collision}));
+  CHECK((found.of == std::vector{state::free, state::free, state::possible, state::possible, state::possible,
+                                 state::collision, state::collision}));
   CHECK((found.first_not_free() == 2 && found.counts.valid == 1));
   CHECK(clearance::in_collisions(host{}, model, poses, std::vector<vec3>{}).of == std::vector(7, state::no_data));
   const float pixels[] = {3, -infinity};
@@ -311,11 +352,14 @@ TEST_CASE("Which configurations are in collision: what gap and tolerance leave o
   CHECK(clearance::in_collisions(host{}, model, poses, image).of == std::vector(7, state::possible));
   CHECK(clearance::in_collisions(own_backend{}, model, poses, wall, 0.005).of == found.of);
   CHECK(clearance::in_collisions(host{}, model, configurations{}, wall).of.empty());
-  CHECK_THROWS_WITH(clearance::in_collisions(host{}, model, poses, wall, clearance::not_a_number), "clearance: the margin of part 0 is not a number");
-  CHECK_THROWS_WITH(clearance::in_collisions(host{}, model, poses, wall, std::vector{0.1, 0.2}), "clearance: there are 1 parts, but 2 margins");
+  CHECK_THROWS_WITH(clearance::in_collisions(host{}, model, poses, wall, clearance::not_a_number),
+                    "clearance: the margin of part 0 is not a number");
+  CHECK_THROWS_WITH(clearance::in_collisions(host{}, model, poses, wall, std::vector{0.1, 0.2}),
+                    "clearance: there are 1 parts, but 2 margins");
   poses[4].linear() *= 1.5;
-  CHECK_THROWS_WITH(clearance::in_collisions(host{}, model, poses, wall),
-                    Catch::Matchers::StartsWith("clearance: the pose of configuration 4's part 0 is not rigid: its axes"));
+  CHECK_THROWS_WITH(
+      clearance::in_collisions(host{}, model, poses, wall),
+      Catch::Matchers::StartsWith("clearance: the pose of configuration 4's part 0 is not rigid: its axes"));
 }
 
 TEST_CASE("With a traversal of one's choice each configuration is asked for by itself") {
@@ -326,12 +370,14 @@ TEST_CASE("With a traversal of one's choice each configuration is asked for by i
   const auto poses = configurations_of(s, d);
   const placed cloud{point_span(s.points), s.cloud_pose};
   for (const real d_max : {0.1f, real(infinity)})
-    require_same(min_distances(clearance::plain{host{}, clearance::stack{}}, model, poses, cloud, {d_max}), poses, s.parts.size(), d_max,
-                 [&](auto own) { return min_distance(host{}, model, own, cloud); }, v, "plain");
+    require_same(
+        min_distances(clearance::plain{host{}, clearance::stack{}}, model, poses, cloud, {d_max}), poses,
+        s.parts.size(), d_max, [&](auto own) { return min_distance(host{}, model, own, cloud); }, v, "plain");
 }
 
 TEST_CASE("Results of several trajectories are taken apart by their horizon") {
-  const auto model = clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{{{{0, 0, 0}, 0.1f}}});
+  const auto model =
+      clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{{{{0, 0, 0}, 0.1f}}});
   std::vector<Eigen::Isometry3d> poses;
   for (const double x : {0.0, 1.0, 1.85, 1.9, 0.0, 0.0}) poses.push_back(shifted(x, 0, 0));
   const auto found = min_distances(host{}, model, poses, std::vector<vec3>{{2, 0, 0}});
@@ -358,7 +404,9 @@ namespace {
 /// Clouds in which very many points are in one place, or nearly, alone or among others, with their numbers mixed.
 std::vector<std::pair<std::string, std::vector<vec3>>> crowds(dice& d, std::size_t count) {
   std::vector<std::pair<std::string, std::vector<vec3>>> all;
-  const auto cell = [&](vec3 at, real size) { return at + vec3{d.number(0, size), d.number(0, size), d.number(0, size)}; };
+  const auto cell = [&](vec3 at, real size) {
+    return at + vec3{d.number(0, size), d.number(0, size), d.number(0, size)};
+  };
   std::vector<vec3> equal(count, vec3{1.1f, 0.3f, 0.2f}), near, at_zero, image, mixed;
   for (std::size_t i = 0; i < count; ++i) {
     near.push_back(cell({1.1f, 0.3f, 0.2f}, 1e-6f));
@@ -366,7 +414,11 @@ std::vector<std::pair<std::string, std::vector<vec3>>> crowds(dice& d, std::size
     image.push_back({1.1f, 1e-9f * real(i % 100), 1e-9f * real(i / 100)});
     mixed.push_back(i % 3 == 0 ? equal[0] : i % 3 == 1 ? cell({1.1f, 0.3f, 0.2f}, 1e-3f) : cell({-2, -2, -2}, 6));
   }
-  all = {{"equal", equal}, {"in a cell", near}, {"in a cell at 0", at_zero}, {"an image of nothing", image}, {"among others", mixed}};
+  all = {{"equal", equal},
+         {"in a cell", near},
+         {"in a cell at 0", at_zero},
+         {"an image of nothing", image},
+         {"among others", mixed}};
   return all;
 }
 
@@ -375,11 +427,13 @@ void check_crowds(const Model& model, verdict& v, const std::string& what) {
   dice d(434);
   configurations poses;
   for (int c = 0; c < 12; ++c)
-    for (std::size_t k = 0; k < model.size(); ++k) poses.push_back(c == 0 ? shifted(0.125 * double(k), 0, 0) : d.pose(c < 6 ? 0.3 : 1.2));
+    for (std::size_t k = 0; k < model.size(); ++k)
+      poses.push_back(c == 0 ? shifted(0.125 * double(k), 0, 0) : d.pose(c < 6 ? 0.3 : 1.2));
   for (const auto& [name, points] : crowds(d, 20000)) {
     const auto one = [&, &points = points](auto own) { return min_distance(host{}, model, own, points); };
     for (const double d_max : {0.5, double(infinity)})
-      require_same(min_distances(host{}, model, poses, points, {real(d_max)}), poses, model.size(), real(d_max), one, v, what + ", " + name);
+      require_same(min_distances(host{}, model, poses, points, {real(d_max)}), poses, model.size(), real(d_max), one, v,
+                   what + ", " + name);
   }
 }
 
@@ -390,7 +444,9 @@ TEST_CASE("Of very many points in one place, or nearly, the lowest is found, as 
   dice d(433);
   std::vector<std::vector<inner_sphere>> balls(2);
   for (auto& its : balls)
-    for (int i = 0; i < 60; ++i) its.push_back({clearance::scaled(0.3f, vec3{d.number(-1, 1), d.number(-1, 1), d.number(-1, 1)}), d.number(0.01f, 0.05f)});
+    for (int i = 0; i < 60; ++i)
+      its.push_back(
+          {clearance::scaled(0.3f, vec3{d.number(-1, 1), d.number(-1, 1), d.number(-1, 1)}), d.number(0.01f, 0.05f)});
   check_crowds(clearance::make_model<clearance::sphere>(balls), v, "spheres");
   check_crowds(clearance::make_model<clearance::obb>(balls), v, "spheres in boxes");
   const auto closed = closed_scene(12);

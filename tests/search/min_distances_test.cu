@@ -13,20 +13,23 @@
 #include <clearance/volume/sphere.hpp>
 
 using namespace testing;
-using clearance::device, clearance::host, clearance::infinity, clearance::min_distances, clearance::placed, clearance::point_span, clearance::state;
+using clearance::device, clearance::host, clearance::infinity, clearance::min_distances, clearance::placed,
+    clearance::point_span, clearance::state;
 
 namespace {
 
-void require_results(const std::vector<clearance::min_distance_result>& found, const std::vector<clearance::min_distance_result>& expected, verdict& v,
-                     const std::string& what) {
+void require_results(const std::vector<clearance::min_distance_result>& found,
+                     const std::vector<clearance::min_distance_result>& expected, verdict& v, const std::string& what) {
   v.require(found.size() == expected.size(), what, ": another number of results");
   for (std::size_t c = 0; c < found.size() && c < expected.size(); ++c)
-    v.require(same_result(found[c], expected[c]), what, ", configuration", c, ": ", found[c].distance, " at", found[c].point, ",", found[c].part, ",",
-              found[c].primitive, " instead of", expected[c].distance, " at", expected[c].point, ",", expected[c].part, ",", expected[c].primitive);
+    v.require(same_result(found[c], expected[c]), what, ", configuration", c, ": ", found[c].distance, " at",
+              found[c].point, ",", found[c].part, ",", found[c].primitive, " instead of", expected[c].distance, " at",
+              expected[c].point, ",", expected[c].part, ",", expected[c].primitive);
 }
 
 template <class Model, class Clouds>
-void check(const Model& model, const configurations& poses, const Clouds& clouds, double size, verdict& v, const std::string& what) {
+void check(const Model& model, const configurations& poses, const Clouds& clouds, double size, verdict& v,
+           const std::string& what) {
   const device gpu;
   const auto there = model.on(gpu);
   clearance::min_distances_query query(gpu, there);
@@ -34,8 +37,11 @@ void check(const Model& model, const configurations& poses, const Clouds& clouds
   for (const double d_max : {-0.05, 0.0, 0.2, double(infinity)}) {
     const clearance::min_distances_options options{real(d_max * size)};
     const auto expected = min_distances(host{}, model, poses, clouds, options);
-    require_results(query(clouds, options).of, expected.of, v, what + ", prepared, d_max " + std::to_string(options.d_max));
-    if (d_max > 0) require_results(min_distances(gpu, there, poses, clouds, options).of, expected.of, v, what + ", d_max " + std::to_string(options.d_max));
+    require_results(query(clouds, options).of, expected.of, v,
+                    what + ", prepared, d_max " + std::to_string(options.d_max));
+    if (d_max > 0)
+      require_results(min_distances(gpu, there, poses, clouds, options).of, expected.of, v,
+                      what + ", d_max " + std::to_string(options.d_max));
   }
   clearance::in_collisions_query states(gpu, there);
   states.place(poses);
@@ -45,21 +51,26 @@ void check(const Model& model, const configurations& poses, const Clouds& clouds
     const auto expected = clearance::in_collisions(host{}, model, poses, clouds, margins);
     const auto& found = states(clouds, margins);
     v.require(found.of == expected.of, what, ", margin", margin, ": other states");
-    v.require(found.counts.valid == expected.counts.valid && found.counts.seen == expected.counts.seen, what, ": other counts");
-    if (margin > 0.1) v.require(clearance::in_collisions(gpu, there, poses, clouds, margins).of == expected.of, what, ", in one call: other states");
+    v.require(found.counts.valid == expected.counts.valid && found.counts.seen == expected.counts.seen, what,
+              ": other counts");
+    if (margin > 0.1)
+      v.require(clearance::in_collisions(gpu, there, poses, clouds, margins).of == expected.of, what,
+                ", in one call: other states");
   }
 }
 
 /// Each part's, prepared and in one call; the cloud in host memory, too.
 template <class Model, class Clouds>
-void check_parts(const Model& model, const configurations& poses, const Clouds& clouds, double size, verdict& v, const std::string& what) {
+void check_parts(const Model& model, const configurations& poses, const Clouds& clouds, double size, verdict& v,
+                 const std::string& what) {
   const device gpu;
   const auto there = model.on(gpu);
   clearance::min_distances_per_part_query query(gpu, there);
   for (const double d_max : {0.2, double(infinity)}) {
     const clearance::min_distances_options options{real(d_max * size)};
     const auto expected = clearance::min_distances_per_part(host{}, model, poses, clouds, options);
-    require_results(query(poses, clouds, options).all, expected.all, v, what + ", each part, prepared, d_max " + std::to_string(options.d_max));
+    require_results(query(poses, clouds, options).all, expected.all, v,
+                    what + ", each part, prepared, d_max " + std::to_string(options.d_max));
     require_results(clearance::min_distances_per_part(gpu, there, poses, clouds, options).all, expected.all, v,
                     what + ", each part, d_max " + std::to_string(options.d_max));
   }
@@ -75,7 +86,8 @@ void all_scenes(std::uint32_t width) {
     const auto model = make_model<V>(s, {.width = width}, clearance::wrapped{});
     check(model, poses, placed{all.span, s.cloud_pose}, s.size, v, s.name);
     check_parts(model, poses, placed{all.span, s.cloud_pose}, s.size, v, s.name);
-    const auto several = std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}));
+    const auto several =
+        std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}));
     check(model, poses, several, s.size, v, s.name + ", several clouds");
   }
 }
@@ -121,7 +133,8 @@ TEST_CASE("A trajectory among a crowd is watched on a device, from frame to fram
   for (int frame = 0; frame < 3; ++frame) {
     for (vec3& p : s.points) p.x += d.number(-0.001, 0.001);
     if (frame == 2) s.points.resize(1000);
-    require_results(query(point_span(s.points)).of, on_host(poses, point_span(s.points)).of, v, "frame " + std::to_string(frame));
+    require_results(query(point_span(s.points)).of, on_host(poses, point_span(s.points)).of, v,
+                    "frame " + std::to_string(frame));
   }
 }
 
@@ -136,7 +149,9 @@ TEST_CASE("An image's tree is made of its pixels, whatever its size, and asked t
       const clearance::depth_image image(pixels.data(), width, height, {260, 260, 0.5 * width, 0.5 * height});
       const std::string what = std::to_string(width) + " x " + std::to_string(height);
       check(model, poses, placed{image, shifted(0, 0, -1.5)}, 1, v, what);
-      if (width == 65) check(model, poses, std::tuple(placed{image, shifted(0, 0, -1.5)}, point_span(s.points)), 1, v, what + " and points");
+      if (width == 65)
+        check(model, poses, std::tuple(placed{image, shifted(0, 0, -1.5)}, point_span(s.points)), 1, v,
+              what + " and points");
     }
 }
 
@@ -146,21 +161,25 @@ TEST_CASE("A tree of a few hundred thousand points has all its levels") {
   s.points = d.points(200000, 2);
   const device gpu;
   const point_span cloud(s.points);
-  require_results(min_distances(gpu, model.on(gpu), poses, cloud).of, min_distances(host{}, model, poses, cloud).of, v, "many points");
+  require_results(min_distances(gpu, model.on(gpu), poses, cloud).of, min_distances(host{}, model, poses, cloud).of, v,
+                  "many points");
 }
 
 TEST_CASE("Points inside solids are 0 away of every configuration, on a device") {
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   verdict v;
   dice d(515);
   for (const double tolerance : {0.0, 0.3, 2.0}) {
-    const auto model = clearance::make_model<clearance::obb>(std::vector(2, clearance::close_mesh(m)), clearance::part_options{.tolerance = tolerance});
+    const auto model = clearance::make_model<clearance::obb>(std::vector(2, clearance::close_mesh(m)),
+                                                             clearance::part_options{.tolerance = tolerance});
     configurations poses;
     for (int c = 0; c < 60; ++c)
       for (int k = 0; k < 2; ++k) poses.push_back(d.pose(0.1 * c));
-    for (const std::size_t points : {3u, 40u, 3000u}) check(model, poses, d.points(points, 3), 1, v, std::to_string(points) + " points");
+    for (const std::size_t points : {3u, 40u, 3000u})
+      check(model, poses, d.points(points, 3), 1, v, std::to_string(points) + " points");
   }
 }
 
@@ -172,22 +191,26 @@ TEST_CASE("What is no batch is refused on a device, and a pose that is not rigid
   configurations poses = s.poses;
   poses.insert(poses.end(), s.poses.begin(), s.poses.end());
   CHECK(min_distances(gpu, model, configurations{}, cloud).of.empty());
-  CHECK_THROWS_WITH(min_distances(gpu, model, std::span(poses).first(4), cloud), "clearance: 4 poses are no whole configurations of 3 parts");
+  CHECK_THROWS_WITH(min_distances(gpu, model, std::span(poses).first(4), cloud),
+                    "clearance: 4 poses are no whole configurations of 3 parts");
   CHECK_THROWS_AS(min_distances(gpu, model, poses, cloud, {clearance::not_a_number}), std::invalid_argument);
   poses[4].linear() *= 1.5;
-  CHECK_THROWS_WITH(min_distances(gpu, model, poses, cloud),
-                    Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
+  CHECK_THROWS_WITH(
+      min_distances(gpu, model, poses, cloud),
+      Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
   const auto points = gpu.copy_in(std::span<const vec3>(s.points));
   clearance::min_distances_query query(gpu, model);
   query.place(poses);
   const auto r = gpu.copy_out(query.enqueue(point_span(points.data(), points.size()), {0.1f}), 2);
   CHECK((r[1].state == state::possible && r[1].distance != r[1].distance && r[1].lower == 0));
   CHECK((r[0].state != state::no_data && (r[0].distance == infinity || r[0].part != clearance::none)));
-  CHECK_THROWS_WITH(clearance::in_collisions(gpu, model, poses, cloud, 0.1),
-                    Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
+  CHECK_THROWS_WITH(
+      clearance::in_collisions(gpu, model, poses, cloud, 0.1),
+      Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
   clearance::in_collisions_query ask(gpu, model);
   ask.place(poses);
-  CHECK((gpu.copy_out(ask.enqueue(point_span(points.data(), points.size()), 1e9), 2) == std::vector{state::collision, state::possible}));
+  CHECK((gpu.copy_out(ask.enqueue(point_span(points.data(), points.size()), 1e9), 2) ==
+         std::vector{state::collision, state::possible}));
   CHECK_THROWS_AS(ask(cloud, clearance::not_a_number), std::invalid_argument);
   CHECK(clearance::in_collisions(gpu, model, configurations{}, cloud).of.empty());
 }
@@ -196,5 +219,7 @@ TEST_CASE("A robot without parts has no configurations, on a device") {
   using view = clearance::part_view<clearance::bvh_view<clearance::sphere, inner_sphere>>;
   const clearance::model_view<view> nothing{nullptr, {}, 0, 0};
   CHECK(min_distances(device{}, nothing, configurations{}, std::vector<vec3>{{1, 2, 3}}).of.empty());
-  CHECK_THROWS_AS(min_distances(device{}, nothing, configurations(2, Eigen::Isometry3d::Identity()), std::vector<vec3>{{1, 2, 3}}), std::invalid_argument);
+  CHECK_THROWS_AS(
+      min_distances(device{}, nothing, configurations(2, Eigen::Isometry3d::Identity()), std::vector<vec3>{{1, 2, 3}}),
+      std::invalid_argument);
 }

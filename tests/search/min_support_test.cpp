@@ -26,11 +26,12 @@ void all_scenes() {
       for (const double radius : {0.0, 0.05, 0.3}) {
         const clearance::support_options options{.min_points = min_points, .radius = radius * s.size, .most = 1 << 14};
         const auto r = min_distance_supported(host{}, model, s.poses, two, options);
-        require_same(r, brute_support(s, two, options), v, s.name + ", " + std::to_string(min_points) + " within " + std::to_string(options.radius));
+        require_same(r, brute_support(s, two, options), v,
+                     s.name + ", " + std::to_string(min_points) + " within " + std::to_string(options.radius));
         if (min_points == 1) {
           const auto least = clearance::min_distance(host{}, model, s.poses, two);
-          v.require(same_bits(r.distance, least.distance) && r.cloud == least.cloud && r.point == least.point && r.part == least.part &&
-                        r.primitive == least.primitive && r.counts.valid == least.valid,
+          v.require(same_bits(r.distance, least.distance) && r.cloud == least.cloud && r.point == least.point &&
+                        r.part == least.part && r.primitive == least.primitive && r.counts.valid == least.valid,
                     s.name, ": one point confirms itself");
         }
         isolated += r.isolated, confirmed += r.cloud != clearance::none;
@@ -39,35 +40,47 @@ void all_scenes() {
   CHECK((isolated > 1000 && confirmed > 20));
 }
 
-const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 1}}), 0.05)}};
+const clearance::model robot{std::vector{
+    clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 1}}), 0.05)}};
 const std::vector poses{Eigen::Isometry3d::Identity()};
 
 }  // namespace
 
-TEST_CASE("The nearest point of spheres that others confirm is the first of all") { all_scenes<clearance::sphere, inner_sphere>(); }
-TEST_CASE("The nearest point of triangles that others confirm is the first of all") { all_scenes<clearance::aabb, triangle>(); }
+TEST_CASE("The nearest point of spheres that others confirm is the first of all") {
+  all_scenes<clearance::sphere, inner_sphere>();
+}
+TEST_CASE("The nearest point of triangles that others confirm is the first of all") {
+  all_scenes<clearance::aabb, triangle>();
+}
 
 TEST_CASE("A grain of dust is told apart from a wall, whichever camera sees it") {
   std::vector<vec3> points{{1.02f, 0, 0}, {0, 1.5f, 0}, {3, 0, 0}, {3, 0.01f, 0}, {clearance::not_a_number, 0, 0}};
   const std::vector<vec3> other{{3, 0, 0.01f}};
   const auto ask = [&](std::uint32_t n, std::size_t most = 4096) {
-    return min_distance_supported(host{}, robot, poses, std::tuple(points, other), {.min_points = n, .radius = 0.0141f, .most = most});
+    return min_distance_supported(host{}, robot, poses, std::tuple(points, other),
+                                  {.min_points = n, .radius = 0.0141f, .most = most});
   };
   const auto wall = ask(3);
-  CHECK((wall.state == clearance::state::free && wall.point == 2 && wall.cloud == 0 && wall.distance == 2 && wall.lower > 1.94f && wall.lower < 1.951f));
-  CHECK((wall.isolated == 2 && wall.nearest_isolated.point == 0 && wall.nearest_isolated.distance < 0.021f && wall.counts.valid == 5));
+  CHECK((wall.state == clearance::state::free && wall.point == 2 && wall.cloud == 0 && wall.distance == 2 &&
+         wall.lower > 1.94f && wall.lower < 1.951f));
+  CHECK((wall.isolated == 2 && wall.nearest_isolated.point == 0 && wall.nearest_isolated.distance < 0.021f &&
+         wall.counts.valid == 5));
   CHECK(ask(1).state == clearance::state::possible);  // the dust may be in the gap
   const auto nobody = ask(4);
-  CHECK((nobody.state == clearance::state::possible && nobody.distance == clearance::infinity && nobody.lower == 0 && nobody.isolated == 5));
+  CHECK((nobody.state == clearance::state::possible && nobody.distance == clearance::infinity && nobody.lower == 0 &&
+         nobody.isolated == 5));
   const auto few = ask(3, 2);
-  CHECK((few.state == clearance::state::possible && few.distance != few.distance && few.cloud == clearance::none && few.isolated == 2));
+  CHECK((few.state == clearance::state::possible && few.distance != few.distance && few.cloud == clearance::none &&
+         few.isolated == 2));
   CHECK(min_distance_supported(host{}, robot, poses, std::vector<vec3>{}).state == clearance::state::no_data);
   points = {{0.5f, 0, 0}, {0.51f, 0, 0}, {0.5f, 0, 0}};
   CHECK(ask(3).state == clearance::state::collision);
 }
 
 TEST_CASE("What confirms nothing is refused") {
-  const auto ask = [](clearance::support_options options) { return min_distance_supported(host{}, robot, poses, std::vector<vec3>{{2, 0, 0}}, options); };
+  const auto ask = [](clearance::support_options options) {
+    return min_distance_supported(host{}, robot, poses, std::vector<vec3>{{2, 0, 0}}, options);
+  };
   CHECK_THROWS_AS(ask({.min_points = 0}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.radius = -1}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.radius = double(clearance::not_a_number)}), std::invalid_argument);
@@ -108,14 +121,17 @@ TEST_CASE("More points than there are confirm nothing, which is known at once") 
       if (n > 500 || expected.isolated < 8)
         require_same(r, expected, v, what);
       else
-        v.require(r.distance != r.distance && r.isolated == 8 && r.state == clearance::state::possible, what, ": more than the nearest were asked");
+        v.require(r.distance != r.distance && r.isolated == 8 && r.state == clearance::state::possible, what,
+                  ": more than the nearest were asked");
     }
 }
 
 TEST_CASE("As many points are asked as are to be, however many parts are near each") {
   dice d(118);
   scene<inner_sphere> s;
-  for (int k = 0; k < 40; ++k) s.parts.push_back({{{0, 0, 0.01f * float(k)}, 0.2f}}), s.poses.push_back(shifted(0, 0, 0));  // all are near all points
+  for (int k = 0; k < 40; ++k)
+    s.parts.push_back({{{0, 0, 0.01f * float(k)}, 0.2f}}),
+        s.poses.push_back(shifted(0, 0, 0));  // all are near all points
   for (int i = 0; i < 300; ++i) s.points.push_back(clearance::scaled(1 + 0.01f * float(i), d.direction()));
   const vec3 last = s.points.back();
   s.points.push_back(last);
@@ -123,7 +139,8 @@ TEST_CASE("As many points are asked as are to be, however many parts are near ea
   const clouds cloud{{point_span(s.points)}};
   const auto whole = brute_support(s, cloud, {.min_points = 2, .radius = 0});
   REQUIRE((whole.point == 299 && whole.isolated > 100));
-  for (const std::size_t most : {std::size_t(1), std::size_t(17), std::size_t(whole.isolated), std::size_t(whole.isolated + 1), std::size_t(4096)}) {
+  for (const std::size_t most : {std::size_t(1), std::size_t(17), std::size_t(whole.isolated),
+                                 std::size_t(whole.isolated + 1), std::size_t(4096)}) {
     const auto r = min_distance_supported(host{}, model, s.poses, cloud, {.min_points = 2, .radius = 0, .most = most});
     INFO(most);
     CHECK(r.isolated == std::min<std::size_t>(most, whole.isolated));
@@ -131,11 +148,16 @@ TEST_CASE("As many points are asked as are to be, however many parts are near ea
   }
 }
 
-TEST_CASE("A confirmed point that is certainly inside is a collision, as for min_distance, even behind others that are not certain") {
-  const auto cube = clearance::make_part<clearance::aabb>(clearance::close_mesh(shapes::box({-1, -1, -1}, {1, 1, 1})), {.tolerance = 0.1});
+TEST_CASE(
+    "A confirmed point that is certainly inside is a collision, as for min_distance, even behind others that are not "
+    "certain") {
+  const auto cube = clearance::make_part<clearance::aabb>(clearance::close_mesh(shapes::box({-1, -1, -1}, {1, 1, 1})),
+                                                          {.tolerance = 0.1});
   const clearance::model solid{std::vector{cube}};
   std::vector<vec3> points(600, vec3{0.95f, 0, 0});  // inside, but by less than the tolerance
-  const auto ask = [&](std::uint32_t n) { return min_distance_supported(host{}, solid, poses, points, {.min_points = n, .radius = 0.001}); };
+  const auto ask = [&](std::uint32_t n) {
+    return min_distance_supported(host{}, solid, poses, points, {.min_points = n, .radius = 0.001});
+  };
   CHECK((ask(3).state == clearance::state::possible && ask(3).distance == 0 && ask(3).point == 0));
   points.push_back({0.5f, 0, 0});
   REQUIRE(clearance::min_distance(host{}, solid, poses, points).state == clearance::state::collision);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the minimum over all parts and points promises beside its bits: truth, witness, several clouds, any tree, inside.
+// What the minimum over all parts and points promises beside its bits: truth, witness, several clouds, any tree,
+// inside.
 #include "support/linked_tree.hpp"
 #include "support/product.hpp"
 #include "support/volumes.hpp"
@@ -11,7 +12,8 @@
 #include <clearance/volume/sphere.hpp>
 
 using namespace testing;
-using clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::placed, clearance::point_span;
+using clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::placed,
+    clearance::point_span;
 
 namespace {
 
@@ -42,17 +44,21 @@ void check_truth() {
     // |p| and |t| as they are once the coordinates' origin is near the robot.
     const wide near = s.name == "far from the origin" ? 64 : t.norm() + 2;
     scale = std::abs(truth) + near + oracle::length(wider(part.facts.center)) + part.facts.radius;
-    v.require(std::abs(r.distance - truth) <= 8 * 0x1p-24L * 2 * scale, s.name, ": distance", r.distance, " instead of", truth);
+    v.require(std::abs(r.distance - truth) <= 8 * 0x1p-24L * 2 * scale, s.name, ": distance", r.distance, " instead of",
+              truth);
     const wide to_solid = std::max(truth, wide(0));
-    v.require(r.lower <= to_solid && to_solid <= r.upper, s.name, ": bracket", r.lower, " to", r.upper, " misses", to_solid);
-    v.require(r.upper - std::max(r.lower, real(0)) <= 1e-3 * std::max(wide(1), scale / 100), s.name, ": the bracket is wide:", r.lower, r.upper);
+    v.require(r.lower <= to_solid && to_solid <= r.upper, s.name, ": bracket", r.lower, " to", r.upper, " misses",
+              to_solid);
+    v.require(r.upper - std::max(r.lower, real(0)) <= 1e-3 * std::max(wide(1), scale / 100), s.name,
+              ": the bracket is wide:", r.lower, r.upper);
     // The witness, in world coordinates.
     const auto at = oracle::moved(s.cloud_pose.matrix(), wider(s.points[r.point])), nearest = wider(r.nearest);
     const wide coordinates = oracle::length(at);
     v.require(oracle::between(wider(r.at), at) <= 1e-12L * (1 + coordinates), s.name, ": the point is elsewhere");
     v.require(std::abs(oracle::between(at, nearest) - std::abs(truth)) <= 32 * 0x1p-24L * scale, s.name, ": nearest is",
               oracle::between(at, nearest), " away");
-    v.require(std::abs(exact(s.parts[r.part][r.primitive], oracle::moved_back(s.poses[r.part].matrix(), nearest))) <= 32 * 0x1p-24L * scale,
+    v.require(std::abs(exact(s.parts[r.part][r.primitive], oracle::moved_back(s.poses[r.part].matrix(), nearest))) <=
+                  32 * 0x1p-24L * scale,
               s.name, ": nearest is not on the primitive");
     if (truth > 1e-3L * scale) {  // at a centre there is no direction
       const auto along = (1 / truth) * (at - nearest);
@@ -84,7 +90,8 @@ TEST_CASE("Spheres so small that squares of their distances vanish are found") {
   verdict v;
   for (const double size : {1e-24, 1e-23, 1e-22, 1e-20, 1e-18}) {
     std::vector<inner_sphere> all;
-    for (int k = 0; k < 3000; ++k) all.push_back({clearance::scaled(real(size), d.point(1)), real(size * d.number(0.001, 0.01))});
+    for (int k = 0; k < 3000; ++k)
+      all.push_back({clearance::scaled(real(size), d.point(1)), real(size * d.number(0.001, 0.01))});
     const std::vector<vec3> points{{0, 0, 0}, clearance::scaled(real(size), d.point(1))};
     real least = infinity;
     for (const vec3 p : points)
@@ -93,7 +100,8 @@ TEST_CASE("Spheres so small that squares of their distances vanish are found") {
       const clearance::model robot{std::vector{clearance::make_part(clearance::build<decltype(volume)>(all))}};
       return min_distance(host{}, robot, std::vector{identity()}, point_span(points)).distance;
     };
-    v.require(ask(clearance::sphere{}) == least && ask(clearance::aabb{}) == least && ask(clearance::obb{}) == least, "of size ", size, ": not ", least);
+    v.require(ask(clearance::sphere{}) == least && ask(clearance::aabb{}) == least && ask(clearance::obb{}) == least,
+              "of size ", size, ": not ", least);
   }
 }
 
@@ -115,26 +123,33 @@ TEST_CASE("Clouds of different kinds share one search; ties go to the lowest clo
       std::vector<clearance::part_minimum> minima(model.size());
       const placed raw{all.raw, all.camera_pose};
       const placed metres{all.metres, all.camera_pose};
-      const auto points = std::tuple(placed{all.floats, s.cloud_pose}, placed{all.span, s.cloud_pose}, placed{all.doubles, s.cloud_pose});
+      const auto points = std::tuple(placed{all.floats, s.cloud_pose}, placed{all.span, s.cloud_pose},
+                                     placed{all.doubles, s.cloud_pose});
       const auto ask = [&](const auto& given) {
         std::vector<brute_cloud> clouds;
-        clearance::for_each_cloud(given, [&](const auto& source, const Eigen::Isometry3d& pose) { clouds.emplace_back(source, pose); });
+        clearance::for_each_cloud(
+            given, [&](const auto& source, const Eigen::Isometry3d& pose) { clouds.emplace_back(source, pose); });
         const auto expected = brute_force(parts, s.poses, clouds);
         clearance::min_distance_per_part_async(host{}, model, s.poses, given, &r, minima.data());
         require_equal(r, expected, v, s.name);
         require_equal(minima, expected, v, s.name);
-        require_equal(min_distance(clearance::plain{host{}, clearance::stack{}}, model, s.poses, given), expected, v, s.name + ", plain");
+        require_equal(min_distance(clearance::plain{host{}, clearance::stack{}}, model, s.poses, given), expected, v,
+                      s.name + ", plain");
       };
       if (images_first)
         ask(std::tuple(raw, metres, points));  // the second and third are the same points
       else
         ask(std::tuple(points, raw));
     }
-    std::vector<placed<point_span>> several = {{all.span, s.cloud_pose}, {all.span, all.camera_pose}, {all.span, s.cloud_pose}};
+    std::vector<placed<point_span>> several = {
+        {all.span, s.cloud_pose}, {all.span, all.camera_pose}, {all.span, s.cloud_pose}};
     std::vector<brute_cloud> clouds;
     for (const auto& c : several) clouds.emplace_back(c.source, c.pose);
-    require_equal(min_distance(host{}, model, s.poses, several), brute_force(parts, s.poses, clouds), v, s.name + ", several");
-    v.require(min_distance(host{}, model, s.poses, std::vector<placed<point_span>>{}).state == clearance::state::no_data, "no cloud");
+    require_equal(min_distance(host{}, model, s.poses, several), brute_force(parts, s.poses, clouds), v,
+                  s.name + ", several");
+    v.require(
+        min_distance(host{}, model, s.poses, std::vector<placed<point_span>>{}).state == clearance::state::no_data,
+        "no cloud");
   }
 }
 
@@ -147,8 +162,10 @@ TEST_CASE("A source with its pose beside it is asked as the placed one is, by ev
     const auto check = [&](const auto& source, const Eigen::Isometry3d& pose) {
       const auto expected = brute_force(parts, s.poses, {brute_cloud(source, pose)});
       require_equal(min_distance(host{}, model, s.poses, source, pose), expected, v, s.name);
-      require_equal(min_distance(clearance::plain{host{}, clearance::stack{}}, model, s.poses, source, pose), expected, v, s.name + ", stack");
-      const auto [r, each] = clearance::min_distance_per_part(clearance::plain{host{}, clearance::recursive{}}, model, s.poses, source, pose);
+      require_equal(min_distance(clearance::plain{host{}, clearance::stack{}}, model, s.poses, source, pose), expected,
+                    v, s.name + ", stack");
+      const auto [r, each] = clearance::min_distance_per_part(clearance::plain{host{}, clearance::recursive{}}, model,
+                                                              s.poses, source, pose);
       require_equal(r, expected, v, s.name + ", per part");
       require_equal(each, expected, v, s.name + ", per part");
       clearance::min_distance_result later;
@@ -159,7 +176,8 @@ TEST_CASE("A source with its pose beside it is asked as the placed one is, by ev
       require_equal(later, expected, v, s.name + ", enqueued");
       require_equal(minima, expected, v, s.name + ", enqueued");
       require_equal(min_distance(host{}, model.parts()[0], s.poses[0], source, pose),
-                    brute_force(std::vector{parts[0]}, {s.poses[0]}, {brute_cloud(source, pose)}), v, s.name + ", one part");
+                    brute_force(std::vector{parts[0]}, {s.poses[0]}, {brute_cloud(source, pose)}), v,
+                    s.name + ", one part");
     };
     check(all.span, s.cloud_pose);
     check(all.raw, all.camera_pose);
@@ -210,7 +228,8 @@ TEST_CASE("A pointer-linked tree and a flat list of somebody else give the same 
     const placed cloud{point_span(s.points), s.cloud_pose};
     const clearance::model_view<linked> binary{linked_parts.data(), facts, depth, 2};
     const clearance::model_view<list> flat{lists.data(), facts, 0, 1};
-    check_query(clearance::plain{host{}, clearance::recursive{}}, binary, s.poses, cloud, expected, v, s.name + ", linked");
+    check_query(clearance::plain{host{}, clearance::recursive{}}, binary, s.poses, cloud, expected, v,
+                s.name + ", linked");
     check_query(clearance::plain{host{}, clearance::stack{}}, binary, s.poses, cloud, expected, v, s.name + ", linked");
     check_query(host{}, binary, s.poses, cloud, expected, v, s.name + ", linked");
     check_query(host{}, flat, s.poses, cloud, expected, v, s.name + ", flat");
@@ -223,14 +242,16 @@ TEST_CASE("A tree too deep for a stack is refused with its numbers, and the recu
   const linked_tree<clearance::sphere, inner_sphere> tree(line, true);
   clearance::part<linked_tree<clearance::sphere, inner_sphere>> deep{tree, {}, {{32, 0, 0}, 40, 0, 0}};
   const std::vector<vec3> points = {{40, 2, 0}, {64, 1, 0}};
-  for (const std::string& words : {refusal([&] { min_distance(clearance::plain{host{}, clearance::near_first{}}, deep, identity(), points); }),
-                                   refusal([&] { min_distance(clearance::plain{host{}, clearance::stack{}}, deep, identity(), points); })}) {
+  for (const std::string& words :
+       {refusal([&] { min_distance(clearance::plain{host{}, clearance::near_first{}}, deep, identity(), points); }),
+        refusal([&] { min_distance(clearance::plain{host{}, clearance::stack{}}, deep, identity(), points); })}) {
     CHECK(has(words, "depth 64"));
     CHECK(has(words, "65 entries"));
   }
   CHECK(min_distance(clearance::plain{host{}, clearance::recursive{}}, deep, identity(), points).primitive == 64);
   CHECK(min_distance(clearance::plain{host{}, clearance::basic_stack<65>{}}, deep, identity(), points).primitive == 64);
-  CHECK(min_distance(clearance::plain{host{}, clearance::basic_near_first<65>{}}, deep, identity(), points).distance == 0.75f);
+  CHECK(min_distance(clearance::plain{host{}, clearance::basic_near_first<65>{}}, deep, identity(), points).distance ==
+        0.75f);
 }
 
 TEST_CASE("The number of threads changes nothing") {
@@ -265,9 +286,10 @@ TEST_CASE("Poses that are not rigid, and a wrong number of them, are refused wit
   };
   using matrix = Eigen::Isometry3d::MatrixType;
   const std::vector<Eigen::Isometry3d> bad = {
-      with([](matrix& m) { m(0, 0) = 1.001; }), with([](matrix& m) { m.topLeftCorner<3, 3>() *= 2; }), with([](matrix& m) { m(0, 1) = 0.01; }),
-      with([](matrix& m) { m(2, 2) = -1; }), with([](matrix& m) { m(0, 3) = std::nan(""); }), with([](matrix& m) { m(1, 1) = std::nan(""); }),
-      with([](matrix& m) { m(2, 3) = INFINITY; }), with([](matrix& m) { m.setZero(); })};
+      with([](matrix& m) { m(0, 0) = 1.001; }),        with([](matrix& m) { m.topLeftCorner<3, 3>() *= 2; }),
+      with([](matrix& m) { m(0, 1) = 0.01; }),         with([](matrix& m) { m(2, 2) = -1; }),
+      with([](matrix& m) { m(0, 3) = std::nan(""); }), with([](matrix& m) { m(1, 1) = std::nan(""); }),
+      with([](matrix& m) { m(2, 3) = INFINITY; }),     with([](matrix& m) { m.setZero(); })};
   for (const auto& pose : bad) {
     CHECK(has(ask({identity(), pose}), "part 1 is not rigid"));
     CHECK(has(ask({identity(), identity()}, pose), "cloud 0 is not rigid"));
@@ -275,9 +297,13 @@ TEST_CASE("Poses that are not rigid, and a wrong number of them, are refused wit
   CHECK(has(ask({identity(), bad[3]}), "reflection"));
   // A rotation rounded to float is rigid.
   dice d(1);
-  const Eigen::Isometry3d rounded = with([&](matrix& m) { m.topLeftCorner<3, 3>() = d.pose(0).linear().cast<float>().cast<double>(); });
+  const Eigen::Isometry3d rounded =
+      with([&](matrix& m) { m.topLeftCorner<3, 3>() = d.pose(0).linear().cast<float>().cast<double>(); });
   CHECK(ask({identity(), rounded}, rounded) == "");
-  CHECK(has(refusal([] { clearance::model(std::vector<clearance::part<clearance::bvh<clearance::sphere, inner_sphere>>>{}); }), "no parts"));
+  CHECK(has(refusal([] {
+              clearance::model(std::vector<clearance::part<clearance::bvh<clearance::sphere, inner_sphere>>>{});
+            }),
+            "no parts"));
 }
 
 TEST_CASE("A float cloud at 5e6 m is as good as its coordinates, and doubles keep their millimetres") {
@@ -287,14 +313,17 @@ TEST_CASE("A float cloud at 5e6 m is as good as its coordinates, and doubles kee
   const Eigen::Isometry3d pose = shifted(5e6, -4.5e6, 900) * d.pose(1);
   std::vector<double> records;
   for (int k = 0; k < 500; ++k)
-    for (const double x : {5e6 + d.uniform(-3, 3), -4.5e6 + d.uniform(-3, 3), 900 + d.uniform(-3, 3)}) records.push_back(x);
+    for (const double x : {5e6 + d.uniform(-3, 3), -4.5e6 + d.uniform(-3, 3), 900 + d.uniform(-3, 3)})
+      records.push_back(x);
   clearance::strided_points<double> cloud;
   cloud.data = reinterpret_cast<const std::byte*>(records.data()), cloud.count = 500, cloud.step = 24;
   cloud.offset[1] = 8, cloud.offset[2] = 16, cloud.origin = {5e6f, -4.5e6f, 896};
   const auto r = min_distance(host{}, part, pose, placed{cloud, shifted(5e6, -4.5e6, 896)});
   wide truth = infinity;
   for (std::size_t k = 0; k < records.size(); k += 3)
-    for (const auto& s : primitives) truth = std::min(truth, exact(s, oracle::moved_back(pose.matrix(), {records[k], records[k + 1], records[k + 2]})));
+    for (const auto& s : primitives)
+      truth =
+          std::min(truth, exact(s, oracle::moved_back(pose.matrix(), {records[k], records[k + 1], records[k + 2]})));
   CHECK(std::abs(r.distance - truth) < 1e-5);
   CHECK((r.lower <= std::max(truth, wide(0)) && std::max(truth, wide(0)) <= r.upper));
   CHECK(std::abs(r.at.x - records[3 * r.point]) < 1e-6);
@@ -311,9 +340,13 @@ TEST_CASE("Several robots are asked in one call, each with its own result") {
   REQUIRE(results.size() == 2);
   for (std::size_t k = 0; k < 2; ++k) {
     const auto alone = min_distance(host{}, model, poses[k], cloud);
-    CHECK((same_bits(results[k].distance, alone.distance) && results[k].point == alone.point && results[k].part == alone.part));
+    CHECK((same_bits(results[k].distance, alone.distance) && results[k].point == alone.point &&
+           results[k].part == alone.part));
   }
   CHECK(results[0].distance != results[1].distance);
-  CHECK(clearance::min_distance_per_robot(host{}, std::vector<decltype(model.view())>{}, std::vector<std::vector<Eigen::Isometry3d>>{}, cloud).empty());
-  CHECK_THROWS_AS(clearance::min_distance_per_robot(host{}, std::vector(1, model.view()), poses, cloud), std::invalid_argument);
+  CHECK(clearance::min_distance_per_robot(host{}, std::vector<decltype(model.view())>{},
+                                          std::vector<std::vector<Eigen::Isometry3d>>{}, cloud)
+            .empty());
+  CHECK_THROWS_AS(clearance::min_distance_per_robot(host{}, std::vector(1, model.view()), poses, cloud),
+                  std::invalid_argument);
 }

@@ -10,8 +10,8 @@
 #include <numbers>
 
 using namespace testing;
-using clearance::host, clearance::min_distance_query, clearance::motion_clearance, clearance::part_facts, clearance::point_span, clearance::state,
-    clearance::straight_motion;
+using clearance::host, clearance::min_distance_query, clearance::motion_clearance, clearance::part_facts,
+    clearance::point_span, clearance::state, clearance::straight_motion;
 
 namespace {
 
@@ -22,7 +22,8 @@ template <class Model, class Motion, class Clouds>
 double sampled(const Model& model, const Motion& motion, const Clouds& clouds, int times) {
   min_distance_query query(host{}, model);
   double least = clearance::infinity;
-  for (int i = 0; i <= times; ++i) least = std::min(least, double(query(motion.at(double(i) / times, model.view().facts).poses, clouds).distance));
+  for (int i = 0; i <= times; ++i)
+    least = std::min(least, double(query(motion.at(double(i) / times, model.view().facts).poses, clouds).distance));
   return std::max(0.0, least);
 }
 
@@ -50,30 +51,40 @@ void against_samples() {
     const auto r = motion_clearance(host{}, model, motion, cloud, {.tolerance = 0.004});
     const double least = sampled(model, motion, cloud, 1000);
     v.require(double(r.lower) <= least, "trial", trial, ": lower", r.lower, " but at some time", least);
-    v.require(r.settled && double(r.lower) >= least - 0.0041, "trial", trial, ": lower", r.lower, " of", least, " after", r.queries);
-    v.require(double(r.upper) >= double(r.lower) && double(r.upper) <= least + 0.0082, "trial", trial, ": upper", r.upper, " of", least);
-    v.require(r.state == (r.lower > 0 ? state::free : r.upper <= 0 ? state::collision : state::possible), "trial", trial, ": the state");
-    v.require(r.from <= r.to && r.from >= 0 && r.to <= 1 && r.part < 3 && r.time >= 0 && r.time <= 1, "trial", trial, ": where");
+    v.require(r.settled && double(r.lower) >= least - 0.0041, "trial", trial, ": lower", r.lower, " of", least,
+              " after", r.queries);
+    v.require(double(r.upper) >= double(r.lower) && double(r.upper) <= least + 0.0082, "trial", trial, ": upper",
+              r.upper, " of", least);
+    v.require(r.state == (r.lower > 0    ? state::free
+                          : r.upper <= 0 ? state::collision
+                                         : state::possible),
+              "trial", trial, ": the state");
+    v.require(r.from <= r.to && r.from >= 0 && r.to <= 1 && r.part < 3 && r.time >= 0 && r.time <= 1, "trial", trial,
+              ": where");
     const auto there = min_distance(host{}, model, motion.at(r.time, model.view().facts).poses, cloud);
-    v.require(there.point == r.nearest.point && same_bits(there.distance, r.nearest.distance), "trial", trial, ": the witness is that of its time");
+    v.require(there.point == r.nearest.point && same_bits(there.distance, r.nearest.distance), "trial", trial,
+              ": the witness is that of its time");
     free += r.state == state::free, big += trial % 2 == 0 && r.lower > 0;
     min_distance_query query(host{}, model);
     const auto by_query = motion_clearance(query, model, motion, cloud, {.tolerance = 0.004});
-    const auto plain = motion_clearance(clearance::plain{host{1}, clearance::near_first{}}, model, motion, clearance::placed{cloud}, {.tolerance = 0.004});
+    const auto plain = motion_clearance(clearance::plain{host{1}, clearance::near_first{}}, model, motion,
+                                        clearance::placed{cloud}, {.tolerance = 0.004});
     for (const auto& other : {by_query, plain})
-      v.require(same_bits(other.lower, r.lower) && same_bits(other.upper, r.upper) && other.time == r.time && other.part == r.part &&
-                    other.queries == r.queries,
+      v.require(same_bits(other.lower, r.lower) && same_bits(other.upper, r.upper) && other.time == r.time &&
+                    other.part == r.part && other.queries == r.queries,
                 "trial", trial, ": another way of asking");
     real lower = 0;
     for (std::size_t most = 1; most < 60; most += 2) {
-      const real better = motion_clearance(host{}, model, motion, cloud, {.tolerance = 0.004, .most_queries = most}).lower;
+      const real better =
+          motion_clearance(host{}, model, motion, cloud, {.tolerance = 0.004, .most_queries = most}).lower;
       v.require(better >= lower, "trial", trial, ": more queries make it worse,", better, " after", lower);
       lower = better;
     }
-    for (const std::size_t most : {std::size_t(1), std::size_t(2), std::size_t(7), r.queries}) {  // what is left open is on the safe side
+    for (const std::size_t most :
+         {std::size_t(1), std::size_t(2), std::size_t(7), r.queries}) {  // what is left open is on the safe side
       const auto few = motion_clearance(host{}, model, motion, cloud, {.tolerance = 0.004, .most_queries = most});
-      v.require(few.queries <= most && double(few.lower) <= least && few.upper >= r.upper && few.lower <= r.lower, "trial", trial, ": with", most,
-                " queries", few.lower);
+      v.require(few.queries <= most && double(few.lower) <= least && few.upper >= r.upper && few.lower <= r.lower,
+                "trial", trial, ": with", most, " queries", few.lower);
       v.require(few.settled == (few.queries == r.queries), "trial", trial, ": settled with", most);
     }
   }
@@ -83,7 +94,8 @@ void against_samples() {
 
 /// One ball of radius 0.1, in a part whose origin is `out` from it.
 auto one_ball(double out, double gap = 0) {
-  return clearance::model{std::vector{clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{real(out), 0, 0}, 0.1f}}), gap)}};
+  return clearance::model{std::vector{clearance::make_part(
+      clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{real(out), 0, 0}, 0.1f}}), gap)}};
 }
 
 /// Stands still, and claims so only of the middle.
@@ -96,15 +108,20 @@ struct unsure_motion {
 
 }  // namespace
 
-TEST_CASE("No time of a motion has less than its clearance: spheres") { against_samples<clearance::sphere, inner_sphere>(); }
-TEST_CASE("No time of a motion has less than its clearance: triangles") { against_samples<clearance::aabb, triangle>(); }
+TEST_CASE("No time of a motion has less than its clearance: spheres") {
+  against_samples<clearance::sphere, inner_sphere>();
+}
+TEST_CASE("No time of a motion has less than its clearance: triangles") {
+  against_samples<clearance::aabb, triangle>();
+}
 
 TEST_CASE("A moment's bound holds for every point of a part at every time") {
   verdict v;
   dice d(8);
   double tightest = 0;
   for (int trial = 0; trial < 300; ++trial) {
-    const poses_type from{d.pose(1)}, to{trial % 5 == 0 ? shifted(0.5, 0, 0) * from[0] : d.pose(trial % 2 == 0 ? 1 : 0)};
+    const poses_type from{d.pose(1)},
+        to{trial % 5 == 0 ? shifted(0.5, 0, 0) * from[0] : d.pose(trial % 2 == 0 ? 1 : 0)};
     const straight_motion motion(from, to);
     const std::vector<part_facts> parts{{d.point(1), d.number(0, 0.5), d.number(0, 0.1), d.number(0, 0.1)}};
     const double t = d.uniform(0, 1), other = d.uniform(0, 1);
@@ -113,12 +130,14 @@ TEST_CASE("A moment's bound holds for every point of a part at every time") {
       const vec3 n = d.direction();
       const double r = clearance::solid_radius(parts[0]);
       const Eigen::Vector3d p = clearance::center_of(parts[0]) + r * Eigen::Vector3d(n.x, n.y, n.z).normalized();
-      const double moved = (now.poses[0] * p - then.poses[0] * p).norm(), most = now.travels[0].within(std::abs(other - t));
+      const double moved = (now.poses[0] * p - then.poses[0] * p).norm(),
+                   most = now.travels[0].within(std::abs(other - t));
       v.require(moved <= most, "a point moves", moved, " of at most", most);
       tightest = std::max(tightest, moved / most);
     }
     for (const auto& [at, pose] : {std::pair(0.0, from[0]), std::pair(1.0, to[0])})
-      v.require((motion.at(at, parts).poses[0].matrix() - pose.matrix()).cwiseAbs().maxCoeff() < 1e-13, "a motion begins and ends where it is said to");
+      v.require((motion.at(at, parts).poses[0].matrix() - pose.matrix()).cwiseAbs().maxCoeff() < 1e-13,
+                "a motion begins and ends where it is said to");
   }
   CHECK(tightest > 0.95);
 }
@@ -155,7 +174,8 @@ TEST_CASE("A wall of one layer of points is no tunnel") {
 
 TEST_CASE("A part that swings far from its axis is seen where it swings") {
   // The ball is 3 m from the origin that it turns about, by 170 degrees; the point is on its way.
-  const poses_type from{Eigen::Isometry3d::Identity()}, to{Eigen::Isometry3d(Eigen::AngleAxisd(170 * std::numbers::pi / 180, Eigen::Vector3d::UnitZ()))};
+  const poses_type from{Eigen::Isometry3d::Identity()},
+      to{Eigen::Isometry3d(Eigen::AngleAxisd(170 * std::numbers::pi / 180, Eigen::Vector3d::UnitZ()))};
   const straight_motion motion(from, to);
   const double angle = 1.1;
   const auto swing = [&](double distance) {
@@ -199,7 +219,8 @@ TEST_CASE("Margins, deciding only, no certificate, and no data") {
   CHECK(only.queries < fine.queries);
   CHECK((only.settled && only.lower > 0.2f));
   CHECK(ask(one_ball(0), beside, {.tolerance = clearance::infinity, .margin = 0.5}).queries < 10);
-  CHECK(ask(one_ball(0), beside, {.tolerance = clearance::infinity, .margin = 0.4, .most_queries = 100}).queries <= 100);
+  CHECK(ask(one_ball(0), beside, {.tolerance = clearance::infinity, .margin = 0.4, .most_queries = 100}).queries <=
+        100);
 
   const auto gap = ask(one_ball(0, 0.1), beside, {.tolerance = 1e-3});
   CHECK((gap.lower <= 0.3f && gap.lower > 0.2989f && gap.upper >= 0.4f));
@@ -208,24 +229,31 @@ TEST_CASE("Margins, deciding only, no certificate, and no data") {
 
   for (const auto& points : {std::vector<vec3>{}, std::vector<vec3>{{clearance::not_a_number, 0, 0}}}) {
     const auto none = ask(one_ball(0), points, {});
-    CHECK((none.state == state::no_data && none.lower == 0 && none.upper == clearance::infinity && none.queries == 1 && !none.settled));
+    CHECK((none.state == state::no_data && none.lower == 0 && none.upper == clearance::infinity && none.queries == 1 &&
+           !none.settled));
     CHECK(none.nearest.seen == points.size());
   }
 }
 
 TEST_CASE("A motion of one's own is as good as its speeds") {
   // Half a circle of radius 1 around the point; turning does nothing to a ball.
-  const auto circle = [](double t) { return poses_type{shifted(std::cos(std::numbers::pi * t), std::sin(std::numbers::pi * t), 0)}; };
+  const auto circle = [](double t) {
+    return poses_type{shifted(std::cos(std::numbers::pi * t), std::sin(std::numbers::pi * t), 0)};
+  };
   const std::vector<vec3> middle{{0, 0, 0}};
-  const auto r = motion_clearance(host{}, one_ball(0), clearance::timed_motion{circle, {std::numbers::pi}}, middle, {.tolerance = 0.005});
+  const auto r = motion_clearance(host{}, one_ball(0), clearance::timed_motion{circle, {std::numbers::pi}}, middle,
+                                  {.tolerance = 0.005});
   CHECK((r.lower <= 0.9f && r.lower > 0.8949f && r.state == state::free));
-  const auto unknown = motion_clearance(host{}, one_ball(0), clearance::timed_motion{circle, {double(clearance::infinity)}}, middle, {.most_queries = 50});
+  const auto unknown =
+      motion_clearance(host{}, one_ball(0), clearance::timed_motion{circle, {double(clearance::infinity)}}, middle,
+                       {.most_queries = 50});
   CHECK((unknown.lower == 0 && unknown.state == state::possible && unknown.queries == 1));
 }
 
 TEST_CASE("What one question made certain stays so") {
   for (const std::size_t most : {1, 3, 9}) {
-    const auto r = motion_clearance(host{}, one_ball(0), unsure_motion{}, std::vector<vec3>{{1, 0, 0}}, {.tolerance = 1e-3, .most_queries = most});
+    const auto r = motion_clearance(host{}, one_ball(0), unsure_motion{}, std::vector<vec3>{{1, 0, 0}},
+                                    {.tolerance = 1e-3, .most_queries = most});
     CHECK((r.lower > 0.8499f && r.lower <= 0.9f && r.queries == most));
   }
 }

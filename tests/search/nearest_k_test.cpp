@@ -31,28 +31,37 @@ void all_scenes() {
 
 }  // namespace
 
-TEST_CASE("The k nearest points of inner spheres are the first of all, in order") { all_scenes<clearance::sphere, inner_sphere>(); }
-TEST_CASE("The k nearest points of triangles are the first of all, in order") { all_scenes<clearance::aabb, triangle>(); }
+TEST_CASE("The k nearest points of inner spheres are the first of all, in order") {
+  all_scenes<clearance::sphere, inner_sphere>();
+}
+TEST_CASE("The k nearest points of triangles are the first of all, in order") {
+  all_scenes<clearance::aabb, triangle>();
+}
 
 TEST_CASE("The nearest of very many that are about equally near, or exactly") {
   verdict v;
   dice d(41);
   scene<inner_sphere> s;
-  s.parts = {{{{0, 0, 0}, 0.5f}}, {{{20, 0, 0}, 0.1f}, {{0, 0, 0}, 0.25f}}}, s.poses = {shifted(0, 0, 0), shifted(0.125, 0, 0)};
-  for (int i = 0; i < 200000; ++i) s.points.push_back(clearance::scaled(2 + 1e-4f * d.number(0, 1), d.direction()));  // a shell: more than one pass
+  s.parts = {{{{0, 0, 0}, 0.5f}}, {{{20, 0, 0}, 0.1f}, {{0, 0, 0}, 0.25f}}},
+  s.poses = {shifted(0, 0, 0), shifted(0.125, 0, 0)};
+  for (int i = 0; i < 200000; ++i)
+    s.points.push_back(clearance::scaled(2 + 1e-4f * d.number(0, 1), d.direction()));  // a shell: more than one pass
   for (int i = 0; i < 100000; ++i) s.points.push_back({i % 2 ? 2.0f : -2.0f, 0, 0});
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const clouds cloud{{point_span(s.points)}};
   for (const std::size_t k : {1, 10, 3000, 150000})
-    require_same(nearest_k(host{}, model, s.poses, cloud, k), brute_nearest(s, cloud, k, clearance::infinity), v, std::to_string(k));
+    require_same(nearest_k(host{}, model, s.poses, cloud, k), brute_nearest(s, cloud, k, clearance::infinity), v,
+                 std::to_string(k));
 }
 
 TEST_CASE("How many and how far are numbers, and no point is no pair") {
-  const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 1}}))}};
+  const clearance::model robot{std::vector{
+      clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 1}}))}};
   const std::vector poses{Eigen::Isometry3d::Identity()};
   const std::vector<vec3> points{{3, 0, 0}, {2, 0, 0}, {clearance::not_a_number, 0, 0}};
   const auto r = nearest_k(host{}, robot, poses, points, 3);
-  CHECK((r.of(0)[0].point == 1 && r.of(0)[1].point == 0 && r.of(0)[2].point == clearance::none && r.of(0)[2].distance == clearance::infinity));
+  CHECK((r.of(0)[0].point == 1 && r.of(0)[1].point == 0 && r.of(0)[2].point == clearance::none &&
+         r.of(0)[2].distance == clearance::infinity));
   CHECK((r.counts.seen == 3 && r.counts.valid == 2 && r.certain.lower(r.of(0)[0].distance) > 0.99f));
   CHECK(nearest_k(host{}, robot, poses, points, 2, {1.5f}).of(0)[1].point == clearance::none);
   CHECK(nearest_k(host{}, robot, poses, std::vector<vec3>{}, 1).of(0)[0].cloud == clearance::none);
@@ -68,16 +77,20 @@ TEST_CASE("Prepared, the nearest are in every frame what one call says, and afte
   clearance::nearest_k_query query(host{}, model);
   for (; f.there(); f.next()) {
     const std::size_t k = f.number < 4 ? 500 : 3;  // what is known of a frame is of use in some, and in some not
-    require_same(query(f.s.poses, f.here(), k), nearest_k(host{}, model, f.s.poses, f.here(), k), v, "frame " + std::to_string(f.number));
+    require_same(query(f.s.poses, f.here(), k), nearest_k(host{}, model, f.s.poses, f.here(), k), v,
+                 "frame " + std::to_string(f.number));
     CHECK_THROWS_AS(query(f.s.poses, f.here(), 0), std::invalid_argument);
   }
-  for (const double away : {0.0, 0.0, 0.01, 0.5, 0.0, 3.0}) {  // the same points again, a little farther, far behind what is known, and near again
+  for (const double away :
+       {0.0, 0.0, 0.01, 0.5, 0.0,
+        3.0}) {  // the same points again, a little farther, far behind what is known, and near again
     for (auto& pose : f.s.poses) pose.translation().x() += away;
     f.see(3000);
     for (const std::size_t k : {40, 7, 100}) {
       const std::string what = std::to_string(k) + " after " + std::to_string(away) + " m";
       for (const real d_max : {clearance::infinity, 0.5f})
-        require_same(query(f.s.poses, f.here(), k, {d_max}), nearest_k(host{}, model, f.s.poses, f.here(), k, {d_max}), v, what);
+        require_same(query(f.s.poses, f.here(), k, {d_max}), nearest_k(host{}, model, f.s.poses, f.here(), k, {d_max}),
+                     v, what);
     }
   }
 }
@@ -91,10 +104,12 @@ TEST_CASE("Of a robot of many parts before a frame of many points the nearest ar
     s.poses.push_back(d.pose(0.8));
   }
   for (int i = 0; i < 30000; ++i)  // a wall, row by row, and floor
-    s.points.push_back(i % 3 != 0 ? vec3{1.5f, float(i % 200) / 100 - 1, float(i / 200) / 75 - 1} : vec3{float(i % 211) / 100 - 1, float(i / 211) / 75 - 1, -1});
+    s.points.push_back(i % 3 != 0 ? vec3{1.5f, float(i % 200) / 100 - 1, float(i / 200) / 75 - 1}
+                                  : vec3{float(i % 211) / 100 - 1, float(i / 211) / 75 - 1, -1});
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const clouds two{{point_span(s.points)}, {point_span(s.points), d.pose(0.3)}};
   for (const std::size_t k : {1, 50, 2000})
     for (const real d_max : {clearance::infinity, 0.4f})
-      require_same(nearest_k(host{}, model, s.poses, two, k, {d_max}), brute_nearest(s, two, k, d_max), v, std::to_string(k) + " within " + std::to_string(d_max));
+      require_same(nearest_k(host{}, model, s.poses, two, k, {d_max}), brute_nearest(s, two, k, d_max), v,
+                   std::to_string(k) + " within " + std::to_string(d_max));
 }

@@ -25,14 +25,16 @@ void all_scenes() {
     const std::tuple both(placed{all.span, s.cloud_pose}, placed{all.raw, all.camera_pose});
     for (const std::size_t k : {1, 7, 400})
       for (const real d_max : {real(-0.02), real(0.3), clearance::infinity})
-        require_same(nearest_k(gpu, there, s.poses, both, k, {d_max}), nearest_k(host{}, model, s.poses, both, k, {d_max}), v,
-                     s.name + ", " + std::to_string(k));
+        require_same(nearest_k(gpu, there, s.poses, both, k, {d_max}),
+                     nearest_k(host{}, model, s.poses, both, k, {d_max}), v, s.name + ", " + std::to_string(k));
   }
 }
 
 }  // namespace
 
-TEST_CASE("On a device the k nearest points of inner spheres are the host's") { all_scenes<clearance::sphere, inner_sphere>(); }
+TEST_CASE("On a device the k nearest points of inner spheres are the host's") {
+  all_scenes<clearance::sphere, inner_sphere>();
+}
 TEST_CASE("On a device the k nearest points of triangles are the host's") { all_scenes<clearance::aabb, triangle>(); }
 
 TEST_CASE("The nearest of a crowd, and of a shell where all are about equally near") {
@@ -45,8 +47,8 @@ TEST_CASE("The nearest of a crowd, and of a shell where all are about equally ne
   for (int i = 0; i < 300000; ++i) shell.push_back(clearance::scaled(3 + 1e-4f * d.number(0, 1), d.direction()));
   for (const std::vector<vec3>* points : {&s.points, &std::as_const(shell)})
     for (const std::size_t k : {1, 100, 5000})
-      require_same(nearest_k(gpu, model.on(gpu), s.poses, point_span(*points), k), nearest_k(host{}, model, s.poses, point_span(*points), k), v,
-                   std::to_string(k));
+      require_same(nearest_k(gpu, model.on(gpu), s.poses, point_span(*points), k),
+                   nearest_k(host{}, model, s.poses, point_span(*points), k), v, std::to_string(k));
 }
 
 TEST_CASE("Prepared, the nearest are on a device in every frame the host's") {

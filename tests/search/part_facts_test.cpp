@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known of a part is made of lengths: what is less than 0, or no number, is refused by every door, and frees nobody who gets it past them.
-#include "support/catch.hpp"
+// What is known of a part is made of lengths: what is less than 0, or no number, is refused by every door, and frees
+// nobody who gets it past them.
 #include "solid/shapes.hpp"
+#include "support/catch.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/min_distance.hpp>
@@ -28,7 +29,7 @@ const part_facts good{{0, 0, 0}, 0.5f, 0, 0};
 std::vector<part_facts> bad_facts() {
   std::vector<part_facts> all;
   for (const double bad : none_of_them)
-    for (real part_facts::*const which : {&part_facts::gap, &part_facts::tolerance, &part_facts::radius}) {
+    for (real part_facts::* const which : {&part_facts::gap, &part_facts::tolerance, &part_facts::radius}) {
       all.push_back(good);
       all.back().*which = real(bad);
     }
@@ -48,13 +49,16 @@ TEST_CASE("make_part refuses a gap or a tolerance that is negative or no number"
     CHECK_THROWS_AS(make_part(tree, bad), std::invalid_argument);
     CHECK_THROWS_AS(make_part(tree, 0, bad), std::invalid_argument);
     CHECK_THROWS_AS(make_part<sphere>(one, {.tolerance = bad}), std::invalid_argument);
-    CHECK_THROWS_AS(make_part<aabb>(close_mesh(shapes::box({0, 0, 0}, {1, 1, 1})), {.tolerance = bad}), std::invalid_argument);
-    CHECK_THROWS_AS(make_model<sphere>(std::vector<std::vector<inner_sphere>>{one}, part_options{.tolerance = bad}), std::invalid_argument);
+    CHECK_THROWS_AS(make_part<aabb>(close_mesh(shapes::box({0, 0, 0}, {1, 1, 1})), {.tolerance = bad}),
+                    std::invalid_argument);
+    CHECK_THROWS_AS(make_model<sphere>(std::vector<std::vector<inner_sphere>>{one}, part_options{.tolerance = bad}),
+                    std::invalid_argument);
     packed.gap = bad;
     CHECK_THROWS_AS(make_part<sphere>(packed), std::invalid_argument);
     CHECK_THROWS_AS(make_model<sphere>(std::vector{packed}), std::invalid_argument);
   }
-  CHECK_THROWS_WITH(make_part(tree, 0, double(not_a_number)), "clearance: the tolerance of a part is nan m, which must be 0 or more");
+  CHECK_THROWS_WITH(make_part(tree, 0, double(not_a_number)),
+                    "clearance: the tolerance of a part is nan m, which must be 0 or more");
   CHECK(make_part(tree, infinity).facts.gap == infinity);  // no certificate
 }
 
@@ -64,7 +68,8 @@ TEST_CASE("facts that are none are refused in a model, in a part that is asked a
     CHECK_THROWS_AS(model(std::vector{part{tree, no_interior{}, good}, made}), std::invalid_argument);
     CHECK_THROWS_AS(min_distance(host{}, made, here, points), std::invalid_argument);
     const auto view = made.view();
-    const model_view<std::remove_const_t<decltype(view)>> by_hand{&view, {&bad, 1}, view.tree.depth(), view.tree.width()};
+    const model_view<std::remove_const_t<decltype(view)>> by_hand{
+        &view, {&bad, 1}, view.tree.depth(), view.tree.width()};
     CHECK_THROWS_AS(min_distance(host{}, by_hand, poses, points), std::invalid_argument);
     CHECK_THROWS_AS(min_distance_query(host{}, by_hand), std::invalid_argument);
     CHECK_THROWS_AS(attach(host{}, by_hand, by_hand), std::invalid_argument);

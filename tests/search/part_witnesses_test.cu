@@ -12,14 +12,17 @@ using clearance::device, clearance::host, clearance::part_minimum, clearance::pa
 
 namespace {
 
-void require_witnesses(const std::vector<part_witness>& found, const std::vector<part_witness>& expected, verdict& v, const std::string& what) {
+void require_witnesses(const std::vector<part_witness>& found, const std::vector<part_witness>& expected, verdict& v,
+                       const std::string& what) {
   v.require(found.size() == expected.size(), what);
-  for (std::size_t k = 0; k < expected.size(); ++k) v.require(same_witness(found[k], expected[k]), what, ": the witness of part", k);
+  for (std::size_t k = 0; k < expected.size(); ++k)
+    v.require(same_witness(found[k], expected[k]), what, ": the witness of part", k);
 }
 
 }  // namespace
 
-TEST_CASE("A prepared question of every part's witness says on a device in every frame what the host says, and in a graph") {
+TEST_CASE(
+    "A prepared question of every part's witness says on a device in every frame what the host says, and in a graph") {
   verdict v;
   const own_stream stream;
   const device gpu{0, stream.handle};
@@ -66,7 +69,8 @@ TEST_CASE("Minima of other clouds have no witness on a device") {
   f.see(10);  // smaller: points of those numbers are not there
   CHECK_THROWS_AS(query(f.s.poses, f.here(), minima), std::invalid_argument);
   query.enqueue(f.s.poses, frame_there(gpu, f).all, others.data(), witnesses.data());
-  for (const part_witness& w : gpu.copy_out(witnesses)) CHECK((w.part == clearance::none && w.point == clearance::none));
+  for (const part_witness& w : gpu.copy_out(witnesses))
+    CHECK((w.part == clearance::none && w.point == clearance::none));
   query.enqueue(f.s.poses, std::vector<clearance::placed<clearance::point_span>>{}, others.data(), witnesses.data());
   for (const part_witness& w : gpu.copy_out(witnesses)) CHECK(w.part == clearance::none);
 }

@@ -51,14 +51,16 @@ TEST_CASE("The distance of points inside is the deepest in any sphere, and never
       std::vector<vec3> points;
       double deepest = -std::numeric_limits<double>::infinity(), in_spheres = std::numeric_limits<double>::infinity();
       while (points.size() < 8) {
-        const Vector3d u(d.uniform(0, 1), d.uniform(0, 1), d.uniform(0, 1)), at = solid.bounds().min() + u.cwiseProduct(solid.bounds().sizes());
+        const Vector3d u(d.uniform(0, 1), d.uniform(0, 1), d.uniform(0, 1)),
+            at = solid.bounds().min() + u.cwiseProduct(solid.bounds().sizes());
         const vec3 q{clearance::to_float(at.x()), clearance::to_float(at.y()), clearance::to_float(at.z())};
         const Vector3d exact(q.x, q.y, q.z);
         if (depth(mesh, exact) <= 0) continue;
         points.push_back(q);
         deepest = std::max(deepest, depth(mesh, exact));
         double own = std::numeric_limits<double>::infinity();
-        for (const auto& s : p.spheres) own = std::min(own, (exact - Vector3d(s.center.x, s.center.y, s.center.z)).norm() - s.radius);
+        for (const auto& s : p.spheres)
+          own = std::min(own, (exact - Vector3d(s.center.x, s.center.y, s.center.z)).norm() - s.radius);
         in_spheres = std::min(in_spheres, own);
         most_missed = std::max(most_missed, depth(mesh, exact) + own);
       }

@@ -20,18 +20,20 @@ bool same_minimum(const clearance::part_minimum& a, const clearance::part_minimu
 
 /// Cold, warm, moved, and moved back; `source` is in host memory.
 template <class Model, class S>
-void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const S& source, const Eigen::Isometry3d& pose, verdict& v,
-               const std::string& what) {
+void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const S& source,
+               const Eigen::Isometry3d& pose, verdict& v, const std::string& what) {
   const device gpu;
   const auto model = on_host.on(gpu);
   clearance::min_distance_query query(gpu, model);
   const clearance::placed<S> cloud{source, pose};
   const auto same = [&](const std::string& when) {
     const auto expected = min_distance(host{}, on_host, poses, cloud);
-    v.require(same_result(query(poses, source, pose), expected), what + ", " + when, ": differs from the host's result");
+    v.require(same_result(query(poses, source, pose), expected), what + ", " + when,
+              ": differs from the host's result");
     const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, cloud);
     std::vector<clearance::part_minimum> minima(poses.size());
-    v.require(same_result(query.per_part(poses, cloud, minima), robot), what + ", " + when, ": differs from the host's result by parts");
+    v.require(same_result(query.per_part(poses, cloud, minima), robot), what + ", " + when,
+              ": differs from the host's result by parts");
     v.require(std::ranges::equal(minima, each, same_minimum), what + ", " + when, ": some part's minimum differs");
   };
   same("cold");
@@ -63,24 +65,34 @@ void ask_all_scenes() {
 clearance::triangle_mesh box(double half) {
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return m;
 }
 
-std::vector<inner_sphere> ball_of_spheres(dice& d, int count) { return random_primitives<inner_sphere>(d, count, 0.3, 0.02); }
+std::vector<inner_sphere> ball_of_spheres(dice& d, int count) {
+  return random_primitives<inner_sphere>(d, count, 0.3, 0.02);
+}
 
 template <class V>
 auto robot_of(dice& d, int parts, int spheres) {
   std::vector<clearance::part<clearance::bvh<V, inner_sphere>>> made;
-  for (int k = 0; k < parts; ++k) made.push_back(clearance::make_part(clearance::build<V>(ball_of_spheres(d, spheres))));
+  for (int k = 0; k < parts; ++k)
+    made.push_back(clearance::make_part(clearance::build<V>(ball_of_spheres(d, spheres))));
   return clearance::model(std::move(made));
 }
 
 }  // namespace
 
-TEST_CASE("The prepared query equals the plain one: spheres in spheres") { ask_all_scenes<inner_sphere, clearance::sphere>(); }
-TEST_CASE("The prepared query equals the plain one: spheres in oriented boxes") { ask_all_scenes<inner_sphere, clearance::obb>(); }
-TEST_CASE("The prepared query equals the plain one: triangles in boxes") { ask_all_scenes<triangle, clearance::aabb>(); }
+TEST_CASE("The prepared query equals the plain one: spheres in spheres") {
+  ask_all_scenes<inner_sphere, clearance::sphere>();
+}
+TEST_CASE("The prepared query equals the plain one: spheres in oriented boxes") {
+  ask_all_scenes<inner_sphere, clearance::obb>();
+}
+TEST_CASE("The prepared query equals the plain one: triangles in boxes") {
+  ask_all_scenes<triangle, clearance::aabb>();
+}
 
 TEST_CASE("Any number of parts and points is exact, even one and none") {
   dice d(5);
@@ -92,7 +104,8 @@ TEST_CASE("Any number of parts and points is exact, even one and none") {
     for (const int points : {0, 1, 15, 17, 31, 33, 2047, 2049, 30011}) {
       if (parts > 13 && points % 16 != 1) continue;
       const auto cloud = d.points(std::size_t(points), 2);
-      ask_often(model, poses, clearance::point_span(cloud), d.pose(0.1), v, std::to_string(parts) + " parts, " + std::to_string(points) + " points");
+      ask_often(model, poses, clearance::point_span(cloud), d.pose(0.1), v,
+                std::to_string(parts) + " parts, " + std::to_string(points) + " points");
       if (points > 1)  // an odd address: no wide loads
         ask_often(model, poses, clearance::point_span(cloud.data() + 1, cloud.size() - 1), d.pose(0.1), v, "unaligned");
     }
@@ -119,12 +132,14 @@ TEST_CASE("Points inside triangle parts are found by the prepared query too") {
   dice d(7);
   verdict v;
   std::vector<decltype(clearance::make_part<clearance::obb>(clearance::close_mesh(box(1))))> parts;
-  for (const double half : {0.2, 0.3, 0.1}) parts.push_back(clearance::make_part<clearance::obb>(clearance::close_mesh(box(half)), {.tolerance = 1e-4}));
+  for (const double half : {0.2, 0.3, 0.1})
+    parts.push_back(clearance::make_part<clearance::obb>(clearance::close_mesh(box(half)), {.tolerance = 1e-4}));
   const clearance::model robot(std::move(parts));
   const std::vector<Eigen::Isometry3d> poses = {d.pose(0.3), d.pose(0.3), d.pose(0.3)};
   for (const double half : {0.05, 0.5, 2.0}) {
     const auto cloud = d.points(5000, half);
-    ask_often(robot, poses, clearance::point_span(cloud), shifted(0, 0, 0), v, "boxes, cloud of " + std::to_string(half));
+    ask_often(robot, poses, clearance::point_span(cloud), shifted(0, 0, 0), v,
+              "boxes, cloud of " + std::to_string(half));
   }
 }
 
@@ -145,9 +160,12 @@ TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are cou
     for (const char* when : {"first", "again"}) {
       const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, clouds);
       std::vector<clearance::part_minimum> minima(5);
-      v.require(same_result(query(poses, clouds), min_distance(host{}, on_host, poses, clouds)), std::to_string(rotation) + when, ": differs");
-      v.require(same_result(query.per_part(poses, clouds, minima), robot), std::to_string(rotation) + when, ": differs by parts");
-      v.require(std::ranges::equal(minima, each, same_minimum), std::to_string(rotation) + when, ": some part's minimum differs");
+      v.require(same_result(query(poses, clouds), min_distance(host{}, on_host, poses, clouds)),
+                std::to_string(rotation) + when, ": differs");
+      v.require(same_result(query.per_part(poses, clouds, minima), robot), std::to_string(rotation) + when,
+                ": differs by parts");
+      v.require(std::ranges::equal(minima, each, same_minimum), std::to_string(rotation) + when,
+                ": some part's minimum differs");
     }
   const std::vector<clearance::placed<clearance::point_span>> no_cloud;
   REQUIRE(same_result(query(poses, no_cloud), min_distance(host{}, on_host, poses, no_cloud)));
@@ -165,7 +183,9 @@ TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are cou
   }
 }
 
-TEST_CASE("A frame in the caller's graph reads poses from memory when it runs, and is the frame of those poses in every bit") {
+TEST_CASE(
+    "A frame in the caller's graph reads poses from memory when it runs, and is the frame of those poses in every "
+    "bit") {
   dice d(10);
   verdict v;
   const own_stream stream;
@@ -179,7 +199,9 @@ TEST_CASE("A frame in the caller's graph reads poses from memory when it runs, a
   const clearance::pinned_buffer<clearance::world_transform> poses(15, gpu.id);
   const clearance::pinned_buffer<clearance::min_distance_result> result(1, gpu.id);
   const clearance::pinned_buffer<clearance::part_minimum> minima(14, gpu.id);
-  const captured_graph graph(stream.handle, [&] { query.enqueue_per_part(poses.data(), view, poses.data() + 14, result.data(), minima.data()); });
+  const captured_graph graph(stream.handle, [&] {
+    query.enqueue_per_part(poses.data(), view, poses.data() + 14, result.data(), minima.data());
+  });
   const auto run = [&] {
     graph.launch();
     gpu.wait();
@@ -195,7 +217,8 @@ TEST_CASE("A frame in the caller's graph reads poses from memory when it runs, a
     const clearance::placed cloud{clearance::point_span(points), at[14]};
     const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, std::span(at).first(14), cloud);
     v.require(same_result(*result.data(), robot), "replay " + std::to_string(k), ": differs from the host's result");
-    v.require(std::ranges::equal(std::span(minima.data(), 14), each, same_minimum), "replay " + std::to_string(k), ": some part's minimum differs");
+    v.require(std::ranges::equal(std::span(minima.data(), 14), each, same_minimum), "replay " + std::to_string(k),
+              ": some part's minimum differs");
   }
   poses.data()[3].m[1][1] = 2;
   run();
@@ -256,8 +279,9 @@ TEST_CASE("Points in pinned memory are found where they are, and where they have
   for (const char* when : {"first", "other points", "others again"}) {
     const auto points = d.points(pinned.size(), 2);
     std::copy(points.begin(), points.end(), pinned.data());
-    v.require(same_result(query(poses, clearance::point_span(pinned.data(), pinned.size())), min_distance(host{}, on_host, poses, points)), when,
-              ": differs from the host's result");
+    v.require(same_result(query(poses, clearance::point_span(pinned.data(), pinned.size())),
+                          min_distance(host{}, on_host, poses, points)),
+              when, ": differs from the host's result");
   }
 }
 
@@ -275,5 +299,6 @@ TEST_CASE("A query in a stream of its own leaves the caller's device alone, and 
   Eigen::Isometry3d skewed = poses[0];
   skewed.linear() *= 1.01;
   REQUIRE_THROWS_AS(query(std::vector{skewed, poses[1]}, clearance::point_span(cloud)), std::invalid_argument);
-  REQUIRE(same_result(query(poses, clearance::point_span(cloud)), min_distance(host{}, on_host, poses, clearance::point_span(cloud))));
+  REQUIRE(same_result(query(poses, clearance::point_span(cloud)),
+                      min_distance(host{}, on_host, poses, clearance::point_span(cloud))));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The robot's own points are those that a plain loop over all points and primitives finds, and the rest is asked about as if they were not there.
+// The robot's own points are those that a plain loop over all points and primitives finds, and the rest is asked about
+// as if they were not there.
 #include "support/brute_own.hpp"
 
 #include <clearance/make_model.hpp>
@@ -8,8 +9,8 @@
 #include <clearance/volume/sphere.hpp>
 
 using namespace testing;
-using clearance::host, clearance::min_distance, clearance::min_distance_filtered, clearance::placed, clearance::point_label, clearance::point_span,
-    clearance::self_filter;
+using clearance::host, clearance::min_distance, clearance::min_distance_filtered, clearance::placed,
+    clearance::point_label, clearance::point_span, clearance::self_filter;
 
 namespace {
 
@@ -45,30 +46,41 @@ const std::vector poses{Eigen::Isometry3d::Identity()};
 
 }  // namespace
 
-TEST_CASE("Points of a robot of spheres are hidden, and the rest is asked about") { all_scenes<clearance::sphere, inner_sphere>(); }
-TEST_CASE("Points of a robot of triangles are hidden, and the rest is asked about") { all_scenes<clearance::aabb, triangle>(); }
+TEST_CASE("Points of a robot of spheres are hidden, and the rest is asked about") {
+  all_scenes<clearance::sphere, inner_sphere>();
+}
+TEST_CASE("Points of a robot of triangles are hidden, and the rest is asked about") {
+  all_scenes<clearance::aabb, triangle>();
+}
 
 TEST_CASE("What gap and tolerance leave open is uncertain, and not hidden") {
-  const std::vector<vec3> points{{1.2f, 0, 0}, {1.45f, 0, 0}, {1.53f, 0, 0}, {3, 0, 0}, {clearance::not_a_number, 0, 0}};
+  const std::vector<vec3> points{
+      {1.2f, 0, 0}, {1.45f, 0, 0}, {1.53f, 0, 0}, {3, 0, 0}, {clearance::not_a_number, 0, 0}};
   const auto ask = [&](double gap, double tolerance) {
-    const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(one_ball), gap, tolerance)}};
+    const clearance::model robot{
+        std::vector{clearance::make_part(clearance::build<clearance::sphere>(one_ball), gap, tolerance)}};
     return self_filter(host{}, robot, poses, point_span(points), {.padding = {0.5}});
   };
   using enum point_label;
   CHECK(ask(0, 0).labels == std::vector{own, own, rest, rest, no_point});
-  CHECK(ask(0.1, 0).labels == std::vector{own, own, uncertain, rest, no_point});  // the solid may be nearer by the gap, and not farther
+  CHECK(ask(0.1, 0).labels ==
+        std::vector{own, own, uncertain, rest, no_point});  // the solid may be nearer by the gap, and not farther
   CHECK(ask(0.01, 0.1).labels == std::vector{own, uncertain, uncertain, rest, no_point});
   const auto open = ask(clearance::infinity, 0);  // without a certificate
   CHECK(open.labels == std::vector{own, own, uncertain, uncertain, no_point});
-  CHECK((open.counts.own == 2 && open.counts.uncertain == 2 && open.counts.points.valid == 4 && open.rest == std::vector<std::uint32_t>{2, 3}));
+  CHECK((open.counts.own == 2 && open.counts.uncertain == 2 && open.counts.points.valid == 4 &&
+         open.rest == std::vector<std::uint32_t>{2, 3}));
 }
 
 TEST_CASE("An arm before a camera is hidden from a robot that is another one") {
   const clearance::model arm{std::vector{clearance::make_part(clearance::build<clearance::sphere>(one_ball))}};
-  const clearance::model base{std::vector{clearance::make_part(clearance::build<clearance::aabb>(std::vector<inner_sphere>{{{0, 5, 0}, 1}, {{0, 7, 0}, 1}}))}};
+  const clearance::model base{std::vector{clearance::make_part(
+      clearance::build<clearance::aabb>(std::vector<inner_sphere>{{{0, 5, 0}, 1}, {{0, 7, 0}, 1}}))}};
   const std::vector<vec3> points{{0, 1.005f, 0}, {0, 2, 0}, {9, 9, 9}};
-  const auto r = min_distance_filtered(host{}, base, poses, arm, poses, std::tuple(point_span(points), placed{point_span(points), shifted(0, -0.5, 0)}));
-  CHECK((r.filter.rest == std::vector<std::uint32_t>{1, 2, 4, 5} && r.filter.offsets == std::vector<std::size_t>{0, 3, 6}));
+  const auto r = min_distance_filtered(host{}, base, poses, arm, poses,
+                                       std::tuple(point_span(points), placed{point_span(points), shifted(0, -0.5, 0)}));
+  CHECK((r.filter.rest == std::vector<std::uint32_t>{1, 2, 4, 5} &&
+         r.filter.offsets == std::vector<std::size_t>{0, 3, 6}));
   CHECK((r.rest.point == 1 && r.rest.distance == 2 && r.rest.dropped[int(clearance::drop_reason::masked)] == 2));
 }
 
@@ -78,7 +90,8 @@ TEST_CASE("All are the robot's, no points, and what cannot be asked") {
   const auto all = min_distance_filtered(host{}, robot, poses, points);
   CHECK((all.filter.rest.empty() && all.filter.counts.own == 2 && all.rest.state == clearance::state::no_data));
   const auto none = min_distance_filtered(host{}, robot, poses, std::vector<placed<point_span>>{});
-  CHECK((none.filter.labels.empty() && none.filter.offsets == std::vector<std::size_t>{0} && none.rest.state == clearance::state::no_data));
+  CHECK((none.filter.labels.empty() && none.filter.offsets == std::vector<std::size_t>{0} &&
+         none.rest.state == clearance::state::no_data));
   for (const double bad : {-0.01, double(clearance::not_a_number), double(clearance::infinity)})
     CHECK_THROWS_AS(self_filter(host{}, robot, poses, points, {.padding = {bad}}), std::invalid_argument);
   CHECK_THROWS_AS(self_filter(host{}, robot, poses, points, {.padding = {0, 0}}), std::invalid_argument);
@@ -93,7 +106,8 @@ TEST_CASE("A masked source reads four at once what it reads one by one, and tell
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool shown = i >= 512 && i < 700;
     labels.push_back(point_label(shown ? 0 : d.below(3)));
-    if (i % 5 == 0) points[i].z = clearance::infinity, labels.back() = !shown && i % 2 ? point_label::own : point_label::no_point;
+    if (i % 5 == 0)
+      points[i].z = clearance::infinity, labels.back() = !shown && i % 2 ? point_label::own : point_label::no_point;
   }
   const clearance::masked hidden(point_span(points), labels.data());
   static_assert(clearance::fetched_source<decltype(hidden)> && clearance::surveyed_source<decltype(hidden)>);
@@ -102,7 +116,8 @@ TEST_CASE("A masked source reads four at once what it reads one by one, and tell
     const unsigned reasons = hidden.look(hidden.fetch(hidden.skip(hidden.seek(0), i)), i, at);
     for (unsigned j = 0; j < 4; ++j) {
       const clearance::sample s = hidden[i + j];
-      v.require((reasons >> 8 * j & 0xff) == unsigned(s.dropped), "point ", i + j, " is ", reasons >> 8 * j & 0xff, " and not ", int(s.dropped));
+      v.require((reasons >> 8 * j & 0xff) == unsigned(s.dropped), "point ", i + j, " is ", reasons >> 8 * j & 0xff,
+                " and not ", int(s.dropped));
       v.require(same_bytes(at[j], points[i + j]), "point ", i + j, " is elsewhere");
     }
   };
@@ -145,13 +160,17 @@ TEST_CASE("A robot that holds something is as if it had always been of more part
   verdict v;
   dice d(32);
   scene<inner_sphere> s;
-  for (int part = 0; part < 3; ++part) s.parts.push_back(random_spheres(d, 40, 0.2, 0.1)), s.poses.push_back(d.pose(0.5));
+  for (int part = 0; part < 3; ++part)
+    s.parts.push_back(random_spheres(d, 40, 0.2, 0.1)), s.poses.push_back(d.pose(0.5));
   s.points = d.points(3000, 1);
   const auto whole = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const clearance::model arm{std::vector{whole.parts()[0], whole.parts()[1]}}, tool{std::vector{whole.parts()[2]}};
   const auto both = attach(host{}, arm, tool);
-  require_same(self_filter(host{}, both, s.poses, point_span(s.points)), self_filter(host{}, whole, s.poses, point_span(s.points)), v, "attached");
-  const auto a = min_distance(host{}, both, s.poses, point_span(s.points)), b = min_distance(host{}, whole, s.poses, point_span(s.points));
-  CHECK((same_bits(a.distance, b.distance) && same_bits(a.lower, b.lower) && a.part == b.part && a.point == b.point && a.primitive == b.primitive));
+  require_same(self_filter(host{}, both, s.poses, point_span(s.points)),
+               self_filter(host{}, whole, s.poses, point_span(s.points)), v, "attached");
+  const auto a = min_distance(host{}, both, s.poses, point_span(s.points)),
+             b = min_distance(host{}, whole, s.poses, point_span(s.points));
+  CHECK((same_bits(a.distance, b.distance) && same_bits(a.lower, b.lower) && a.part == b.part && a.point == b.point &&
+         a.primitive == b.primitive));
   CHECK(attach(host{}, both, tool).size() == 4);
 }

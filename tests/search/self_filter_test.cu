@@ -11,8 +11,8 @@
 #include <clearance/volume/sphere.hpp>
 
 using namespace testing;
-using clearance::device, clearance::host, clearance::min_distance_filtered, clearance::placed, clearance::point_label, clearance::point_span,
-    clearance::self_filter;
+using clearance::device, clearance::host, clearance::min_distance_filtered, clearance::placed, clearance::point_label,
+    clearance::point_span, clearance::self_filter;
 
 namespace {
 
@@ -27,7 +27,8 @@ void all_scenes() {
     const auto each = [&](const auto& clouds, const std::string& what) {
       for (const double padding : {0.0, 0.02, 0.4}) {
         const clearance::self_filter_options options{.padding = {padding * s.size}};
-        const auto a = min_distance_filtered(gpu, there, s.poses, clouds, options), b = min_distance_filtered(host{}, model, s.poses, clouds, options);
+        const auto a = min_distance_filtered(gpu, there, s.poses, clouds, options),
+                   b = min_distance_filtered(host{}, model, s.poses, clouds, options);
         require_same(a.filter, b.filter, v, s.name + what);
         require_same(self_filter(gpu, there, s.poses, clouds, options), b.filter, v, s.name + what + ", alone");
         v.require(same_result(a.rest, b.rest), s.name + what, ": the rest differs");
@@ -40,8 +41,12 @@ void all_scenes() {
 
 }  // namespace
 
-TEST_CASE("On a device points of a robot of spheres are hidden as on the host") { all_scenes<clearance::sphere, inner_sphere>(); }
-TEST_CASE("On a device points of a robot of triangles are hidden as on the host") { all_scenes<clearance::aabb, triangle>(); }
+TEST_CASE("On a device points of a robot of spheres are hidden as on the host") {
+  all_scenes<clearance::sphere, inner_sphere>();
+}
+TEST_CASE("On a device points of a robot of triangles are hidden as on the host") {
+  all_scenes<clearance::aabb, triangle>();
+}
 
 TEST_CASE("A crowd around three parts, one of them held by the others: filter and rest in a graph") {
   verdict v;
@@ -50,7 +55,8 @@ TEST_CASE("A crowd around three parts, one of them held by the others: filter an
   const auto s = crowd(98);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto there = model.on(gpu);
-  const clearance::model arm_here{std::vector{model.parts()[0], model.parts()[1]}}, tool_here{std::vector{model.parts()[2]}};
+  const clearance::model arm_here{std::vector{model.parts()[0], model.parts()[1]}},
+      tool_here{std::vector{model.parts()[2]}};
   const auto arm = arm_here.on(gpu), tool = tool_here.on(gpu);
   const auto both = attach(gpu, arm, tool);
   const clearance::self_filter_options options{.padding = {0.05}};
@@ -63,8 +69,10 @@ TEST_CASE("A crowd around three parts, one of them held by the others: filter an
   const auto points = gpu.copy_in(std::span(s.points));
   const point_span cloud(points.data(), points.size());
   const auto labels = gpu.copy_in(std::span<const point_label>(std::vector<point_label>(s.points.size())));
-  const auto counts = gpu.copy_in(std::span<const clearance::self_filter_counts>(std::vector<clearance::self_filter_counts>(1)));
-  const auto result = gpu.copy_in(std::span<const clearance::min_distance_result>(std::vector<clearance::min_distance_result>(1)));
+  const auto counts =
+      gpu.copy_in(std::span<const clearance::self_filter_counts>(std::vector<clearance::self_filter_counts>(1)));
+  const auto result =
+      gpu.copy_in(std::span<const clearance::min_distance_result>(std::vector<clearance::min_distance_result>(1)));
   const auto enqueue = [&] {
     clearance::self_filter_async(gpu, there, s.poses, cloud, options, labels.data(), counts.data());
     clearance::min_distance_async(gpu, there, s.poses, clearance::masked_clouds(cloud, labels.data()), result.data());
@@ -82,7 +90,8 @@ TEST_CASE("A crowd around three parts, one of them held by the others: filter an
   }
 }
 
-TEST_CASE("A prepared filter of more parts than a kernel takes and of many clouds says in every frame what one call says") {
+TEST_CASE(
+    "A prepared filter of more parts than a kernel takes and of many clouds says in every frame what one call says") {
   verdict v;
   const device gpu;
   dice d(103);
@@ -99,30 +108,36 @@ TEST_CASE("A prepared filter of more parts than a kernel takes and of many cloud
   const clearance::self_filter_options options{.padding = {0.05}};
   constexpr std::size_t count = 6 * 1001;
   const auto labels = gpu.copy_in(std::span<const point_label>(std::vector<point_label>(count)));
-  const auto counts = gpu.copy_in(std::span<const clearance::self_filter_counts>(std::vector<clearance::self_filter_counts>(1)));
+  const auto counts =
+      gpu.copy_in(std::span<const clearance::self_filter_counts>(std::vector<clearance::self_filter_counts>(1)));
   for (int frame = 0; frame < 3; ++frame) {
     auto points = d.points(count, 1.5);
     points[17].x = points[2002].y = clearance::not_a_number;
     const auto points_there = gpu.copy_in(std::span<const vec3>(points));
     const auto in_six = [](const vec3* from) {
       std::vector<placed<point_span>> six;
-      for (std::size_t c = 0; c < 6; ++c) six.push_back({point_span(from + c * 1001, 1001), Eigen::Isometry3d::Identity()});
+      for (std::size_t c = 0; c < 6; ++c)
+        six.push_back({point_span(from + c * 1001, 1001), Eigen::Isometry3d::Identity()});
       return six;
     };
     const auto expected = self_filter(host{}, model, s.poses, in_six(points.data()), options);
     filter.enqueue(s.poses, in_six(points_there.data()), options, labels.data(), counts.data());
     v.require(gpu.copy_out(labels) == expected.labels, "frame ", frame, ": some label differs");
     const auto found = gpu.copy_out(counts)[0];
-    v.require(found.own == expected.counts.own && found.uncertain == expected.counts.uncertain && found.points.valid == expected.counts.points.valid &&
-                  found.points.valid == count - 2,
+    v.require(found.own == expected.counts.own && found.uncertain == expected.counts.uncertain &&
+                  found.points.valid == expected.counts.points.valid && found.points.valid == count - 2,
               "frame ", frame, ": ", found.own, " own, and not ", expected.counts.own);
     std::vector<point_label> labels_here(count);
     clearance::self_filter_counts counts_here;
     here.enqueue(s.poses, in_six(points.data()), options, labels_here.data(), &counts_here);
-    v.require(labels_here == expected.labels && counts_here.own == expected.counts.own, "frame ", frame, ": the host's prepared one differs");
-    require_same(filter(s.poses, in_six(points.data()), options), expected, v, "waited for, frame " + std::to_string(frame));
-    require_same(here(s.poses, in_six(points.data()), options), expected, v, "waited for on the host, frame " + std::to_string(frame));
-    v.require(expected.counts.own > 100 && expected.counts.own < count / 2, "frame ", frame, ": ", expected.counts.own, " are the robot's");
+    v.require(labels_here == expected.labels && counts_here.own == expected.counts.own, "frame ", frame,
+              ": the host's prepared one differs");
+    require_same(filter(s.poses, in_six(points.data()), options), expected, v,
+                 "waited for, frame " + std::to_string(frame));
+    require_same(here(s.poses, in_six(points.data()), options), expected, v,
+                 "waited for on the host, frame " + std::to_string(frame));
+    v.require(expected.counts.own > 100 && expected.counts.own < count / 2, "frame ", frame, ": ", expected.counts.own,
+              " are the robot's");
     s.poses[std::size_t(frame)] = d.pose(1);
   }
 }

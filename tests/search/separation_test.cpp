@@ -33,14 +33,17 @@ TEST_CASE("A gap's speed is what its distance loses in a time") {
   testing::dice d(15);
   for (int trial = 0; trial < 200; ++trial) {
     const auto any = [&] { return Vector3d(d.uniform(-1, 1), d.uniform(-1, 1), d.uniform(-1, 1)); };
-    const Vector3d center = any(), point = center + 1.5 * any().normalized(), velocity = any(), turning = any(), about = any(), point_velocity = any();
+    const Vector3d center = any(), point = center + 1.5 * any().normalized(), velocity = any(), turning = any(),
+                   about = any(), point_velocity = any();
     const Vector3d n = (point - center).normalized(), near = center + 0.25 * n;
     clearance::part_witness w;
-    w.part = 3, w.distance = 1.25, w.nearest = {near.x(), near.y(), near.z()}, w.normal = {float(n.x()), float(n.y()), float(n.z())};
+    w.part = 3, w.distance = 1.25, w.nearest = {near.x(), near.y(), near.z()},
+    w.normal = {float(n.x()), float(n.y()), float(n.z())};
     const double h = 1e-4;
     const Vector3d moved = center + h * (velocity + turning.cross(center - about));  // a sphere is where its centre is
     const double rate = ((point - center).norm() - (point + h * point_velocity - moved).norm()) / h;
-    v.require(std::abs(*approach_speed(w, velocity, turning, about, point_velocity) - rate) < 2e-3, "trial", trial, ":", rate);
+    v.require(std::abs(*approach_speed(w, velocity, turning, about, point_velocity) - rate) < 2e-3, "trial", trial, ":",
+              rate);
   }
 }
 
@@ -59,14 +62,21 @@ TEST_CASE("A gap without a direction has no speed, and speeds are numbers") {
 }
 
 TEST_CASE("The protective separation is the sum of its terms, and every term is said") {
-  const separation_terms s{.human_speed = 1.6, .robot_speed = 0.5, .reaction_time = 0.1, .stopping_time = 0.4, .stopping_distance = 0.09,
-                           .intrusion = 0.2, .human_uncertainty = 0.05, .robot_uncertainty = 0.003};
+  const separation_terms s{.human_speed = 1.6,
+                           .robot_speed = 0.5,
+                           .reaction_time = 0.1,
+                           .stopping_time = 0.4,
+                           .stopping_distance = 0.09,
+                           .intrusion = 0.2,
+                           .human_uncertainty = 0.05,
+                           .robot_uncertainty = 0.003};
   CHECK(protective_separation(s) == Approx(1.6 * 0.5 + 0.5 * 0.1 + 0.09 + 0.2 + 0.05 + 0.003));
   CHECK(protective_separation({0, 0, 0, 0, 0, 0, 0, 0}) == 0);
   CHECK_THROWS_AS(protective_separation({}), std::invalid_argument);
-  double separation_terms::* const terms[] = {&separation_terms::human_speed,       &separation_terms::robot_speed, &separation_terms::reaction_time,
-                                              &separation_terms::stopping_time,     &separation_terms::stopping_distance, &separation_terms::intrusion,
-                                              &separation_terms::human_uncertainty, &separation_terms::robot_uncertainty};
+  double separation_terms::* const terms[] = {
+      &separation_terms::human_speed,       &separation_terms::robot_speed,       &separation_terms::reaction_time,
+      &separation_terms::stopping_time,     &separation_terms::stopping_distance, &separation_terms::intrusion,
+      &separation_terms::human_uncertainty, &separation_terms::robot_uncertainty};
   for (const auto term : terms) {
     auto more = s;
     more.*term += 0.5;

@@ -29,7 +29,8 @@ void deal(const S& cloud, verdict& v, const std::string& what) {
     v.require(whole.size() == cloud.size(), what, ": another size");
     for (std::size_t i = 0; i < whole.size() && i < cloud.size(); ++i) {
       const clearance::sample a = whole[i], b = cloud[i];
-      v.require(a.dropped == b.dropped && (!a.valid() || same_bytes(a.position, b.position)), what, ": point ", i, " is another");
+      v.require(a.dropped == b.dropped && (!a.valid() || same_bytes(a.position, b.position)), what, ": point ", i,
+                " is another");
     }
     const auto its = clearance::rounding_of(whole), own = clearance::rounding_of(cloud);
     v.require(its.absolute == own.absolute && its.relative == own.relative, what, ": another rounding");
@@ -41,7 +42,8 @@ template <class S>
 void copy_slices(const S& cloud, verdict& v, const std::string& what) {
   dice d(71);
   for (int k = 0; k < 60; ++k) {
-    const std::size_t begin = d.below(unsigned(cloud.size()) + 1), end = begin + d.below(unsigned(cloud.size() - begin) + 1);
+    const std::size_t begin = d.below(unsigned(cloud.size()) + 1),
+                      end = begin + d.below(unsigned(cloud.size() - begin) + 1);
     const auto some = slice(cloud, begin, end);
     const auto bytes = some.bytes();
     const std::vector<std::byte> copy(bytes.begin(), bytes.end());
@@ -50,7 +52,8 @@ void copy_slices(const S& cloud, verdict& v, const std::string& what) {
     v.require(moved.size() == end - begin, what, ": a copy of another size");
     for (std::size_t i = 0; i < moved.size(); ++i) {
       const clearance::sample a = moved[i], b = cloud[begin + i];
-      v.require(a.dropped == b.dropped && (!a.valid() || same_bytes(a.position, b.position)), what, ": a copy's point ", i, " is another");
+      v.require(a.dropped == b.dropped && (!a.valid() || same_bytes(a.position, b.position)), what, ": a copy's point ",
+                i, " is another");
     }
   }
 }
@@ -79,19 +82,22 @@ TEST_CASE("A slice says which bytes it needs, and needs no others") {
     copy_slices(all.metres, v, s.name + ", float image");
     auto rows = all.floats;  // three records a row, and padding
     rows.width = 3, rows.count = s.points.size() / 3 * 3 / 2, rows.row_step = rows.step * 3 + 11;
-    if ((rows.count + 2) / 3 * rows.row_step <= s.points.size() * rows.step && rows.count > 0) copy_slices(rows, v, s.name + ", rows");
+    if ((rows.count + 2) / 3 * rows.row_step <= s.points.size() * rows.step && rows.count > 0)
+      copy_slices(rows, v, s.name + ", rows");
     auto part = all.raw;  // the left half of an image
     part.width /= 2;
     copy_slices(part, v, s.name + ", half an image");
     const std::vector<clearance::ray> rays(all.raw.size(), {0.1f, 0.2f});
-    copy_slices(clearance::ray_image<std::uint16_t>(all.raw.pixels, rays.data(), all.raw.width, all.raw.height), v, s.name + ", rays");
+    copy_slices(clearance::ray_image<std::uint16_t>(all.raw.pixels, rays.data(), all.raw.width, all.raw.height), v,
+                s.name + ", rays");
   }
 }
 
 TEST_CASE("A slice of a large image needs about its share of the bytes") {
   const std::vector<std::uint16_t> depth(640 * 480, 1000);
   const clearance::depth_image<std::uint16_t> image(depth.data(), 640, 480, {525, 525, 319.5, 239.5});
-  for (std::size_t k = 0; k < 4; ++k) CHECK(piece_of(image, k, 4).bytes().size() <= depth.size() * 2 / 4 + 2 * 1280 + 256);
+  for (std::size_t k = 0; k < 4; ++k)
+    CHECK(piece_of(image, k, 4).bytes().size() <= depth.size() * 2 / 4 + 2 * 1280 + 256);
   std::vector<std::byte> records(22 * 100000);
   clearance::strided_points<float> cloud;
   cloud.data = records.data(), cloud.count = 100000, cloud.step = 22;
@@ -108,9 +114,11 @@ TEST_CASE("Pieces of any size answer as one cloud; none, and too many, are refus
     const sharded cloud(pieces);
     const auto a = clearance::min_distance(host{}, model, s.poses, cloud, s.cloud_pose);
     const auto b = clearance::min_distance(host{}, model, s.poses, clearance::point_span(s.points), s.cloud_pose);
-    v.require(same_bits(a.distance, b.distance) && a.point == b.point && a.part == b.part && a.primitive == b.primitive && a.valid == b.valid,
+    v.require(same_bits(a.distance, b.distance) && a.point == b.point && a.part == b.part &&
+                  a.primitive == b.primitive && a.valid == b.valid,
               s.name, ": another answer");
-    v.require(same_bits(a.lower, b.lower) && same_bits(a.upper, b.upper) && a.state == b.state, s.name, ": another bracket");
+    v.require(same_bits(a.lower, b.lower) && same_bits(a.upper, b.upper) && a.state == b.state, s.name,
+              ": another bracket");
   }
   CHECK_THROWS_AS(sharded(std::vector<clearance::point_span>{}), std::invalid_argument);
   CHECK_THROWS_AS(sharded(std::vector<clearance::point_span>(17)), std::invalid_argument);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every point's signed distance to closed meshes is that of all triangles and a ray's crossings, in every bit; and the depth in truth.
+// Every point's signed distance to closed meshes is that of all triangles and a ray's crossings, in every bit; and the
+// depth in truth.
 #include "support/brute_signed.hpp"
 
 #include <clearance/make_model.hpp>
@@ -33,24 +34,35 @@ TEST_CASE("Signed distances to closed meshes are those of all triangles, negativ
       const auto deep = std::ranges::count_if(expected.distance, [](real x) { return x < real(-0.02); });
       v.require(deep > 50, what, ": only ", deep, " points are inside");
       append(expected, brute_signed(parts, all.raw, all.camera_pose, d_max));
-      require_same(signed_distances(host{}, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), {d_max}), expected, v, what + ", two clouds");
+      require_same(
+          signed_distances(host{}, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), {d_max}),
+          expected, v, what + ", two clouds");
     }
   }
 }
 
 TEST_CASE("The signed distance to a box is the one known by hand, on its surface too") {
-  const auto model = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(shapes::box({-1, -2, -3}, {1, 2, 3}))));
+  const auto model = clearance::make_model<clearance::aabb>(
+      std::vector(2, clearance::close_mesh(shapes::box({-1, -2, -3}, {1, 2, 3}))));
   std::vector poses(2, Eigen::Isometry3d::Identity());
   poses[1].translation().x() = 0.5;
-  const std::vector<vec3> points{{0, 0, 0}, {-0.75f, 0, 0}, {1.25f, 1, 1}, {2.5f, 0, 0}, {-1, 0, 0}, {4.5f, 6, 0}, {clearance::not_a_number, 0, 0}};
+  const std::vector<vec3> points{{0, 0, 0},
+                                 {-0.75f, 0, 0},
+                                 {1.25f, 1, 1},
+                                 {2.5f, 0, 0},
+                                 {-1, 0, 0},
+                                 {4.5f, 6, 0},
+                                 {clearance::not_a_number, 0, 0}};
   const auto found = signed_distances(host{}, model, poses, points, {.which = true});
   const std::vector<real> expected{-1, -0.25f, -0.25f, 1, 0, 5};
   for (std::size_t i = 0; i < expected.size(); ++i) CHECK(found.distance[i] == expected[i]);
   CHECK(found.distance[6] != found.distance[6]);
-  CHECK((found.part == std::vector<std::uint32_t>{0, 0, 1, 1, 0, 1, ~0u} && found.primitive[6] == ~0u && found.primitive[0] != ~0u));
+  CHECK((found.part == std::vector<std::uint32_t>{0, 0, 1, 1, 0, 1, ~0u} && found.primitive[6] == ~0u &&
+         found.primitive[0] != ~0u));
   CHECK(!std::signbit(found.distance[4]));
   CHECK((found.counts.seen == 7 && found.counts.valid == 6));
   CHECK(signed_distances(host{}, model, poses, points, {.d_max = 0.5f}).distance[3] == infinity);
   CHECK_THROWS_AS(signed_distances(host{}, model, poses, points, {.d_max = -0.5f}), std::invalid_argument);
-  CHECK_THROWS_AS(signed_distances(host{}, model, poses, points, {.d_max = clearance::not_a_number}), std::invalid_argument);
+  CHECK_THROWS_AS(signed_distances(host{}, model, poses, points, {.d_max = clearance::not_a_number}),
+                  std::invalid_argument);
 }

@@ -3,6 +3,7 @@
 
 #include <clearance/volume/aabb.hpp>
 
-TEST_CASE("Inner spheres in axis-aligned boxes: every width, fit, traversal and point source is brute force, bit for bit") {
+TEST_CASE(
+    "Inner spheres in axis-aligned boxes: every width, fit, traversal and point source is brute force, bit for bit") {
   testing::check_product<clearance::aabb, clearance::inner_sphere>();
 }

@@ -40,19 +40,24 @@ TEST_CASE("A depth of -inf is too close, +inf and NaN are not, and the survey sa
         v.require(image[i].dropped == rays[i].dropped, "pixel ", i, " with a ray");
         if (!image[i].valid()) ++expected[int(image[i].dropped)], ++all[int(image[i].dropped)];
       }
-      v.require(image.survey(begin, box, dropped) && std::ranges::equal(dropped, expected), "the tile from ", begin, " on");
+      v.require(image.survey(begin, box, dropped) && std::ranges::equal(dropped, expected), "the tile from ", begin,
+                " on");
     }
-    CHECK((all[int(drop_reason::too_close)] == (near ? 20u : 0u) && all[int(drop_reason::not_finite)] == (near ? 10u : 30u)));
+    CHECK((all[int(drop_reason::too_close)] == (near ? 20u : 0u) &&
+           all[int(drop_reason::not_finite)] == (near ? 10u : 30u)));
   }
 }
 
 TEST_CASE("Nothing is free in a frame with something too close") {
   const too_close_frame clear(0, 9), blocked(1);
-  const auto free = min_distance(host{}, robot, poses, clear.image()), r = min_distance(host{}, robot, poses, blocked.image());
+  const auto free = min_distance(host{}, robot, poses, clear.image()),
+             r = min_distance(host{}, robot, poses, blocked.image());
   CHECK((free.state == state::free && free.lower > 1.7f));
-  CHECK((r.state == state::possible && r.lower == 0 && r.distance == free.distance && r.dropped[int(drop_reason::too_close)] == 1));
+  CHECK((r.state == state::possible && r.lower == 0 && r.distance == free.distance &&
+         r.dropped[int(drop_reason::too_close)] == 1));
   CHECK(clearance::min_distance_per_part(host{}, robot, poses, blocked.image()).first.state == state::possible);
-  CHECK(min_distance(clearance::plain{host{}, clearance::near_first{}}, robot, poses, blocked.image()).state == state::possible);
+  CHECK(min_distance(clearance::plain{host{}, clearance::near_first{}}, robot, poses, blocked.image()).state ==
+        state::possible);
   auto told = blocked.image();
   told.minus_infinity_is_near = false;
   CHECK(min_distance(host{}, robot, poses, told).state == state::free);
@@ -61,9 +66,12 @@ TEST_CASE("Nothing is free in a frame with something too close") {
   CHECK(clearance::zones(host{}, robot, poses, clear.image(), {.thresholds = {0.1}}).innermost() == 1);
   CHECK(clearance::zones(host{}, robot, poses, blocked.image(), {.thresholds = {0.1}}).innermost() == 0);
   for (const real d_max : {clearance::infinity, real(0.1)}) {
-    const auto ask = [&](const auto& frame) { return clearance::min_distances(host{}, robot, poses, frame.image(), {.d_max = d_max}); };
+    const auto ask = [&](const auto& frame) {
+      return clearance::min_distances(host{}, robot, poses, frame.image(), {.d_max = d_max});
+    };
     CHECK((ask(clear).of[0].state == state::free && ask(clear).first_below(0.05) == 1));
-    CHECK((ask(blocked).of[0].state == state::possible && ask(blocked).of[0].lower == 0 && ask(blocked).first_below(0.05) == 0));
+    CHECK((ask(blocked).of[0].state == state::possible && ask(blocked).of[0].lower == 0 &&
+           ask(blocked).first_below(0.05) == 0));
   }
   const clearance::straight_motion still(poses, poses);
   CHECK(motion_clearance(host{}, robot, still, clear.image()).state == state::free);
@@ -80,6 +88,7 @@ TEST_CASE("One camera that is covered leaves nothing free for all") {
   const std::vector<float> covered(64 * 48, -clearance::infinity);
   const clearance::depth_image<float> nothing(covered.data(), 64, 48, {60, 60, 31.5, 23.5});
   const auto a = min_distance(host{}, robot, poses, clear.image()), b = min_distance(host{}, robot, poses, nothing);
-  CHECK((a.state == state::free && b.state == state::no_data && b.dropped[int(drop_reason::too_close)] == covered.size()));
+  CHECK((a.state == state::free && b.state == state::no_data &&
+         b.dropped[int(drop_reason::too_close)] == covered.size()));
   CHECK((merge(a, b).state == state::possible && merge(b, a).lower == 0));
 }

@@ -23,6 +23,7 @@ TEST_CASE("On a device what is too close is counted, and leaves nothing free") {
     CHECK(r.state == (near == 0 ? state::free : state::possible));
     CHECK(same_result(clearance::min_distance_per_part(gpu, there, poses, frame.image()).first,
                       clearance::min_distance_per_part(host{}, robot, poses, frame.image()).first));
-    CHECK(clearance::in_collision(gpu, there, poses, frame.image(), 0.1).state == (near == 0 ? state::free : state::possible));
+    CHECK(clearance::in_collision(gpu, there, poses, frame.image(), 0.1).state ==
+          (near == 0 ? state::free : state::possible));
   }
 }

@@ -34,13 +34,18 @@ void all_scenes() {
 
 }  // namespace
 
-TEST_CASE("Points within a distance of inner spheres are all of them, in order") { all_scenes<clearance::sphere, inner_sphere>(); }
-TEST_CASE("Points within a distance of triangles are all of them, in order") { all_scenes<clearance::aabb, triangle>(); }
+TEST_CASE("Points within a distance of inner spheres are all of them, in order") {
+  all_scenes<clearance::sphere, inner_sphere>();
+}
+TEST_CASE("Points within a distance of triangles are all of them, in order") {
+  all_scenes<clearance::aabb, triangle>();
+}
 
 TEST_CASE("A list longer than its first room is whole, and one of the caller's says that it was cut") {
   dice d(99);
   scene<inner_sphere> s;
-  for (int part = 0; part < 2; ++part) s.parts.push_back({{{0.1f * float(part), 0, 0}, 0.1f}}), s.poses.push_back(Eigen::Isometry3d::Identity());
+  for (int part = 0; part < 2; ++part)
+    s.parts.push_back({{{0.1f * float(part), 0, 0}, 0.1f}}), s.poses.push_back(Eigen::Isometry3d::Identity());
   s.points = d.points(50000, 1);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const std::vector cloud{placed{point_span(s.points)}};
@@ -63,7 +68,9 @@ TEST_CASE("A prepared list says in every frame what one call says, and goes on a
   clearance::within_query query(host{}, model);
   std::size_t listed = 0;
   for (; f.there(); f.next()) {
-    const std::vector<real> radii(f.number % 2 ? 5 : 1, f.number == 4 ? 10 : 0.3f);  // that of frame 4 is a longer list than there is room for at first
+    const std::vector<real> radii(
+        f.number % 2 ? 5 : 1,
+        f.number == 4 ? 10 : 0.3f);  // that of frame 4 is a longer list than there is room for at first
     const auto expected = within(host{}, model, f.s.poses, f.here(), radii);
     listed = std::max(listed, expected.pairs.size());
     const std::string what = "frame " + std::to_string(f.number);

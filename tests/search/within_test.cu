@@ -18,11 +18,13 @@ TEST_CASE("On a device points within a distance are the host's, and a long list 
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     const auto two = two_clouds(s);
     for (const real radius : {real(0), real(0.1), clearance::infinity})
-      require_same(within(gpu, model.on(gpu), s.poses, two, radius), within(host{}, model, s.poses, two, radius), v, s.name + ", within " + std::to_string(radius));
+      require_same(within(gpu, model.on(gpu), s.poses, two, radius), within(host{}, model, s.poses, two, radius), v,
+                   s.name + ", within " + std::to_string(radius));
   }
   dice d(99);
   scene<inner_sphere> s;
-  for (int part = 0; part < 2; ++part) s.parts.push_back({{{0.1f * float(part), 0, 0}, 0.1f}}), s.poses.push_back(Eigen::Isometry3d::Identity());
+  for (int part = 0; part < 2; ++part)
+    s.parts.push_back({{{0.1f * float(part), 0, 0}, 0.1f}}), s.poses.push_back(Eigen::Isometry3d::Identity());
   s.points = d.points(50000, 1);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const std::vector cloud{placed{point_span(s.points)}};
@@ -46,7 +48,8 @@ TEST_CASE("A prepared list says on a device in every frame what the host says, a
       const auto expected = within(host{}, model, f.s.poses, f.here(), radii);
       const std::string what = std::to_string(parts) + " parts, " + when;
       const auto found = gpu.copy_out(count)[0];
-      require_listed(gpu.copy_out(pairs.data(), std::min<std::size_t>(found, capacity)), found, expected, v, what + ", enqueued");
+      require_listed(gpu.copy_out(pairs.data(), std::min<std::size_t>(found, capacity)), found, expected, v,
+                     what + ", enqueued");
       v.require(gpu.copy_out(counts)[0].valid == expected.counts.valid, what, ": counts");
       return expected;
     };
@@ -59,7 +62,11 @@ TEST_CASE("A prepared list says on a device in every frame what the host says, a
       require_same(query(f.s.poses, f.here(), radii), expected, v, "waited for");
       CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
     }
-    replay(stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, 0.1f, pairs.data(), capacity, count.data(), counts.data()); },
-           [&](const std::string& what) { look({0.1f}, what); });
+    replay(
+        stream, gpu, f,
+        [&](const clouds& all) {
+          query.enqueue(f.s.poses, all, 0.1f, pairs.data(), capacity, count.data(), counts.data());
+        },
+        [&](const std::string& what) { look({0.1f}, what); });
   }
 }

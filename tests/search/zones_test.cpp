@@ -29,8 +29,10 @@ void all_scenes() {
     }
     const auto found = zones(host{}, model, s.poses, one, options);
     require_same(found, brute_zones(s, one, same), v, s.name);
-    require_same(zones(host{1}, model, s.poses, two, options), brute_zones(s, two, same), v, s.name + ", two clouds, one thread");
-    require_same(zones(host{}, model, s.poses, two, of_each), brute_zones(s, two, own), v, s.name + ", thresholds of each part");
+    require_same(zones(host{1}, model, s.poses, two, options), brute_zones(s, two, same), v,
+                 s.name + ", two clouds, one thread");
+    require_same(zones(host{}, model, s.poses, two, of_each), brute_zones(s, two, own), v,
+                 s.name + ", thresholds of each part");
     for (const auto& z : found.zones) counted += z.points;
   }
   CHECK(counted > 1000);
@@ -38,7 +40,9 @@ void all_scenes() {
 
 }  // namespace
 
-TEST_CASE("Zones around inner spheres hold what all points and spheres say") { all_scenes<clearance::sphere, inner_sphere>(); }
+TEST_CASE("Zones around inner spheres hold what all points and spheres say") {
+  all_scenes<clearance::sphere, inner_sphere>();
+}
 TEST_CASE("Zones around triangles hold what all points and triangles say") { all_scenes<clearance::aabb, triangle>(); }
 
 TEST_CASE("What may be nearer by gap and tolerance is in the zone") {
@@ -46,11 +50,13 @@ TEST_CASE("What may be nearer by gap and tolerance is in the zone") {
   const std::vector<vec3> points{{1.55f, 0, 0}, {1.45f, 0, 0}, {3, 0, 0}};
   const std::vector poses{Eigen::Isometry3d::Identity()};
   const auto ask = [&](double gap, double tolerance) {
-    const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball), gap, tolerance)}};
+    const clearance::model robot{
+        std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball), gap, tolerance)}};
     return zones(host{}, robot, poses, point_span(points), {.thresholds = {0.3, 0.5}}).zones;
   };
   CHECK((ask(0, 0)[0].points == 0 && ask(0, 0)[1].points == 1));
-  CHECK((ask(0.04, 0.02)[1].points == 2 && ask(0.04, 0.02)[1].nearest_point == 1 && ask(0.04, 0.02)[1].first_point == 0));
+  CHECK(
+      (ask(0.04, 0.02)[1].points == 2 && ask(0.04, 0.02)[1].nearest_point == 1 && ask(0.04, 0.02)[1].first_point == 0));
   CHECK(ask(clearance::infinity, 0)[0].points == 3);  // without a certificate every point may be anywhere
 }
 
@@ -59,7 +65,9 @@ TEST_CASE("The innermost zone, few points, no point, and what cannot be asked") 
   const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball))}};
   const std::vector poses{Eigen::Isometry3d::Identity()};
   const std::vector<vec3> points{{1.1f, 0, 0}, {1.4f, 0, 0}, {0, 1.4f, 0}, {9, 0, 0}};
-  const auto ask = [&](clearance::zones_options options) { return zones(host{}, robot, poses, point_span(points), options); };
+  const auto ask = [&](clearance::zones_options options) {
+    return zones(host{}, robot, poses, point_span(points), options);
+  };
   CHECK(ask({.thresholds = {0.05, 0.2, 0.5}}).innermost() == 1);
   CHECK(ask({.thresholds = {0.05, 0.2, 0.5}, .min_points = 2}).innermost() == 2);
   CHECK(ask({.thresholds = {0.05, 0.2, 0.5}, .min_points = 4}).innermost() == 3);
@@ -78,19 +86,26 @@ TEST_CASE("The innermost zone, few points, no point, and what cannot be asked") 
   CHECK_THROWS_AS(ask({.thresholds = {-0.1}}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.thresholds = {clearance::not_a_number}}), std::invalid_argument);
   const clearance::model_view<decltype(robot)::view_type> no_parts{nullptr, {}, 0, 0};
-  CHECK_THROWS_AS(zones(host{}, no_parts, std::span<const Eigen::Isometry3d>(), point_span(points), {.thresholds = {0.1}, .each_part = true}), std::invalid_argument);
-  CHECK(zones(host{}, no_parts, std::span<const Eigen::Isometry3d>(), point_span(points), {.thresholds = {0.1}}).innermost() == 0);
+  CHECK_THROWS_AS(zones(host{}, no_parts, std::span<const Eigen::Isometry3d>(), point_span(points),
+                        {.thresholds = {0.1}, .each_part = true}),
+                  std::invalid_argument);
+  CHECK(zones(host{}, no_parts, std::span<const Eigen::Isometry3d>(), point_span(points), {.thresholds = {0.1}})
+            .innermost() == 0);
   const clearance::model two{std::vector{robot.parts()[0], robot.parts()[0]}};
-  CHECK_THROWS_AS(zones(host{}, two, std::vector(2, poses[0]), point_span(points), {.thresholds = {0.1, 0.2, 0.3}, .each_part = true}), std::invalid_argument);
+  CHECK_THROWS_AS(zones(host{}, two, std::vector(2, poses[0]), point_span(points),
+                        {.thresholds = {0.1, 0.2, 0.3}, .each_part = true}),
+                  std::invalid_argument);
 }
 
-TEST_CASE("A prepared question of zones says in every frame what one call says, and goes on after one that is refused") {
+TEST_CASE(
+    "A prepared question of zones says in every frame what one call says, and goes on after one that is refused") {
   verdict v;
   moving_frames f(5, 111);
   const auto model = f.model();
   clearance::zones_query query(host{}, model);
   for (; f.there(); f.next()) {
-    const clearance::zones_options options{.thresholds = f.number % 2 ? std::vector{0.02, 0.3} : std::vector{0.0, 0.05, 0.4}};
+    const clearance::zones_options options{.thresholds =
+                                               f.number % 2 ? std::vector{0.02, 0.3} : std::vector{0.0, 0.05, 0.4}};
     const auto expected = zones(host{}, model, f.s.poses, f.here(), options);
     const std::string what = "frame " + std::to_string(f.number);
     require_same(query(f.s.poses, f.here(), options), expected, v, what);
@@ -99,7 +114,9 @@ TEST_CASE("A prepared question of zones says in every frame what one call says, 
     enqueued.counts = {};
     enqueued.per_part = query.enqueue(f.s.poses, f.here(), options, enqueued.zones.data(), &enqueued.counts);
     require_same(enqueued, expected, v, what + ", enqueued");
-    v.require(enqueued.counts.valid == expected.counts.valid && expected.counts.valid + 1 >= moving_frames::sizes[f.number], what, ": counts");
+    v.require(
+        enqueued.counts.valid == expected.counts.valid && expected.counts.valid + 1 >= moving_frames::sizes[f.number],
+        what, ": counts");
     CHECK_THROWS_AS(query(f.s.poses, f.here(), {.thresholds = {0.2, 0.1}}), std::invalid_argument);
     CHECK_THROWS_AS(query(std::span(f.s.poses).first(4), f.here(), options), std::invalid_argument);
   }

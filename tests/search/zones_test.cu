@@ -19,7 +19,8 @@ TEST_CASE("Zones on a device hold what they hold on the host") {
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     const auto two = two_clouds(s);
     const clearance::zones_options options{.thresholds = {0, 0.05 * s.size, 0.5 * s.size}};
-    require_same(zones(gpu, model.on(gpu), s.poses, two, options), zones(host{}, model, s.poses, two, options), v, s.name);
+    require_same(zones(gpu, model.on(gpu), s.poses, two, options), zones(host{}, model, s.poses, two, options), v,
+                 s.name);
   }
 }
 
@@ -40,7 +41,8 @@ TEST_CASE("Crowds in and around solids are counted one by one") {
   dice d(102);
   clearance::triangle_mesh m;
   for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   const auto box = [&] { return clearance::make_part<clearance::aabb>(clearance::close_mesh(m)); };
   const clearance::model boxes{std::vector{box(), box()}};
   const std::vector poses{d.pose(0.5), d.pose(0.5)};
@@ -66,7 +68,8 @@ TEST_CASE("A prepared question of zones says on a device in every frame what the
     const auto look = [&](const clearance::zones_options& options, const std::string& when) {
       const auto expected = zones(host{}, model, f.s.poses, f.here(), options);
       const std::string what = std::to_string(parts) + " parts, " + when;
-      require_same({expected.per_part, 1, gpu.copy_out(zone_there.data(), expected.zones.size()), {}}, expected, v, what + ", enqueued");
+      require_same({expected.per_part, 1, gpu.copy_out(zone_there.data(), expected.zones.size()), {}}, expected, v,
+                   what + ", enqueued");
       v.require(gpu.copy_out(counts)[0].valid == expected.counts.valid, what, ": counts");
       return expected;
     };
@@ -78,7 +81,9 @@ TEST_CASE("A prepared question of zones says on a device in every frame what the
       require_same(query(f.s.poses, f.here(), options), expected, v, "waited for");
       CHECK_THROWS_AS(query(f.s.poses, f.here(), {.thresholds = {0.2, 0.1}}), std::invalid_argument);
     }
-    replay(stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, wide, zone_there.data(), counts.data()); },
-           [&](const std::string& what) { look(wide, what); });
+    replay(
+        stream, gpu, f,
+        [&](const clouds& all) { query.enqueue(f.s.poses, all, wide, zone_there.data(), counts.data()); },
+        [&](const std::string& what) { look(wide, what); });
   }
 }

@@ -19,8 +19,9 @@ using Eigen::Vector3d;
 struct bodies_of_truth {
   std::vector<clearance::triangle_mesh> bodies;
 
-  /// Metres to the surface of the union, as far as a body's own surface says: negative in a body. An inner body's surface counts
-  /// too, so that it is at most the depth. By brute force and solid angles, which share nothing with the library.
+  /// Metres to the surface of the union, as far as a body's own surface says: negative in a body. An inner body's
+  /// surface counts too, so that it is at most the depth. By brute force and solid angles, which share nothing with the
+  /// library.
   double signed_distance(const Vector3d& at) const {
     double least = std::numeric_limits<double>::infinity(), deepest = 0;
     for (const auto& body : bodies) {
@@ -30,7 +31,8 @@ struct bodies_of_truth {
         nearest = std::min(nearest, to_triangle(at, a, b, c));
         const Vector3d r[3] = {a - at, b - at, c - at};
         const double l[3] = {r[0].norm(), r[1].norm(), r[2].norm()};
-        angle += std::atan2(r[0].dot(r[1].cross(r[2])), l[0] * l[1] * l[2] + r[0].dot(r[1]) * l[2] + r[1].dot(r[2]) * l[0] + r[2].dot(r[0]) * l[1]);
+        angle += std::atan2(r[0].dot(r[1].cross(r[2])),
+                            l[0] * l[1] * l[2] + r[0].dot(r[1]) * l[2] + r[1].dot(r[2]) * l[0] + r[2].dot(r[0]) * l[1]);
       }
       if (std::abs(angle) > 3)  // half the winding number's 2 pi
         deepest = std::max(deepest, nearest);
@@ -98,7 +100,8 @@ struct damages {
   }
   /// Quads are stored for the other side too, and split along their other diagonals.
   void other_diagonal(damaged_solid& s) const {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::size_t, std::uint32_t>> open;  // a side: triangle and corner opposite
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::size_t, std::uint32_t>>
+        open;  // a side: triangle and corner opposite
     std::vector<bool> used(s.mesh.triangles.size(), false);
     const std::size_t n = s.mesh.triangles.size();
     for (std::size_t i = 0; i < n; ++i)
@@ -164,7 +167,8 @@ struct damages {
       const std::size_t i = d.below(unsigned(s.mesh.triangles.size()));
       const auto t = s.mesh.triangles[i];
       const auto n = std::uint32_t(s.mesh.vertices.size());
-      s.mesh.vertices.push_back(s.mesh.vertices[t[0]] + d.number(0.1f, 0.9f) * (s.mesh.vertices[t[1]] - s.mesh.vertices[t[0]]));
+      s.mesh.vertices.push_back(s.mesh.vertices[t[0]] +
+                                d.number(0.1f, 0.9f) * (s.mesh.vertices[t[1]] - s.mesh.vertices[t[0]]));
       s.mesh.triangles[i] = {t[0], n, t[2]};
       s.mesh.triangles.push_back({n, t[1], t[2]});
     }
@@ -189,18 +193,26 @@ struct damages {
     for (const auto& v : s.mesh.vertices) box.extend(v);
     const Vector3d size = box.sizes();
     const auto within = [&](double from, double to) {
-      return Vector3d(box.min() + size.cwiseProduct(Vector3d(d.number(float(from), float(to)), d.number(float(from), float(to)), d.number(float(from), float(to)))));
+      return Vector3d(box.min() +
+                      size.cwiseProduct(Vector3d(d.number(float(from), float(to)), d.number(float(from), float(to)),
+                                                 d.number(float(from), float(to)))));
     };
     clearance::triangle_mesh other;
     switch (d.below(4)) {
-      case 0: other = shapes::box(box.min() + Vector3d(size.x(), 0, 0), box.max() + Vector3d(size.x(), 0, 0)); break;  // touches
+      case 0:
+        other = shapes::box(box.min() + Vector3d(size.x(), 0, 0), box.max() + Vector3d(size.x(), 0, 0));
+        break;  // touches
       case 1: {
         const Vector3d low = within(0.1, 0.4);
         other = shapes::box(low, low + 0.4 * size);
         break;
       }
-      case 2: other = shapes::globe(within(0.2, 0.8), 0.4 * size.minCoeff(), 8, 10); break;
-      default: other = shapes::box(box.min() - 0.2 * size, box.max() + 0.2 * size); break;
+      case 2:
+        other = shapes::globe(within(0.2, 0.8), 0.4 * size.minCoeff(), 8, 10);
+        break;
+      default:
+        other = shapes::box(box.min() - 0.2 * size, box.max() + 0.2 * size);
+        break;
     }
     s.truth.bodies.push_back(other);
     if (d.below(2) == 0) other = shapes::inverted(other);
@@ -214,30 +226,40 @@ struct damages {
   }
 
   using kind = void (damages::*)(damaged_solid&) const;
-  static constexpr std::pair<const char*, kind> all[] = {
-      {"another body", &damages::another_body}, {"T-joints", &damages::t_joints}, {"needles", &damages::needles},
-      {"inner wall", &damages::inner_wall}, {"flipped", &damages::flipped}, {"some flipped", &damages::some_flipped},
-      {"doubled", &damages::doubled}, {"other diagonal", &damages::other_diagonal}, {"removed", &damages::removed},
-      {"cracks", &damages::cracks}, {"another shape", &damages::another_shape}};
+  static constexpr std::pair<const char*, kind> all[] = {{"another body", &damages::another_body},
+                                                         {"T-joints", &damages::t_joints},
+                                                         {"needles", &damages::needles},
+                                                         {"inner wall", &damages::inner_wall},
+                                                         {"flipped", &damages::flipped},
+                                                         {"some flipped", &damages::some_flipped},
+                                                         {"doubled", &damages::doubled},
+                                                         {"other diagonal", &damages::other_diagonal},
+                                                         {"removed", &damages::removed},
+                                                         {"cracks", &damages::cracks},
+                                                         {"another shape", &damages::another_shape}};
 
  private:
   static bool convex(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& e) {
     const Vector3d q[4] = {a, b, c, e};
     Vector3d normal = (c - a).cross(e - b);
     for (int k = 0; k < 4; ++k)
-      if (normal.dot((q[(k + 1) % 4] - q[k]).cross(q[(k + 2) % 4] - q[(k + 1) % 4])) <= 1e-9 * normal.squaredNorm()) return false;
+      if (normal.dot((q[(k + 1) % 4] - q[k]).cross(q[(k + 2) % 4] - q[(k + 1) % 4])) <= 1e-9 * normal.squaredNorm())
+        return false;
     return true;
   }
   static bool touches(const clearance::triangle_mesh& gone, const std::array<std::uint32_t, 3>& t) {
     return std::ranges::any_of(gone.triangles, [&](const auto& g) {
-      return std::ranges::any_of(g, [&](auto v) { return std::ranges::any_of(t, [&](auto w) { return (gone.vertices[v] - gone.vertices[w]).norm() <= 1e-3; }); });
+      return std::ranges::any_of(g, [&](auto v) {
+        return std::ranges::any_of(t, [&](auto w) { return (gone.vertices[v] - gone.vertices[w]).norm() <= 1e-3; });
+      });
     });
   }
   /// By triangle: a number of what hangs together, by vertices that are the same or have one place.
   static std::vector<std::uint32_t> components(const clearance::triangle_mesh& m) {
     std::map<std::array<double, 3>, std::uint32_t> places;
     std::vector<std::uint32_t> above(m.vertices.size());
-    for (std::uint32_t v = 0; v < above.size(); ++v) above[v] = places.try_emplace({m.vertices[v].x(), m.vertices[v].y(), m.vertices[v].z()}, v).first->second;
+    for (std::uint32_t v = 0; v < above.size(); ++v)
+      above[v] = places.try_emplace({m.vertices[v].x(), m.vertices[v].y(), m.vertices[v].z()}, v).first->second;
     const auto root = [&](std::uint32_t v) {
       while (above[v] != v) v = above[v] = above[above[v]];
       return v;
@@ -245,7 +267,8 @@ struct damages {
     for (const auto& t : m.triangles) above[root(t[1])] = root(t[0]), above[root(t[2])] = root(t[0]);
     std::map<std::uint32_t, std::uint32_t> number;
     std::vector<std::uint32_t> of;
-    for (const auto& t : m.triangles) of.push_back(number.try_emplace(root(t[0]), std::uint32_t(number.size())).first->second);
+    for (const auto& t : m.triangles)
+      of.push_back(number.try_emplace(root(t[0]), std::uint32_t(number.size())).first->second);
     return of;
   }
   /// Holes that touch, or nearly, are one; the diagonal of the largest's box.
@@ -276,13 +299,27 @@ inline damaged_solid damaged(unsigned k, const std::vector<clearance::triangle_m
   damaged_solid s;
   const std::size_t solid = d.below(unsigned(6 + more.size()));
   switch (solid) {
-    case 0: s.mesh = shapes::box({0, 0, 0}, {1, 1, 1}); break;
-    case 1: s.mesh = shapes::box({0, 0, 0}, {1, 0.6, 0.05}); break;
-    case 2: s.mesh = shapes::globe({0.1, 0.2, 0.3}, 0.5, 8, 12); break;
-    case 3: s.mesh = shapes::torus(0.4, 0.15, 16, 10); break;
-    case 4: s.mesh = shapes::globe({0, 0, 0}, 0.3, 4, 5); break;
-    case 5: s.mesh = shapes::box({-0.1, -0.1, 0}, {0.1, 0.1, 2}); break;
-    default: s.mesh = more[solid - 6]; break;
+    case 0:
+      s.mesh = shapes::box({0, 0, 0}, {1, 1, 1});
+      break;
+    case 1:
+      s.mesh = shapes::box({0, 0, 0}, {1, 0.6, 0.05});
+      break;
+    case 2:
+      s.mesh = shapes::globe({0.1, 0.2, 0.3}, 0.5, 8, 12);
+      break;
+    case 3:
+      s.mesh = shapes::torus(0.4, 0.15, 16, 10);
+      break;
+    case 4:
+      s.mesh = shapes::globe({0, 0, 0}, 0.3, 4, 5);
+      break;
+    case 5:
+      s.mesh = shapes::box({-0.1, -0.1, 0}, {0.1, 0.1, 2});
+      break;
+    default:
+      s.mesh = more[solid - 6];
+      break;
   }
   s.truth.bodies = {s.mesh};
   const damages make{d};
@@ -302,7 +339,8 @@ inline std::vector<Vector3d> probes(const damaged_solid& s, unsigned k, int coun
   for (const auto& v : s.mesh.vertices) box.extend(v);
   std::vector<Vector3d> points;
   for (int i = 0; i < count; ++i) {
-    Vector3d p = box.min() + box.sizes().cwiseProduct(Vector3d(d.number(-0.1f, 1.1f), d.number(-0.1f, 1.1f), d.number(-0.1f, 1.1f)));
+    Vector3d p = box.min() + box.sizes().cwiseProduct(
+                                 Vector3d(d.number(-0.1f, 1.1f), d.number(-0.1f, 1.1f), d.number(-0.1f, 1.1f)));
     if (i % 3 == 2) {
       const auto& t = s.mesh.triangles[d.below(unsigned(s.mesh.triangles.size()))];
       const clearance::vec3 way = d.direction();

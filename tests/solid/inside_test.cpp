@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The law of the inside: whatever is wrong with a mesh, a point that is deeper inside than the damage is never free, and one that
-// is farther outside never in collision. CLEARANCE_INSIDE_RUNS sets how many damaged solids are tried (scripts/inside-law).
+// The law of the inside: whatever is wrong with a mesh, a point that is deeper inside than the damage is never free,
+// and one that is farther outside never in collision. CLEARANCE_INSIDE_RUNS sets how many damaged solids are tried
+// (scripts/inside-law).
 #include "solid/damaged.hpp"
 #include "support/catch.hpp"
 #include "support/laws.hpp"
@@ -35,7 +36,8 @@ struct census {
 
 /// Asks about each point by itself.
 template <class Part>
-void law(const Part& part, const damaged_solid& s, const std::string& what, const std::vector<Vector3d>& points, census& all, verdict& v) {
+void law(const Part& part, const damaged_solid& s, const std::string& what, const std::vector<Vector3d>& points,
+         census& all, verdict& v) {
   const clearance::model model{std::vector{part}};
   clearance::min_distance_query ask(clearance::host{.threads = 1}, model);
   const double rounding = 1e-5 * s.size(), unsure = part.facts.tolerance + double(part.facts.gap);
@@ -43,7 +45,10 @@ void law(const Part& part, const damaged_solid& s, const std::string& what, cons
     const vec3 p{real(at.x()), real(at.y()), real(at.z())};
     const auto r = ask(std::vector<Eigen::Isometry3d>{Eigen::Isometry3d::Identity()}, clearance::point_span(&p, 1));
     const double truth = s.truth.signed_distance(at);
-    const auto says = [&] { return std::string(clearance::to_string(r.state)) + " at " + std::to_string(truth) + ", damage " + std::to_string(s.damage); };
+    const auto says = [&] {
+      return std::string(clearance::to_string(r.state)) + " at " + std::to_string(truth) + ", damage " +
+             std::to_string(s.damage);
+    };
     if (-truth > s.damage + rounding) v.require(r.state != clearance::state::free, what, p, says());
     if (truth > s.damage + rounding) v.require(r.state != clearance::state::collision, what, p, says());
     v.require(r.lower <= std::max(truth, 0.0) + s.damage + rounding, what, p, ": lower", r.lower, says());
@@ -66,9 +71,12 @@ void runs(unsigned first, unsigned count, const std::vector<clearance::triangle_
     const clearance::packing packed = clearance::pack(clearance::mesh_solid(closed), {.count = 40});
     law(clearance::make_part<clearance::sphere>(packed), s, what + ", spheres", points, spheres, v);
   }
-  v.require(double(triangles.collision) >= 0.99 * double(triangles.inside), "inside:", triangles.inside, "but in collision:", triangles.collision);
-  v.require(double(triangles.free) >= 0.99 * double(triangles.outside), "outside:", triangles.outside, "but free:", triangles.free);
-  v.require(double(spheres.free) >= 0.99 * double(spheres.outside), "outside of spheres:", spheres.outside, "but free:", spheres.free);
+  v.require(double(triangles.collision) >= 0.99 * double(triangles.inside), "inside:", triangles.inside,
+            "but in collision:", triangles.collision);
+  v.require(double(triangles.free) >= 0.99 * double(triangles.outside), "outside:", triangles.outside,
+            "but free:", triangles.free);
+  v.require(double(spheres.free) >= 0.99 * double(spheres.outside), "outside of spheres:", spheres.outside,
+            "but free:", spheres.free);
   v.require(triangles.inside > count && triangles.outside > count, "too few points decide");
 }
 
@@ -81,8 +89,10 @@ TEST_CASE("What is deeper inside than the damage is never free, and what is fart
 TEST_CASE("The closed links of real robots keep the law of the inside, whatever damage they take", "[data]") {
   std::vector<clearance::triangle_mesh> links;
   for (const char* name : {"base", "forearm", "shoulder", "upperarm", "wrist1", "wrist2", "wrist3"}) {
-    const auto file = std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/ur5e/meshes/collision" / (std::string(name) + ".stl");
-    if (const auto mesh = shapes::binary_stl(file.string()); !mesh.triangles.empty() && clearance::close_mesh(mesh).inside == clearance::inside_by::closed)
+    const auto file =
+        std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/ur5e/meshes/collision" / (std::string(name) + ".stl");
+    if (const auto mesh = shapes::binary_stl(file.string());
+        !mesh.triangles.empty() && clearance::close_mesh(mesh).inside == clearance::inside_by::closed)
       links.push_back(mesh);
   }
   if (links.empty()) {

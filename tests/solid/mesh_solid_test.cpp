@@ -86,7 +86,8 @@ TEST_CASE("the volume is what no way leads to from outside") {
   const auto cube = box({0, 0, 0}, {1, 1, 1});
   CHECK(mesh_solid(cube).volume() == Approx(1));
   CHECK(mesh_solid(inverted(cube)).volume() == Approx(1));
-  const auto hollow = mesh_solid(merged(box({-1, -1, -1}, {2, 2, 2}), inverted(cube)));  // whichever way its inner wall faces
+  const auto hollow =
+      mesh_solid(merged(box({-1, -1, -1}, {2, 2, 2}), inverted(cube)));  // whichever way its inner wall faces
   CHECK(hollow.volume() == Approx(27).epsilon(0.005));
   CHECK(hollow.inside({0.5, 0.5, 0.5}));
   const mesh_solid overlapping(merged(cube, box({0.5, 0, 0}, {1.5, 1, 1})));
@@ -141,7 +142,8 @@ TEST_CASE("mesh solids of real robots are exact", "[data]") {
     CHECK(s.volume() > 1e-4);
     double worst = 0;
     for (int i = 0; i < 100; ++i) {
-      const Vector3d p = s.bounds().min() + Vector3d(unit(random), unit(random), unit(random)).cwiseProduct(s.bounds().sizes());
+      const Vector3d p =
+          s.bounds().min() + Vector3d(unit(random), unit(random), unit(random)).cwiseProduct(s.bounds().sizes());
       worst = std::max(worst, std::abs(s.distance(p) - double(reference(s.mesh().surface, p))));
     }
     CHECK(worst < 1e-12);

@@ -31,7 +31,8 @@ inline triangle_mesh globe(Vector3d center, double radius, int rings = 12, int s
   for (int i = 1; i < rings; ++i)
     for (int j = 0; j < sectors; ++j) {
       const double a = std::numbers::pi * i / rings, b = 2 * std::numbers::pi * j / sectors;
-      m.vertices.push_back(center + radius * Vector3d(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)));
+      m.vertices.push_back(center +
+                           radius * Vector3d(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)));
     }
   m.vertices.push_back(center - Vector3d(0, 0, radius));
   const auto at = [&](int i, int j) { return std::uint32_t(1 + (i - 1) * sectors + j % sectors); };

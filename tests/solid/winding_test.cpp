@@ -17,14 +17,17 @@ long double solid_angles(const std::vector<crossing_triangle<float>>& triangles,
   for (const auto& t : triangles) {
     long double v[3][3], l[3];
     for (int j = 0; j < 3; ++j) {
-      const long double d[3] = {t.v[j][0] - (long double)p.x, t.v[j][1] - (long double)p.y, t.v[j][2] - (long double)p.z};
+      const long double d[3] = {t.v[j][0] - (long double)p.x, t.v[j][1] - (long double)p.y,
+                                t.v[j][2] - (long double)p.z};
       for (int k = 0; k < 3; ++k) v[j][k] = d[k];
       l[j] = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     }
     const auto dot = [&](int i, int j) { return v[i][0] * v[j][0] + v[i][1] * v[j][1] + v[i][2] * v[j][2]; };
-    const long double det = v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) - v[0][1] * (v[1][0] * v[2][2] - v[1][2] * v[2][0]) +
+    const long double det = v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) -
+                            v[0][1] * (v[1][0] * v[2][2] - v[1][2] * v[2][0]) +
                             v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
-    const long double half = std::atan2(det, l[0] * l[1] * l[2] + dot(0, 1) * l[2] + dot(1, 2) * l[0] + dot(2, 0) * l[1]);
+    const long double half =
+        std::atan2(det, l[0] * l[1] * l[2] + dot(0, 1) * l[2] + dot(1, 2) * l[0] + dot(2, 0) * l[1]);
     if (std::abs(half) > std::numbers::pi_v<long double> - 1e-4L) return 0.5L;
     sum += 2 * half;
   }
@@ -43,10 +46,17 @@ std::vector<vec3> probes(const winding<>& w, std::mt19937& random, int count) {
     const auto& u = t.v[random() % 3];
     const auto& v = t.v[random() % 3];
     switch (i % 4) {
-      case 1: p[1] = u[1], p[2] = u[2]; break;                                // the ray meets a vertex
-      case 2: p[1] = (u[1] + v[1]) / 2, p[2] = (u[2] + v[2]) / 2; break;      // and perhaps an edge
-      case 3: p[i / 4 % 3] = u[i / 4 % 3]; break;
-      default: break;
+      case 1:
+        p[1] = u[1], p[2] = u[2];
+        break;  // the ray meets a vertex
+      case 2:
+        p[1] = (u[1] + v[1]) / 2, p[2] = (u[2] + v[2]) / 2;
+        break;  // and perhaps an edge
+      case 3:
+        p[i / 4 % 3] = u[i / 4 % 3];
+        break;
+      default:
+        break;
     }
     points.push_back({p[0], p[1], p[2]});
   }
@@ -81,8 +91,8 @@ TEST_CASE("winding numbers equal the sum of solid angles") {
   agree(soup(cube));
   agree(sphere);
   agree(inverted(sphere));
-  agree(merged(cube, sphere));                                  // overlapping shells
-  agree(merged(cube, box({0.5, -1, -1}, {2, 1, 1})));          // partly coplanar
+  agree(merged(cube, sphere));                                        // overlapping shells
+  agree(merged(cube, box({0.5, -1, -1}, {2, 1, 1})));                 // partly coplanar
   agree(merged(cube, inverted(box({-.5, -.5, -.5}, {.5, .5, .5}))));  // a cavity
   agree(merged(cube, cube));
 }
@@ -115,8 +125,9 @@ TEST_CASE("winding numbers of random triangles, closed by their caps, equal the 
 TEST_CASE("points far away, beside, or not finite are outside") {
   const auto w = make_winding(close_mesh(shapes::box({0, 0, 0}, {1, 1, 1})));
   const float nan = not_a_number, inf = infinity;
-  for (const vec3 p : {vec3{2, .5f, .5f}, vec3{-1, .5f, .5f}, vec3{.5f, 1.5f, .5f}, vec3{.5f, .5f, -1e30f}, vec3{nan, .5f, .5f},
-                       vec3{.5f, nan, .5f}, vec3{.5f, .5f, nan}, vec3{inf, .5f, .5f}, vec3{.5f, -inf, .5f}})
+  for (const vec3 p :
+       {vec3{2, .5f, .5f}, vec3{-1, .5f, .5f}, vec3{.5f, 1.5f, .5f}, vec3{.5f, .5f, -1e30f}, vec3{nan, .5f, .5f},
+        vec3{.5f, nan, .5f}, vec3{.5f, .5f, nan}, vec3{inf, .5f, .5f}, vec3{.5f, -inf, .5f}})
     CHECK_FALSE(w.view().inside(p));
   CHECK(w.view().inside(vec3{.5f, .5f, .5f}));
 }

@@ -73,7 +73,8 @@ TEST_CASE("What is inside damaged solids is the same on host and device, by floo
     flooded += !closed.enclosed.bits.empty();
     const auto w = make_winding(closed);
     std::vector<vec3> points;
-    for (const Eigen::Vector3d& p : testing::probes(s, k, 500)) points.push_back({real(p.x()), real(p.y()), real(p.z())});
+    for (const Eigen::Vector3d& p : testing::probes(s, k, 500))
+      points.push_back({real(p.x()), real(p.y()), real(p.z())});
     const device gpu;
     const auto there = w.on(gpu);
     const auto on_device = gpu.copy_in(std::span<const vec3>(points));

@@ -11,7 +11,8 @@ namespace testing {
 
 /// All points of a source against all primitives of all parts. `inside(k, q)`: is q in part k's solid?
 template <class P, class Source, class Inside>
-clearance::point_distances brute_distances(const scene<P>& s, const Source& source, const Eigen::Isometry3d& pose, real d_max, Inside inside) {
+clearance::point_distances brute_distances(const scene<P>& s, const Source& source, const Eigen::Isometry3d& pose,
+                                           real d_max, Inside inside) {
   clearance::point_distances all;
   for (std::size_t i = 0; i < source.size(); ++i) {
     const clearance::sample point = source[i];
@@ -23,7 +24,8 @@ clearance::point_distances brute_distances(const scene<P>& s, const Source& sour
   all.part = all.primitive = std::vector<std::uint32_t>(source.size(), ~0u);
   for_each_pair(s, source, pose, 0, inside, [&](const clearance::pair_distance& pair) {
     if (!(pair.distance <= d_max && pair.distance < all.distance[pair.point])) return;
-    all.distance[pair.point] = pair.distance, all.part[pair.point] = pair.part, all.primitive[pair.point] = pair.primitive;
+    all.distance[pair.point] = pair.distance, all.part[pair.point] = pair.part,
+    all.primitive[pair.point] = pair.primitive;
   });
   return all;
 }
@@ -41,7 +43,8 @@ inline void append(clearance::point_distances& all, const clearance::point_dista
   for (int k = 0; k < clearance::drop_reasons; ++k) all.counts.dropped[k] += next.counts.dropped[k];
 }
 
-inline void require_same(const clearance::point_distances& found, const clearance::point_distances& expected, verdict& v, const std::string& what) {
+inline void require_same(const clearance::point_distances& found, const clearance::point_distances& expected,
+                         verdict& v, const std::string& what) {
   std::size_t wrong = 0, first = 0;
   const auto bits = [](real x) { return x == x ? clearance::to_bits(x + 0.0f) : 0x7fc00000u; };
   const bool whole = found.distance.size() == expected.distance.size() && found.part.size() == found.primitive.size() &&
@@ -52,9 +55,11 @@ inline void require_same(const clearance::point_distances& found, const clearanc
         (!found.part.empty() && (found.part[i] != expected.part[i] || found.primitive[i] != expected.primitive[i])))
       if (wrong++ == 0) first = i;
   if (wrong != 0)
-    v.require(false, what, ": ", wrong, " points differ, first ", first, ": ", found.distance[first], " and not ", expected.distance[first], ", part ",
-              found.part.empty() ? 0 : found.part[first], " and not ", expected.part.empty() ? 0 : expected.part[first], ", primitive ", found.part.empty() ? 0 : found.primitive[first],
-              " and not ", expected.primitive.empty() ? 0 : expected.primitive[first]);
+    v.require(false, what, ": ", wrong, " points differ, first ", first, ": ", found.distance[first], " and not ",
+              expected.distance[first], ", part ", found.part.empty() ? 0 : found.part[first], " and not ",
+              expected.part.empty() ? 0 : expected.part[first], ", primitive ",
+              found.part.empty() ? 0 : found.primitive[first], " and not ",
+              expected.primitive.empty() ? 0 : expected.primitive[first]);
   v.require(same_counts(found.counts, expected.counts), what, ": other counts");
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The answer without a tree, a bound or a thread: one obvious loop over clouds, points, parts and primitives. It shares the
-// leaf formulas and the float transforms with the library, so that equal means equal bits; the oracle checks those.
+// The answer without a tree, a bound or a thread: one obvious loop over clouds, points, parts and primitives. It shares
+// the leaf formulas and the float transforms with the library, so that equal means equal bits; the oracle checks those.
 
 #include "support/laws.hpp"
 
@@ -69,27 +69,33 @@ brute_answer brute_force(const std::vector<brute_part<P, Interior>>& parts, cons
 }
 
 /// Distance by its bits, all numbers of the witness, and the counts.
-inline void require_equal(const clearance::min_distance_result& r, const brute_answer& a, verdict& v, const std::string& what) {
-  v.require(r.seen == a.seen && r.valid == a.valid && std::equal(r.dropped, r.dropped + clearance::drop_reasons, a.dropped), "the counts of ", what);
+inline void require_equal(const clearance::min_distance_result& r, const brute_answer& a, verdict& v,
+                          const std::string& what) {
+  v.require(
+      r.seen == a.seen && r.valid == a.valid && std::equal(r.dropped, r.dropped + clearance::drop_reasons, a.dropped),
+      "the counts of ", what);
   if (a.part == none) {
     v.require(r.state == clearance::state::no_data && r.distance != r.distance && r.lower == 0 && r.upper == infinity &&
-                  r.point == none && r.part == none && r.primitive == none && r.cloud == none, "no data of ", what);
+                  r.point == none && r.part == none && r.primitive == none && r.cloud == none,
+              "no data of ", what);
     return;
   }
   v.require(same_bits(r.distance, a.best.distance), what, ": distance", r.distance, " instead of", a.best.distance);
-  v.require(r.cloud == a.best.cloud && r.point == a.best.point && r.part == a.part && r.primitive == a.best.primitive, what,
-            ": witness", r.cloud, ",", r.point, ",", r.part, ",", r.primitive, " instead of", a.best.cloud, ",", a.best.point,
-            ",", a.part, ",", a.best.primitive);
+  v.require(r.cloud == a.best.cloud && r.point == a.best.point && r.part == a.part && r.primitive == a.best.primitive,
+            what, ": witness", r.cloud, ",", r.point, ",", r.part, ",", r.primitive, " instead of", a.best.cloud, ",",
+            a.best.point, ",", a.part, ",", a.best.primitive);
   v.require(r.lower <= r.upper && r.lower >= 0, what, ": the bracket is empty or negative");
 }
 
-inline void require_equal(const std::vector<clearance::part_minimum>& minima, const brute_answer& a, verdict& v, const std::string& what) {
+inline void require_equal(const std::vector<clearance::part_minimum>& minima, const brute_answer& a, verdict& v,
+                          const std::string& what) {
   v.require(minima.size() == a.minima.size(), what, ": another number of minima");
   for (std::size_t k = 0; k < minima.size() && k < a.minima.size(); ++k) {
     const auto &got = minima[k], &expected = a.minima[k];
-    v.require(same_bits(got.distance, expected.distance) && got.cloud == expected.cloud && got.point == expected.point &&
-                  got.primitive == expected.primitive, what, ": part", k, " has", got.distance, " at", got.point, ",",
-              got.primitive, " instead of", expected.distance, " at", expected.point, ",", expected.primitive);
+    v.require(same_bits(got.distance, expected.distance) && got.cloud == expected.cloud &&
+                  got.point == expected.point && got.primitive == expected.primitive,
+              what, ": part", k, " has", got.distance, " at", got.point, ",", got.primitive, " instead of",
+              expected.distance, " at", expected.point, ",", expected.primitive);
   }
 }
 

@@ -15,18 +15,21 @@ clearance::nearest_k_result brute_nearest(const scene<P>& s, const clouds& all, 
   r.per_part = k;
   for (std::uint32_t part = 0; part < s.parts.size(); ++part)
     for (std::size_t i = 0; i < k; ++i)
-      r.pairs.push_back(near.offsets[part] + i < near.offsets[part + 1] ? near.pairs[near.offsets[part] + i]
-                                                                        : clearance::pair_distance{~0u, ~0u, part, ~0u, clearance::infinity});
+      r.pairs.push_back(near.offsets[part] + i < near.offsets[part + 1]
+                            ? near.pairs[near.offsets[part] + i]
+                            : clearance::pair_distance{~0u, ~0u, part, ~0u, clearance::infinity});
   return r;
 }
 
-inline void require_same(const clearance::nearest_k_result& found, const clearance::nearest_k_result& expected, verdict& v, const std::string& what) {
-  v.require(found.per_part == expected.per_part && found.pairs.size() == expected.pairs.size(), what, ": ", found.pairs.size(), " pairs");
+inline void require_same(const clearance::nearest_k_result& found, const clearance::nearest_k_result& expected,
+                         verdict& v, const std::string& what) {
+  v.require(found.per_part == expected.per_part && found.pairs.size() == expected.pairs.size(), what, ": ",
+            found.pairs.size(), " pairs");
   for (std::size_t i = 0; i < std::min(found.pairs.size(), expected.pairs.size()); ++i) {
     const clearance::pair_distance &a = found.pairs[i], &b = expected.pairs[i];
-    v.require(a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.primitive == b.primitive && same_bits(a.distance, b.distance), what,
-              ", pair ", i, ": point ",
-              a.point, " at ", a.distance, " and not ", b.point, " at ", b.distance);
+    v.require(a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.primitive == b.primitive &&
+                  same_bits(a.distance, b.distance),
+              what, ", pair ", i, ": point ", a.point, " at ", a.distance, " and not ", b.point, " at ", b.distance);
   }
 }
 

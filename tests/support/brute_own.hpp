@@ -2,8 +2,8 @@
 #pragma once
 // Which points are the robot's by the definition, and what differs from it.
 
-#include "support/brute_pairs.hpp"
 #include "support/brute_distances.hpp"
+#include "support/brute_pairs.hpp"
 
 #include <clearance/self_filter.hpp>
 
@@ -40,17 +40,21 @@ clearance::self_filter_result brute_own(const scene<P>& s, const clouds& all, co
   return r;
 }
 
-inline void require_same(const clearance::self_filter_result& found, const clearance::self_filter_result& expected, verdict& v, const std::string& what) {
+inline void require_same(const clearance::self_filter_result& found, const clearance::self_filter_result& expected,
+                         verdict& v, const std::string& what) {
   v.require(found.labels == expected.labels, what, ": some label differs");
-  v.require(found.offsets == expected.offsets && found.rest == expected.rest, what, ": ", found.rest.size(), " points are left, and not ",
-            expected.rest.size());
-  v.require(found.counts.own == expected.counts.own && found.counts.uncertain == expected.counts.uncertain, what, ": ", found.counts.own, " own, ",
-            found.counts.uncertain, " uncertain");
-  v.require(found.counts.points.seen == expected.counts.points.seen && found.counts.points.valid == expected.counts.points.valid, what, ": counts of points");
+  v.require(found.offsets == expected.offsets && found.rest == expected.rest, what, ": ", found.rest.size(),
+            " points are left, and not ", expected.rest.size());
+  v.require(found.counts.own == expected.counts.own && found.counts.uncertain == expected.counts.uncertain, what, ": ",
+            found.counts.own, " own, ", found.counts.uncertain, " uncertain");
+  v.require(found.counts.points.seen == expected.counts.points.seen &&
+                found.counts.points.valid == expected.counts.points.valid,
+            what, ": counts of points");
 }
 
 /// The clouds with every hidden point made none, in memory that `kept` holds.
-inline clouds without(const clouds& all, const clearance::self_filter_result& hidden, std::vector<std::vector<vec3>>& kept) {
+inline clouds without(const clouds& all, const clearance::self_filter_result& hidden,
+                      std::vector<std::vector<vec3>>& kept) {
   clouds rest;
   kept.assign(all.size(), {});
   for (std::size_t c = 0; c < all.size(); ++c) {
@@ -64,14 +68,19 @@ inline clouds without(const clouds& all, const clearance::self_filter_result& hi
 }
 
 /// Of the rest: all that a result says but for the reasons of what is dropped.
-inline void require_rest(const clearance::filtered_distance& found, clearance::min_distance_result expected, verdict& v, const std::string& what) {
+inline void require_rest(const clearance::filtered_distance& found, clearance::min_distance_result expected, verdict& v,
+                         const std::string& what) {
   using clearance::drop_reason;
   const auto& r = found.rest;
-  v.require(r.state == expected.state && same_bits(r.distance, expected.distance) && same_bits(r.lower, expected.lower) && same_bits(r.upper, expected.upper) &&
-                r.cloud == expected.cloud && r.point == expected.point && r.part == expected.part && r.primitive == expected.primitive,
-            what, ": the minimum of the rest is ", r.distance, " at ", r.point, ", and not ", expected.distance, " at ", expected.point);
-  v.require(r.seen == expected.seen && r.valid == expected.valid && r.dropped[int(drop_reason::masked)] == found.filter.counts.own &&
-                r.dropped[int(drop_reason::masked)] + r.dropped[int(drop_reason::not_finite)] == expected.dropped[int(drop_reason::not_finite)],
+  v.require(r.state == expected.state && same_bits(r.distance, expected.distance) &&
+                same_bits(r.lower, expected.lower) && same_bits(r.upper, expected.upper) && r.cloud == expected.cloud &&
+                r.point == expected.point && r.part == expected.part && r.primitive == expected.primitive,
+            what, ": the minimum of the rest is ", r.distance, " at ", r.point, ", and not ", expected.distance, " at ",
+            expected.point);
+  v.require(r.seen == expected.seen && r.valid == expected.valid &&
+                r.dropped[int(drop_reason::masked)] == found.filter.counts.own &&
+                r.dropped[int(drop_reason::masked)] + r.dropped[int(drop_reason::not_finite)] ==
+                    expected.dropped[int(drop_reason::not_finite)],
             what, ": ", r.dropped[int(drop_reason::masked)], " are masked of ", found.filter.counts.own);
 }
 

@@ -24,7 +24,8 @@ std::vector<clearance::part_facts> facts_of(const scene<P>& s) {
 
 /// Calls `f` with the pairs of a source's valid points and all parts, in order. `inside(k, q)`: is q in part k's solid?
 template <class P, class Source, class Inside, class F>
-void for_each_pair(const scene<P>& s, const Source& source, const Eigen::Isometry3d& pose, std::uint32_t cloud, Inside inside, F f) {
+void for_each_pair(const scene<P>& s, const Source& source, const Eigen::Isometry3d& pose, std::uint32_t cloud,
+                   Inside inside, F f) {
   const clearance::frames::cloud_frame frame(facts_of(s), s.poses, pose);
   for (std::uint32_t i = 0; i < source.size(); ++i) {
     const clearance::sample point = source[i];
@@ -58,7 +59,8 @@ clearance::frames::float_error error_of(const scene<P>& s, const clouds& all) {
 template <class P>
 clouds two_clouds(const scene<P>& s) {
   using clearance::point_span;
-  return {{point_span(s.points), s.cloud_pose}, {point_span(s.points.data(), s.points.size() / 2), shifted(0.1, 0, 0) * s.cloud_pose}};
+  return {{point_span(s.points), s.cloud_pose},
+          {point_span(s.points.data(), s.points.size() / 2), shifted(0.1, 0, 0) * s.cloud_pose}};
 }
 
 /// Three parts of small spheres among 300,000 points.

@@ -32,9 +32,11 @@ clearance::part_distances brute_per_part(const scene<P>& s, const clouds& all, r
   return r;
 }
 
-inline void require_same(const clearance::part_distances& found, const clearance::part_distances& expected, verdict& v, const std::string& what) {
+inline void require_same(const clearance::part_distances& found, const clearance::part_distances& expected, verdict& v,
+                         const std::string& what) {
   const auto same = [](real a, real b) { return (a != a && b != b) || same_bits(a + 0.0f, b + 0.0f); };
-  v.require(found.points == expected.points && std::ranges::equal(found.distance, expected.distance, same), what, ": some distance differs");
+  v.require(found.points == expected.points && std::ranges::equal(found.distance, expected.distance, same), what,
+            ": some distance differs");
   v.require(same_counts(found.counts, expected.counts), what, ": other counts");
 }
 

@@ -17,13 +17,15 @@ inline scene<triangle> triangles_of(const closed_parts& parts) {
       return vec3{v.x(), v.y(), v.z()};
     };
     s.parts.emplace_back();
-    for (const auto& t : mesh.surface.triangles) s.parts.back().push_back(triangle::from(corner(t[0]), corner(t[1]), corner(t[2])));
+    for (const auto& t : mesh.surface.triangles)
+      s.parts.back().push_back(triangle::from(corner(t[0]), corner(t[1]), corner(t[2])));
   }
   return s;
 }
 
 template <class Source>
-clearance::point_distances brute_signed(const closed_parts& parts, const Source& source, const Eigen::Isometry3d& pose, real d_max) {
+clearance::point_distances brute_signed(const closed_parts& parts, const Source& source, const Eigen::Isometry3d& pose,
+                                        real d_max) {
   const scene<triangle> s = triangles_of(parts);
   std::vector<clearance::winding<>> solids;
   for (const auto& mesh : parts.meshes) solids.push_back(clearance::make_winding(mesh));

@@ -12,7 +12,8 @@
 namespace testing {
 
 template <class P>
-clearance::supported_distance brute_support(const scene<P>& s, const clouds& all, const clearance::support_options& options) {
+clearance::supported_distance brute_support(const scene<P>& s, const clouds& all,
+                                            const clearance::support_options& options) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, clearance::pair_distance> nearest;  // of each point
   for_each_pair(s, all, [&](const clearance::pair_distance& pair) {
     const auto [its, fresh] = nearest.try_emplace({pair.cloud, pair.point}, pair);
@@ -25,7 +26,8 @@ clearance::supported_distance brute_support(const scene<P>& s, const clouds& all
   std::vector<clearance::world_transform> poses;
   for (const auto& cloud : all) poses.emplace_back(clearance::rigid(cloud.pose));
   std::vector<candidate> order;
-  for (const auto& [where, pair] : nearest) order.push_back({pair, poses[pair.cloud](all[pair.cloud].source[pair.point].position)});
+  for (const auto& [where, pair] : nearest)
+    order.push_back({pair, poses[pair.cloud](all[pair.cloud].source[pair.point].position)});
   std::ranges::stable_sort(order, {}, [](const candidate& c) { return c.pair.distance; });
   clearance::supported_distance r;
   for (const auto& [pair, p] : order) {
@@ -35,7 +37,8 @@ clearance::supported_distance brute_support(const scene<P>& s, const clouds& all
       around += std::fma(x, x, std::fma(y, y, z * z)) <= options.radius * options.radius;
     }
     if (around >= options.min_points) {
-      r.distance = pair.distance, r.cloud = pair.cloud, r.point = pair.point, r.part = pair.part, r.primitive = pair.primitive;
+      r.distance = pair.distance, r.cloud = pair.cloud, r.point = pair.point, r.part = pair.part,
+      r.primitive = pair.primitive;
       break;
     }
     if (r.isolated++ == 0) r.nearest_isolated = pair;
@@ -44,14 +47,16 @@ clearance::supported_distance brute_support(const scene<P>& s, const clouds& all
   return r;
 }
 
-inline void require_same(const clearance::supported_distance& found, const clearance::supported_distance& expected, verdict& v, const std::string& what) {
+inline void require_same(const clearance::supported_distance& found, const clearance::supported_distance& expected,
+                         verdict& v, const std::string& what) {
   const auto &a = found.nearest_isolated, &b = expected.nearest_isolated;
   const bool nowhere = found.distance != found.distance && expected.distance != expected.distance;
-  v.require((same_bits(found.distance, expected.distance) || nowhere) && found.cloud == expected.cloud && found.point == expected.point &&
-                found.part == expected.part && found.primitive == expected.primitive,
-            what, ": point ", found.point, " at ", found.distance, " is confirmed, and not ", expected.point, " at ", expected.distance);
-  v.require(found.isolated == expected.isolated && same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.part == b.part &&
-                a.primitive == b.primitive,
+  v.require((same_bits(found.distance, expected.distance) || nowhere) && found.cloud == expected.cloud &&
+                found.point == expected.point && found.part == expected.part && found.primitive == expected.primitive,
+            what, ": point ", found.point, " at ", found.distance, " is confirmed, and not ", expected.point, " at ",
+            expected.distance);
+  v.require(found.isolated == expected.isolated && same_bits(a.distance, b.distance) && a.cloud == b.cloud &&
+                a.point == b.point && a.part == b.part && a.primitive == b.primitive,
             what, ": ", found.isolated, " are alone, and not ", expected.isolated);
 }
 

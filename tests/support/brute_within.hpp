@@ -17,23 +17,31 @@ clearance::within_result brute_within(const scene<P>& s, const clouds& all, cons
     r.pairs.push_back(pair);
     for (std::size_t k = pair.part + 1; k < r.offsets.size(); ++k) ++r.offsets[k];
   });
-  std::ranges::stable_sort(r.pairs, {}, [](const clearance::pair_distance& p) { return std::pair(p.part, p.distance); });
+  std::ranges::stable_sort(r.pairs, {},
+                           [](const clearance::pair_distance& p) { return std::pair(p.part, p.distance); });
   return r;
 }
 
-inline void require_same(const clearance::within_result& found, const clearance::within_result& expected, verdict& v, const std::string& what) {
-  v.require(found.offsets == expected.offsets, what, ": ", found.pairs.size(), " pairs and not ", expected.pairs.size());
-  const bool same = std::ranges::equal(found.pairs, expected.pairs, [](const clearance::pair_distance& a, const clearance::pair_distance& b) {
-    return a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.primitive == b.primitive && same_bits(a.distance, b.distance);
-  });
+inline void require_same(const clearance::within_result& found, const clearance::within_result& expected, verdict& v,
+                         const std::string& what) {
+  v.require(found.offsets == expected.offsets, what, ": ", found.pairs.size(), " pairs and not ",
+            expected.pairs.size());
+  const bool same = std::ranges::equal(found.pairs, expected.pairs,
+                                       [](const clearance::pair_distance& a, const clearance::pair_distance& b) {
+                                         return a.cloud == b.cloud && a.point == b.point && a.part == b.part &&
+                                                a.primitive == b.primitive && same_bits(a.distance, b.distance);
+                                       });
   v.require(same, what, ": some pair differs");
 }
 
 /// The same of a list in any order, of which `count` are told.
-inline void require_listed(std::vector<clearance::pair_distance> pairs, unsigned long long count, clearance::within_result expected, verdict& v,
-                           const std::string& what) {
-  v.require(count == expected.pairs.size() && pairs.size() == count, what, ": ", count, " pairs and not ", expected.pairs.size());
-  for (auto* list : {&pairs, &expected.pairs}) std::ranges::sort(*list, {}, [](const clearance::pair_distance& p) { return std::tuple(p.part, p.cloud, p.point); });
+inline void require_listed(std::vector<clearance::pair_distance> pairs, unsigned long long count,
+                           clearance::within_result expected, verdict& v, const std::string& what) {
+  v.require(count == expected.pairs.size() && pairs.size() == count, what, ": ", count, " pairs and not ",
+            expected.pairs.size());
+  for (auto* list : {&pairs, &expected.pairs})
+    std::ranges::sort(*list, {},
+                      [](const clearance::pair_distance& p) { return std::tuple(p.part, p.cloud, p.point); });
   clearance::within_result found = expected;
   found.pairs = std::move(pairs);
   require_same(found, expected, v, what);

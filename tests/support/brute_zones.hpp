@@ -8,34 +8,41 @@
 
 namespace testing {
 
-/// All points of clouds against all primitives: those whose computed distance is at most the threshold and what is uncertain of it,
-/// worked out in long double.
+/// All points of clouds against all primitives: those whose computed distance is at most the threshold and what is
+/// uncertain of it, worked out in long double.
 template <class P>
-clearance::zones_result brute_zones(const scene<P>& s, const clouds& all, const std::vector<std::vector<double>>& thresholds) {
+clearance::zones_result brute_zones(const scene<P>& s, const clouds& all,
+                                    const std::vector<std::vector<double>>& thresholds) {
   clearance::zones_result r;
   r.per_part = thresholds[0].size();
   r.zones.resize(s.parts.size() * r.per_part);
   const auto error = error_of(s, all);
   for_each_pair(s, all, [&](const clearance::pair_distance& pair) {
-    const long double may_be = (long double)(pair.distance) - error.here - (long double)(error.per_metre) * std::abs(pair.distance);
+    const long double may_be =
+        (long double)(pair.distance) - error.here - (long double)(error.per_metre) * std::abs(pair.distance);
     for (std::size_t z = 0; z < r.per_part; ++z) {
       if (may_be > thresholds[pair.part][z]) continue;
       clearance::zone& its = r.zones[pair.part * r.per_part + z];
       if (its.points++ == 0) its.first_cloud = pair.cloud, its.first_point = pair.point;
-      if (pair.distance < its.nearest) its.nearest = pair.distance, its.nearest_cloud = pair.cloud, its.nearest_point = pair.point;
+      if (pair.distance < its.nearest)
+        its.nearest = pair.distance, its.nearest_cloud = pair.cloud, its.nearest_point = pair.point;
     }
   });
   return r;
 }
 
-inline void require_same(const clearance::zones_result& found, const clearance::zones_result& expected, verdict& v, const std::string& what) {
-  v.require(found.zones.size() == expected.zones.size() && found.per_part == expected.per_part, what, ": ", found.zones.size(), " zones");
+inline void require_same(const clearance::zones_result& found, const clearance::zones_result& expected, verdict& v,
+                         const std::string& what) {
+  v.require(found.zones.size() == expected.zones.size() && found.per_part == expected.per_part, what, ": ",
+            found.zones.size(), " zones");
   for (std::size_t i = 0; i < std::min(found.zones.size(), expected.zones.size()); ++i) {
     const clearance::zone &a = found.zones[i], &b = expected.zones[i];
-    v.require(a.points == b.points && same_bits(a.nearest, b.nearest) && a.nearest_cloud == b.nearest_cloud && a.nearest_point == b.nearest_point &&
-                  a.first_cloud == b.first_cloud && a.first_point == b.first_point,
-              what, ", zone ", i, ": ", a.points, " points and not ", b.points, ", nearest ", a.nearest, " and not ", b.nearest, " at ", a.nearest_point, " and not ",
-              b.nearest_point, ", first ", a.first_point, " and not ", b.first_point);
+    v.require(a.points == b.points && same_bits(a.nearest, b.nearest) && a.nearest_cloud == b.nearest_cloud &&
+                  a.nearest_point == b.nearest_point && a.first_cloud == b.first_cloud &&
+                  a.first_point == b.first_point,
+              what, ", zone ", i, ": ", a.points, " points and not ", b.points, ", nearest ", a.nearest, " and not ",
+              b.nearest, " at ", a.nearest_point, " and not ", b.nearest_point, ", first ", a.first_point, " and not ",
+              b.first_point);
   }
 }
 

@@ -17,8 +17,9 @@ struct closed_parts {
 inline closed_parts closed_scene(unsigned seed) {
   dice d(seed);
   closed_parts all;
-  for (const auto& mesh : {shapes::merged(shapes::box({-0.3, -0.2, -0.2}, {0.3, 0.2, 0.2}), shapes::box({0, -0.1, -0.3}, {0.5, 0.1, 0.1})),
-                           shapes::globe({0.1, 0, 0}, 0.3), shapes::inverted(shapes::torus(0.3, 0.1, 24, 12))}) {
+  for (const auto& mesh :
+       {shapes::merged(shapes::box({-0.3, -0.2, -0.2}, {0.3, 0.2, 0.2}), shapes::box({0, -0.1, -0.3}, {0.5, 0.1, 0.1})),
+        shapes::globe({0.1, 0, 0}, 0.3), shapes::inverted(shapes::torus(0.3, 0.1, 24, 12))}) {
     all.meshes.push_back(clearance::close_mesh(mesh));
     all.poses.push_back(d.pose(0.4));
   }

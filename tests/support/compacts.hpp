@@ -18,7 +18,8 @@ void for_each_compacted(const F& each) {
     std::vector<vec3> points;
     std::vector<std::uint32_t> numbers;
     for (std::size_t i = 0; i < source.size(); ++i)
-      if (const clearance::sample s = source[i]; s.valid()) points.push_back(s.position), numbers.push_back(std::uint32_t(i));
+      if (const clearance::sample s = source[i]; s.valid())
+        points.push_back(s.position), numbers.push_back(std::uint32_t(i));
     each(source, points, numbers, what + " of " + std::to_string(source.size()));
   };
   dice d(411);

@@ -27,9 +27,11 @@ clearance::device_buffer<T> room_on(const clearance::device& gpu, std::size_t n)
   return gpu.copy_in(std::span<const T>(std::vector<T>(n)));
 }
 
-/// Captures what `enqueue(clouds there)` enqueues, and launches that with other points in the same memory, again and again: `look(what)`.
+/// Captures what `enqueue(clouds there)` enqueues, and launches that with other points in the same memory, again and
+/// again: `look(what)`.
 template <class Enqueue, class Look>
-void replay(const own_stream& stream, const clearance::device& gpu, moving_frames& f, const Enqueue& enqueue, const Look& look) {
+void replay(const own_stream& stream, const clearance::device& gpu, moving_frames& f, const Enqueue& enqueue,
+            const Look& look) {
   f.see(5000);
   const frame_there there(gpu, f);
   enqueue(there.all);  // once, as memory is not for a graph
@@ -38,7 +40,8 @@ void replay(const own_stream& stream, const clearance::device& gpu, moving_frame
   for (int launch = 0; launch < 3; ++launch) {
     f.see(5000);
     for (std::size_t c = 0; c < f.points.size(); ++c)
-      check(cudaMemcpyAsync(there.points[c].data(), f.points[c].data(), f.points[c].size() * sizeof(vec3), cudaMemcpyDefault, stream.handle));
+      check(cudaMemcpyAsync(there.points[c].data(), f.points[c].data(), f.points[c].size() * sizeof(vec3),
+                            cudaMemcpyDefault, stream.handle));
     graph.launch();
     gpu.wait();
     look("launch " + std::to_string(launch) + " of a graph");

@@ -46,9 +46,12 @@ class captured_graph {
 class gate {
  public:
   explicit gate(cudaStream_t stream) : stream_(stream) {
-    check(cudaLaunchHostFunc(stream, [](void* open) {
-      while (!*static_cast<std::atomic<bool>*>(open)) std::this_thread::sleep_for(std::chrono::microseconds(50));
-    }, &open_));
+    check(cudaLaunchHostFunc(
+        stream,
+        [](void* open) {
+          while (!*static_cast<std::atomic<bool>*>(open)) std::this_thread::sleep_for(std::chrono::microseconds(50));
+        },
+        &open_));
   }
   void release() {
     open_ = true;

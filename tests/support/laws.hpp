@@ -71,7 +71,8 @@ inline std::vector<vec3> probes(dice& d, const std::vector<ball>& balls, double 
 template <clearance::bounding_volume V>
 void check_reach(const V& volume, vec3 q, real distance, verdict& v) {
   if constexpr (clearance::rootless_volume<V>)
-    v.require(clearance::bounding_volume_traits<V>::may_reach(volume, q, distance), "ruled out at ", q, ", though", distance, " away");
+    v.require(clearance::bounding_volume_traits<V>::may_reach(volume, q, distance), "ruled out at ", q, ", though",
+              distance, " away");
 }
 
 /// No lower bound exceeds the signed distance to an enclosed ball, nor to a primitive as computed, and it is negative
@@ -93,7 +94,8 @@ void check_bounds(dice& d, const std::vector<ball>& balls, double size, verdict&
       const wide exact = oracle::to_sphere(wider(q), wider(b.center), b.radius);
       v.require(bound <= exact, "bound", bound, " above distance", exact, " at ", q, " of ball ", b.center, b.radius);
       const real computed = inner_sphere{b.center, b.radius}.distance(q);
-      v.require(bound <= computed, "bound", bound, " above computed", computed, " at ", q, " of ball ", b.center, b.radius);
+      v.require(bound <= computed, "bound", bound, " above computed", computed, " at ", q, " of ball ", b.center,
+                b.radius);
       check_reach(volume, q, computed, v);
     }
     for (std::size_t k = 0; k + 2 < balls.size() && k < 30; ++k) {
@@ -197,7 +199,8 @@ class hierarchy_check {
     }
     std::vector<std::uint32_t> below;
     walk(tree.root(), 0, below);
-    for (std::size_t k = 0; k < times_.size(); ++k) v.require(times_[k] == 1, "primitive", k, " occurs", times_[k], " times");
+    for (std::size_t k = 0; k < times_.size(); ++k)
+      v.require(times_[k] == 1, "primitive", k, " occurs", times_[k], " times");
     v.require(tree.depth() == deepest_, "depth() is", tree.depth(), " but the tree's is", deepest_);
     v.require(tree.width() == widest_, "width() is", tree.width(), " but the tree's is", widest_);
   }
@@ -226,7 +229,8 @@ class hierarchy_check {
     using traits = clearance::bounding_volume_traits<typename H::volume_type>;
     for (const vec3 q : probes_) {
       const real bound = traits::lower_bound(tree_.volume(n), q);
-      for (const std::uint32_t id : below) verdict_.require(bound <= input_[id].distance(q), "a node does not bound", id);
+      for (const std::uint32_t id : below)
+        verdict_.require(bound <= input_[id].distance(q), "a node does not bound", id);
     }
   }
 

@@ -57,7 +57,8 @@ class linked_tree {
   }
 
  private:
-  void fill(std::size_t at, const std::vector<P>& primitives, std::uint32_t begin, std::uint32_t end, bool lopsided, std::uint32_t level) {
+  void fill(std::size_t at, const std::vector<P>& primitives, std::uint32_t begin, std::uint32_t end, bool lopsided,
+            std::uint32_t level) {
     depth_ = std::max(depth_, level);
     std::vector<clearance::ball> balls;
     for (std::uint32_t k = begin; k < end; ++k)

@@ -59,7 +59,9 @@ inline wide to_triangle(vec q, vec a, vec b, vec c) {
 /// Row-major world-from-something, as given by any matrix with (row, column).
 template <class Pose>
 vec moved(const Pose& m, vec p) {
-  const auto row = [&](int k) { return wide(m(k, 0)) * p.x + wide(m(k, 1)) * p.y + wide(m(k, 2)) * p.z + wide(m(k, 3)); };
+  const auto row = [&](int k) {
+    return wide(m(k, 0)) * p.x + wide(m(k, 1)) * p.y + wide(m(k, 2)) * p.z + wide(m(k, 3));
+  };
   return {row(0), row(1), row(2)};
 }
 

@@ -24,14 +24,15 @@ std::vector<brute_part<P>> brute_parts(const scene<P>& s) {
 template <class V, class P, class Fit>
 auto make_model(const scene<P>& s, const clearance::build_options& options, Fit fit) {
   std::vector<clearance::part<clearance::bvh<V, P>>> parts;
-  for (const auto& primitives : s.parts) parts.push_back(clearance::make_part(clearance::build<V>(primitives, options, fit)));
+  for (const auto& primitives : s.parts)
+    parts.push_back(clearance::make_part(clearance::build<V>(primitives, options, fit)));
   return clearance::model(std::move(parts));
 }
 
 /// One answer with the shared bound and one with a bound a part.
 template <class On, class Model, class S>
-void check_query(const On& on, const Model& model, const std::vector<Eigen::Isometry3d>& poses, const clearance::placed<S>& cloud,
-                 const brute_answer& expected, verdict& v, const std::string& what) {
+void check_query(const On& on, const Model& model, const std::vector<Eigen::Isometry3d>& poses,
+                 const clearance::placed<S>& cloud, const brute_answer& expected, verdict& v, const std::string& what) {
   require_equal(clearance::min_distance(on, model, poses, cloud), expected, v, what);
   const auto [r, minima] = clearance::min_distance_per_part(on, model, poses, cloud);
   require_equal(r, expected, v, what + ", per part");
@@ -48,8 +49,10 @@ void check_trees(const scene<P>& s, Each each, Fit fit, const char* fit_name, ve
     for (const std::uint32_t width : {2, 4, 8}) {
       const auto model = make_model<V>(s, {.width = width, .leaf_size = width == 4 ? 1u : 4u}, fit);
       const std::string what = s.name + ", width " + std::to_string(width) + ", " + fit_name + ", " + source_name;
-      check_query(clearance::plain{clearance::host{}, clearance::recursive{}}, model, s.poses, cloud, expected, v, what + ", recursive");
-      check_query(clearance::plain{clearance::host{}, clearance::stack{}}, model, s.poses, cloud, expected, v, what + ", stack");
+      check_query(clearance::plain{clearance::host{}, clearance::recursive{}}, model, s.poses, cloud, expected, v,
+                  what + ", recursive");
+      check_query(clearance::plain{clearance::host{}, clearance::stack{}}, model, s.poses, cloud, expected, v,
+                  what + ", stack");
       check_query(clearance::host{}, model, s.poses, cloud, expected, v, what + ", near first");
     }
   });

@@ -38,7 +38,8 @@ void check_on_device(Pick pick) {
     for (const std::uint32_t width : {2, 4, 8})
       for (const bool layered : {false, true}) {
         const clearance::build_options options{.width = width, .leaf_size = width == 4 ? 1u : 4u};
-        const auto on_host = layered ? make_model<V>(s, options, clearance::layered{}) : make_model<V>(s, options, clearance::wrapped{});
+        const auto on_host =
+            layered ? make_model<V>(s, options, clearance::layered{}) : make_model<V>(s, options, clearance::wrapped{});
         const auto model = on_host.on(gpu);
         const std::string what = s.name + ", width " + std::to_string(width);
         const auto same = clearance::min_distance(clearance::host{}, on_host, s.poses, cloud);
@@ -58,23 +59,33 @@ void check_on_device(Pick pick) {
 
 struct pick_span {
   template <class A, class S>
-  auto operator()(const A& all, const S& s) const { return std::pair(all.span, s.cloud_pose); }
+  auto operator()(const A& all, const S& s) const {
+    return std::pair(all.span, s.cloud_pose);
+  }
 };
 struct pick_floats {
   template <class A, class S>
-  auto operator()(const A& all, const S& s) const { return std::pair(all.floats, s.cloud_pose); }
+  auto operator()(const A& all, const S& s) const {
+    return std::pair(all.floats, s.cloud_pose);
+  }
 };
 struct pick_doubles {
   template <class A, class S>
-  auto operator()(const A& all, const S& s) const { return std::pair(all.doubles, s.cloud_pose); }
+  auto operator()(const A& all, const S& s) const {
+    return std::pair(all.doubles, s.cloud_pose);
+  }
 };
 struct pick_raw {
   template <class A, class S>
-  auto operator()(const A& all, const S&) const { return std::pair(all.raw, all.camera_pose); }
+  auto operator()(const A& all, const S&) const {
+    return std::pair(all.raw, all.camera_pose);
+  }
 };
 struct pick_metres {
   template <class A, class S>
-  auto operator()(const A& all, const S&) const { return std::pair(all.metres, all.camera_pose); }
+  auto operator()(const A& all, const S&) const {
+    return std::pair(all.metres, all.camera_pose);
+  }
 };
 
 }  // namespace testing

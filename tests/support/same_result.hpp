@@ -11,16 +11,18 @@ namespace testing {
 
 /// Everything that a result says, by its bits where it is a number.
 inline bool same_result(const clearance::min_distance_result& a, const clearance::min_distance_result& b) {
-  return a.state == b.state && same_bits(a.distance, b.distance) && same_bits(a.lower, b.lower) && same_bits(a.upper, b.upper) &&
-         a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.primitive == b.primitive && same_bytes(a.at, b.at) &&
-         same_bytes(a.nearest, b.nearest) && same_bytes(a.normal, b.normal) && a.seen == b.seen && a.valid == b.valid &&
+  return a.state == b.state && same_bits(a.distance, b.distance) && same_bits(a.lower, b.lower) &&
+         same_bits(a.upper, b.upper) && a.cloud == b.cloud && a.point == b.point && a.part == b.part &&
+         a.primitive == b.primitive && same_bytes(a.at, b.at) && same_bytes(a.nearest, b.nearest) &&
+         same_bytes(a.normal, b.normal) && a.seen == b.seen && a.valid == b.valid &&
          std::equal(a.dropped, a.dropped + clearance::drop_reasons, b.dropped);
 }
 
 /// And everything that a part's witness says.
 inline bool same_witness(const clearance::part_witness& a, const clearance::part_witness& b) {
-  return a.part == b.part && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive && same_bits(a.distance, b.distance) &&
-         same_bytes(a.at, b.at) && same_bytes(a.nearest, b.nearest) && same_bytes(a.normal, b.normal);
+  return a.part == b.part && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive &&
+         same_bits(a.distance, b.distance) && same_bytes(a.at, b.at) && same_bytes(a.nearest, b.nearest) &&
+         same_bytes(a.normal, b.normal);
 }
 
 }  // namespace testing

@@ -56,17 +56,24 @@ std::vector<scene<P>> scenes() {
   dice d(21);
   std::vector<scene<P>> all;
   const auto holes = [](std::vector<vec3>& points) {
-    for (std::size_t k = 4; k < points.size(); k += 9) points[k].y = k % 2 ? clearance::not_a_number : clearance::infinity;
+    for (std::size_t k = 4; k < points.size(); k += 9)
+      points[k].y = k % 2 ? clearance::not_a_number : clearance::infinity;
   };
   {
-    scene<P> s{"around", {random_primitives<P>(d, 60, 0.5, 0.2), random_primitives<P>(d, 1), random_primitives<P>(d, 90, 0.3, 0.1)},
-               {d.pose(1), d.pose(1), d.pose(1)}, d.points(300, 2), d.pose(0.3)};
+    scene<P> s{
+        "around",
+        {random_primitives<P>(d, 60, 0.5, 0.2), random_primitives<P>(d, 1), random_primitives<P>(d, 90, 0.3, 0.1)},
+        {d.pose(1), d.pose(1), d.pose(1)},
+        d.points(300, 2),
+        d.pose(0.3)};
     holes(s.points);
     all.push_back(s);
   }
   {
-    scene<P> s{"outside", {random_primitives<P>(d, 60, 0.1, 0.05), random_primitives<P>(d, 40, 0.1, 0.05)},
-               {shifted(0, 0, -0.5), shifted(0.4, 0, -0.5)}, {}};
+    scene<P> s{"outside",
+               {random_primitives<P>(d, 60, 0.1, 0.05), random_primitives<P>(d, 40, 0.1, 0.05)},
+               {shifted(0, 0, -0.5), shifted(0.4, 0, -0.5)},
+               {}};
     for (int k = 0; k < 300; ++k) s.points.push_back({d.number(-2, 2), d.number(-2, 2), d.number(0.5, 2)});
     all.push_back(s);
   }
@@ -75,10 +82,14 @@ std::vector<scene<P>> scenes() {
     for (std::size_t k = 27; k-- > 0;) twice.push_back(twice[k]);
     Eigen::Isometry3d turned = shifted(0, 0, 0);
     turned.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-    scene<P> s{"ties", {twice, twice, lattice(static_cast<const P*>(nullptr))}, {shifted(0, 0, 0), shifted(0, 0, 0), turned}, {}};
+    scene<P> s{"ties",
+               {twice, twice, lattice(static_cast<const P*>(nullptr))},
+               {shifted(0, 0, 0), shifted(0, 0, 0), turned},
+               {}};
     for (int k = 0; k < 40; ++k) {
       const vec3 p{real(d.below(17)) / 4 - 2, real(d.below(17)) / 4 - 2, real(d.below(9)) / 4 + 1.5f};
-      for (const vec3 q : {p, vec3{-p.x, p.y, p.z}, vec3{p.x, -p.y, p.z}, p, vec3{p.y, p.x, -p.z}}) s.points.push_back(q);
+      for (const vec3 q : {p, vec3{-p.x, p.y, p.z}, vec3{p.x, -p.y, p.z}, p, vec3{p.y, p.x, -p.z}})
+        s.points.push_back(q);
     }
     all.push_back(s);
     std::reverse(s.points.begin(), s.points.end());
@@ -92,22 +103,29 @@ std::vector<scene<P>> scenes() {
     all.push_back(s);
   }
   {
-    scene<P> s{"far from the origin", {random_primitives<P>(d, 60, 5, 2), random_primitives<P>(d, 60, 5, 2)},
-               {shifted(5e6, -4.5e6, 900), shifted(5e6 + 8, -4.5e6, 900)}, {}};
+    scene<P> s{"far from the origin",
+               {random_primitives<P>(d, 60, 5, 2), random_primitives<P>(d, 60, 5, 2)},
+               {shifted(5e6, -4.5e6, 900), shifted(5e6 + 8, -4.5e6, 900)},
+               {}};
     s.size = 10;
     for (int k = 0; k < 300; ++k) s.points.push_back(d.point(30, {5e6f, -4.5e6f, 900}));
     all.push_back(s);
   }
   {
-    scene<P> s{"sizes", {random_primitives<P>(d, 50, 1, 1e-4), random_primitives<P>(d, 30, 100, 40)}, {d.pose(1), d.pose(100)}, {}};
+    scene<P> s{"sizes",
+               {random_primitives<P>(d, 50, 1, 1e-4), random_primitives<P>(d, 30, 100, 40)},
+               {d.pose(1), d.pose(100)},
+               {}};
     for (const P& p : random_primitives<P>(d, 20, 1, 1e-3)) s.parts[1].push_back(p);
     for (const double half : {0.01, 1.0, 100.0, 1e4})
       for (const vec3 p : d.points(60, half)) s.points.push_back(p);
     all.push_back(s);
   }
   {
-    scene<P> s{"surfaces, insides and gaps", {random_primitives<P>(d, 40, 0.3, 0.3), random_primitives<P>(d, 40, 0.3, 0.3)},
-               {shifted(0, 0, 0), shifted(0.25, 0, 0)}, {}};
+    scene<P> s{"surfaces, insides and gaps",
+               {random_primitives<P>(d, 40, 0.3, 0.3), random_primitives<P>(d, 40, 0.3, 0.3)},
+               {shifted(0, 0, 0), shifted(0.25, 0, 0)},
+               {}};
     for (int k = 0; k < 150; ++k) {
       const P& p = s.parts[k % 2][k % 40];
       vec3 q = k % 3 == 0 ? on_surface(p, d) : p.balls()[0].center;
@@ -117,8 +135,10 @@ std::vector<scene<P>> scenes() {
     all.push_back(s);
   }
   {
-    scene<P> s{"many points", {random_primitives<P>(d, 30, 0.1, 0.05), random_primitives<P>(d, 10, 0.1, 0.05)},
-               {shifted(0, 0, 0), shifted(0, 0, 0.3)}, d.points(5000, 1)};
+    scene<P> s{"many points",
+               {random_primitives<P>(d, 30, 0.1, 0.05), random_primitives<P>(d, 10, 0.1, 0.05)},
+               {shifted(0, 0, 0), shifted(0, 0, 0.3)},
+               d.points(5000, 1)};
     holes(s.points);
     all.push_back(s);
   }
@@ -131,9 +151,12 @@ std::vector<scene<P>> scenes() {
   {  // each point a little nearer than the one before, to what touches the part's own ball
     scene<P> s{"creeping nearer", {random_primitives<P>(d, 1, 1, 0.5)}, {shifted(0, 0, 0)}, {}};
     const auto balls = s.parts[0][0].balls();
-    vec3 outward = balls.size() == 1 ? vec3{1, 0, 0} : balls[0].center - clearance::scaled(0.5f, balls[1].center + balls[balls.size() - 1].center);
+    vec3 outward = balls.size() == 1
+                       ? vec3{1, 0, 0}
+                       : balls[0].center - clearance::scaled(0.5f, balls[1].center + balls[balls.size() - 1].center);
     outward = clearance::scaled(1 / clearance::length(outward), outward);
-    for (int k = 0; k < 5001; ++k) s.points.push_back(clearance::fma(balls[0].radius + 1 - real(k) * 1e-5f, outward, balls[0].center));
+    for (int k = 0; k < 5001; ++k)
+      s.points.push_back(clearance::fma(balls[0].radius + 1 - real(k) * 1e-5f, outward, balls[0].center));
     all.push_back(s);
   }
   for (const std::size_t n : {0, 1, 31, 33}) {
@@ -150,14 +173,16 @@ template <class P>
 class sources {
  public:
   explicit sources(const scene<P>& s) : points_(s.points) {
-    const auto fill = [&](auto& view, auto zero, std::vector<std::byte>& memory, std::uint32_t step, std::uint32_t shift) {
+    const auto fill = [&](auto& view, auto zero, std::vector<std::byte>& memory, std::uint32_t step,
+                          std::uint32_t shift) {
       using scalar = decltype(zero);
       memory.assign(shift + s.points.size() * step + 1, std::byte{0xcd});
       view.data = memory.data() + shift, view.count = s.points.size(), view.step = step;
       for (int k = 0; k < 3; ++k) view.offset[k] = std::uint32_t(1 + (2 - k) * (sizeof(scalar) + 1));  // z, y, x
       for (std::size_t i = 0; i < s.points.size(); ++i) {
         const scalar xyz[3] = {s.points[i].x, s.points[i].y, s.points[i].z};
-        for (int k = 0; k < 3; ++k) std::memcpy(memory.data() + shift + i * step + view.offset[k], &xyz[k], sizeof(scalar));
+        for (int k = 0; k < 3; ++k)
+          std::memcpy(memory.data() + shift + i * step + view.offset[k], &xyz[k], sizeof(scalar));
       }
     };
     span = clearance::point_span(points_);

@@ -23,8 +23,9 @@ struct tallied {
   CLEARANCE_HD real reach(std::uint32_t part) const { return part % 2 == 0 ? farthest : farthest / 2; }
   CLEARANCE_HD void take(const clearance::pair_distance& p) const {
     clearance::add_to(words, 1);
-    clearance::add_to(words + 1, mixed(mixed(mixed(p.cloud + 1ull) ^ p.point) ^ (std::uint64_t(p.part) << 32 | p.primitive)) ^
-                                     mixed(clearance::to_bits(p.distance + 0.0f)));
+    clearance::add_to(words + 1,
+                      mixed(mixed(mixed(p.cloud + 1ull) ^ p.point) ^ (std::uint64_t(p.part) << 32 | p.primitive)) ^
+                          mixed(clearance::to_bits(p.distance + 0.0f)));
   }
 };
 
@@ -35,8 +36,8 @@ struct tally_of_pairs {
 
 /// All points against all primitives of all parts, by the definition. `inside(k, q)`: is q in part k's solid?
 template <class P, class Inside>
-void brute_tally(const scene<P>& s, const std::vector<vec3>& points, const Eigen::Isometry3d& pose, std::uint32_t cloud, real farthest, Inside inside,
-                 tally_of_pairs& all) {
+void brute_tally(const scene<P>& s, const std::vector<vec3>& points, const Eigen::Isometry3d& pose, std::uint32_t cloud,
+                 real farthest, Inside inside, tally_of_pairs& all) {
   const tallied answer{farthest, all.words};
   for_each_pair(s, clearance::point_span(points), pose, cloud, inside, [&](const clearance::pair_distance& pair) {
     if (pair.distance <= answer.reach(pair.part)) answer.take(pair);

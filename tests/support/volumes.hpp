@@ -30,7 +30,8 @@ struct kdop14 {
       const vec3 n = along(k);
       double low = infinity, high = -infinity, size = 0;
       for (const ball& b : balls) {
-        const double dx = double(b.center.x) - v.center.x, dy = double(b.center.y) - v.center.y, dz = double(b.center.z) - v.center.z;
+        const double dx = double(b.center.x) - v.center.x, dy = double(b.center.y) - v.center.y,
+                     dz = double(b.center.z) - v.center.z;
         const double t = n.x * dx + n.y * dy + n.z * dz;
         low = std::min(low, t - b.radius);
         high = std::max(high, t + b.radius);

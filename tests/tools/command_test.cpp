@@ -57,7 +57,8 @@ TEST_CASE("clearance query finds the nearest point, its part and its bracket") {
   CHECK(j.at("model") == "triangles");
   CHECK(j.at("volume") == "obb");
   CHECK(j.at("backend").is_string());
-  for (const char* key : {"load", "pack", "build", "upload", "query"}) CHECK(j.at("seconds").at(key).get<double>() >= 0);
+  for (const char* key : {"load", "pack", "build", "upload", "query"})
+    CHECK(j.at("seconds").at(key).get<double>() >= 0);
   CHECK(o.err.find("link \"tool\": has no collision geometry") != std::string::npos);
 
   const outcome text = run_command(s.ask + " --model triangles");
@@ -93,7 +94,8 @@ TEST_CASE("the exit code says free enough, too near, no data or error") {
   CHECK(none.code == 3);
   const auto j = parsed(none);
   CHECK(j.at("state") == "no_data");
-  for (const char* key : {"distance", "cloud", "point", "pixel", "point_xyz", "part", "primitive", "nearest_xyz", "normal", "lower", "upper"})
+  for (const char* key : {"distance", "cloud", "point", "pixel", "point_xyz", "part", "primitive", "nearest_xyz",
+                          "normal", "lower", "upper"})
     CHECK(j.at(key).is_null());
   CHECK(j.at("points").at("seen") == 0);
   CHECK(j.at("parts").at(1).at("distance").is_null());
@@ -114,14 +116,16 @@ TEST_CASE("a point inside a link is a collision at distance 0") {
   CHECK(spheres.at("distance").get<double>() < 0);
   CHECK(spheres.at("upper") == 0);
   CHECK(run_command(s.robot + " --model triangles --cloud " + inside.path + " --check 0").code == 2);
-  refuses(s.robot + " --model triangles --cloud " + inside.path + " --check -0.001", "--check: must not be negative (metres)");
+  refuses(s.robot + " --model triangles --cloud " + inside.path + " --check -0.001",
+          "--check: must not be negative (metres)");
 }
 
 TEST_CASE("poses, intrinsics, scale and range before the first cloud hold for all, after one for that one") {
   const scene s;
   const scratch_file first(".png", png(0, 1000)), second(".png", png(2000, 65535));
   // World-from-camera: looks up from 0.5 m above the tool, or from where the second pose says.
-  const std::string common = s.robot + " --model triangles --json --intrinsics 500,500,0,0 --camera-pose 0,0,1.1,0,0,0,1 ";
+  const std::string common =
+      s.robot + " --model triangles --json --intrinsics 500,500,0,0 --camera-pose 0,0,1.1,0,0,0,1 ";
   auto j = parsed(run_command(common + "--cloud " + first.path + " --cloud " + second.path));
   CHECK(j.at("cloud") == first.path);
   CHECK(j.at("pixel") == nlohmann::json({1, 0}));
@@ -132,7 +136,8 @@ TEST_CASE("poses, intrinsics, scale and range before the first cloud hold for al
   j = parsed(run_command(common + "--cloud " + first.path + " --cloud " + second.path + " --depth-scale 0.0001"));
   CHECK(j.at("cloud") == second.path);
   CHECK(j.at("distance").get<double>() == Approx(0.7));
-  j = parsed(run_command(common + "--cloud " + first.path + " --cloud " + second.path + " --camera-pose 0,0,-1.1,0,0,0,1"));
+  j = parsed(
+      run_command(common + "--cloud " + first.path + " --cloud " + second.path + " --camera-pose 0,0,-1.1,0,0,0,1"));
   CHECK(j.at("cloud") == second.path);
   CHECK(j.at("distance").get<double>() == Approx(0.3));
   j = parsed(run_command(common + "--range 1.5,inf --cloud " + first.path + " --cloud " + second.path));
@@ -145,18 +150,21 @@ TEST_CASE("poses, intrinsics, scale and range before the first cloud hold for al
   const std::string robot = s.robot + " --model triangles --json ";
   CHECK(run_command(common + "--zero-is-missing --cloud " + points.path + " --cloud " + first.path).code == 0);
   refuses(common + "--cloud " + points.path, "--intrinsics: is for depth images, and there is none");
-  refuses(robot + "--depth-scale 0.001 --cloud " + points.path + " --cloud " + points.path, "--depth-scale: is for depth images, and there is none");
+  refuses(robot + "--depth-scale 0.001 --cloud " + points.path + " --cloud " + points.path,
+          "--depth-scale: is for depth images, and there is none");
   refuses(common + "--use-viewpoint --cloud " + first.path, "--use-viewpoint: is for point clouds, and there is none");
-  refuses(common + "--zero-is-missing --cloud " + first.path, "--zero-is-missing: is for point clouds, and there is none");
+  refuses(common + "--zero-is-missing --cloud " + first.path,
+          "--zero-is-missing: is for point clouds, and there is none");
 }
 
 TEST_CASE("one file that is given twice can be told apart in every answer") {
   const scene s;
   const scratch_file cloud(".xyz", "0 0 1.0\n");
   const std::string second = cloud.path + " (2)", third = cloud.path + " (3)";
-  // The camera is where the file says, 1 m and 0.3 m lower: the second is the nearest to the tool, the third to the base.
-  const std::string ask = " --model triangles --backend host --cloud " + cloud.path + " --cloud " + cloud.path + " --camera-pose 0,0,-0.3,0,0,0,1 --cloud " +
-                          cloud.path + " --camera-pose 0,0,-0.75,0,0,0,1 ";
+  // The camera is where the file says, 1 m and 0.3 m lower: the second is the nearest to the tool, the third to the
+  // base.
+  const std::string ask = " --model triangles --backend host --cloud " + cloud.path + " --cloud " + cloud.path +
+                          " --camera-pose 0,0,-0.3,0,0,0,1 --cloud " + cloud.path + " --camera-pose 0,0,-0.75,0,0,0,1 ";
   const auto j = parsed(run_command(s.robot + ask + "--json --zones 0.2,5 --nearest 3 --min-support 2@0.1"));
   CHECK(j.at("cloud") == second);
   CHECK(j.at("parts").at(0).at("cloud") == third);
@@ -170,19 +178,24 @@ TEST_CASE("one file that is given twice can be told apart in every answer") {
   CHECK(text.find("cloud     " + second + ", point 0\n") != text.npos);
   const scratch_file rows(".csv", "slide\n0\n");
   for (const std::string more : {"", "--csv"})
-    CHECK(run_command("plan --robot " + s.urdf.path + " --configurations " + rows.path + ask + more).out.find(second) != text.npos);
+    CHECK(run_command("plan --robot " + s.urdf.path + " --configurations " + rows.path + ask + more).out.find(second) !=
+          text.npos);
 }
 
 TEST_CASE("a camera on a link moves with the joint") {
   const scene s;
   const scratch_file depth(".png", png(0, 300));
-  const std::string ask = s.robot + " --model triangles --json --camera-link eye --intrinsics 500,500,1,0 --cloud " + depth.path;
+  const std::string ask =
+      s.robot + " --model triangles --json --camera-link eye --intrinsics 500,500,1,0 --cloud " + depth.path;
   for (const double slide : {-0.05, 0.0, 0.5}) {
     const auto j = parsed(run_command(ask + " --joints " + std::to_string(slide)));
     CHECK(j.at("distance").get<double>() == Approx(0.3));
     CHECK(j.at("point_xyz").at(2).get<double>() == Approx(0.9 + slide));
   }
-  CHECK(parsed(run_command(ask + " --joint slide=-.05 --base-pose -1,0,10,0,0,0,1")).at("point_xyz").at(2).get<double>() == Approx(10.85));
+  CHECK(parsed(run_command(ask + " --joint slide=-.05 --base-pose -1,0,10,0,0,0,1"))
+            .at("point_xyz")
+            .at(2)
+            .get<double>() == Approx(10.85));
 }
 
 TEST_CASE("joints are taken by order or by name, and refused with a sentence") {
@@ -205,7 +218,8 @@ TEST_CASE("joints are taken by order or by name, and refused with a sentence") {
 
 TEST_CASE("wrong usage is one sentence and exit code 1") {
   const scene s;
-  const scratch_file depth(".png", png(1000, 1000)), shallow(".png", png(10, 10, 8)), cut(".pcd", "VERSION .7\n"), nothing(".ply", "");
+  const scratch_file depth(".png", png(1000, 1000)), shallow(".png", png(10, 10, 8)), cut(".pcd", "VERSION .7\n"),
+      nothing(".ply", "");
   refuses("", "subcommand");
   refuses("quarry", "quarry: there is no such subcommand");
   refuses("query", "--robot is required");
@@ -223,7 +237,8 @@ TEST_CASE("wrong usage is one sentence and exit code 1") {
   refuses(s.ask + " --check nan", "--check: \"nan\" is not a finite number");
   refuses(s.ask + " --check -1", "--check: must not be negative (metres)");
   for (const std::string of_spheres : {"--spheres 5", "--cache /tmp", "--no-cache"})
-    refuses(s.ask + " --model triangles " + of_spheres, of_spheres.substr(0, of_spheres.find(' ')) + ": is for --model spheres");
+    refuses(s.ask + " --model triangles " + of_spheres,
+            of_spheres.substr(0, of_spheres.find(' ')) + ": is for --model spheres");
   refuses(s.ask + " --base-pose 0,0,0,0,0,0,2", "the quaternion has length 2");
   refuses(s.ask + " --camera-pose 0,0,0,0,0,0,0", "the quaternion has length 0");
   refuses(s.ask + " --camera-pose 0,0,0,1", "--camera-pose: needs 7 numbers, x,y,z,qx,qy,qz,qw; here are 4");
@@ -235,7 +250,8 @@ TEST_CASE("wrong usage is one sentence and exit code 1") {
   refuses(s.robot + " --cloud " + depth.path, "needs --intrinsics fx,fy,cx,cy");
   refuses(s.robot + " --cloud " + depth.path + " --intrinsics 0,1,0,0", "must be above 0");
   refuses(s.robot + " --cloud " + depth.path + " --intrinsics 1,1,0,0 --depth-scale 0", "must be above 0");
-  refuses(s.robot + " --cloud " + shallow.path + " --intrinsics 1,1,0,0", "must be a 16-bit grey PNG, this one is 8-bit grey");
+  refuses(s.robot + " --cloud " + shallow.path + " --intrinsics 1,1,0,0",
+          "must be a 16-bit grey PNG, this one is 8-bit grey");
   refuses(s.robot + " --cloud " + cut.path, cut.path + ": the PCD header has no DATA entry");
   refuses(s.robot + " --cloud " + nothing.path, nothing.path + ": is empty (0 bytes)");
   refuses(s.robot + " --cloud nowhere.pcd", "nowhere.pcd: there is no such file");
@@ -274,7 +290,8 @@ TEST_CASE("(0,0,0) is a point unless the user says otherwise, and many are menti
 TEST_CASE("a cloud in map coordinates is as exact as its numbers") {
   const scene s;
   const scratch_file far(".xyz", "447123.0625 5411987.125 251.0\n447123.0625 5411987.125 251.001\n");
-  const auto j = parsed(run_command(s.robot + " --model triangles --json --base-pose 447123.0625,5411987.125,250,0,0,0,1 --cloud " + far.path));
+  const auto j = parsed(run_command(
+      s.robot + " --model triangles --json --base-pose 447123.0625,5411987.125,250,0,0,0,1 --cloud " + far.path));
   CHECK(j.at("point") == 0);
   CHECK(std::abs(j.at("distance").get<double>() - 0.4) < 1e-5);
   CHECK(std::abs(j.at("point_xyz").at(1).get<double>() - 5411987.125) < 1e-6);
@@ -282,7 +299,9 @@ TEST_CASE("a cloud in map coordinates is as exact as its numbers") {
 
 TEST_CASE("a PCD's viewpoint is reported, and applied only when asked") {
   const scene s;
-  const scratch_file pcd(".pcd", "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nVIEWPOINT 0 0 0.2 1 0 0 0\nDATA ascii\n0 0 1\n");
+  const scratch_file pcd(
+      ".pcd",
+      "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nVIEWPOINT 0 0 0.2 1 0 0 0\nDATA ascii\n0 0 1\n");
   const std::string ask = s.robot + " --model triangles --json --cloud " + pcd.path;
   const outcome plain = run_command(ask);
   CHECK(parsed(plain).at("distance").get<double>() == Approx(0.4));
@@ -305,8 +324,10 @@ TEST_CASE("an excluded link is no part, and --scene writes a glTF file") {
 
 TEST_CASE("clearance pack fills a mesh and writes its spheres") {
   // A box of 0.2 x 0.2 x 0.2 with its top left open.
-  const scratch_file mesh(".obj", "v -.1 -.1 -.1\nv .1 -.1 -.1\nv .1 .1 -.1\nv -.1 .1 -.1\nv -.1 -.1 .1\nv .1 -.1 .1\nv .1 .1 .1\nv -.1 .1 .1\n"
-                                  "f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const scratch_file mesh(
+      ".obj",
+      "v -.1 -.1 -.1\nv .1 -.1 -.1\nv .1 .1 -.1\nv -.1 .1 -.1\nv -.1 -.1 .1\nv .1 -.1 .1\nv .1 .1 .1\nv -.1 .1 .1\n"
+      "f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
   const scratch_file csv(".csv");
   const outcome o = run_command("pack " + mesh.path + " --spheres 50 --json --out " + csv.path);
   CHECK(o.code == 0);
@@ -354,9 +375,11 @@ TEST_CASE("a real depth image and the point cloud of the same frame give the sam
     return;
   }
   const std::string frame = data + "/clouds/kinect_seq/frame_20121214T142255.814212";
-  const std::string png = " --intrinsics 525,525,320,240 --cloud " + frame + "_depth.png", pcd = " --cloud " + frame + ".pcd";
+  const std::string png = " --intrinsics 525,525,320,240 --cloud " + frame + "_depth.png",
+                    pcd = " --cloud " + frame + ".pcd";
   for (const std::string robot : {"kuka_lwr_kresse/kuka.urdf", "ur5e/ur5e.urdf"}) {
-    const std::string ask = "query --json --camera-pose -0.8,0.6,1.5,0,0.92388,0,0.38268 --robot " + data + "/robots/" + robot;
+    const std::string ask =
+        "query --json --camera-pose -0.8,0.6,1.5,0,0.92388,0,0.38268 --robot " + data + "/robots/" + robot;
     double lower = 0, upper = 1e9;
     for (const std::string model : {" --model spheres --spheres 200", " --model triangles"}) {
       const auto a = parsed(run_command(ask + model + png)), b = parsed(run_command(ask + model + pcd));

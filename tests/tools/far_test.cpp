@@ -4,12 +4,19 @@
 
 namespace {
 
-/// A box of 0.2 x 0.3 x 0.4 m at (0.25, 0.25, 0) from `at`, before many points far away and one inside it or 0.35 m off.
+/// A box of 0.2 x 0.3 x 0.4 m at (0.25, 0.25, 0) from `at`, before many points far away and one inside it or 0.35 m
+/// off.
 struct far_question {
-  scratch_file robot{".urdf", "<robot name=\"r\"><link name=\"w\"/><link name=\"a\"><collision><geometry><box size=\"0.2 0.3 0.4\"/></geometry></collision></link>"
-                                   "<joint name=\"j\" type=\"continuous\"><parent link=\"w\"/><child link=\"a\"/><axis xyz=\"0 0 1\"/></joint></robot>"};
+  scratch_file robot{".urdf",
+                     "<robot name=\"r\"><link name=\"w\"/><link name=\"a\"><collision><geometry><box size=\"0.2 0.3 "
+                     "0.4\"/></geometry></collision></link>"
+                     "<joint name=\"j\" type=\"continuous\"><parent link=\"w\"/><child link=\"a\"/><axis xyz=\"0 0 "
+                     "1\"/></joint></robot>"};
   double at;
-  std::string base() const { return "--robot " + robot.path + " --model triangles --base-pose " + text(at + 0.25) + "," + text(at + 0.25) + ",0,0,0,0,1 "; }
+  std::string base() const {
+    return "--robot " + robot.path + " --model triangles --base-pose " + text(at + 0.25) + "," + text(at + 0.25) +
+           ",0,0,0,0,1 ";
+  }
   static std::string text(double x) {
     char s[64];
     std::snprintf(s, sizeof s, "%.17g", x);
@@ -44,11 +51,19 @@ TEST_CASE("placeholders a thousand kilometres away change no answer, in any file
         const far_question q{.at = at};
         const std::string lines = q.lines(far, inside);
         const scratch_file xyz(".xyz", lines);
-        const scratch_file pcd(".pcd", "VERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 21\nHEIGHT 1\nPOINTS 21\nDATA ascii\n" + lines);
-        const scratch_file ply(".ply", "ply\nformat ascii 1.0\nelement vertex 21\nproperty double x\nproperty double y\nproperty double z\nend_header\n" + lines);
-        for (const auto* cloud : {&xyz, &pcd, &ply}) check(parsed(run_command("query " + q.base() + "--joints 0 --json --cloud " + cloud->path)), inside);
+        const scratch_file pcd(".pcd",
+                               "VERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 21\nHEIGHT "
+                               "1\nPOINTS 21\nDATA ascii\n" +
+                                   lines);
+        const scratch_file ply(".ply",
+                               "ply\nformat ascii 1.0\nelement vertex 21\nproperty double x\nproperty double "
+                               "y\nproperty double z\nend_header\n" +
+                                   lines);
+        for (const auto* cloud : {&xyz, &pcd, &ply})
+          check(parsed(run_command("query " + q.base() + "--joints 0 --json --cloud " + cloud->path)), inside);
         const scratch_file list(".txt", xyz.path + '\n' + pcd.path + '\n'), row(".csv", "j\n0\n");
-        const outcome merged = run_command("run " + q.base() + "--merge --frames " + list.path + " --trajectory " + row.path);
+        const outcome merged =
+            run_command("run " + q.base() + "--merge --frames " + list.path + " --trajectory " + row.path);
         INFO(merged.err);
         check(nlohmann::json::parse(merged.out.substr(0, merged.out.find('\n'))), inside);
       }

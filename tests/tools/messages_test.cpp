@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever names and words a file has: messages are one short, printable line that names the file, and answers are UTF-8.
+// Whatever names and words a file has: messages are one short, printable line that names the file, and answers are
+// UTF-8.
 #include "io/scratch_file.hpp"
 #include "tools/run_command.hpp"
 
@@ -53,19 +54,24 @@ void names_it(const std::string& arguments, const std::string& file) {
 
 /// Names that a URDF may hold, spelt for XML; and names that are refused: control characters, and very long ones.
 const std::vector<std::string>& xml_names() {
-  static const std::vector<std::string> names = {"plain", "turned &#x202E;eerf", "gr\xc3\xb6\xc3\x9f" "e \xe2\x82\xac \xf0\x9f\xa4\x96",
+  static const std::vector<std::string> names = {"plain", "turned &#x202E;eerf",
+                                                 "gr\xc3\xb6\xc3\x9f"
+                                                 "e \xe2\x82\xac \xf0\x9f\xa4\x96",
                                                  std::string(100, 'n'), "mark&#xFEFF;"};
   return names;
 }
 const std::vector<std::string>& refused_names() {
-  static const std::vector<std::string> names = {"a&#27;[2J&#10;state     free", "tab&#9;", "bell&#7;", "del&#127;", "csi&#155;2J",
-                                                 "", std::string(101, 'n'), std::string(2000000, 'm')};
+  static const std::vector<std::string> names = {
+      "a&#27;[2J&#10;state     free", "tab&#9;", "bell&#7;", "del&#127;", "csi&#155;2J", "", std::string(101, 'n'),
+      std::string(2000000, 'm')};
   return names;
 }
 
 std::string robot(const std::string& link, const std::string& joint = "j", const std::string& box = "1 1 1") {
-  return "<robot name=\"r\"><link name=\"" + link + "\"><visual><geometry><box size=\"" + box + "\"/></geometry></visual></link><link name=\"b\"/>" +
-         "<joint name=\"" + joint + "\" type=\"revolute\"><parent link=\"" + link + "\"/><child link=\"b\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint></robot>";
+  return "<robot name=\"r\"><link name=\"" + link + "\"><visual><geometry><box size=\"" + box +
+         "\"/></geometry></visual></link><link name=\"b\"/>" + "<joint name=\"" + joint +
+         "\" type=\"revolute\"><parent link=\"" + link +
+         "\"/><child link=\"b\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint></robot>";
 }
 
 }  // namespace
@@ -84,9 +90,14 @@ TEST_CASE("printable text is valid UTF-8 that controls nothing, and a short text
     all += text;
   }
   CHECK(io::sentence(all).size() <= 400);
-  for (const std::string text : {"", "plain", "gr\xc3\xb6\xc3\x9f" "e", "\xf0\x9f\xa4\x96"}) CHECK(io::printable(text) == text);
+  for (const std::string text : {"", "plain",
+                                 "gr\xc3\xb6\xc3\x9f"
+                                 "e",
+                                 "\xf0\x9f\xa4\x96"})
+    CHECK(io::printable(text) == text);
   CHECK(io::printable(std::string_view("a\0b\n\x1b", 5)) == "a\\x00b\\x0a\\x1b");
-  for (const char* bad : {"\xc0\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82", "\x80", "\xff"}) CHECK(io::printable(bad).starts_with("\\x"));
+  for (const char* bad : {"\xc0\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82", "\x80", "\xff"})
+    CHECK(io::printable(bad).starts_with("\\x"));
   const std::string about = io::sentence_about(std::string(5000, 'f'), std::string(5000, 'w') + " end");
   CHECK(about.size() <= 380);
   CHECK(about.starts_with("fff"));
@@ -113,13 +124,17 @@ TEST_CASE("names of links and joints reach terminal, JSON and scene in a form th
     CHECK(harmless(std::string_view(glb).substr(20, size)));
     CHECK(nlohmann::json::accept(glb.substr(20, size)));
     const scratch_file csv(".csv", "j\n0\n");
-    CHECK(checked("plan --csv --model triangles --backend host --robot " + urdf.path + " --cloud " + cloud.path + " --configurations " + csv.path).code == 0);
+    CHECK(checked("plan --csv --model triangles --backend host --robot " + urdf.path + " --cloud " + cloud.path +
+                  " --configurations " + csv.path)
+              .code == 0);
     if (name.size() > 100000) continue;
     checked("pack " + urdf.path + " --spheres 20 --out " + spheres.path + " --out " + yaml.path);
     CHECK(checked("info " + spheres.path).code == 0);
     CHECK(checked("info --json " + spheres.path).code == 0);
     CHECK(checked("info " + yaml.path).code == 0);
-    CHECK(checked("query --backend host --robot " + urdf.path + " --cloud " + cloud.path + " --packing " + spheres.path + " --json").code == 0);
+    CHECK(checked("query --backend host --robot " + urdf.path + " --cloud " + cloud.path + " --packing " +
+                  spheres.path + " --json")
+              .code == 0);
   }
 }
 
@@ -128,20 +143,29 @@ TEST_CASE("names that would steer a terminal, and names longer than a line, are 
   for (const std::string& name : refused_names())
     for (const std::string& text : {robot(name), robot("a", name)}) {
       const scratch_file urdf(".urdf", text);
-      names_it("query --model triangles --backend host --joints 0 --cloud " + cloud.path + " --robot " + urdf.path, urdf.path);
+      names_it("query --model triangles --backend host --joints 0 --cloud " + cloud.path + " --robot " + urdf.path,
+               urdf.path);
     }
 }
 
 TEST_CASE("a refusal is one short printable line that names its file, whatever is in it") {
   const scratch_file good(".urdf", robot("a")), cloud(".xyz", "3 0.1 0.1\n");
   const std::string with_cloud = "query --model triangles --backend host --robot " + good.path + " --cloud ";
-  std::vector<std::string> words = {std::string("x\0y", 3), "x\x1b[2J", "\xff\xfe", std::string(80000, 'w'), std::string(2000000, '9') + "x", "\xc3\xb6", std::string(300, '\xf0')};
+  std::vector<std::string> words = {std::string("x\0y", 3),
+                                    "x\x1b[2J",
+                                    "\xff\xfe",
+                                    std::string(80000, 'w'),
+                                    std::string(2000000, '9') + "x",
+                                    "\xc3\xb6",
+                                    std::string(300, '\xf0')};
   for (const std::string& word : words) {
     const std::string point = "0 0 " + word + '\n';
     const std::pair<std::string, std::string> clouds[] = {
         {".xyz", point},
         {".xyz", word + '\n'},
-        {".ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n" + point},
+        {".ply",
+         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n" +
+             point},
         {".ply", "ply\nformat ascii 1.0\n" + word + "\nend_header\n"},
         {".ply", "ply\nformat ascii 1.0\nelement " + word + " 5\nproperty " + word + " x\nend_header\n"},
         {".ply", "ply\nformat ascii 1.0\nelement " + word + " 5\nproperty int x\nelement vertex 0\nend_header\n"},
@@ -153,11 +177,12 @@ TEST_CASE("a refusal is one short printable line that names its file, whatever i
       const scratch_file file(ending, bytes);
       names_it(with_cloud + file.path, file.path);
     }
-    const std::pair<std::string, std::string> spheres[] = {{".csv", "1,2,3," + word + "x\n"},
-                                                           {".csv", word + ",1\n"},
-                                                           {".yaml", "collision_spheres:\n  \"" + word + "\": 3\n"},
-                                                           {".yaml", "collision_spheres: " + word + '\n'},
-                                                           {".yaml", "a: 1\n\"" + word + "\": 1\n\"" + word + "\": 2\n"}};
+    const std::pair<std::string, std::string> spheres[] = {
+        {".csv", "1,2,3," + word + "x\n"},
+        {".csv", word + ",1\n"},
+        {".yaml", "collision_spheres:\n  \"" + word + "\": 3\n"},
+        {".yaml", "collision_spheres: " + word + '\n'},
+        {".yaml", "a: 1\n\"" + word + "\": 1\n\"" + word + "\": 2\n"}};
     for (const auto& [ending, bytes] : spheres) {
       const scratch_file file(ending, bytes);
       names_it("info " + file.path, file.path);
@@ -165,8 +190,12 @@ TEST_CASE("a refusal is one short printable line that names its file, whatever i
     }
     const scratch_file rows(".csv", "j\n" + word + "x\n"), head(".csv", word + "\n0\n");
     for (const auto* csv : {&rows, &head}) {
-      names_it("run --model triangles --backend host --robot " + good.path + " --frames " + cloud.path + " --trajectory " + csv->path, csv->path);
-      names_it("plan --model triangles --backend host --robot " + good.path + " --cloud " + cloud.path + " --configurations " + csv->path, csv->path);
+      names_it("run --model triangles --backend host --robot " + good.path + " --frames " + cloud.path +
+                   " --trajectory " + csv->path,
+               csv->path);
+      names_it("plan --model triangles --backend host --robot " + good.path + " --cloud " + cloud.path +
+                   " --configurations " + csv->path,
+               csv->path);
     }
   }
   // A NUL that YAML can spell ends no sentence.
@@ -188,7 +217,9 @@ TEST_CASE("what is wrong with a robot is said of its file and its link or joint"
     names_it(ask + urdf.path + " --camera-link nothing", urdf.path);
     names_it(ask + flat.path, flat.path);
   }
-  const scratch_file two(".urdf", R"(<robot name="r"><link name="near"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
+  const scratch_file two(
+      ".urdf",
+      R"(<robot name="r"><link name="near"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
     <link name="gone"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
     <joint name="j" type="fixed"><parent link="near"/><child link="gone"/><origin xyz="1e300 0 0"/></joint></robot>)");
   const std::string ask = " --model triangles --backend host --robot " + two.path;
@@ -212,7 +243,8 @@ TEST_CASE("where memory ends, the sentence names the file that was read") {
     WARN("SKIPPED: no sparse file here");
     return;
   }
-  const outcome o = run_command("query --model triangles --backend host --robot " + good.path + " --cloud " + big.path, {}, "ulimit -v 8000000; ");
+  const outcome o = run_command("query --model triangles --backend host --robot " + good.path + " --cloud " + big.path,
+                                {}, "ulimit -v 8000000; ");
   INFO(o.err);
   CHECK(o.code == 1);
   CHECK(o.err.find(big.path + ": there is not enough memory to read it") != std::string::npos);

@@ -30,14 +30,20 @@ std::string quoted_shell(const std::string& word) { return '\'' + word + '\''; }
 
 }  // namespace
 
-TEST_CASE("an option without a value is refused by its name, whichever it is and however it is left out, and a flag with one") {
-  const scratch_file urdf(".urdf", R"(<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
-  const scratch_file cloud(".xyz", "0.1 0.1 0.1\n"), obj(".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+TEST_CASE(
+    "an option without a value is refused by its name, whichever it is and however it is left out, and a flag with "
+    "one") {
+  const scratch_file urdf(
+      ".urdf",
+      R"(<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
+  const scratch_file cloud(".xyz", "0.1 0.1 0.1\n"),
+      obj(".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
   const scratch_file csv(".csv", "\n");
   const std::pair<std::string, std::string> asked[] = {
       {"query", "--robot " + urdf.path + " --cloud " + cloud.path + " --model triangles --backend host"},
       {"run", "--robot " + urdf.path + " --frames " + cloud.path + " --model triangles --backend host"},
-      {"plan", "--robot " + urdf.path + " --cloud " + cloud.path + " --configurations " + csv.path + " --model triangles --backend host"},
+      {"plan", "--robot " + urdf.path + " --cloud " + cloud.path + " --configurations " + csv.path +
+                   " --model triangles --backend host"},
       {"pack", obj.path + " --spheres 5"},
       {"demo", ""},
       {"info", ""}};
@@ -51,7 +57,8 @@ TEST_CASE("an option without a value is refused by its name, whichever it is and
         continue;
       }
       ++with_value;
-      for (const std::string& without : {name + " ''", name + "=", name + "=' '", name + " '\t'", name + " --json", name}) {
+      for (const std::string& without :
+           {name + " ''", name + "=", name + "=' '", name + " '\t'", name + " --json", name}) {
         const std::string line = subcommand + ' ' + rest + ' ' + without;
         const outcome o = run_command(line);
         INFO(line << " said: " << o.err);
@@ -69,7 +76,9 @@ TEST_CASE("an option without a value is refused by its name, whichever it is and
 }
 
 TEST_CASE("an option takes one word each time, and a word in brackets is that word") {
-  const scratch_file urdf(".urdf", R"(<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
+  const scratch_file urdf(
+      ".urdf",
+      R"(<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
   const scratch_file cloud(".xyz", "3 0.1 0.1\n"), other(".xyz", "4 0 0\n");
   const std::string ask = "query --model triangles --backend host --json --robot " + urdf.path;
   const auto both = parsed(run_command(ask + " --cloud " + cloud.path + " --cloud " + other.path));
@@ -87,22 +96,25 @@ TEST_CASE("an option takes one word each time, and a word in brackets is that wo
 }
 
 TEST_CASE("every limit of a mesh that a refusal names is set by that name") {
-  const scratch_file dae(".dae", R"(<COLLADA version="1.4.1"><asset/><library_geometries><geometry id="g"><mesh><source id="s">
+  const scratch_file dae(".dae",
+                         R"(<COLLADA version="1.4.1"><asset/><library_geometries><geometry id="g"><mesh><source id="s">
     <float_array id="a" count="12">0 0 0 1 0 0 0 1 0 0 0 1</float_array><technique_common><accessor source="#a" count="4" stride="3">
     <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
     <vertices id="v"><input semantic="POSITION" source="#s"/></vertices><triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>
     <p>0 2 1 0 1 3 1 2 3 0 3 2</p></triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="w"><node id="n">
     <node id="m"><instance_geometry url="#g"/></node></node></visual_scene></library_visual_scenes><scene><instance_visual_scene url="#w"/></scene></COLLADA>)");
-  const scratch_file urdf(".urdf", "<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh filename=\"file://" + dae.path +
-                                       "\"/></geometry></collision></link></robot>");
+  const scratch_file urdf(".urdf", "<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh filename=\"file://" +
+                                       dae.path + "\"/></geometry></collision></link></robot>");
   const scratch_file cloud(".xyz", "3 0.1 0.1\n"), frames(".txt", cloud.path + '\n'), csv(".csv", "\n");
   const std::string ask = " --model triangles --backend host --robot " + urdf.path;
-  for (const std::string& line : {"query --cloud " + cloud.path + ask, "run --frames " + frames.path + ask,
-                                  "plan --configurations " + csv.path + " --cloud " + cloud.path + ask,
-                                  "pack " + urdf.path + " --spheres 5 --no-cache", "pack " + dae.path + " --spheres 5 --no-cache"}) {
+  for (const std::string& line :
+       {"query --cloud " + cloud.path + ask, "run --frames " + frames.path + ask,
+        "plan --configurations " + csv.path + " --cloud " + cloud.path + ask,
+        "pack " + urdf.path + " --spheres 5 --no-cache", "pack " + dae.path + " --spheres 5 --no-cache"}) {
     for (const std::string name : {"bytes", "triangles", "values", "nodes", "depth"}) {
       refuses(line + " --mesh-limit " + name + "=1", "(mesh_limits::" + name + ")");
-      CHECK(run_command(line + " --mesh-limit " + name + (name == "bytes" ? "=5000" : "=1000 --mesh-limit bytes=5000")).code == 0);
+      CHECK(run_command(line + " --mesh-limit " + name + (name == "bytes" ? "=5000" : "=1000 --mesh-limit bytes=5000"))
+                .code == 0);
       CHECK(run_command(line.substr(0, line.find(' ')) + " --help").out.find(name + "=") != std::string::npos);
       for (const std::string value : {"0", "-1", "1.5", "x", "1 2", "18446744073709551616"})
         refuses(line + " --mesh-limit '" + name + '=' + value + "'", "--mesh-limit");
@@ -125,8 +137,11 @@ TEST_CASE("the attack's empty --check is refused", "[data]") {
   CHECK(run_command(ask + " --check 0").code == 2);
 }
 
-TEST_CASE("--threads is taken by all that computes, changes no answer, and is refused where it is no number of threads") {
-  const scratch_file urdf(".urdf", R"(<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
+TEST_CASE(
+    "--threads is taken by all that computes, changes no answer, and is refused where it is no number of threads") {
+  const scratch_file urdf(
+      ".urdf",
+      R"(<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
   const scratch_file cloud(".xyz", "1 1 1\n2 0 0\n"), csv(".csv", "\n");
   const std::string robot = " --backend host --no-cache --spheres 20 --robot " + urdf.path;
   const auto answer = [&](const std::string& more) {
@@ -140,6 +155,7 @@ TEST_CASE("--threads is taken by all that computes, changes no answer, and is re
   CHECK(run_command("run --threads 1 --frames " + cloud.path + robot).code == 1);  // a list of no files
   CHECK(run_command("pack --threads 1 --spheres 5 --no-cache " + urdf.path).code == 0);
   for (const std::string bad : {"0", "-1", "1025", "many", "1.5", "1e3"})
-    refuses("query" + robot + " --cloud " + cloud.path + " --threads " + bad, "--threads: \"" + bad + "\" is not a whole number from 1 to 1024");
+    refuses("query" + robot + " --cloud " + cloud.path + " --threads " + bad,
+            "--threads: \"" + bad + "\" is not a whole number from 1 to 1024");
   CHECK(run_command("info --threads 1 " + cloud.path).code == 1);
 }

@@ -22,7 +22,8 @@ const char* const robot_text = R"(<robot name="two">
 
 struct scene {
   robot_folder folder;
-  std::string urdf = folder.put("two.urdf", robot_text).string(), cloud = folder.put("c.xyz", "5 5 5\n0.4 0.1 0.5\n0 0 1.2\n").string();
+  std::string urdf = folder.put("two.urdf", robot_text).string(),
+              cloud = folder.put("c.xyz", "5 5 5\n0.4 0.1 0.5\n0 0 1.2\n").string();
   std::string ask = "query --backend host --json --robot " + urdf + " --cloud " + cloud;
   std::string path(const std::string& name) const { return (folder.path / name).string(); }
 };
@@ -38,7 +39,8 @@ nlohmann::json reply_to(const std::string& arguments, const std::string& cache =
 
 TEST_CASE("clearance pack fills the links of a robot, and a query takes them from the file") {
   const scene s;
-  const std::string pack = "pack " + s.urdf + " --spheres 300 --out " + s.path("r.ist") + " --out " + s.path("r.yaml") + " --out " + s.path("r.glb");
+  const std::string pack = "pack " + s.urdf + " --spheres 300 --out " + s.path("r.ist") + " --out " + s.path("r.yaml") +
+                           " --out " + s.path("r.glb");
   const auto j = parsed(run_command(pack + " --json"));
   REQUIRE(j.at("parts").size() == 2);
   CHECK(j.at("parts").at(0).at("name") == "base");
@@ -62,25 +64,36 @@ TEST_CASE("clearance pack fills the links of a robot, and a query takes them fro
   CHECK(y.at("primitive") == direct.at("primitive"));
   CHECK(y.at("lower").get<double>() == Approx(direct.at("lower").get<double>()).margin(1e-3));
   CHECK(y.at("upper").get<double>() == Approx(direct.at("upper").get<double>()).margin(1e-6));
-  refuses(s.ask + " --spheres 50 --packing " + s.path("r.ist"), "--spheres: is for links that are packed, and " + s.path("r.ist") + " has");
+  refuses(s.ask + " --spheres 50 --packing " + s.path("r.ist"),
+          "--spheres: is for links that are packed, and " + s.path("r.ist") + " has");
   // Without a file's link it is packed; of another mesh it is proven anew.
-  CHECK(run_command(s.ask + " --spheres 50 --packing " + s.folder.put("one.yml", "collision_spheres: {tool: [{center: [0,0,0], radius: 0.09}]}").string())
+  CHECK(run_command(s.ask + " --spheres 50 --packing " +
+                    s.folder.put("one.yml", "collision_spheres: {tool: [{center: [0,0,0], radius: 0.09}]}").string())
             .err.find("has no spheres for 1 links, which were packed") != std::string::npos);
-  const std::string smaller = s.folder.put("smaller.urdf", std::string(robot_text).replace(std::string(robot_text).find("0.2 0.2 0.2"), 11, "0.2 0.2 0.1")).string();
-  const outcome other = run_command("query --backend host --json --robot " + smaller + " --cloud " + s.cloud + " --packing " + s.path("r.ist"));
+  const std::string smaller =
+      s.folder
+          .put("smaller.urdf",
+               std::string(robot_text).replace(std::string(robot_text).find("0.2 0.2 0.2"), 11, "0.2 0.2 0.1"))
+          .string();
+  const outcome other = run_command("query --backend host --json --robot " + smaller + " --cloud " + s.cloud +
+                                    " --packing " + s.path("r.ist"));
   CHECK(other.err.find("the spheres of 1 links have no certificate for these meshes") != std::string::npos);
   CHECK(other.code == 0);
 }
 
 TEST_CASE("spheres that stick out, as planners use them, give a bracket that contains the distance to the mesh") {
   const scene s;
-  const std::string file = s.folder.put("around.yml",
-      "collision_spheres:\n  base:\n    - {center: [0, 0, 0], radius: 0.18}\n  tool:\n"
-      "    - {center: [0, 0, -0.09], radius: 0.12}\n    - {center: [0, 0, 0], radius: 0.12}\n    - {center: [0, 0, 0.09], radius: 0.12}\n").string();
+  const std::string file = s.folder
+                               .put("around.yml",
+                                    "collision_spheres:\n  base:\n    - {center: [0, 0, 0], radius: 0.18}\n  tool:\n"
+                                    "    - {center: [0, 0, -0.09], radius: 0.12}\n    - {center: [0, 0, 0], radius: "
+                                    "0.12}\n    - {center: [0, 0, 0.09], radius: 0.12}\n")
+                               .string();
   for (const std::string point : {"0.4 0.1 0.5", "0 0 1.2", "0.11 0 0.5", "0.119 0 0.5", "0 0 0.15", "0.16 0 0"}) {
     const std::string cloud = s.folder.put("p.xyz", point + "\n").string();
     const std::string ask = "query --backend host --json --robot " + s.urdf + " --cloud " + cloud;
-    const auto around = parsed(run_command(ask + " --packing " + file)), exact = parsed(run_command(ask + " --model triangles"));
+    const auto around = parsed(run_command(ask + " --packing " + file)),
+               exact = parsed(run_command(ask + " --model triangles"));
     INFO(point);
     CHECK(around.at("lower").get<double>() <= exact.at("upper").get<double>());
     CHECK(around.at("upper").get<double>() >= exact.at("lower").get<double>());
@@ -150,7 +163,10 @@ TEST_CASE("commands at the same time share a cache") {
   const robot_folder cache;
   std::vector<FILE*> running;
   for (int i = 0; i < 6; ++i)
-    running.push_back(::popen(("CLEARANCE_CACHE='" + cache.path.string() + "' \"" CLEARANCE_COMMAND "\" " + s.ask + " --spheres 80 2>&1").c_str(), "r"));
+    running.push_back(::popen(
+        ("CLEARANCE_CACHE='" + cache.path.string() + "' \"" CLEARANCE_COMMAND "\" " + s.ask + " --spheres 80 2>&1")
+            .c_str(),
+        "r"));
   std::vector<nlohmann::json> answers;
   for (FILE* pipe : running) {
     REQUIRE(pipe);
@@ -193,7 +209,9 @@ TEST_CASE("files of spheres that are damaged, foreign or of something else are o
   const std::string good = io::read_bytes(s.path("r.ist"));
   std::string bad = good;
   bad[200] ^= 4;
-  const auto put = [&](const std::string& name, const std::string& bytes) { return s.folder.put(name, bytes).string(); };
+  const auto put = [&](const std::string& name, const std::string& bytes) {
+    return s.folder.put(name, bytes).string();
+  };
   struct wrong {
     std::string file, sentence;
   };
@@ -222,7 +240,8 @@ TEST_CASE("files of spheres that are damaged, foreign or of something else are o
   std::filesystem::create_directories(s.path("folder.ist"));
   refuses("info " + s.path("folder.ist"), "is a folder, not a file");
   const std::string stranger = put("stranger.yml", "collision_spheres: {eye: [{center: [0, 0, 0], radius: 1}]}");
-  refuses(s.ask + " --packing " + stranger, "has spheres for \"eye\", which is no link with geometry (--exclude-link leaves a link out)");
+  refuses(s.ask + " --packing " + stranger,
+          "has spheres for \"eye\", which is no link with geometry (--exclude-link leaves a link out)");
   CHECK(run_command(s.ask + " --exclude-link eye --spheres 20 --packing " + stranger).code == 0);
   refuses(s.ask + " --model triangles --packing " + s.path("r.ist"), "--packing: is for --model spheres");
   refuses(s.ask + " --no-cache --cache /tmp", "--no-cache: cannot be mixed with --cache");
@@ -233,12 +252,15 @@ TEST_CASE("files of spheres that are damaged, foreign or of something else are o
   refuses(pack + "--gap -1", "--gap: must be above 0");
   refuses(pack + "--joints 1,2", "the robot has 1 movable joints, here are 2 values");
   refuses(pack + "--exclude-link nobody", "nobody");
-  refuses("pack " + put("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n") + " --spheres 5 --geometry visual", "--geometry: is for robots");
+  refuses("pack " + put("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n") + " --spheres 5 --geometry visual",
+          "--geometry: is for robots");
 }
 
 TEST_CASE("packing stops where it is told to") {
   const scene s;
-  const auto first = [&](const std::string& more) { return parsed(run_command("pack " + s.urdf + " --json " + more)).at("parts").at(0); };
+  const auto first = [&](const std::string& more) {
+    return parsed(run_command("pack " + s.urdf + " --json " + more)).at("parts").at(0);
+  };
   const auto gap = first("--spheres 5000 --gap 0.02");
   CHECK(gap.at("stopped_by") == "gap");
   CHECK(gap.at("gap").get<double>() <= 0.02);
@@ -259,9 +281,12 @@ TEST_CASE("real robots answer from their files as they do when they are packed",
   const std::string frame = data + "/clouds/kinect_seq/frame_20121214T142255.814212.pcd";
   for (const std::string robot : {"kuka_lwr_kresse/kuka.urdf", "ur5e/ur5e.urdf", "jvrc1/jvrc1.urdf"}) {
     INFO(robot);
-    const std::string urdf = data + "/robots/" + robot, ask = "query --backend host --json --robot " + urdf + " --cloud " + frame + " --camera-pose -0.8,0.6,1.5,0,0.92388,0,0.38268";
+    const std::string urdf = data + "/robots/" + robot, ask = "query --backend host --json --robot " + urdf +
+                                                              " --cloud " + frame +
+                                                              " --camera-pose -0.8,0.6,1.5,0,0.92388,0,0.38268";
     CHECK(run_command("pack " + urdf + " --spheres 100 --out " + file + " --out " + yaml).code == 0);
-    const auto direct = reply_to(ask + " --spheres 100"), loaded = reply_to(ask + " --packing " + file), measured = reply_to(ask + " --packing " + yaml);
+    const auto direct = reply_to(ask + " --spheres 100"), loaded = reply_to(ask + " --packing " + file),
+               measured = reply_to(ask + " --packing " + yaml);
     CHECK(loaded == direct);
     CHECK(measured.at("distance") == direct.at("distance"));
     CHECK(measured.at("lower").get<double>() == Approx(direct.at("lower").get<double>()).margin(2e-3));

@@ -27,7 +27,9 @@ struct path {
   scratch_file cloud{".xyz", "5 5 5\n0 0 1.0\nnan 0 0\n"};
   scratch_file rows{".csv", "turn, slide\n0,0\n0.5,0.3\n1,0.35\n1,0.1\n"};
   std::string robot = " --backend host --model triangles --robot " + urdf.path;
-  std::string with(const std::string& csv) const { return "plan" + robot + " --cloud " + cloud.path + " --configurations " + csv; }
+  std::string with(const std::string& csv) const {
+    return "plan" + robot + " --cloud " + cloud.path + " --configurations " + csv;
+  }
   std::string ask = with(rows.path);
 };
 
@@ -39,7 +41,8 @@ std::vector<nlohmann::json> lines(const outcome& o) {
   return all;
 }
 
-const char* const answered[] = {"state", "distance", "upper", "cloud", "point", "pixel", "point_xyz", "part", "primitive", "nearest_xyz", "normal"};
+const char* const answered[] = {"state",     "distance", "upper",     "cloud",       "point", "pixel",
+                                "point_xyz", "part",     "primitive", "nearest_xyz", "normal"};
 
 }  // namespace
 
@@ -59,12 +62,15 @@ TEST_CASE("clearance plan answers each configuration as clearance query does") {
       CHECK(all[k].at("lower") <= alone.at("distance"));
     }
     const auto& last = all.back();
-    CHECK(last.at("plan") == nlohmann::json({{"rows", 4}, {"least", all[2].at("distance")}, {"at", 2}}));  // nobody asked who is below what
+    CHECK(
+        last.at("plan") ==
+        nlohmann::json({{"rows", 4}, {"least", all[2].at("distance")}, {"at", 2}}));  // nobody asked who is below what
     CHECK_FALSE(last.contains("check"));
     CHECK(last.at("points").at("seen") == 3);
     CHECK(last.at("points").at("valid") == 2);
     CHECK(last.at("backend") == "host");
-    for (const char* key : {"load", "pack", "build", "upload", "query"}) CHECK(last.at("seconds").at(key).get<double>() >= 0);
+    for (const char* key : {"load", "pack", "build", "upload", "query"})
+      CHECK(last.at("seconds").at(key).get<double>() >= 0);
   }
 }
 
@@ -84,7 +90,8 @@ TEST_CASE("--check names the first configuration that is too near, and the exit 
 
   const scratch_file blind(".xyz", "nan nan nan\n");
   for (const std::string check : {"", " --check 0.1", " --check 0"}) {
-    const outcome o = run_command("plan" + p.robot + " --configurations " + p.rows.path + " --cloud " + blind.path + check);
+    const outcome o =
+        run_command("plan" + p.robot + " --configurations " + p.rows.path + " --cloud " + blind.path + check);
     CHECK(o.code == 3);
     const auto all = lines(o);
     REQUIRE(all.size() == 5);
@@ -124,12 +131,15 @@ TEST_CASE("--csv says the same in columns, and on stderr which row is the first"
   const outcome o = run_command(p.ask + " --csv --d-max 0.35 --check 0.2");
   CHECK(o.code == 2);
   CHECK(o.err.find("row 1 is the first whose lower end is not above the margin") != std::string::npos);
-  CHECK(run_command(p.ask + " --csv --check 0.01").err.find("every row's lower end is above the margin") != std::string::npos);
+  CHECK(run_command(p.ask + " --csv --check 0.01").err.find("every row's lower end is above the margin") !=
+        std::string::npos);
   const auto all = lines(run_command(p.ask + " --d-max 0.35"));
   std::istringstream in(o.out);
   std::string line;
   std::getline(in, line);
-  CHECK(line == "row,state,distance,lower,upper,cloud,point,part,primitive,point_x,point_y,point_z,nearest_x,nearest_y,nearest_z");
+  CHECK(line ==
+        "row,state,distance,lower,upper,cloud,point,part,primitive,point_x,point_y,point_z,nearest_x,nearest_y,nearest_"
+        "z");
   for (int k = 0; k < 4; ++k) {
     REQUIRE(std::getline(in, line));
     CHECK(std::count(line.begin(), line.end(), ',') == 14);
@@ -148,17 +158,19 @@ TEST_CASE("--csv says the same in columns, and on stderr which row is the first"
   }
   CHECK_FALSE(std::getline(in, line));
   const scratch_file named(",\"a\".xyz", "0 0 1\n");  // names that CSV must quote
-  const std::string quoted = run_command("plan" + p.robot + " --csv --configurations " + p.rows.path + " --cloud '" + named.path + "'").out;
+  const std::string quoted =
+      run_command("plan" + p.robot + " --csv --configurations " + p.rows.path + " --cloud '" + named.path + "'").out;
   CHECK(quoted.find(",\"\"a\"\".xyz\",0,tool,") != std::string::npos);
   const scratch_file blind(".xyz", "nan nan nan\n");
-  CHECK(run_command("plan" + p.robot + " --csv --configurations " + p.rows.path + " --cloud " + blind.path).out.find("\n0,no_data,,,,,,,,,,,,,\n") !=
-        std::string::npos);
+  CHECK(run_command("plan" + p.robot + " --csv --configurations " + p.rows.path + " --cloud " + blind.path)
+            .out.find("\n0,no_data,,,,,,,,,,,,,\n") != std::string::npos);
 }
 
 TEST_CASE("a camera on a link saw the clouds where the first configuration has it") {
   const path p;
   const scratch_file depth(".png", png(0, 1000)), start(".csv", "slide,turn\n0.1,0\n0,0\n");
-  const auto all = lines(run_command("plan" + p.robot + " --camera-link eye --intrinsics 500,500,1,0 --cloud " + depth.path + " --configurations " + start.path));
+  const auto all = lines(run_command("plan" + p.robot + " --camera-link eye --intrinsics 500,500,1,0 --cloud " +
+                                     depth.path + " --configurations " + start.path));
   REQUIRE(all.size() == 3);
   for (const int k : {0, 1}) {
     CHECK(all[k].at("point_xyz").at(2).get<double>() == Approx(1.7));
@@ -176,7 +188,8 @@ TEST_CASE("a joint without a column is fixed by --joint, and what is wrong with 
   const auto with = [&](const std::string& csv, const std::string& sentence) {
     const scratch_file file(".csv", csv);
     refuses(p.with(file.path), file.path + sentence);
-    refuses("run" + p.robot + " --frames " + list.path + " --trajectory " + still.path + " --plan " + file.path, file.path + sentence);
+    refuses("run" + p.robot + " --frames " + list.path + " --trajectory " + still.path + " --plan " + file.path,
+            file.path + sentence);
   };
   with("slide\n0\n", ":1: has no column for joint \"turn\"");
   with("slide,turn,elbow\n0,0,0\n", ":1: ");
@@ -197,12 +210,14 @@ TEST_CASE("a joint without a column is fixed by --joint, and what is wrong with 
   refuses(p.ask + " --check nan", "--check: \"nan\" is not a finite number");
   refuses(p.ask + " --check 0.2 --d-max 0.2", "--d-max: must be above the margin of --check");
   for (const std::string value : {"0", "-0.1"}) refuses(p.ask + " --d-max " + value, "--d-max: must be above 0");
-  for (const std::string value : {"1e-60", "1e300"}) refuses(p.ask + " --d-max " + value, "--d-max: must be from 1e-30 to 1e30");
+  for (const std::string value : {"1e-60", "1e300"})
+    refuses(p.ask + " --d-max " + value, "--d-max: must be from 1e-30 to 1e30");
 }
 
 TEST_CASE("clearance run --plan says in every frame what clearance plan says of its points") {
   const path p;
-  const scratch_file near(".xyz", "0 0 0.9\n3 0 0\n"), blind(".xyz", "nan nan nan\n"), list(".txt", p.cloud.path + '\n' + near.path + '\n');
+  const scratch_file near(".xyz", "0 0 0.9\n3 0 0\n"), blind(".xyz", "nan nan nan\n"),
+      list(".txt", p.cloud.path + '\n' + near.path + '\n');
   const scratch_file still(".csv", "turn,slide\n0,0\n");
   const std::string run = "run" + p.robot + " --trajectory " + still.path + " --plan " + p.rows.path + " --frames ";
   for (const std::string merge : {"", " --merge"}) {
@@ -211,8 +226,10 @@ TEST_CASE("clearance run --plan says in every frame what clearance plan says of 
     REQUIRE(all.size() == 2);
     CHECK(o.code == 2);
     for (int k = 0; k < 2; ++k) {
-      const std::string cloud = merge.empty() ? (k == 0 ? p.cloud.path : near.path) : p.cloud.path + " --cloud " + near.path;
-      const auto alone = lines(run_command("plan" + p.robot + " --configurations " + p.rows.path + " --check 0.07 --cloud " + cloud));
+      const std::string cloud =
+          merge.empty() ? (k == 0 ? p.cloud.path : near.path) : p.cloud.path + " --cloud " + near.path;
+      const auto alone =
+          lines(run_command("plan" + p.robot + " --configurations " + p.rows.path + " --check 0.07 --cloud " + cloud));
       const auto& plan = all[k].at("plan");
       CHECK(plan.at("latency_us").get<double>() > 0);
       CHECK(plan.at("first_below") == (k == 0 && merge.empty() ? 2 : 1));
@@ -234,7 +251,9 @@ TEST_CASE("clearance run --plan says in every frame what clearance plan says of 
   CHECK(plan.at("first_below") == 0);
   CHECK(plan.at("least").is_null());
   CHECK(plan.at("lower") == nlohmann::json({nullptr, nullptr, nullptr, nullptr}));
-  CHECK_FALSE(lines(run_command("run" + p.robot + " --trajectory " + still.path + " --frames " + first.path)).at(0).contains("plan"));
+  CHECK_FALSE(lines(run_command("run" + p.robot + " --trajectory " + still.path + " --frames " + first.path))
+                  .at(0)
+                  .contains("plan"));
 }
 
 TEST_CASE("--between judges the way from each row to the next, and --check is about it, too") {
@@ -259,38 +278,50 @@ TEST_CASE("--between judges the way from each row to the next, and --check is ab
   CHECK_FALSE(all[2].contains("way"));
   CHECK(all[3].at("plan").at("ways").at("least_lower") <= 0.1);
   const scratch_file apart{".csv", "turn, slide\n0,-0.1\n0,0.6\n"};  // the ends are farther than what lies between them
-  const std::string wide = "plan" + p.robot + " --cloud " + beside.path + " --configurations " + apart.path + " --check 0.12";
+  const std::string wide =
+      "plan" + p.robot + " --cloud " + beside.path + " --configurations " + apart.path + " --check 0.12";
   CHECK(run_command(wide).code == 0);
   const outcome o = run_command(wide + " --between");
   CHECK(o.code == 2);
-  CHECK(lines(o).back().at("plan").at("ways") == nlohmann::json::parse(R"({"least_lower": )" + lines(o)[0].at("way").at("lower").dump() + R"(, "at": 0, "first_below": 0})"));
+  CHECK(lines(o).back().at("plan").at("ways") ==
+        nlohmann::json::parse(R"({"least_lower": )" + lines(o)[0].at("way").at("lower").dump() +
+                              R"(, "at": 0, "first_below": 0})"));
   CHECK(lines(o).back().at("plan").at("first_below").is_null());
-  CHECK(run_command("plan" + p.robot + " --cloud " + beside.path + " --configurations " + apart.path + " --check 0.08 --between").code == 0);
+  CHECK(run_command("plan" + p.robot + " --cloud " + beside.path + " --configurations " + apart.path +
+                    " --check 0.08 --between")
+            .code == 0);
   const outcome csv = run_command(wide + " --between --csv");
   CHECK(csv.code == 2);
   CHECK(csv.out.find(",nearest_z,way_state,way_lower,way_upper,way_time,way_from,way_to,way_part\n") != csv.out.npos);
   CHECK(csv.out.ends_with(",,,,,,,\n"));
   const auto way = lines(o)[0].at("way");
-  CHECK(csv.out.find(',' + way.at("time").dump() + ',' + way.at("from").dump() + ',' + way.at("to").dump() + ',') != csv.out.npos);
+  CHECK(csv.out.find(',' + way.at("time").dump() + ',' + way.at("from").dump() + ',' + way.at("to").dump() + ',') !=
+        csv.out.npos);
   CHECK(csv.err.find("on the way from row 0 to the next the margin may be fallen below") != csv.err.npos);
   const scratch_file one{".csv", "turn, slide\n0,0\n"}, blind{".xyz", "nan nan nan\n"};
-  const auto alone = lines(run_command("plan" + p.robot + " --cloud " + beside.path + " --configurations " + one.path + " --between --check 0.1"));
-  CHECK(alone.back().at("plan").at("ways") == nlohmann::json::parse(R"({"least_lower": null, "at": null, "first_below": null})"));
-  const outcome dark = run_command("plan" + p.robot + " --cloud " + blind.path + " --configurations " + rows.path + " --between --check 0.1");
+  const auto alone = lines(run_command("plan" + p.robot + " --cloud " + beside.path + " --configurations " + one.path +
+                                       " --between --check 0.1"));
+  CHECK(alone.back().at("plan").at("ways") ==
+        nlohmann::json::parse(R"({"least_lower": null, "at": null, "first_below": null})"));
+  const outcome dark = run_command("plan" + p.robot + " --cloud " + blind.path + " --configurations " + rows.path +
+                                   " --between --check 0.1");
   CHECK(dark.code == 3);
   CHECK(lines(dark)[0].at("way").at("state") == "no_data");
   refuses(ask + " --between --attach tool=" + p.cloud.path, "--between: cannot be mixed with --attach");
-  for (const std::string more : {"", " --between"}) refuses(ask + more + " --check -0.1", "--check: must not be negative (metres)");
+  for (const std::string more : {"", " --between"})
+    refuses(ask + more + " --check -0.1", "--check: must not be negative (metres)");
 }
 
 TEST_CASE("a plan of more poses than are in memory at once has the same answers") {
-  constexpr std::size_t links = 16, block = (1u << 20) / links, rows = block + 40;  // poses go through in blocks of 2^20
+  constexpr std::size_t links = 16, block = (1u << 20) / links,
+                        rows = block + 40;  // poses go through in blocks of 2^20
   std::string robot = "<robot name=\"many\"><link name=\"base\"/>\n", csv = "j0\n";
   for (std::size_t k = 0; k < links; ++k) {
     const std::string name = std::to_string(k);
-    robot += "<link name=\"l" + name + "\"><collision><geometry><box size=\"0.02 0.02 0.02\"/></geometry></collision></link><joint name=\"j" + name + "\" type=\"" +
-             (k == 0 ? "continuous" : "fixed") + "\"><parent link=\"base\"/><child link=\"l" + name + "\"/><origin xyz=\"" + std::to_string(0.05 * double(k)) +
-             " 0 0\"/></joint>\n";
+    robot += "<link name=\"l" + name +
+             "\"><collision><geometry><box size=\"0.02 0.02 0.02\"/></geometry></collision></link><joint name=\"j" +
+             name + "\" type=\"" + (k == 0 ? "continuous" : "fixed") + "\"><parent link=\"base\"/><child link=\"l" +
+             name + "\"/><origin xyz=\"" + std::to_string(0.05 * double(k)) + " 0 0\"/></joint>\n";
   }
   const auto angle = [](std::size_t row) { return std::to_string(1e-5 * double(row)) + "\n"; };
   for (std::size_t row = 0; row < rows; ++row) csv += angle(row);

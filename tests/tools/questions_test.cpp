@@ -38,8 +38,10 @@ const char* const moving_text = R"(<robot name="moving">
 </robot>
 )";
 /// A cube of 0.1 m.
-const char* const cube_text = "v -.05 -.05 -.05\nv .05 -.05 -.05\nv .05 .05 -.05\nv -.05 .05 -.05\nv -.05 -.05 .05\nv .05 -.05 .05\nv .05 .05 .05\nv -.05 .05 .05\n"
-                              "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+const char* const cube_text =
+    "v -.05 -.05 -.05\nv .05 -.05 -.05\nv .05 .05 -.05\nv -.05 .05 -.05\nv -.05 -.05 .05\nv .05 -.05 .05\nv .05 .05 "
+    ".05\nv -.05 .05 .05\n"
+    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
 struct moving {
   scratch_file urdf{".urdf", moving_text};
@@ -67,8 +69,10 @@ std::vector<record> records(const std::string& file) {
   REQUIRE(at != bytes.npos);
   const std::string head = bytes.substr(0, at);
   CHECK(head.starts_with("ply\nformat binary_little_endian 1.0\n"));
-  CHECK(head.find("property double x\nproperty double y\nproperty double z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
-                  "property float distance\nproperty uint cloud\nproperty uint point\nproperty int part\n") != head.npos);
+  CHECK(head.find("property double x\nproperty double y\nproperty double z\nproperty uchar red\nproperty uchar "
+                  "green\nproperty uchar blue\n"
+                  "property float distance\nproperty uint cloud\nproperty uint point\nproperty int part\n") !=
+        head.npos);
   std::vector<record> all;
   constexpr std::size_t size = 24 + 3 + 4 * 4;
   REQUIRE((bytes.size() - at - end.size()) % size == 0);
@@ -76,7 +80,8 @@ std::vector<record> records(const std::string& file) {
     record r{};
     std::memcpy(&r.x, from, 8), std::memcpy(&r.y, from + 8, 8), std::memcpy(&r.z, from + 16, 8);
     r.red = std::uint8_t(from[24]), r.green = std::uint8_t(from[25]), r.blue = std::uint8_t(from[26]);
-    std::memcpy(&r.distance, from + 27, 4), std::memcpy(&r.cloud, from + 31, 4), std::memcpy(&r.point, from + 35, 4), std::memcpy(&r.part, from + 39, 4);
+    std::memcpy(&r.distance, from + 27, 4), std::memcpy(&r.cloud, from + 31, 4), std::memcpy(&r.point, from + 35, 4),
+        std::memcpy(&r.part, from + 39, 4);
     all.push_back(r);
   }
   CHECK(clearance::io::load_ply(file).points.size() == all.size());
@@ -111,7 +116,11 @@ TEST_CASE("--zones counts the points around every part, and names the nearest an
   // Each cloud keeps its name, and the answer is the same with the trees of any volume.
   const scratch_file other(".xyz", "0.25 0 0\n");
   for (const std::string volume : {"sphere", "aabb", "obb"}) {
-    const auto two = parsed(run_command(q.ask + " --zones 0.3 --cloud " + other.path + " --volume " + volume)).at("parts").at(0).at("zones").at(0);
+    const auto two = parsed(run_command(q.ask + " --zones 0.3 --cloud " + other.path + " --volume " + volume))
+                         .at("parts")
+                         .at(0)
+                         .at("zones")
+                         .at(0);
     CHECK(two.at("points") == 2);
     CHECK(two.at("nearest").at("cloud") == other.path);
     CHECK(two.at("nearest").at("point") == 0);
@@ -121,7 +130,8 @@ TEST_CASE("--zones counts the points around every part, and names the nearest an
   CHECK(text.find("zones     the innermost is within 0.5 m\n") != text.npos);
   CHECK(text.find("0.5 m,        2 points, nearest 0.400000 m, point 1; first point 1\n") != text.npos);
   CHECK(text.find("0.1 m,        0 points\n") != text.npos);
-  CHECK(run_command(q.robot + " --zones 0.1 --min-points 2 --cloud " + q.cloud.path).out.find("all are empty") != text.npos);
+  CHECK(run_command(q.robot + " --zones 0.1 --min-points 2 --cloud " + q.cloud.path).out.find("all are empty") !=
+        text.npos);
   CHECK_FALSE(parsed(run_command(q.ask)).contains("zones"));
 }
 
@@ -146,7 +156,8 @@ TEST_CASE("a point in the first zone is exit code 2, as a failed --check is, and
     CHECK(o.code == 3);
     CHECK(parsed(o).at("state") == "no_data");
     CHECK(parsed(o).at("zones").at("innermost") == 0);  // what is not known is not empty
-    CHECK(run_command(q.robot + " --zones 0.1,0.5 --cloud " + cloud->path).out.find("nothing is known") != std::string::npos);
+    CHECK(run_command(q.robot + " --zones 0.1,0.5 --cloud " + cloud->path).out.find("nothing is known") !=
+          std::string::npos);
   }
 }
 
@@ -154,8 +165,13 @@ TEST_CASE("--distances writes every valid point where it is in the world, with i
   const question q;
   const scratch_file ply(".ply");
   const auto j = parsed(run_command(q.ask + " --distances " + ply.path));
-  CHECK(j.at("distances") ==
-        nlohmann::json({{"file", ply.path}, {"points", 3}, {"left_out", 1}, {"beyond", 0}, {"signed", false}, {"d_max", nullptr}, {"blue_at", 1.0}}));
+  CHECK(j.at("distances") == nlohmann::json({{"file", ply.path},
+                                             {"points", 3},
+                                             {"left_out", 1},
+                                             {"beyond", 0},
+                                             {"signed", false},
+                                             {"d_max", nullptr},
+                                             {"blue_at", 1.0}}));
   auto all = records(ply.path);
   REQUIRE(all.size() == 3);
   CHECK(all[0].x == 5);
@@ -192,14 +208,17 @@ TEST_CASE("--distances writes every valid point where it is in the world, with i
   const auto alone = parsed(run_command(q.ask));
   records(ply.path);
   CHECK(alone.at("distance").get<float>() == all[2].distance);
-  const std::string text = run_command(q.robot + " --cloud " + q.cloud.path + " --d-max 0.3 --distances " + ply.path).out;
+  const std::string text =
+      run_command(q.robot + " --cloud " + q.cloud.path + " --d-max 0.3 --distances " + ply.path).out;
   CHECK(text.find(ply.path + ": 3 points, 1 left out, 2 beyond 0.3 m; red at 0 m, blue at 0.3 m\n") != text.npos);
 }
 
 TEST_CASE("positions are those of the file, moved by poses in double, and images count their pixels") {
   const question q;
-  const scratch_file ply(".ply"), far(".xyz", "447123.0625 5411987.125 251.0\n447123.0625 5411987.125 252.0009765625\n");
-  run_command(q.robot + " --base-pose 447123.0625,5411987.125,250,0,0,0,1 --cloud " + far.path + " --distances " + ply.path);
+  const scratch_file ply(".ply"),
+      far(".xyz", "447123.0625 5411987.125 251.0\n447123.0625 5411987.125 252.0009765625\n");
+  run_command(q.robot + " --base-pose 447123.0625,5411987.125,250,0,0,0,1 --cloud " + far.path + " --distances " +
+              ply.path);
   auto all = records(ply.path);
   REQUIRE(all.size() == 2);
   CHECK(all[0].x == 447123.0625);
@@ -207,7 +226,8 @@ TEST_CASE("positions are those of the file, moved by poses in double, and images
   CHECK(all[1].z == 252.0009765625);
   CHECK(all[0].distance == Approx(0.4));
   const scratch_file depth(".png", png(0, 1000));
-  run_command(q.robot + " --intrinsics 500,500,0,0 --camera-pose 0,0,1,0,0,0,1 --cloud " + depth.path + " --distances " + ply.path);
+  run_command(q.robot + " --intrinsics 500,500,0,0 --camera-pose 0,0,1,0,0,0,1 --cloud " + depth.path +
+              " --distances " + ply.path);
   all = records(ply.path);
   REQUIRE(all.size() == 1);
   CHECK(all[0].point == 1);
@@ -223,14 +243,18 @@ TEST_CASE("without a valid point the file of distances has none, and the exit co
 }
 
 TEST_CASE("zones count what distances say, for a cloud of many points and both models") {
-  scratch_file urdf{".urdf", R"(<robot name="r"><link name="a"><collision><geometry><box size="0.2 0.3 0.4"/></geometry></collision></link></robot>)"};
+  scratch_file urdf{
+      ".urdf",
+      R"(<robot name="r"><link name="a"><collision><geometry><box size="0.2 0.3 0.4"/></geometry></collision></link></robot>)"};
   std::string points;
   for (int i = 0; i < 500; ++i)
-    points += std::to_string(0.01 * (i % 83)) + ' ' + std::to_string(-0.02 * (i % 29)) + ' ' + std::to_string(0.003 * (i % 101)) + '\n';
+    points += std::to_string(0.01 * (i % 83)) + ' ' + std::to_string(-0.02 * (i % 29)) + ' ' +
+              std::to_string(0.003 * (i % 101)) + '\n';
   const scratch_file cloud(".xyz", points), ply(".ply");
   for (const std::string model : {"triangles", "spheres --spheres 200 --no-cache"}) {
-    const auto j = parsed(run_command("query --json --backend host --robot " + urdf.path + " --cloud " + cloud.path +
-                                      " --zones 0.0512345,0.212345,0.512345 --distances " + ply.path + " --model " + model));
+    const auto j =
+        parsed(run_command("query --json --backend host --robot " + urdf.path + " --cloud " + cloud.path +
+                           " --zones 0.0512345,0.212345,0.512345 --distances " + ply.path + " --model " + model));
     const auto all = records(ply.path);
     CHECK(all.size() == 500);
     const double gap = j.at("parts").at(0).value("gap", 0.0);
@@ -274,33 +298,46 @@ TEST_CASE("what is wrong with zones and distances is one sentence that names the
   refuses(q.ask + " --min-points 3", "--min-points: is for --zones");
   refuses(q.ask + " --d-max 3", "--d-max: is for --distances and --nearest");
   refuses(q.ask + " --signed", "--signed: is for --distances");
-  refuses("query --robot " + q.urdf.path + " --cloud " + q.cloud.path + " --distances x.ply --signed", "--signed: is for --model triangles");
+  refuses("query --robot " + q.urdf.path + " --cloud " + q.cloud.path + " --distances x.ply --signed",
+          "--signed: is for --model triangles");
   refuses(q.ask + " --nearest 0", "--nearest: \"0\" is not a whole number from 1");
   refuses(q.ask + " --nearest 1048577", "--nearest: \"1048577\" is not a whole number from 1 to 1048576");
-  refuses(q.ask + " --nearest 3 --deadline 5", "--deadline: is for the least distance alone, and cannot be mixed with --nearest");
+  refuses(q.ask + " --nearest 3 --deadline 5",
+          "--deadline: is for the least distance alone, and cannot be mixed with --nearest");
   const scratch_file ply(".ply");
-  for (const std::string value : {"0", "-1"}) refuses(q.ask + " --distances " + ply.path + " --d-max " + value, "--d-max: must be above 0");
-  for (const std::string value : {"nan", "inf", "1,2", "x"}) refuses(q.ask + " --distances " + ply.path + " --d-max " + value, "--d-max");
+  for (const std::string value : {"0", "-1"})
+    refuses(q.ask + " --distances " + ply.path + " --d-max " + value, "--d-max: must be above 0");
+  for (const std::string value : {"nan", "inf", "1,2", "x"})
+    refuses(q.ask + " --distances " + ply.path + " --d-max " + value, "--d-max");
   refuses(q.ask + " --distances out.xyz", "--distances: out.xyz: its name must end in .ply");
   refuses(q.ask + " --distances /nonexistent/folder/x.ply", "/nonexistent/folder/x.ply");
   refuses(q.ask + " --distances " + ply.path + " --scene " + ply.path, "--distances: is the same file as --scene");
-  refuses(q.ask + " --distances " + ply.path + " --scene " + std::filesystem::path(ply.path).parent_path().string() + "/./" +
-              std::filesystem::path(ply.path).filename().string(), "--distances: is the same file as --scene");
-  const scratch_file input(".ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n3 0 0\n");
-  refuses(q.robot + " --cloud " + input.path + " --distances " + input.path, input.path + ": is a file that this reads");
+  refuses(q.ask + " --distances " + ply.path + " --scene " + std::filesystem::path(ply.path).parent_path().string() +
+              "/./" + std::filesystem::path(ply.path).filename().string(),
+          "--distances: is the same file as --scene");
+  const scratch_file input(".ply",
+                           "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty "
+                           "float z\nend_header\n3 0 0\n");
+  refuses(q.robot + " --cloud " + input.path + " --distances " + input.path,
+          input.path + ": is a file that this reads");
   refuses("run --robot x --frames y --zones 0.1", "--zones");
 }
 
 TEST_CASE("--self-filter hides what is the robot's own from every question, and says how many points that are") {
   const question q;
-  const scratch_file cloud(".xyz", "5 5 5\n0 0 0.605\n0 0 0.7\nnan 0 0\n0.3 0 0\n"), without(".xyz", "5 5 5\nnan 0 0\n0 0 0.7\nnan 0 0\n0.3 0 0\n");
+  const scratch_file cloud(".xyz", "5 5 5\n0 0 0.605\n0 0 0.7\nnan 0 0\n0.3 0 0\n"),
+      without(".xyz", "5 5 5\nnan 0 0\n0 0 0.7\nnan 0 0\n0.3 0 0\n");
   const scratch_file ply(".ply"), glb(".glb");
-  const std::string ask = q.robot + " --json --self-filter 0.01 --check 0.05 --zones 0.02,0.15 --distances " + ply.path + " --scene " + glb.path + " --cloud ";
+  const std::string ask = q.robot + " --json --self-filter 0.01 --check 0.05 --zones 0.02,0.15 --distances " +
+                          ply.path + " --scene " + glb.path + " --cloud ";
   const outcome o = run_command(ask + cloud.path);
   CHECK(o.code == 0);
   const auto j = parsed(o), bare = parsed(run_command(q.robot + " --json --cloud " + without.path));
-  CHECK(j.at("filter") == nlohmann::json::parse(R"({"padding": 0.01, "own": 1, "uncertain": 0, "nearest_is": "rest"})"));
-  for (const char* key : {"state", "distance", "lower", "upper", "point", "point_xyz", "part", "primitive", "nearest_xyz", "normal"}) CHECK(j.at(key) == bare.at(key));
+  CHECK(j.at("filter") ==
+        nlohmann::json::parse(R"({"padding": 0.01, "own": 1, "uncertain": 0, "nearest_is": "rest"})"));
+  for (const char* key :
+       {"state", "distance", "lower", "upper", "point", "point_xyz", "part", "primitive", "nearest_xyz", "normal"})
+    CHECK(j.at(key) == bare.at(key));
   CHECK(j.at("point") == 2);
   CHECK(j.at("points").at("seen") == 5);
   CHECK(j.at("points").at("valid") == 3);
@@ -311,10 +348,11 @@ TEST_CASE("--self-filter hides what is the robot's own from every question, and 
   CHECK(j.at("distances").at("left_out") == 2);
   CHECK(records(ply.path).size() == 3);
   std::ifstream in(glb.path, std::ios::binary);
-  CHECK(std::string(std::istreambuf_iterator<char>(in), {}).find("(the robot's own)") != std::string::npos);  // hidden, and shown
+  CHECK(std::string(std::istreambuf_iterator<char>(in), {}).find("(the robot's own)") !=
+        std::string::npos);  // hidden, and shown
   CHECK(run_command(q.robot + " --check 0.05 --cloud " + cloud.path).code == 2);
-  CHECK(run_command(q.robot + " --self-filter 0.01 --cloud " + cloud.path).out.find("1 points are the robot's own (within 0.01 m), and hidden; 0 may be") !=
-        std::string::npos);
+  CHECK(run_command(q.robot + " --self-filter 0.01 --cloud " + cloud.path)
+            .out.find("1 points are the robot's own (within 0.01 m), and hidden; 0 may be") != std::string::npos);
 
   // What only may be its own stays.
   const auto edge = parsed(run_command(q.robot + " --json --self-filter 0.005 --cloud " + cloud.path));
@@ -325,11 +363,15 @@ TEST_CASE("--self-filter hides what is the robot's own from every question, and 
   CHECK_FALSE(parsed(run_command(q.ask)).contains("filter"));
 
   // A question about nothing but what is hidden is said to be one, and a state is that of the rest.
-  const auto asked = [&](const std::string& more) { return run_command(q.robot + " --cloud " + cloud.path + " --self-filter " + more); };
+  const auto asked = [&](const std::string& more) {
+    return run_command(q.robot + " --cloud " + cloud.path + " --self-filter " + more);
+  };
   const outcome vain = asked("0.05 --check 0.05 --zones 0.03,0.1");
   CHECK(vain.code == 0);
   for (const std::string option : {"--check 0.05", "--zones 0.03"})
-    CHECK(vain.err.find("note: " + option + ": points that are certainly so near, an obstacle's too, are hidden by --self-filter 0.05") != std::string::npos);
+    CHECK(vain.err.find("note: " + option +
+                        ": points that are certainly so near, an obstacle's too, are hidden by --self-filter 0.05") !=
+          std::string::npos);
   CHECK(vain.out.starts_with("state     free, of the points that are not hidden\n"));
   CHECK(asked("0.01 --check 0.02 --zones 0.02").err.empty());
   CHECK(asked("0.001").out.starts_with("state     free\n"));
@@ -346,7 +388,8 @@ TEST_CASE("--self-filter hides what is the robot's own from every question, and 
       CHECK(parsed(blind).at("points").at("dropped").at("masked") == 1);
       CHECK(parsed(blind).at("points").at("dropped").at("missing") == (all == own.path ? 0 : 1));
     }
-  CHECK(run_command(q.robot + " --self-filter 0.02 --cloud " + own.path).out.find("and hidden; no valid point is left\n") != std::string::npos);
+  CHECK(run_command(q.robot + " --self-filter 0.02 --cloud " + own.path)
+            .out.find("and hidden; no valid point is left\n") != std::string::npos);
 }
 
 TEST_CASE("--min-support tells the nearest point that others confirm, and what is nearer, but alone") {
@@ -366,11 +409,13 @@ TEST_CASE("--min-support tells the nearest point that others confirm, and what i
   CHECK(s.at("passes") == true);
   CHECK(s.at("complete") == true);
   CHECK(s.at("isolated") == 1);
-  CHECK(s.at("nearest_isolated") == nlohmann::json({{"distance", j.at("distance")}, {"cloud", cloud.path}, {"point", 0}, {"part", "tool"}}));
+  CHECK(s.at("nearest_isolated") ==
+        nlohmann::json({{"distance", j.at("distance")}, {"cloud", cloud.path}, {"point", 0}, {"part", "tool"}}));
   CHECK(s.at("min_points") == 3);
   CHECK(s.at("radius") == 0.01);
   const std::string text = run_command(q.robot + " --min-support 3@0.01 --cloud " + cloud.path).out;
-  CHECK(text.find("3 points within 0.01 m, point 1 and part base; 1 nearer points are alone, the first at 0.050000 m, point 0 and part tool\n") != text.npos);
+  CHECK(text.find("3 points within 0.01 m, point 1 and part base; 1 nearer points are alone, the first at 0.050000 m, "
+                  "point 0 and part tool\n") != text.npos);
 
   const auto none = parsed(run_command(ask + " --min-support 3@0.0001 --check 0.01")).at("support");
   CHECK(none.at("state") == "possible");
@@ -378,8 +423,8 @@ TEST_CASE("--min-support tells the nearest point that others confirm, and what i
   for (const char* key : {"distance", "cloud", "point", "part", "primitive"}) CHECK(none.at(key).is_null());
   CHECK(none.at("lower") == 0);
   CHECK(none.at("isolated") == 4);
-  CHECK(run_command(q.robot + " --min-support 3@0.0001 --cloud " + cloud.path).out.find("no point has 3 points within 0.0001 m; 4 points are alone") !=
-        std::string::npos);
+  CHECK(run_command(q.robot + " --min-support 3@0.0001 --cloud " + cloud.path)
+            .out.find("no point has 3 points within 0.0001 m; 4 points are alone") != std::string::npos);
   CHECK(parsed(run_command(ask + " --min-support 2@0")).at("support").at("state") == "possible");
   const scratch_file blind(".xyz", "nan nan nan\n");
   const outcome nothing = run_command(q.robot + " --json --min-support 3@1 --check 0 --cloud " + blind.path);
@@ -396,7 +441,8 @@ TEST_CASE("--gradient says how every part's distance changes with its pose and w
   const moving m;
   const auto distances = [&](double slide) {
     const auto j = parsed(run_command(m.ask + " --gradient --joint slide=" + std::to_string(slide)));
-    return std::array{j.at("parts").at(0).at("distance").get<double>(), j.at("parts").at(1).at("distance").get<double>()};
+    return std::array{j.at("parts").at(0).at("distance").get<double>(),
+                      j.at("parts").at(1).at("distance").get<double>()};
   };
   const auto j = parsed(run_command(m.ask + " --gradient --base-pose 0,0,0.02,0,0,0,1"));
   const auto before = distances(0.01), after = distances(0.03);
@@ -418,7 +464,8 @@ TEST_CASE("--gradient says how every part's distance changes with its pose and w
   const auto at_zero = parsed(run_command("query --json --gradient --cloud " + inside.path + m.robot)).at("gradient");
   CHECK(at_zero.at("state") == "at_zero");
   for (const char* key : {"linear", "angular", "joints"}) CHECK(at_zero.at(key).is_null());
-  CHECK(run_command("query --gradient --cloud " + inside.path + m.robot).out.find("none: at_zero\n") != std::string::npos);
+  CHECK(run_command("query --gradient --cloud " + inside.path + m.robot).out.find("none: at_zero\n") !=
+        std::string::npos);
   const outcome nothing = run_command("query --json --gradient --cloud " + blind.path + m.robot);
   CHECK(nothing.code == 3);
   CHECK(parsed(nothing).at("gradient").at("part").is_null());
@@ -430,7 +477,8 @@ TEST_CASE("--gradient says how every part's distance changes with its pose and w
 
 TEST_CASE("--attach puts a mesh or spheres on a link: one part more, in every command and for every question") {
   const moving m;
-  const std::string holds = " --attach claw=" + m.cube.path + " --attach-pose 0,0,0.15,0,0,0,1", name = "claw+" + m.file(m.cube);
+  const std::string holds = " --attach claw=" + m.cube.path + " --attach-pose 0,0,0.15,0,0,0,1",
+                    name = "claw+" + m.file(m.cube);
   for (const std::string turn : {"0", "1.5707963267948966"}) {  // above the tool, or beside it
     const auto j = parsed(run_command(m.ask + holds + " --gradient --joint turn=" + turn));
     REQUIRE(j.at("parts").size() == 3);
@@ -439,7 +487,8 @@ TEST_CASE("--attach puts a mesh or spheres on a link: one part more, in every co
           nlohmann::json({{"link", "claw"}, {"file", m.cube.path}, {"pose", {0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0}}}));
     CHECK_FALSE(j.at("parts").at(1).contains("attached"));
     CHECK(j.at("parts").at(2).at("distance").get<double>() == Approx(turn == "0" ? 0.3 : std::hypot(0.45, 0.1)));
-    CHECK(j.at("parts").at(2).at("gradient").at("joints").at("slide").get<double>() == Approx(turn == "0" ? -1 : -0.45 / std::hypot(0.45, 0.1)));
+    CHECK(j.at("parts").at(2).at("gradient").at("joints").at("slide").get<double>() ==
+          Approx(turn == "0" ? -1 : -0.45 / std::hypot(0.45, 0.1)));
     if (turn != "0") CHECK(j.at("parts").at(2).at("gradient").at("joints").at("turn").get<double>() != 0);
   }
   const std::string text = run_command("query --cloud " + m.cloud.path + m.robot + holds).out;
@@ -451,7 +500,8 @@ TEST_CASE("--attach puts a mesh or spheres on a link: one part more, in every co
 
   // The robot's own points are also those of what it holds.
   const scratch_file touching(".xyz", "0 0 0.705\n0 0 1.0\n");
-  const auto filtered = parsed(run_command("query --json --self-filter 0.01 --cloud " + touching.path + m.robot + holds));
+  const auto filtered =
+      parsed(run_command("query --json --self-filter 0.01 --cloud " + touching.path + m.robot + holds));
   CHECK(filtered.at("filter").at("own") == 1);
   CHECK(filtered.at("distance").get<double>() == Approx(0.3));
 
@@ -463,7 +513,8 @@ TEST_CASE("--attach puts a mesh or spheres on a link: one part more, in every co
 
   // Plans and recordings hold it as well.
   const scratch_file rows(".csv", "slide,turn\n0,0\n0.2,0\n"), list(".txt", m.cloud.path + '\n' + m.cloud.path + '\n');
-  for (const std::string& line : {"plan --configurations " + rows.path + " --cloud " + m.cloud.path, "run --trajectory " + rows.path + " --frames " + list.path}) {
+  for (const std::string& line : {"plan --configurations " + rows.path + " --cloud " + m.cloud.path,
+                                  "run --trajectory " + rows.path + " --frames " + list.path}) {
     const outcome o = run_command(line + m.robot + holds + " --exclude-link base");
     const auto first = nlohmann::json::parse(o.out.substr(0, o.out.find('\n')));
     CHECK(first.at("part") == name);
@@ -474,27 +525,34 @@ TEST_CASE("--attach puts a mesh or spheres on a link: one part more, in every co
 TEST_CASE("spheres that a link holds are what they are, or what their certificate says") {
   const moving m;
   const scratch_file csv(".csv", "x,y,z,r\n0,0,0,0.05\n"), ist(".ist"), glb(".glb");
-  const std::string robot = "query --json --spheres 20 --no-cache --backend host --cloud " + m.cloud.path + " --robot " + m.urdf.path +
-                            " --exclude-link base --scene " + glb.path, at = " --attach-pose 0,0,0.15,0,0,0,1";
+  const std::string robot = "query --json --spheres 20 --no-cache --backend host --cloud " + m.cloud.path +
+                            " --robot " + m.urdf.path + " --exclude-link base --scene " + glb.path,
+                    at = " --attach-pose 0,0,0.15,0,0,0,1";
   const outcome o = run_command(robot + " --attach claw=" + csv.path + at);
   const auto j = parsed(o);
   CHECK(o.code == 0);
   CHECK(j.at("parts").at(1).at("gap") == 0);
   CHECK(j.at("parts").at(1).at("distance").get<double>() == Approx(0.3));
-  CHECK(o.err.find("has no certificate, so its spheres themselves are taken for what link \"claw\" holds") != std::string::npos);
+  CHECK(o.err.find("has no certificate, so its spheres themselves are taken for what link \"claw\" holds") !=
+        std::string::npos);
   CHECK(run_command("pack " + m.cube.path + " --no-cache --spheres 20 --out " + ist.path).code == 0);
-  const outcome proven = run_command(robot + " --attach claw=" + ist.path + at), packed = run_command(robot + " --attach claw=" + m.cube.path + at);
+  const outcome proven = run_command(robot + " --attach claw=" + ist.path + at),
+                packed = run_command(robot + " --attach claw=" + m.cube.path + at);
   CHECK(proven.err.find("certificate") == std::string::npos);
-  for (const char* key : {"gap", "distance", "primitive"}) CHECK(parsed(proven).at("parts").at(1).at(key) == parsed(packed).at("parts").at(1).at(key));
+  for (const char* key : {"gap", "distance", "primitive"})
+    CHECK(parsed(proven).at("parts").at(1).at(key) == parsed(packed).at("parts").at(1).at(key));
   CHECK(parsed(proven).at("lower") == parsed(packed).at("lower"));
 }
 
 TEST_CASE("what is wrong with filter, support, gradient and what is held is one sentence that names the option") {
   const moving m;
-  for (const std::string value : {"-0.01", "-1e-30", "1e16"}) refuses(m.ask + " --self-filter " + value, "--self-filter: must be from 0 to 1e15");
-  for (const std::string value : {"nan", "inf", "near", "0.1,0.2", "1e999"}) refuses(m.ask + " --self-filter " + value, "--self-filter: ");
+  for (const std::string value : {"-0.01", "-1e-30", "1e16"})
+    refuses(m.ask + " --self-filter " + value, "--self-filter: must be from 0 to 1e15");
+  for (const std::string value : {"nan", "inf", "near", "0.1,0.2", "1e999"})
+    refuses(m.ask + " --self-filter " + value, "--self-filter: ");
   refuses(m.ask + " --self-filter 0.1 --self-filter 0.1", "--self-filter");
-  for (const std::string value : {"3", "3@", "@0.1", "@", "0@0.1", "-3@0.1", "2.5@0.1", "1@0.1", "3@-0.1", "3@nan", "3@inf", "3@1e16", "3@0.1@0.2", "99999999999@1"})
+  for (const std::string value : {"3", "3@", "@0.1", "@", "0@0.1", "-3@0.1", "2.5@0.1", "1@0.1", "3@-0.1", "3@nan",
+                                  "3@inf", "3@1e16", "3@0.1@0.2", "99999999999@1"})
     refuses(m.ask + " --min-support " + value, "--min-support: ");
   refuses(m.ask + " --min-support 3@0.1 --min-support 3@0.1", "--min-support");
 
@@ -510,27 +568,36 @@ TEST_CASE("what is wrong with filter, support, gradient and what is held is one 
   for (const std::string value : {"0,0,0", "0,0,0,0,0,0,2", "nan,0,0,0,0,0,1", "1e19,0,0,0,0,0,1", "0,0,0,0,0,0"})
     refuses(m.ask + cube + " --attach-pose " + value, "--attach-pose: ");
   refuses(m.ask + cube + " --attach-pose 1e19,0,0,0,0,0,1", "--attach-pose: the pose of what is attached is not rigid");
-  const scratch_file spheres(".csv", "0,0,0,0.05\n"), broken(".csv", "0,0,0,-1\n"), flat(".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  refuses(m.ask + " --attach claw=" + spheres.path, "--attach: " + spheres.path + " holds spheres, which are for --model spheres");
-  const std::string balls = "query --spheres 5 --no-cache --backend host --robot " + m.urdf.path + " --cloud " + m.cloud.path + " --attach claw=";
+  const scratch_file spheres(".csv", "0,0,0,0.05\n"), broken(".csv", "0,0,0,-1\n"),
+      flat(".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  refuses(m.ask + " --attach claw=" + spheres.path,
+          "--attach: " + spheres.path + " holds spheres, which are for --model spheres");
+  const std::string balls = "query --spheres 5 --no-cache --backend host --robot " + m.urdf.path + " --cloud " +
+                            m.cloud.path + " --attach claw=";
   refuses(balls + "nowhere.csv", "nowhere.csv: there is no such file");
   refuses(balls + broken.path, broken.path + ":1: ");
   CHECK(run_command(balls + flat.path).err.find("encloses nothing") != std::string::npos);  // held all the same
-  const scratch_file yaml(".yaml", "collision_spheres:\n  a:\n    - {center: [0, 0, 0], radius: 0.1}\n  b:\n    - {center: [0, 0, 0], radius: 0.1}\n");
+  const scratch_file yaml(".yaml",
+                          "collision_spheres:\n  a:\n    - {center: [0, 0, 0], radius: 0.1}\n  b:\n    - {center: [0, "
+                          "0, 0], radius: 0.1}\n");
   refuses(balls + yaml.path, yaml.path + ": holds the spheres of 2 parts, and --attach takes those of one");
   for (const std::string more : {" --self-filter 0.1", " --min-support 3@0.1", " --gradient"}) {
     refuses("run --robot x --frames y" + more, more.substr(1, 10));
     refuses("plan --robot x --cloud y --configurations z" + more, more.substr(1, 10));
   }
   refuses(m.ask + " --svg x.svg", "--svg");
-  const scratch_file input(".ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
-                                   "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  refuses(m.ask + " --attach claw=" + input.path + " --distances " + input.path, input.path + ": is a file that this reads");
+  const scratch_file input(
+      ".ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  refuses(m.ask + " --attach claw=" + input.path + " --distances " + input.path,
+          input.path + ": is a file that this reads");
 }
 
 TEST_CASE("--deadline tells how many points are unseen, and what is certain all the same") {
   const question q;
-  auto plain = parsed(run_command(q.ask + " --check 0.1")), all = parsed(run_command(q.ask + " --check 0.1 --deadline 1e9"));
+  auto plain = parsed(run_command(q.ask + " --check 0.1")),
+       all = parsed(run_command(q.ask + " --check 0.1 --deadline 1e9"));
   CHECK(all.at("deadline") == nlohmann::json({{"milliseconds", 1e9}, {"unseen", 0}, {"complete", true}}));
   for (auto& part : plain.at("parts"))
     for (const char* key : {"distance", "cloud", "point", "primitive"}) part.at(key) = nullptr;
@@ -538,7 +605,8 @@ TEST_CASE("--deadline tells how many points are unseen, and what is certain all 
   for (auto* each : {&plain, &all}) each->erase("seconds");
   CHECK(all == plain);
   CHECK_FALSE(plain.contains("deadline"));
-  CHECK(run_command(q.robot + " --deadline 1e9 --cloud " + q.cloud.path).out.find("deadline  1e+09 ms: all points were looked at\n") != std::string::npos);
+  CHECK(run_command(q.robot + " --deadline 1e9 --cloud " + q.cloud.path)
+            .out.find("deadline  1e+09 ms: all points were looked at\n") != std::string::npos);
 
   for (const std::string never : {"0", "-0", "0.0"}) {
     const outcome o = run_command(q.ask + " --check 0 --deadline " + never);
@@ -547,7 +615,8 @@ TEST_CASE("--deadline tells how many points are unseen, and what is certain all 
     CHECK(none.at("state") == "no_data");
     CHECK(none.at("check").at("passes") == false);
     CHECK(none.at("points").at("seen") == 0);
-    CHECK(o.out.find("\"deadline\": {\n    \"milliseconds\": 0.0,\n    \"unseen\": 4,\n    \"complete\": false\n  }") != std::string::npos);
+    CHECK(o.out.find("\"deadline\": {\n    \"milliseconds\": 0.0,\n    \"unseen\": 4,\n    \"complete\": false\n  }") !=
+          std::string::npos);
     for (const char* key : {"distance", "lower", "upper", "point", "part"}) CHECK(none.at(key).is_null());
   }
   const outcome blind = run_command(q.robot + " --deadline 0 --cloud " + q.cloud.path);
@@ -559,14 +628,17 @@ TEST_CASE("--deadline tells how many points are unseen, and what is certain all 
 TEST_CASE("a deadline between nothing and all is no free robot") {
   const question q;
   constexpr int count = 1'000'000;
-  std::string bytes = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + std::to_string(count) + "\nHEIGHT 1\nPOINTS " +
-                      std::to_string(count) + "\nDATA binary\n";
+  std::string bytes = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + std::to_string(count) +
+                      "\nHEIGHT 1\nPOINTS " + std::to_string(count) + "\nDATA binary\n";
   for (int i = 0; i < count; ++i) {
-    const float wall[] = {1.2f + 1e-6f * float(count - i), 0.001f * float(i % 1000) - 0.5f, 0.001f * float(i / 1000) - 0.5f}, zero[3] = {};
+    const float wall[] = {1.2f + 1e-6f * float(count - i), 0.001f * float(i % 1000) - 0.5f,
+                          0.001f * float(i / 1000) - 0.5f},
+                zero[3] = {};
     bytes.append(reinterpret_cast<const char*>(i % 7 == 0 ? zero : wall), sizeof wall);
   }
   const scratch_file cloud(".pcd", bytes);
-  const std::string ask = q.robot + " --volume obb --range 0.9,3 --cloud " + cloud.path, json = ask + " --json --check 0.1";
+  const std::string ask = q.robot + " --volume obb --range 0.9,3 --cloud " + cloud.path,
+                    json = ask + " --json --check 0.1";
   const auto whole = parsed(run_command(json));
   CHECK(whole.at("state") == "free");
   bool cut = false;
@@ -599,15 +671,20 @@ TEST_CASE("a deadline between nothing and all is no free robot") {
 
 TEST_CASE("what is wrong with a deadline or with ranks is one sentence that names the option") {
   const question q;
-  for (const std::string value : {"-1", "-1e-300", "1e300", "1e10"}) refuses(q.ask + " --deadline " + value, "--deadline: must be from 0 to 1e9 (milliseconds)");
-  for (const std::string value : {"nan", "inf", "-inf", "soon", "1,2", "5ms", "1e999"}) refuses(q.ask + " --deadline " + value, "--deadline: ");
+  for (const std::string value : {"-1", "-1e-300", "1e300", "1e10"})
+    refuses(q.ask + " --deadline " + value, "--deadline: must be from 0 to 1e9 (milliseconds)");
+  for (const std::string value : {"nan", "inf", "-inf", "soon", "1,2", "5ms", "1e999"})
+    refuses(q.ask + " --deadline " + value, "--deadline: ");
   refuses(q.ask + " --deadline ''", "--deadline: has an empty value");
   refuses(q.ask + " --deadline 5 --deadline 5", "--deadline");
-  refuses(q.ask + " --deadline 5 --volume aabb", "--volume: cannot be aabb with --deadline, which has obb for --model triangles");
+  refuses(q.ask + " --deadline 5 --volume aabb",
+          "--volume: cannot be aabb with --deadline, which has obb for --model triangles");
   for (const std::string option : {"--deadline 5", "--shard"}) {
     const std::string name = option.substr(0, option.find(' '));
-    for (const std::string other : {"--zones 0.1", "--distances x.ply", "--self-filter 0.1", "--min-support 3@0.1", "--gradient"})
-      refuses(q.ask + ' ' + option + ' ' + other, name + ": is for the least distance alone, and cannot be mixed with " + other.substr(0, other.find(' ')));
+    for (const std::string other :
+         {"--zones 0.1", "--distances x.ply", "--self-filter 0.1", "--min-support 3@0.1", "--gradient"})
+      refuses(q.ask + ' ' + option + ' ' + other,
+              name + ": is for the least distance alone, and cannot be mixed with " + other.substr(0, other.find(' ')));
     refuses("run --robot x --frames y " + option, name);
     refuses("plan --robot x --cloud y --configurations z " + option, name);
   }
@@ -665,7 +742,8 @@ TEST_CASE("--signed says how deep points are in a mesh") {
 TEST_CASE("a complete answer by a deadline has the lower end of the answer without one, where links have other gaps") {
   const question q;
   const scratch_file spheres(".csv", "0,0,0,0.05\n");
-  const std::string ask = "query --backend host --no-cache --json --spheres 20 --robot " + q.urdf.path + " --attach tool=" + spheres.path + " --cloud " + q.cloud.path;
+  const std::string ask = "query --backend host --no-cache --json --spheres 20 --robot " + q.urdf.path +
+                          " --attach tool=" + spheres.path + " --cloud " + q.cloud.path;
   const auto plain = parsed(run_command(ask)), all = parsed(run_command(ask + " --deadline 1e9"));
   CHECK(all.at("deadline").at("complete") == true);
   for (const char* key : {"state", "distance", "lower", "upper", "point", "part"}) CHECK(all.at(key) == plain.at(key));
@@ -689,7 +767,8 @@ TEST_CASE("--min-support asks as many points as --support-limit says, and none w
   CHECK(none.at("isolated") == 22);
   CHECK(support("22@10 --support-limit 1").at("point") == 0);
   for (const std::string limit : {"0", "1048577", "-1", "x"})
-    refuses(ask + "2@0 --support-limit " + limit, "--support-limit: \"" + limit + "\" is not a whole number from 1 to 1048576");
+    refuses(ask + "2@0 --support-limit " + limit,
+            "--support-limit: \"" + limit + "\" is not a whole number from 1 to 1048576");
   refuses(q.ask + " --support-limit 5", "--support-limit: is for --min-support");
   CHECK(run_command("query --help").out.find("--support-limit") != std::string::npos);
 }
@@ -703,23 +782,31 @@ TEST_CASE("a point that is certainly inside is a collision of --min-support, too
   CHECK(j.at("support").at("point") == j.at("point"));
 }
 
-TEST_CASE("what a small file would become is counted with all that is asked, and refused with the limit and the option that raises it") {
+TEST_CASE(
+    "what a small file would become is counted with all that is asked, and refused with the limit and the option that "
+    "raises it") {
   const question q;
   const std::uint32_t points = 1'000'000;  // that are all 0, three bytes each
   const std::string zeros(3 * std::size_t(points), '\0');
   std::string data(zeros.size(), '\0');
   data.resize(lzf_compress(zeros.data(), unsigned(zeros.size()), data.data(), unsigned(data.size())));
-  std::string packed = "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH " + std::to_string(points) + "\nHEIGHT 1\nDATA binary_compressed\n";
+  std::string packed =
+      "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH " + std::to_string(points) + "\nHEIGHT 1\nDATA binary_compressed\n";
   for (const std::size_t size : {data.size(), zeros.size()}) packed.append(reinterpret_cast<const char*>(&size), 4);
   const scratch_file cloud(".pcd", packed + data), file(".ply"), scene(".glb"), rows(".csv", "\n");
-  const std::string with = " --backend host --model triangles --robot " + q.urdf.path + " --cloud " + cloud.path + " --unfold-limit 90";
+  const std::string with =
+      " --backend host --model triangles --robot " + q.urdf.path + " --cloud " + cloud.path + " --unfold-limit 90";
   CHECK(parsed(run_command("query --json" + with)).at("state") == "collision");
-  const std::string says = cloud.path + ": has 1000000 points, of which ", limit = " MiB would be made here, more than the limit of 90 MiB (--unfold-limit MiB raises it)";
+  const std::string says = cloud.path + ": has 1000000 points, of which ",
+                    limit = " MiB would be made here, more than the limit of 90 MiB (--unfold-limit MiB raises it)";
   refuses("query" + with + " --distances " + file.path, says + "125" + limit);
   refuses("query" + with + " --scene " + scene.path, says + "186" + limit);
   refuses("plan" + with + " --configurations " + rows.path, says + "141" + limit);
   CHECK(run_command("plan" + with + "0 --configurations " + rows.path).code == 0);
   // A file of that many bytes is no small one.
-  const scratch_file plain(".pcd", "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH 1000000\nHEIGHT 1\nDATA binary\n" + zeros);
-  CHECK(run_command("query --json --backend host --model triangles --robot " + q.urdf.path + " --cloud " + plain.path + " --unfold-limit 1 --distances " + file.path).code == 0);
+  const scratch_file plain(".pcd",
+                           "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nWIDTH 1000000\nHEIGHT 1\nDATA binary\n" + zeros);
+  CHECK(run_command("query --json --backend host --model triangles --robot " + q.urdf.path + " --cloud " + plain.path +
+                    " --unfold-limit 1 --distances " + file.path)
+            .code == 0);
 }

@@ -19,10 +19,12 @@ struct outcome {
 
 /// `arguments` in a shell's words. The user's cache is left alone: there is none, or the folder given. `before`: shell
 /// commands that come first, such as a ulimit.
-inline outcome run_command(const std::string& arguments, const std::string& cache = {}, const std::string& before = {}) {
+inline outcome run_command(const std::string& arguments, const std::string& cache = {},
+                           const std::string& before = {}) {
   const scratch_file err(".txt");
   FILE* pipe = ::popen(
-      (before + "CLEARANCE_CACHE='" + cache + "' \"" CLEARANCE_COMMAND "\" " + arguments + " 2>" + err.path).c_str(), "r");
+      (before + "CLEARANCE_CACHE='" + cache + "' \"" CLEARANCE_COMMAND "\" " + arguments + " 2>" + err.path).c_str(),
+      "r");
   REQUIRE(pipe);
   outcome o;
   char piece[4096];

@@ -215,7 +215,8 @@ TEST_CASE("what is wrong with a recording is one sentence and exit code 1") {
   refuses(r.run() + " --merge", "2.xyz:1: ");
 }
 
-TEST_CASE("what is named like a frame in a folder, and is no file, is refused: left out it would renumber those behind it") {
+TEST_CASE(
+    "what is named like a frame in a folder, and is no file, is refused: left out it would renumber those behind it") {
   const recording r;
   CHECK(run_command(r.run()).code == 0);
   const fs::path odd = r.folder / "1b.xyz";
@@ -276,7 +277,9 @@ TEST_CASE("a trajectory may begin with a byte order mark, end in blank lines, an
 
 TEST_CASE("a robot whose joints are all fixed needs no trajectory, and one without columns will do") {
   const recording r;
-  const scratch_file box(".urdf", R"(<robot name="r"><link name="a"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link></robot>)");
+  const scratch_file box(
+      ".urdf",
+      R"(<robot name="r"><link name="a"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link></robot>)");
   const std::string ask = "run --backend host --model triangles --frames " + r.folder.string() + " --robot ";
   const auto expected = lines(run_command(ask + box.path));
   REQUIRE(expected.size() == 3);
@@ -327,9 +330,11 @@ TEST_CASE("--svg draws the distance of every frame in the band of its bracket, a
   const double scale = (line[1].second - line[0].second) / (metres(1, "distance") - metres(0, "distance"));
   CHECK(scale < 0);  // up is far
   for (int k = 0; k < 3; ++k) {
-    CHECK(line[k].second == Approx(line[0].second + scale * (metres(k, "distance") - metres(0, "distance"))).margin(0.05));
+    CHECK(line[k].second ==
+          Approx(line[0].second + scale * (metres(k, "distance") - metres(0, "distance"))).margin(0.05));
     CHECK(band[k].second == Approx(line[0].second + scale * (metres(k, "upper") - metres(0, "distance"))).margin(0.05));
-    CHECK(band[5 - k].second == Approx(line[0].second + scale * (metres(k, "lower") - metres(0, "distance"))).margin(0.05));
+    CHECK(band[5 - k].second ==
+          Approx(line[0].second + scale * (metres(k, "lower") - metres(0, "distance"))).margin(0.05));
     CHECK(band[5 - k].first == line[k].first);
     if (k > 0) CHECK(line[k].first > line[k - 1].first);
   }
@@ -351,8 +356,8 @@ TEST_CASE("--svg draws the distance of every frame in the band of its bracket, a
   CHECK(picture().find("<rect x=") != std::string::npos);
   for (const std::string frame : {"1.xyz", "2.xyz"}) {
     r.put("list", frame + '\n');
-    run_command("run --backend host --model triangles --robot " + r.urdf.path + " --joint slide=0 --joint turn=0 --frames " + (r.folder / "list").string() +
-                " --svg " + svg.path);
+    run_command("run --backend host --model triangles --robot " + r.urdf.path +
+                " --joint slide=0 --joint turn=0 --frames " + (r.folder / "list").string() + " --svg " + svg.path);
     CHECK(path(clearance::io::read_xml(picture(), svg.path), "distance").size() == (frame == "1.xyz" ? 1 : 0));
   }
 }
@@ -371,8 +376,12 @@ TEST_CASE("--csv says of every frame what the lines say, and of a plan which way
     }
     return rows;
   };
-  const std::string columns = "frame,file,state,distance,lower,upper,cloud,point,part,primitive,point_x,point_y,point_z,nearest_x,nearest_y,nearest_z,latency_us";
-  const auto names = [&](const std::string& more) { return run_command(r.run() + " --csv" + more).out.starts_with(columns + (more.empty() ? "\n" : ",")); };
+  const std::string columns =
+      "frame,file,state,distance,lower,upper,cloud,point,part,primitive,point_x,point_y,point_z,nearest_x,nearest_y,"
+      "nearest_z,latency_us";
+  const auto names = [&](const std::string& more) {
+    return run_command(r.run() + " --csv" + more).out.starts_with(columns + (more.empty() ? "\n" : ","));
+  };
   CHECK(names(""));
   CHECK(names(" --plan " + waypoints.path));
   for (const std::string margin : {"0.01", "0.12", "5"}) {
@@ -428,8 +437,9 @@ TEST_CASE("a frame that is far above all others is marked in the picture, and do
     std::string list;
     for (int k = 0; k < 20; ++k) list += k < far ? "far.xyz\n" : "near.xyz\n";
     r.put("list", list);
-    CHECK(run_command("run --backend host --model triangles --robot " + r.urdf.path + " --joint slide=0 --joint turn=0 --frames " +
-                      (r.folder / "list").string() + " --svg " + svg).code == 0);
+    CHECK(run_command("run --backend host --model triangles --robot " + r.urdf.path +
+                      " --joint slide=0 --joint turn=0 --frames " + (r.folder / "list").string() + " --svg " + svg)
+              .code == 0);
     std::ifstream in(svg);
     return std::string(std::istreambuf_iterator<char>(in), {});
   };
@@ -465,7 +475,8 @@ TEST_CASE("a picture is written when all is answered, whole or not at all, and n
   fs::create_symlink(r.frame(0), svg);
   refuses(ask + svg, "out.svg: is a symbolic link");
   fs::remove(svg);
-  for (const std::string& input : {r.frame(1), r.urdf.path, r.trajectory.path}) {  // a frame that is not read yet is an input, too
+  for (const std::string& input :
+       {r.frame(1), r.urdf.path, r.trajectory.path}) {  // a frame that is not read yet is an input, too
     fs::create_hard_link(input, svg);
     refuses(ask + svg, "out.svg: is a file that this reads");
     fs::remove(svg);
@@ -478,7 +489,8 @@ TEST_CASE("a picture is written when all is answered, whole or not at all, and n
   std::string many;
   for (int k = 0; k < 200; ++k) many += "1.xyz\n";
   r.put("list", many);
-  const std::string still = "run --backend host --model triangles --robot " + r.urdf.path + " --joint slide=0 --joint turn=0 --frames " + (r.folder / "list").string();
+  const std::string still = "run --backend host --model triangles --robot " + r.urdf.path +
+                            " --joint slide=0 --joint turn=0 --frames " + (r.folder / "list").string();
   const outcome full = run_command(still + " --svg " + svg, {}, "ulimit -f 1; ");
   CHECK(full.code == 1);
   CHECK(full.err.find("out.svg: cannot be written") != std::string::npos);

@@ -17,17 +17,21 @@ struct workplace {
 
   workplace() {
     fs::create_directories(folder);
-    std::string cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
-                       "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    std::string cube =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+        "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     put("cube.obj", cube);
-    put("robot.urdf", R"(<robot name="r"><link name="a"><collision><geometry><mesh filename="cube.obj"/></geometry></collision></link></robot>)");
+    put("robot.urdf",
+        R"(<robot name="r"><link name="a"><collision><geometry><mesh filename="cube.obj"/></geometry></collision></link></robot>)");
     std::string points;
     for (int i = 0; i < 300; ++i) points += "3 0.1 " + std::to_string(i) + "\n";
     put("cloud.xyz", points);
   }
   ~workplace() { fs::remove_all(folder); }
 
-  void put(const std::string& name, const std::string& bytes) const { std::ofstream(folder / name, std::ios::binary) << bytes; }
+  void put(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+  }
   std::string at(const std::string& name) const { return (folder / name).string(); }
   std::string read(const std::string& name) const {
     std::ifstream in(folder / name, std::ios::binary);
@@ -36,11 +40,18 @@ struct workplace {
   /// Everything that writes, by the end of its file's name.
   std::vector<std::pair<std::string, std::string>> writers() const {
     const std::string pack = "pack " + at("cube.obj") + " --spheres 60 --no-cache --out ";
-    const std::string query = "query --model triangles --backend host --robot " + at("robot.urdf") + " --cloud " + at("cloud.xyz");
-    return {{".glb", query + " --scene "}, {".ply", query + " --distances "},
-            {".ist", pack}, {".yaml", pack}, {".csv", pack}, {".glb", pack}};
+    const std::string query =
+        "query --model triangles --backend host --robot " + at("robot.urdf") + " --cloud " + at("cloud.xyz");
+    return {{".glb", query + " --scene "},
+            {".ply", query + " --distances "},
+            {".ist", pack},
+            {".yaml", pack},
+            {".csv", pack},
+            {".glb", pack}};
   }
-  std::size_t files() const { return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator())); }
+  std::size_t files() const {
+    return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  }
 };
 
 }  // namespace
@@ -71,7 +82,8 @@ TEST_CASE("where the disk is full, the old file stays, and one sentence says so"
       INFO(write << name);
       if (there) w.put(name, "old");
       const std::size_t before = w.files();
-      const outcome o = run_command(write + w.at(name), {}, "ulimit -f 1; ");  // a block, which is smaller than any of them
+      const outcome o =
+          run_command(write + w.at(name), {}, "ulimit -f 1; ");  // a block, which is smaller than any of them
       INFO(o.err);
       CHECK(o.code == 1);
       CHECK(o.out.empty());
@@ -93,9 +105,10 @@ TEST_CASE("a real file system that is full costs nothing but the new file") {
     return;
   }
   for (const auto& [ending, write] : w.writers()) {
-    const scratch_file script(".sh", "mount -t tmpfs -o size=4k none " + small + " && cd " + small + " && echo old >out" + ending +
-                                         " && CLEARANCE_CACHE= " CLEARANCE_COMMAND " " + write + small + "/out" + ending + "; code=$?; cat out" +
-                                         ending + "; ls -A; exit $code\n");
+    const scratch_file script(".sh", "mount -t tmpfs -o size=4k none " + small + " && cd " + small +
+                                         " && echo old >out" + ending + " && CLEARANCE_CACHE= " CLEARANCE_COMMAND " " +
+                                         write + small + "/out" + ending + "; code=$?; cat out" + ending +
+                                         "; ls -A; exit $code\n");
     const outcome o = [&] {
       outcome made;
       FILE* pipe = ::popen(("unshare -rm sh " + script.path + " 2>/dev/null").c_str(), "r");
@@ -115,11 +128,13 @@ TEST_CASE("nothing is written onto an input, whatever name it goes by, nor throu
   const workplace w;
   for (const auto& [ending, write] : w.writers()) {
     const bool query = write.starts_with("query");
-    for (const std::string& input : query ? std::vector<std::string>{"robot.urdf", "cube.obj", "cloud.xyz"} : std::vector<std::string>{"cube.obj"}) {
+    for (const std::string& input : query ? std::vector<std::string>{"robot.urdf", "cube.obj", "cloud.xyz"}
+                                          : std::vector<std::string>{"cube.obj"}) {
       const std::string before = w.read(input), hard = w.at("hard" + ending);
       fs::create_hard_link(w.folder / input, hard);
       refuses(write + hard, "hard" + ending + ": is a file that this reads");
-      if (query && ending == ".glb") refuses(write + w.at("../" + w.folder.filename().string() + "/./" + input), "is a file that this reads");
+      if (query && ending == ".glb")
+        refuses(write + w.at("../" + w.folder.filename().string() + "/./" + input), "is a file that this reads");
       fs::remove(hard);
       const std::string soft = w.at("soft" + ending);
       fs::create_symlink(w.folder / input, soft);
@@ -151,13 +166,15 @@ TEST_CASE("nothing is written onto an input, whatever name it goes by, nor throu
 TEST_CASE("an answer that cannot be printed is exit code 1, whatever prints it") {
   const workplace w;
   const std::string ask = w.writers()[0].second.substr(0, w.writers()[0].second.find(" --scene"));
-  const std::string run = "run --model triangles --backend host --robot " + w.at("robot.urdf") + " --frames " + w.at("frames.txt");
+  const std::string run =
+      "run --model triangles --backend host --robot " + w.at("robot.urdf") + " --frames " + w.at("frames.txt");
   w.put("frames.txt", "cloud.xyz\n");
   const std::string plan = "plan" + ask.substr(5) + " --configurations " + w.at("rows.csv");
   w.put("rows.csv", "\n");
-  for (const std::string& line : {ask, ask + " --json", ask + " --zones 0.1", run, plan, plan + " --csv",
-                                  "pack " + w.at("cube.obj") + " --spheres 5", std::string("info"), std::string("info --json"),
-                                  std::string("--version"), std::string("--help"), std::string("query --help")}) {
+  for (const std::string& line :
+       {ask, ask + " --json", ask + " --zones 0.1", run, plan, plan + " --csv",
+        "pack " + w.at("cube.obj") + " --spheres 5", std::string("info"), std::string("info --json"),
+        std::string("--version"), std::string("--help"), std::string("query --help")}) {
     INFO(line);
     CHECK(run_command(line).code == 0);
     for (const char* nowhere : {" >/dev/full", " >&-"}) {

@@ -5,11 +5,11 @@
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/bvh/flat_list.hpp>
-#include <clearance/visitor/any_within.hpp>
-#include <clearance/visitor/nearest.hpp>
 #include <clearance/traversal/near_first.hpp>
 #include <clearance/traversal/recursive.hpp>
 #include <clearance/traversal/stack.hpp>
+#include <clearance/visitor/any_within.hpp>
+#include <clearance/visitor/nearest.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -55,8 +55,8 @@ void check_walk(const H& tree, const std::vector<P>& primitives, const std::vect
     for (const real within : {infinity, 0.2f, 0.0f, -0.01f}) {
       const clearance::nearest q{.within = within};
       const auto got = ask(p, q), expected = plain_loop(primitives, p, q);
-      v.require(same_bits(got.distance, expected.distance) && got.primitive == expected.primitive, "nearest is", got.primitive,
-                " at", got.distance, " instead of", expected.primitive, " at", expected.distance);
+      v.require(same_bits(got.distance, expected.distance) && got.primitive == expected.primitive, "nearest is",
+                got.primitive, " at", got.distance, " instead of", expected.primitive, " at", expected.distance);
       const clearance::any_within any{.margin = within};
       v.require(ask(p, any) == plain_loop(primitives, p, any), "any within", within);
       const all_within all{.margin = within};
@@ -77,7 +77,8 @@ void check_walks(const H& tree, const std::vector<P>& primitives, const std::vec
 
 template <class P>
 std::vector<std::vector<P>> scenes(dice& d) {
-  std::vector<std::vector<P>> all = {random_primitives<P>(d, 1), random_primitives<P>(d, 7), random_primitives<P>(d, 150, 0.5, 0.2)};
+  std::vector<std::vector<P>> all = {random_primitives<P>(d, 1), random_primitives<P>(d, 7),
+                                     random_primitives<P>(d, 150, 0.5, 0.2)};
   all.emplace_back(20, all[1][0]);
   all.push_back(all[1]);
   for (std::size_t k = all[1].size(); k-- > 0;) all.back().push_back(all[1][k]);
@@ -103,7 +104,8 @@ void check_volume() {
   for (const auto& primitives : scenes<P>(d)) {
     const auto points = points_for(d, primitives);
     for (const std::uint32_t width : {2, 4, 8})
-      check_walks(clearance::build<V>(primitives, {.width = width, .leaf_size = width == 4 ? 1u : 4u}).view(), primitives, points, v);
+      check_walks(clearance::build<V>(primitives, {.width = width, .leaf_size = width == 4 ? 1u : 4u}).view(),
+                  primitives, points, v);
     check_walks(linked_tree<V, P>(primitives).view(), primitives, points, v);
   }
 }
@@ -153,7 +155,8 @@ TEST_CASE("What is bounded by exactly the reach is not pruned: ties are shown") 
     primitives.insert(primitives.end(), primitives.rbegin(), primitives.rend());
     if (primitives.size() > 256) primitives.resize(256);
     for (const std::uint32_t width : {2, 4, 8})
-      check_walks(clearance::build<tight_ball>(primitives, {.width = width, .leaf_size = 1}).view(), primitives, points, v);
+      check_walks(clearance::build<tight_ball>(primitives, {.width = width, .leaf_size = 1}).view(), primitives, points,
+                  v);
     check_walks(linked_tree<tight_ball, inner_sphere>(primitives).view(), primitives, points, v);
   }
 }
@@ -164,7 +167,8 @@ TEST_CASE("Every traversal of a flat list is the plain loop") {
   for (const auto& primitives : scenes<inner_sphere>(d)) {
     std::vector<ball> balls;
     for (const auto& s : primitives) balls.push_back({s.center, s.radius});
-    const clearance::flat_list<clearance::sphere, inner_sphere> list{clearance::sphere::fit(balls), primitives.data(), std::uint32_t(primitives.size())};
+    const clearance::flat_list<clearance::sphere, inner_sphere> list{clearance::sphere::fit(balls), primitives.data(),
+                                                                     std::uint32_t(primitives.size())};
     check_walks(list, primitives, points_for(d, primitives), v);
   }
 }

@@ -9,12 +9,14 @@ using clearance::any_within, clearance::nearest;
 
 TEST_CASE("Nearest obeys the laws of visitors") {
   const auto same = [](auto a, auto b) { return same_bits(a.distance, b.distance) && a.primitive == b.primitive; };
-  for (const real within : {infinity, 1.0f, 0.5f, 0.0f, -0.25f, -1.0f}) check_visitor_laws(nearest{.within = within}, same);
+  for (const real within : {infinity, 1.0f, 0.5f, 0.0f, -0.25f, -1.0f})
+    check_visitor_laws(nearest{.within = within}, same);
 }
 
 TEST_CASE("Any-within obeys the laws of visitors") {
   const auto same = [](bool a, bool b) { return a == b; };
-  for (const real margin : {infinity, 1.0f, 0.5f, 0.0f, -0.25f, -1.0f}) check_visitor_laws(any_within{.margin = margin}, same);
+  for (const real margin : {infinity, 1.0f, 0.5f, 0.0f, -0.25f, -1.0f})
+    check_visitor_laws(any_within{.margin = margin}, same);
 }
 
 TEST_CASE("Nearest takes the lowest id of equally near ones, and nothing beyond its limit") {

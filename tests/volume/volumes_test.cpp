@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "support/laws.hpp"
 #include "support/volumes.hpp"
+#include "support/laws.hpp"
 
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>

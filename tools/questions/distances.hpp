@@ -22,6 +22,8 @@ clearance::point_distances robot_on_backend<Backend>::distances(poses_of poses, 
 }
 
 template <class Backend>
-std::vector<clearance::part_witness> robot_on_backend<Backend>::witnesses(poses_of poses, std::span<const clearance::part_minimum> minima) {
-  return with_usual_trees([&](const auto& trees) { return clearance::part_witnesses(on_, trees, poses, clouds_, minima); });
+std::vector<clearance::part_witness> robot_on_backend<Backend>::witnesses(
+    poses_of poses, std::span<const clearance::part_minimum> minima) {
+  return with_usual_trees(
+      [&](const auto& trees) { return clearance::part_witnesses(on_, trees, poses, clouds_, minima); });
 }

@@ -6,4 +6,5 @@
 #include "distances.hpp"
 
 template clearance::point_distances robot_on_backend<clearance::device>::distances(poses_of, double, bool);
-template std::vector<clearance::part_witness> robot_on_backend<clearance::device>::witnesses(poses_of, std::span<const clearance::part_minimum>);
+template std::vector<clearance::part_witness> robot_on_backend<clearance::device>::witnesses(
+    poses_of, std::span<const clearance::part_minimum>);

@@ -13,9 +13,12 @@
 template <class Backend, class Model>
 class query_of final : public prepared_query {
  public:
-  query_of(const Backend& on, const Model& model, std::shared_ptr<const Model> keeps = {}) : keeps_(std::move(keeps)), query_(on, model) {}
+  query_of(const Backend& on, const Model& model, std::shared_ptr<const Model> keeps = {})
+      : keeps_(std::move(keeps)), query_(on, model) {}
 
-  clearance::min_distance_result least(poses_of poses, const std::vector<placed_points>& clouds) override { return query_(poses, clouds); }
+  clearance::min_distance_result least(poses_of poses, const std::vector<placed_points>& clouds) override {
+    return query_(poses, clouds);
+  }
   clearance::min_distance_result least_per_part(poses_of poses, const std::vector<placed_points>& clouds,
                                                 std::span<clearance::part_minimum> parts) override {
     return query_.per_part(poses, clouds, parts);
@@ -41,7 +44,8 @@ prepared_query& robot_on_backend<Backend>::prepared() {
     if (asked_.volume == volume_kind::sphere) own(moved(trees_of_triangles<clearance::sphere>));
     if (asked_.volume == volume_kind::aabb) own(moved(trees_of_triangles<clearance::aabb>));
   }
-  if (!prepared_) prepared_ = with_usual_trees([&]<class Model>(const Model& model) -> std::unique_ptr<prepared_query> {
+  if (!prepared_)
+    prepared_ = with_usual_trees([&]<class Model>(const Model& model) -> std::unique_ptr<prepared_query> {
       return std::make_unique<query_of<Backend, Model>>(on_, model);
     });
   return *prepared_;
@@ -81,7 +85,8 @@ reply robot_on_backend<Backend>::least_by(poses_of poses, double deadline) {
     clearance::min_distance_query asked(on_, trees);  // prepared before the time runs
     stopwatch clock;
     // With every part's, as `least_per_part`: a complete answer is the same, with its lower end.
-    const auto known = clearance::min_distance_by(asked, poses, clouds_, std::chrono::duration<double>(deadline), {.per_part = true});
+    const auto known =
+        clearance::min_distance_by(asked, poses, clouds_, std::chrono::duration<double>(deadline), {.per_part = true});
     seconds = clock.lap();
     return reply{known, {}, known.unseen};
   });

@@ -13,7 +13,8 @@ class plan_of final : public prepared_plan {
  public:
   plan_of(const Backend& on, const Model& model) : query_(on, model) {}
 
-  const clearance::min_distances_result& ask(poses_of poses, const std::vector<placed_points>& clouds, double d_max) override {
+  const clearance::min_distances_result& ask(poses_of poses, const std::vector<placed_points>& clouds,
+                                             double d_max) override {
     const clearance::min_distances_options options{.d_max = clearance::real(d_max)};
     if constexpr (requires { query_.place(poses); }) {
       if (!std::ranges::equal(poses, placed_, [](const auto& a, const auto& b) { return a.matrix() == b.matrix(); })) {
@@ -34,8 +35,9 @@ class plan_of final : public prepared_plan {
 template <class Backend>
 clearance::min_distances_result robot_on_backend<Backend>::plan(poses_of poses, double d_max) {
   if (!planned_)
-    planned_ = with_usual_trees(
-        [&]<class Model>(const Model& model) -> std::unique_ptr<prepared_plan> { return std::make_unique<plan_of<Backend, Model>>(on_, model); });
+    planned_ = with_usual_trees([&]<class Model>(const Model& model) -> std::unique_ptr<prepared_plan> {
+      return std::make_unique<plan_of<Backend, Model>>(on_, model);
+    });
   stopwatch clock;
   const clearance::min_distances_result& found = planned_->ask(poses, clouds_, d_max);
   query = clock.lap();

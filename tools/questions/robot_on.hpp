@@ -16,20 +16,23 @@
 #include <variant>
 
 /// A cloud as the library takes it.
-using placed_points = std::variant<clearance::placed<clearance::point_span>, clearance::placed<clearance::depth_image<std::uint16_t>>>;
+using placed_points =
+    std::variant<clearance::placed<clearance::point_span>, clearance::placed<clearance::depth_image<std::uint16_t>>>;
 
 /// The prepared query of a model, whichever its trees are.
 struct prepared_query {
   virtual ~prepared_query() = default;
   virtual clearance::min_distance_result least(poses_of poses, const std::vector<placed_points>& clouds) = 0;
-  virtual clearance::min_distance_result least_per_part(poses_of poses, const std::vector<placed_points>& clouds, std::span<clearance::part_minimum> parts) = 0;
+  virtual clearance::min_distance_result least_per_part(poses_of poses, const std::vector<placed_points>& clouds,
+                                                        std::span<clearance::part_minimum> parts) = 0;
   virtual void forget() = 0;
 };
 
 /// The prepared query of many configurations.
 struct prepared_plan {
   virtual ~prepared_plan() = default;
-  virtual const clearance::min_distances_result& ask(poses_of poses, const std::vector<placed_points>& clouds, double d_max) = 0;
+  virtual const clearance::min_distances_result& ask(poses_of poses, const std::vector<placed_points>& clouds,
+                                                     double d_max) = 0;
 };
 
 template <class Backend>
@@ -43,7 +46,11 @@ class robot_on_backend final : public backend_robot {
     clouds_.clear();
     const clearance::minimum::readable_on<Backend> readable{on_, copies_};
     for (const seen_points& cloud : clouds)
-      std::visit([&](const auto& source) { clouds_.push_back(clearance::placed{readable(source, std::uint32_t(clouds_.size())), cloud.pose}); }, cloud.points);
+      std::visit(
+          [&](const auto& source) {
+            clouds_.push_back(clearance::placed{readable(source, std::uint32_t(clouds_.size())), cloud.pose});
+          },
+          cloud.points);
     on_.wait();
     return clock.lap();
   }
@@ -56,15 +63,18 @@ class robot_on_backend final : public backend_robot {
   clearance::supported_distance supported(poses_of poses, const clearance::support_options& options) override;
   clearance::point_distances distances(poses_of poses, double d_max, bool is_signed) override;
   clearance::nearest_k_result nearest(poses_of poses, std::size_t k, double d_max) override;
-  std::vector<clearance::part_witness> witnesses(poses_of poses, std::span<const clearance::part_minimum> minima) override;
+  std::vector<clearance::part_witness> witnesses(poses_of poses,
+                                                 std::span<const clearance::part_minimum> minima) override;
   clearance::min_distances_result plan(poses_of poses, double d_max) override;
   std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
                                                        const clearance::motion_clearance_options& options) override;
 
  private:
-  using sphere_trees = clearance::model<clearance::part<clearance::bvh<clearance::sphere, clearance::inner_sphere, Backend>>, Backend>;
-  using triangle_trees =
-      clearance::model<clearance::part<clearance::bvh<clearance::obb, clearance::triangle, Backend>, clearance::winding<Backend>>, Backend>;
+  using sphere_trees =
+      clearance::model<clearance::part<clearance::bvh<clearance::sphere, clearance::inner_sphere, Backend>>, Backend>;
+  using triangle_trees = clearance::model<
+      clearance::part<clearance::bvh<clearance::obb, clearance::triangle, Backend>, clearance::winding<Backend>>,
+      Backend>;
 
   using trees = std::variant<std::monostate, sphere_trees, triangle_trees>;
 
@@ -75,7 +85,8 @@ class robot_on_backend final : public backend_robot {
   auto with_usual_trees(Use use) {
     const trees& made = usual_trees();
     stopwatch clock;
-    auto answer = asked_.model == model_kind::spheres ? use(std::get<sphere_trees>(made)) : use(std::get<triangle_trees>(made));
+    auto answer =
+        asked_.model == model_kind::spheres ? use(std::get<sphere_trees>(made)) : use(std::get<triangle_trees>(made));
     query = clock.lap();
     return answer;
   }

@@ -11,13 +11,15 @@
 /// Of all bodies, in host memory.
 template <class V>
 auto trees_of_spheres(const std::vector<body>& bodies) {
-  return clearance::make_model<V>(bodies | std::views::transform(&body::packed),
-                                  [&](std::size_t k) { return clearance::part_options{.tolerance = bodies[k].tolerance}; });
+  return clearance::make_model<V>(bodies | std::views::transform(&body::packed), [&](std::size_t k) {
+    return clearance::part_options{.tolerance = bodies[k].tolerance};
+  });
 }
 template <class V>
 auto trees_of_triangles(const std::vector<body>& bodies) {
-  return clearance::make_model<V>(bodies | std::views::transform(&body::closed),
-                                  [&](std::size_t k) { return clearance::part_options{.tolerance = bodies[k].tolerance}; });
+  return clearance::make_model<V>(bodies | std::views::transform(&body::closed), [&](std::size_t k) {
+    return clearance::part_options{.tolerance = bodies[k].tolerance};
+  });
 }
 
 template <class Backend>

@@ -3,5 +3,5 @@
 
 #include "ways.hpp"
 
-template std::vector<clearance::motion_clearance_result> robot_on_backend<clearance::device>::ways(std::span<const clearance::io::joint_motion>,
-                                                                                               const clearance::motion_clearance_options&);
+template std::vector<clearance::motion_clearance_result> robot_on_backend<clearance::device>::ways(
+    std::span<const clearance::io::joint_motion>, const clearance::motion_clearance_options&);

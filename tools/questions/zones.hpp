@@ -16,16 +16,20 @@ clearance::zones_result robot_on_backend<Backend>::zones(poses_of poses, const c
 
 template <class Backend>
 clearance::self_filter_result robot_on_backend<Backend>::own_points(poses_of poses, double padding) {
-  return with_usual_trees([&](const auto& trees) { return clearance::self_filter(on_, trees, poses, clouds_, {.padding = {padding}}); });
+  return with_usual_trees(
+      [&](const auto& trees) { return clearance::self_filter(on_, trees, poses, clouds_, {.padding = {padding}}); });
 }
 
 template <class Backend>
-clearance::supported_distance robot_on_backend<Backend>::supported(poses_of poses, const clearance::support_options& options) {
-  return with_usual_trees([&](const auto& trees) { return clearance::min_distance_supported(on_, trees, poses, clouds_, options); });
+clearance::supported_distance robot_on_backend<Backend>::supported(poses_of poses,
+                                                                   const clearance::support_options& options) {
+  return with_usual_trees(
+      [&](const auto& trees) { return clearance::min_distance_supported(on_, trees, poses, clouds_, options); });
 }
 
 template <class Backend>
 clearance::nearest_k_result robot_on_backend<Backend>::nearest(poses_of poses, std::size_t k, double d_max) {
-  return with_usual_trees(
-      [&](const auto& trees) { return clearance::nearest_k(on_, trees, poses, clouds_, k, {.d_max = clearance::real(d_max)}); });
+  return with_usual_trees([&](const auto& trees) {
+    return clearance::nearest_k(on_, trees, poses, clouds_, k, {.d_max = clearance::real(d_max)});
+  });
 }

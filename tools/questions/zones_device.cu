@@ -8,5 +8,6 @@
 
 template clearance::zones_result robot_on_backend<clearance::device>::zones(poses_of, const clearance::zones_options&);
 template clearance::self_filter_result robot_on_backend<clearance::device>::own_points(poses_of, double);
-template clearance::supported_distance robot_on_backend<clearance::device>::supported(poses_of, const clearance::support_options&);
+template clearance::supported_distance robot_on_backend<clearance::device>::supported(
+    poses_of, const clearance::support_options&);
 template clearance::nearest_k_result robot_on_backend<clearance::device>::nearest(poses_of, std::size_t, double);

@@ -14,7 +14,8 @@ struct configuration_facts : frames::frame_facts {
   bool rigid = true;  ///< Are all poses?
 
   configuration_facts() = default;
-  CLEARANCE_HD configuration_facts(const world_transform& cloud, vec3 origin, const position_error& off) : frames::frame_facts(cloud, origin, off) {}
+  CLEARANCE_HD configuration_facts(const world_transform& cloud, vec3 origin, const position_error& off)
+      : frames::frame_facts(cloud, origin, off) {}
 };
 
 /// Where a configuration's last minimum was.
@@ -53,28 +54,37 @@ struct batch_arguments {
   world_transform world_from_cloud;
   position_error off;
   Question question;
-  bool foreseen;        ///< What is certain about all clouds has been put together before.
+  bool foreseen;       ///< What is certain about all clouds has been put together before.
   std::uint64_t seen;  ///< Points of all clouds.
   frames::placement* places;
   ball_bounds* bounds;
   configuration_facts* facts;
   memory_type* all;
-  margin_reach* near;   ///< Of a question by margins.
+  margin_reach* near;  ///< Of a question by margins.
   last_place* last;
   cloud_tree::numbered_point* seeds;
   typename Question::result_type* results;
   scan::drop_counts* dropped;
-  std::uint32_t* lost;  ///< Becomes 1 if a pose is not rigid.
-  batch_pieces<pair_type> left = {};   ///< What blocks leave,
-  batch_pieces<pair_type> given = {};  ///< and what those before have left: if there is any, blocks take that, and not configurations.
-  std::uint32_t depth = 0;             ///< Of a block's stack, in pairs.
-  std::uint32_t rounds = none;         ///< After which a block leaves what it has not done yet.
+  std::uint32_t* lost;                ///< Becomes 1 if a pose is not rigid.
+  batch_pieces<pair_type> left = {};  ///< What blocks leave.
+  /// What those before have left: if there is any, blocks take that, and not configurations.
+  batch_pieces<pair_type> given = {};
+  std::uint32_t depth = 0;      ///< Of a block's stack, in pairs.
+  std::uint32_t rounds = none;  ///< After which a block leaves what it has not done yet.
 
   CLEARANCE_HD frames::placement* its_places(std::uint32_t c) const { return places + std::size_t(c) * part_count; }
   /// A configuration's points against its parts, one at a time, whatever source they are of.
   CLEARANCE_HD body_type body(std::uint32_t c, memory_type* best) const {
     const std::size_t first = std::size_t(c) * part_count;
-    return {parts, places + first, part_count, {}, facts[c].origin, now.first, nullptr, Question::answer(best, near + first), {}};
+    return {parts,
+            places + first,
+            part_count,
+            {},
+            facts[c].origin,
+            now.first,
+            nullptr,
+            Question::answer(best, near + first),
+            {}};
   }
 };
 

@@ -9,11 +9,12 @@
 
 namespace clearance::minimum {
 
-/// The witness of each configuration's minimum, if it is a point of this cloud; after the last cloud all of its result. A warp a
-/// configuration, whose lanes look for the part, and together for the primitive.
+/// The witness of each configuration's minimum, if it is a point of this cloud; after the last cloud all of its result.
+/// A warp a configuration, whose lanes look for the part, and together for the primitive.
 template <class PartView, class Question, class Source>
-__global__ void __launch_bounds__(128) finish_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
-                                                             const __grid_constant__ Source source) {
+__global__ void __launch_bounds__(128)
+    finish_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
+                          const __grid_constant__ Source source) {
   using walk_type = walk_by_warp<typename PartView::hierarchy_type>;
   __shared__ typename walk_type::node_type pending[4][walk_type::most];
   const std::uint32_t c = (blockIdx.x * 128 + threadIdx.x) / 32, lane = threadIdx.x % 32;
@@ -22,8 +23,9 @@ __global__ void __launch_bounds__(128) finish_configurations(const __grid_consta
   const shared_bounds bounds{a.all + c, nullptr};
   min_distance_result mine;
   const auto of_part = [&](std::uint32_t k) -> resolve_body<PartView, Source, walk_type> {
-    return {a.parts + k,     a.its_places(c) + k, 1,     source,  facts.origin, facts.world_from_cloud, a.now.first, a.now.cloud, bounds,
-            {pending[threadIdx.x / 32]}, &mine,   nullptr};
+    return {a.parts + k,  a.its_places(c) + k,         1,           source,
+            facts.origin, facts.world_from_cloud,      a.now.first, a.now.cloud,
+            bounds,       {pending[threadIdx.x / 32]}, &mine,       nullptr};
   };
   for (std::uint32_t first = 0; first < a.part_count && __all_sync(scan::all_lanes, mine.part == none); first += 32) {
     unsigned those = __ballot_sync(scan::all_lanes, first + lane < a.part_count && of_part(first + lane).may_be_of(0));
@@ -45,12 +47,15 @@ __global__ void __launch_bounds__(128) finish_configurations(const __grid_consta
 
 /// What margins leave of each, after the last cloud.
 template <class PartView, class Question>
-__global__ void __launch_bounds__(128) tell_configurations(const __grid_constant__ batch_arguments<PartView, Question> a) {
+__global__ void __launch_bounds__(128)
+    tell_configurations(const __grid_constant__ batch_arguments<PartView, Question> a) {
   const std::uint32_t c = blockIdx.x * 128 + threadIdx.x;
   if (c >= a.configurations) return;
   point_counts counts;
   scan::count(counts, a.dropped->dropped, a.seen);
-  a.results[c] = a.facts[c].rigid ? Question::told(a.all[c], counts.valid, counts.dropped[int(drop_reason::too_close)] != 0) : state::possible;
+  a.results[c] = a.facts[c].rigid
+                     ? Question::told(a.all[c], counts.valid, counts.dropped[int(drop_reason::too_close)] != 0)
+                     : state::possible;
 }
 
 }  // namespace clearance::minimum

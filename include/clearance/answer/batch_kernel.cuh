@@ -9,7 +9,8 @@
 
 namespace clearance::minimum {
 
-/// What a block of so many threads keeps: pairs that are still to be opened, the nearest on top, and those that a round has made.
+/// What a block of so many threads keeps: pairs that are still to be opened, the nearest on top, and those that a round
+/// has made.
 template <class Pair, class Order>
 struct batch_room {
   static constexpr std::uint32_t lanes = 8;  ///< That open a pair together, a child each.
@@ -31,11 +32,14 @@ struct batch_room {
     return std::uint32_t(all < others + least * sizeof(Pair) ? least : (all - others) / sizeof(Pair));
   }
   __device__ batch_room(distance_key* memory, std::uint32_t threads, std::uint32_t depth)
-      : orders(reinterpret_cast<Order*>(memory)), stack(reinterpret_cast<Pair*>(memory + most(threads))), made(stack + depth) {}
+      : orders(reinterpret_cast<Order*>(memory)),
+        stack(reinterpret_cast<Pair*>(memory + most(threads))),
+        made(stack + depth) {}
 };
 
-/// One configuration's search by a block. In every round it opens the nearest pairs of its stack, each by eight lanes, and puts what they
-/// made back in order: many at once, because what is found first decides how much the others are worth.
+/// One configuration's search by a block. In every round it opens the nearest pairs of its stack, each by eight lanes,
+/// and puts what they made back in order: many at once, because what is found first decides how much the others are
+/// worth.
 template <class Search>
 struct block_search {
   using pair = typename Search::pair;
@@ -78,7 +82,8 @@ struct block_search {
         continue;
       }
       if (round >= rounds && next >= starts) return false;
-      const std::uint32_t left = depth - count, many = left > room_type::reserve ? (left - room_type::reserve) / (lanes + 1) : 0;
+      const std::uint32_t left = depth - count,
+                          many = left > room_type::reserve ? (left - room_type::reserve) / (lanes + 1) : 0;
       const std::uint32_t take = scan::lower_of(scan::lower_of(threads / lanes, count), many > 0 ? many : left > lanes);
       if (take == 0) {
         const pair top = room.stack[count - 1];
@@ -92,7 +97,8 @@ struct block_search {
     return true;
   }
 
-  /// Leaves the stack to others, dealt out so that each piece has some of the nearest. False if there is no room for that.
+  /// Leaves the stack to others, dealt out so that each piece has some of the nearest. False if there is no room for
+  /// that.
   __device__ bool leave_to(const pieces_type& others, std::uint32_t configuration) {
     const std::uint32_t pieces = (count - 1) / pieces_type::most + 1;
     if (t == 0) shared.first = atomicAdd(others.used, pieces);
@@ -100,9 +106,11 @@ struct block_search {
     const std::uint32_t first = shared.first;
     const bool fits = first < others.capacity && others.capacity - first >= pieces;
     for (std::uint32_t i = t; i < pieces && first + i < others.capacity; i += threads)
-      others.pieces[first + i].configuration = configuration, others.pieces[first + i].count = fits ? (count - 1 - i) / pieces + 1 : 0;
+      others.pieces[first + i].configuration = configuration,
+                            others.pieces[first + i].count = fits ? (count - 1 - i) / pieces + 1 : 0;
     if (fits)
-      for (std::uint32_t i = t; i < count; i += threads) others.pieces[first + i % pieces].pairs[i / pieces] = room.stack[i];
+      for (std::uint32_t i = t; i < count; i += threads)
+        others.pieces[first + i % pieces].pairs[i / pieces] = room.stack[i];
     return fits;
   }
 
@@ -124,9 +132,11 @@ struct block_search {
   __device__ void visit_all(const pair& p) const {
     using tree_type = std::remove_cvref_t<decltype(search.tree)>;
     std::uint64_t begin = p.at, end = p.at + 1;
-    for (std::uint32_t l = 0; l < p.level; ++l) begin *= l == 0 ? tree_type::tile : tree_type::fan, end *= l == 0 ? tree_type::tile : tree_type::fan;
+    for (std::uint32_t l = 0; l < p.level; ++l)
+      begin *= l == 0 ? tree_type::tile : tree_type::fan, end *= l == 0 ? tree_type::tile : tree_type::fan;
     const cloud_tree::numbered_point* const points = search.tree.points;
-    for (begin += t, end = end < search.tree.count ? end : search.tree.count; begin < end; begin += threads) search.visit(points[begin], p.part);
+    for (begin += t, end = end < search.tree.count ? end : search.tree.count; begin < end; begin += threads)
+      search.visit(points[begin], p.part);
   }
 
   /// Instead of the stack's last `taken` pairs what was made of them, the nearest on top.
@@ -146,10 +156,11 @@ struct block_search {
   }
 };
 
-/// A block is a configuration, whose parts share its bound. What takes it very long it leaves to others, once all had their turn: the
-/// slowest of many takes twenty times as long as most.
+/// A block is a configuration, whose parts share its bound. What takes it very long it leaves to others, once all had
+/// their turn: the slowest of many takes twenty times as long as most.
 template <class Arguments, class Tree>
-__global__ void __launch_bounds__(256, 4) batch_kernel(const __grid_constant__ Arguments a, const __grid_constant__ Tree tree) {
+__global__ void __launch_bounds__(256, 4)
+    batch_kernel(const __grid_constant__ Arguments a, const __grid_constant__ Tree tree) {
   using question = typename Arguments::question_type;
   using memory_type = typename Arguments::memory_type;
   using search_type = tree_search<typename Arguments::body_type, Tree>;
@@ -159,7 +170,8 @@ __global__ void __launch_bounds__(256, 4) batch_kernel(const __grid_constant__ A
   __shared__ typename block_type::words words;
   memory_type& best = *reinterpret_cast<memory_type*>(memory_of_best);
   const std::uint32_t t = threadIdx.x;
-  for (std::uint32_t i = blockIdx.x, count = a.given.pieces != nullptr ? a.given.size() : a.configurations; i < count; i += gridDim.x) {
+  for (std::uint32_t i = blockIdx.x, count = a.given.pieces != nullptr ? a.given.size() : a.configurations; i < count;
+       i += gridDim.x) {
     const std::uint32_t c = a.given.pieces != nullptr ? a.given.pieces[i].configuration : i;
     if (!a.facts[c].rigid) continue;
     if (t == 0) best = a.all[c];

@@ -8,8 +8,9 @@ namespace clearance::minimum {
 
 /// What a host does with poses before a search, a warp a configuration; and where its search begins.
 template <class PartView, class Question, class Source>
-__global__ void __launch_bounds__(128) place_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
-                                                            const __grid_constant__ Source source) {
+__global__ void __launch_bounds__(128)
+    place_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
+                         const __grid_constant__ Source source) {
   const std::uint32_t c = (blockIdx.x * 128 + threadIdx.x) / 32, lane = threadIdx.x % 32;
   if (c >= a.configurations) return;
   if (c == 0 && lane == 0) a.left.used[0] = a.left.used[1] = 0;
@@ -33,7 +34,8 @@ __global__ void __launch_bounds__(128) place_configurations(const __grid_constan
   }
   facts.origin = scan::from_lane(facts.origin, 0);
   for (std::uint32_t k = lane; k < a.part_count; k += 32) {
-    const frames::placement here = frames::place(a.parts[k].facts, places[k].world_from_part, a.world_from_cloud, facts.origin, a.off);
+    const frames::placement here =
+        frames::place(a.parts[k].facts, places[k].world_from_part, a.world_from_cloud, facts.origin, a.off);
     places[k] = here;
     a.bounds[std::size_t(c) * a.part_count + k] = ball_bounds(a.parts[k].facts, here.part_from_cloud);
   }
@@ -42,7 +44,8 @@ __global__ void __launch_bounds__(128) place_configurations(const __grid_constan
   facts.rigid = rigid;
   if (a.now.cloud != 0 || a.foreseen) facts.error.widen(a.facts[c].error);  // a bracket is over all clouds
   if constexpr (Question::by_margin)
-    for (std::uint32_t k = lane; k < a.part_count; k += 32) a.near[std::size_t(c) * a.part_count + k] = a.question.near(k, a.parts[k].facts, facts.error);
+    for (std::uint32_t k = lane; k < a.part_count; k += 32)
+      a.near[std::size_t(c) * a.part_count + k] = a.question.near(k, a.parts[k].facts, facts.error);
   __syncwarp();
   if (lane != 0) return;
   if (a.now.cloud == 0) a.all[c] = a.question.start(rigid);

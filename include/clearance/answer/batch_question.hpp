@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What can be asked of many configurations down a tree over points: an answer of `scan_body` for each, and what it begins with.
+// What can be asked of many configurations down a tree over points: an answer of `scan_body` for each, and what it
+// begins with.
 
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/shared_bounds.hpp>
@@ -49,7 +50,9 @@ struct margin_question {
   /// What in_collision says of that.
   CLEARANCE_HD static state told(const margin_word& word, std::uint64_t valid, bool too_close) {
     if (valid == 0) return state::no_data;
-    return word.found == margin_word::certain ? state::collision : word.found == margin_word::possible || too_close ? state::possible : state::free;
+    return word.found == margin_word::certain                 ? state::collision
+           : word.found == margin_word::possible || too_close ? state::possible
+                                                              : state::free;
   }
 };
 

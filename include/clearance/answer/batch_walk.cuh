@@ -7,13 +7,15 @@
 
 namespace clearance::minimum {
 
-/// Down one tree by a warp, for a witness: eight lanes open a node, and what a leaf has is dealt out among them. Each lane has a visitor of
-/// its own; afterwards only the one with the nearest primitive, of equally near ones the lowest, has any.
+/// Down one tree by a warp, for a witness: eight lanes open a node, and what a leaf has is dealt out among them. Each
+/// lane has a visitor of its own; afterwards only the one with the nearest primitive, of equally near ones the lowest,
+/// has any.
 template <hierarchy H>
 struct walk_by_warp {
   using node_type = typename H::node_type;
   static constexpr std::uint32_t lanes = 8, nodes = 4;
-  /// Once so many are pending, nodes are opened one after another; so what check_stack has allowed on top of what four make is the most.
+  /// Once so many are pending, nodes are opened one after another; so what check_stack has allowed on top of what four
+  /// make is the most.
   static constexpr std::uint32_t many = 32, most = many + nodes * lanes + 64;
 
   node_type* pending;  ///< Of this warp, `most`.
@@ -25,7 +27,8 @@ struct walk_by_warp {
     using traits = bounding_volume_traits<typename H::volume_type>;
     const std::uint32_t lane = threadIdx.x % 32, at_once = tree.width() <= lanes ? nodes : 1;
     real reach = best.reach();
-    if (!(reach < infinity)) reach = scan::descend(scan::plain_steps<H>{tree}, q);  // inside a solid: something is so near
+    if (!(reach < infinity))
+      reach = scan::descend(scan::plain_steps<H>{tree}, q);  // inside a solid: something is so near
     if (!(traits::lower_bound(tree.volume(tree.root()), q) <= reach)) return;
     if (lane == 0) pending[0] = tree.root();
     __syncwarp();

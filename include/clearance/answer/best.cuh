@@ -30,7 +30,8 @@ __device__ Record least_of_warp(const Record& r) {
 
 /// Keeps the better of the block's best and `r`. Improvements are rare (a record process), so a lock costs nothing.
 template <class Answer>
-__device__ void keep_best(typename Answer::block& s, const typename Answer::record& r, const typename Answer::primitive_type& primitive) {
+__device__ void keep_best(typename Answer::block& s, const typename Answer::record& r,
+                          const typename Answer::primitive_type& primitive) {
   const std::uint32_t slot = Answer::slot(r.part);
   auto& kept = s.answer.best[slot];
   for (bool offered = false; !offered;) {
@@ -46,10 +47,11 @@ __device__ void keep_best(typename Answer::block& s, const typename Answer::reco
   }
 }
 
-/// All lanes of a warp call it. For one minimum the warp agrees first; where each part has one, the lanes that share a part do,
-/// and then the block by an atomic minimum: so few come to the lock.
+/// All lanes of a warp call it. For one minimum the warp agrees first; where each part has one, the lanes that share a
+/// part do, and then the block by an atomic minimum: so few come to the lock.
 template <class Answer>
-__device__ void best_of_warp(typename Answer::block& s, const typename Answer::record& r, const typename Answer::primitive_type& primitive) {
+__device__ void best_of_warp(typename Answer::block& s, const typename Answer::record& r,
+                             const typename Answer::primitive_type& primitive) {
   if constexpr (Answer::bound_per_part) {
     const std::uint32_t mine = std::uint32_t(r.key >> 32);
     const std::uint32_t least = scan::least_of(__match_any_sync(scan::all_lanes, r.part), mine);

@@ -14,7 +14,8 @@ CLEARANCE_HD inline double certain_distance(real distance, double slop, const fr
 
 /// And what all parts' minima leave certain: `distance(k)` and `facts(k)` are part k's.
 template <class Distance, class Facts>
-CLEARANCE_HD double certain_distance(std::uint32_t parts, Distance distance, Facts facts, const frames::float_error& error) {
+CLEARANCE_HD double certain_distance(std::uint32_t parts, Distance distance, Facts facts,
+                                     const frames::float_error& error) {
   double least = infinity;
   for (std::uint32_t k = 0; k < parts; ++k) {
     const double its = certain_distance(distance(k), frames::slop(facts(k)), error);
@@ -23,9 +24,10 @@ CLEARANCE_HD double certain_distance(std::uint32_t parts, Distance distance, Fac
   return least;
 }
 
-/// To a result that has distance and part: what is certain, if the distance is at least `lower`, and the winning part may
-/// differ by `tolerance` from its surface. `certain`: some point is certainly inside.
-CLEARANCE_HD inline void bracket(min_distance_result& r, double lower, real tolerance, bool certain, const frames::float_error& error) {
+/// To a result that has distance and part: what is certain, if the distance is at least `lower`, and the winning part
+/// may differ by `tolerance` from its surface. `certain`: some point is certainly inside.
+CLEARANCE_HD inline void bracket(min_distance_result& r, double lower, real tolerance, bool certain,
+                                 const frames::float_error& error) {
   if (r.part == none) return;  // no data
   const double error_here = error.at(r.distance);
   const bool inside = certain || r.distance < -(error_here + tolerance);
@@ -36,17 +38,19 @@ CLEARANCE_HD inline void bracket(min_distance_result& r, double lower, real tole
   r.state = inside ? clearance::state::collision : (r.lower > 0 ? clearance::state::free : clearance::state::possible);
 }
 
-/// Something nearer than a sensor can measure may be anywhere before it: nothing is free then. After counts and bracket.
+/// Something nearer than a sensor can measure may be anywhere before it: nothing is free then. After counts and
+/// bracket.
 CLEARANCE_HD inline void allow_for_too_close(min_distance_result& r) {
-  if (r.dropped[int(drop_reason::too_close)] != 0 && r.state == clearance::state::free) r.state = clearance::state::possible, r.lower = 0;
+  if (r.dropped[int(drop_reason::too_close)] != 0 && r.state == clearance::state::free)
+    r.state = clearance::state::possible, r.lower = 0;
 }
 
 }  // namespace clearance::minimum
 
 namespace clearance {
 
-/// What a computed distance leaves certain of that to the solid: arithmetic, poses, the source's own rounding, and by how much a
-/// part may be nearer than its primitives (gap and tolerance).
+/// What a computed distance leaves certain of that to the solid: arithmetic, poses, the source's own rounding, and by
+/// how much a part may be nearer than its primitives (gap and tolerance).
 struct distance_certainty {
   frames::float_error error;
   double slop = 0;

@@ -14,19 +14,23 @@ struct point_range {
   std::size_t begin, end;
 };
 
-/// Owns a cloud that is read in chunks, and boxes around its points as the first question saw them: the next one reads what can matter.
-/// Is the cloud another one now, `forget()`. One question at a time.
+/// Owns a cloud that is read in chunks, and boxes around its points as the first question saw them: the next one reads
+/// what can matter. Is the cloud another one now, `forget()`. One question at a time.
 template <loaded_cloud C>
 class chunked {
  public:
   static constexpr std::size_t usual_chunk = std::size_t(1) << 22;
 
-  /// `chunk`: points at a time, rounded up to what a box is around (4096). Throws std::invalid_argument if there are more points than
-  /// answers have numbers for.
+  /// `chunk`: points at a time, rounded up to what a box is around (4096). Throws std::invalid_argument if there are
+  /// more points than answers have numbers for.
   explicit chunked(C cloud, std::size_t chunk = usual_chunk)
-      : cloud_(std::move(cloud)), size_(cloud_.size()),
-        chunk_((std::clamp<std::size_t>(chunk, 1, none) + scan::piece_points - 1) / scan::piece_points * scan::piece_points) {
-    if (size_ >= none) throw std::invalid_argument("clearance: a cloud of " + std::to_string(size_) + " points; one has at most 2^32 - 2");
+      : cloud_(std::move(cloud)),
+        size_(cloud_.size()),
+        chunk_((std::clamp<std::size_t>(chunk, 1, none) + scan::piece_points - 1) / scan::piece_points *
+               scan::piece_points) {
+    if (size_ >= none)
+      throw std::invalid_argument("clearance: a cloud of " + std::to_string(size_) +
+                                  " points; one has at most 2^32 - 2");
   }
 
   const C& cloud() const { return cloud_; }
@@ -59,7 +63,9 @@ class chunked {
     }
     return ranges;
   }
-  point_range piece(std::size_t k) const { return {k * scan::piece_points, std::min(size(), (k + 1) * scan::piece_points)}; }
+  point_range piece(std::size_t k) const {
+    return {k * scan::piece_points, std::min(size(), (k + 1) * scan::piece_points)};
+  }
 
  private:
   C cloud_;
@@ -95,13 +101,14 @@ class as_they_come {
   const Load* load_;
 };
 
-/// `load` of a range. Throws std::runtime_error if it gives another number of points: what is known of pieces has room for no others.
+/// `load` of a range. Throws std::runtime_error if it gives another number of points: what is known of pieces has room
+/// for no others.
 template <loaded_cloud C>
 loaded_source<C> load_range(const C& cloud, const point_range& range, std::byte* room) {
   const loaded_source<C> source = cloud.load(range.begin, range.end, room);
   if (source.size() != range.end - range.begin)
-    throw std::runtime_error("clearance: a cloud was to load " + std::to_string(range.end - range.begin) + " points, and loaded " +
-                             std::to_string(source.size()));
+    throw std::runtime_error("clearance: a cloud was to load " + std::to_string(range.end - range.begin) +
+                             " points, and loaded " + std::to_string(source.size()));
   return source;
 }
 
@@ -115,13 +122,14 @@ void number_as_in_cloud(min_distance_result& result, std::span<part_minimum> min
   for (part_minimum& m : minima) put(m);
 }
 
-/// What a question about a chunked cloud does, on any backend. `search(ranges, result, pieces)` asks about some of it, writes to `minima`, if
-/// these are not empty, and to `pieces`, if that is not null, what it sees.
+/// What a question about a chunked cloud does, on any backend. `search(ranges, result, pieces)` asks about some of it,
+/// writes to `minima`, if these are not empty, and to `pieces`, if that is not null, what it sees.
 ///
-/// What was seen decides in two steps: of the boxes that are nearest to the parts a first answer, which bounds the last one; then what is
-/// in boxes that are within that bound.
+/// What was seen decides in two steps: of the boxes that are nearest to the parts a first answer, which bounds the last
+/// one; then what is in boxes that are within that bound.
 template <class C, class Search>
-min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose,
+min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> facts,
+                                std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose,
                                 std::span<part_minimum> minima, const Search& search) {
   const std::size_t pieces = (cloud.size() + scan::piece_points - 1) / scan::piece_points;
   min_distance_result result;
@@ -139,7 +147,8 @@ min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> f
   for (std::size_t k = 0; k < pieces; ++k)
     if (!cloud.pieces()[k].empty())
       for (std::size_t part = 0; part < facts.size(); ++part)
-        if (const double its = scan::away(frame.places[part].around, box_of(cloud.pieces()[k].box)); its < least[part]) least[part] = its, nearest[part] = k;
+        if (const double its = scan::away(frame.places[part].around, box_of(cloud.pieces()[k].box)); its < least[part])
+          least[part] = its, nearest[part] = k;
   if (minima.empty()) {  // the robot's nearest says enough
     const auto best = std::size_t(std::ranges::min_element(least) - least.begin());
     nearest = {nearest[best]};

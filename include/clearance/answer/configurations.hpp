@@ -14,20 +14,25 @@ namespace clearance::detail {
 /// How many configurations that are. Throws std::invalid_argument if some are not whole.
 inline std::size_t count_configurations(std::size_t parts, std::size_t poses) {
   if (parts == 0 ? poses != 0 : poses % parts != 0)
-    throw std::invalid_argument("clearance: " + std::to_string(poses) + " poses are no whole configurations of " + std::to_string(parts) + " parts");
+    throw std::invalid_argument("clearance: " + std::to_string(poses) + " poses are no whole configurations of " +
+                                std::to_string(parts) + " parts");
   return parts == 0 ? 0 : poses / parts;
 }
-/// How many trajectories of `horizon` configurations there are in `all`, [batch, horizon]. Throws std::invalid_argument if one is not whole.
+/// How many trajectories of `horizon` configurations there are in `all`, [batch, horizon]. Throws std::invalid_argument
+/// if one is not whole.
 inline std::size_t count_trajectories(std::size_t all, std::size_t horizon) {
   if (horizon == 0 || all % horizon != 0)
-    throw std::invalid_argument("clearance: " + std::to_string(all) + " configurations are no whole trajectories of " + std::to_string(horizon));
+    throw std::invalid_argument("clearance: " + std::to_string(all) + " configurations are no whole trajectories of " +
+                                std::to_string(horizon));
   return all / horizon;
 }
 /// Trajectory `i` of them. Throws std::invalid_argument if there is none.
 template <class T>
 std::span<const T> trajectory_of(std::span<const T> all, std::size_t i, std::size_t horizon) {
   const std::size_t count = count_trajectories(all.size(), horizon);
-  if (i >= count) throw std::invalid_argument("clearance: there is no trajectory " + std::to_string(i) + " of " + std::to_string(count));
+  if (i >= count)
+    throw std::invalid_argument("clearance: there is no trajectory " + std::to_string(i) + " of " +
+                                std::to_string(count));
   return all.subspan(i * horizon, horizon);
 }
 /// The first configuration of each that `found(trajectory)` finds.
@@ -40,7 +45,8 @@ std::vector<std::size_t> first_of_each(std::span<const T> all, std::size_t horiz
 /// Throws std::invalid_argument if a chain is of another robot.
 inline void check_chain(std::size_t parts, std::size_t of_chain) {
   if (parts != of_chain)
-    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but a joint chain of " + std::to_string(of_chain));
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but a joint chain of " +
+                                std::to_string(of_chain));
 }
 /// Calls `f`; of what it throws because a pose is not rigid the sentence says which configuration's.
 template <class F>
@@ -49,7 +55,8 @@ void named(std::size_t parts, std::span<const Eigen::Isometry3d> poses, const F&
     f();
   } catch (const std::invalid_argument&) {
     for (std::size_t i = 0; i < poses.size(); ++i)
-      rigid_transform_of(poses[i], ("configuration " + std::to_string(i / parts) + "'s part").c_str(), std::int64_t(i % parts));
+      rigid_transform_of(poses[i], ("configuration " + std::to_string(i / parts) + "'s part").c_str(),
+                         std::int64_t(i % parts));
     throw;
   }
 }

@@ -18,8 +18,8 @@
 
 namespace clearance::minimum {
 
-/// A question about many configurations on a device, frame after frame: a tree over each cloud, and a block a configuration
-/// down it. Nothing is waited for, and once there was a frame of a size nothing is allocated.
+/// A question about many configurations on a device, frame after frame: a tree over each cloud, and a block a
+/// configuration down it. Nothing is waited for, and once there was a frame of a size nothing is allocated.
 template <class PartView, class Question>
 class device_batch {
  public:
@@ -27,7 +27,12 @@ class device_batch {
 
   /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
   device_batch(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
-      : on_(on), model_(model), facts_(model.facts.begin(), model.facts.end()), memory_(memory), beside_(on), counts_(1, on.id, memory),
+      : on_(on),
+        model_(model),
+        facts_(model.facts.begin(), model.facts.end()),
+        memory_(memory),
+        beside_(on),
+        counts_(1, on.id, memory),
         left_used_(2, on.id, memory) {
     check_stack<near_first>(model.depth, model.width);
     model_.facts = facts_;
@@ -39,7 +44,8 @@ class device_batch {
     };
     processors_ = ask_device(cudaDevAttrMultiProcessorCount);
     of_processor_ = std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerMultiprocessor));
-    of_block_ = std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerBlockOptin)) - 1024;  // less what the kernel has besides
+    of_block_ =
+        std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerBlockOptin)) - 1024;  // less what the kernel has besides
   }
   device_batch(const device_batch&) = delete;
 
@@ -68,14 +74,17 @@ class device_batch {
     for (const Eigen::Isometry3d& pose : poses) staged_.emplace_back(pose);
     place(std::uint32_t(poses.empty() ? 0 : poses.size() / facts_.size()), [&](world_transform* there) {
       const device_guard guard(on_.id);
-      check_cuda(cudaMemcpyAsync(there, staged_.data(), staged_.size() * sizeof staged_[0], cudaMemcpyHostToDevice, on_.stream), "cudaMemcpyAsync");
+      check_cuda(cudaMemcpyAsync(there, staged_.data(), staged_.size() * sizeof staged_[0], cudaMemcpyHostToDevice,
+                                 on_.stream),
+                 "cudaMemcpyAsync");
     });
   }
   /// The same of poses that `fill(there)` enqueues.
   template <class Fill>
   void place(std::uint32_t count, const Fill& fill) {
     const std::size_t n = count * facts_.size();
-    const std::uint32_t before = std::exchange(configurations_, 0);  // so that nothing is asked of poses that were not placed
+    const std::uint32_t before =
+        std::exchange(configurations_, 0);  // so that nothing is asked of poses that were not placed
     grow(poses_, n), grow(places_, n), grow(bounds_, n);
     grow(of_all_, count), grow(all_, count), grow(results_, count);
     if constexpr (!Question::by_margin) grow(left_, pieces_of(count, 8)), grow(left_again_, pieces_of(count, 2));
@@ -94,7 +103,8 @@ class device_batch {
   void enqueue(const Clouds& clouds, const Question& question, const Here& here) {
     if (configurations_ == 0) return;
     clear(counts_.data(), 0, 1);
-    const bool foreseen = Question::by_margin && count_clouds(clouds) > 1;  // margins are for what is certain about all clouds
+    const bool foreseen =
+        Question::by_margin && count_clouds(clouds) > 1;  // margins are for what is certain about all clouds
     if (foreseen)
       frames::for_each_turn(frame_, facts_, anywhere_, clouds, [&](const auto& given, const frames::turn& now) {
         place_in(on_, point_span{}, told(given, now, question, false));
@@ -120,8 +130,10 @@ class device_batch {
   using tree_type = cloud_tree::device_tree::view_type;
   using room = batch_room<typename arguments::pair_type, pair_order<PartView>>;
   using piece = typename batch_pieces<typename arguments::pair_type>::piece;
-  /// After so many rounds of 128 threads a block leaves what is left. Where points may be inside, stacks are longer, and earlier too many.
-  static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128, next_rounds = first_rounds > 128 ? 48 : 24;
+  /// After so many rounds of 128 threads a block leaves what is left. Where points may be inside, stacks are longer,
+  /// and earlier too many.
+  static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128,
+                            next_rounds = first_rounds > 128 ? 48 : 24;
   static constexpr unsigned resident_threads = 1024;  ///< Of a processor, that the kernel's registers leave room for.
   struct counts {
     scan::drop_counts dropped;
@@ -129,13 +141,32 @@ class device_batch {
   };
 
   /// Room for so many pieces that blocks leave; where that is not enough they go on by themselves.
-  static std::size_t pieces_of(std::size_t configurations, std::size_t each) { return std::min(each * configurations, std::size_t(1) << 18) + 1024; }
+  static std::size_t pieces_of(std::size_t configurations, std::size_t each) {
+    return std::min(each * configurations, std::size_t(1) << 18) + 1024;
+  }
 
   template <point_source S>
   arguments told(const S& source, const frames::turn& now, const Question& question, bool foreseen) const {
-    return {model_.parts, std::uint32_t(facts_.size()), configurations_, poses_.data(), now, frame_.world_from_cloud, rounding_of(source), question, foreseen,
-            now.first + source.size(), places_.data(), bounds_.data(), of_all_.data(), all_.data(), near_.data(), last_.data(), seeds_.data(),
-            results_.data(), &counts_.data()->dropped, &counts_.data()->lost,
+    return {model_.parts,
+            std::uint32_t(facts_.size()),
+            configurations_,
+            poses_.data(),
+            now,
+            frame_.world_from_cloud,
+            rounding_of(source),
+            question,
+            foreseen,
+            now.first + source.size(),
+            places_.data(),
+            bounds_.data(),
+            of_all_.data(),
+            all_.data(),
+            near_.data(),
+            last_.data(),
+            seeds_.data(),
+            results_.data(),
+            &counts_.data()->dropped,
+            &counts_.data()->lost,
             {left_.data(), left_used_.data(), std::uint32_t(left_.size())}};
   }
   template <point_source S>
@@ -150,10 +181,12 @@ class device_batch {
       else
         place_in(beside, source, a);
     });
-    // As many threads as a device has room for: of few configurations each gets more; and where most of them end at once, or a look takes
-    // long, all do. And stacks as deep as room is left for: the fewer pairs a round may take, the more rounds.
+    // As many threads as a device has room for: of few configurations each gets more; and where most of them end at
+    // once, or a look takes long, all do. And stacks as deep as room is left for: the fewer pairs a round may take, the
+    // more rounds.
     const bool uneven = a.question.limited() || scan::has_interior<PartView>;
-    unsigned threads = uneven ? 256 : std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 256u);
+    unsigned threads =
+        uneven ? 256 : std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 256u);
     static_assert(room::bytes(32, room::least_depth(32)) <= 48 * 1024, "a handle of a node must be smaller");
     while (room::bytes(threads, room::least_depth(threads)) > 48 * 1024) threads /= 2;  // as much as a block always has
     arguments with_stack = a;
@@ -165,10 +198,12 @@ class device_batch {
     const unsigned at_once = processors_ * (resident_threads / threads);
     const auto search = [&](unsigned blocks, unsigned rounds) {
       with_stack.rounds = rounds == none ? none : rounds * 128 / threads;
-      on_.launch(batch_kernel<arguments, tree_type>, blocks, threads, room::bytes(threads, with_stack.depth), with_stack, tree);
+      on_.launch(batch_kernel<arguments, tree_type>, blocks, threads, room::bytes(threads, with_stack.depth),
+                 with_stack, tree);
     };
     if (a.question.limited() || configurations_ <= at_once) return search(configurations_, none);
-    // Of many the slowest takes twenty times as long as most, and most of that may come from one pair: so what is left is dealt out twice.
+    // Of many the slowest takes twenty times as long as most, and most of that may come from one pair: so what is left
+    // is dealt out twice.
     search(configurations_, first_rounds);
     with_stack.given = with_stack.left;
     with_stack.left = {left_again_.data(), left_used_.data() + 1, std::uint32_t(left_again_.size())};
@@ -205,7 +240,8 @@ class device_batch {
   std::uint32_t configurations_ = 0;
   std::uint64_t seen_ = 0;
   std::vector<world_transform> staged_;
-  std::vector<Eigen::Isometry3d> anywhere_;  ///< Poses, so that clouds are placed on the host: what is made of them is not used.
+  std::vector<Eigen::Isometry3d>
+      anywhere_;  ///< Poses, so that clouds are placed on the host: what is made of them is not used.
   frames::cloud_frame frame_;
   std::vector<std::unique_ptr<cloud_tree::device_tree>> trees_;
   device_buffer<world_transform> poses_;

@@ -8,10 +8,11 @@
 
 namespace clearance::minimum {
 
-/// Groups of parts, which were looked at by kernels of their own, become one robot again. Each has seen the same points.
+/// Groups of parts, which were looked at by kernels of their own, become one robot again. Each has seen the same
+/// points.
 template <bool HasInterior>
-__global__ void merge_groups(const min_distance_result* of_group, std::uint32_t groups, min_distance_result* result, std::uint32_t* done,
-                             std::uint32_t number) {
+__global__ void merge_groups(const min_distance_result* of_group, std::uint32_t groups, min_distance_result* result,
+                             std::uint32_t* done, std::uint32_t number) {
   of_pieces robot(of_group[0]);
   for (std::uint32_t g = 1; g < groups; ++g) {
     of_pieces next(of_group[g]);
@@ -24,36 +25,44 @@ __global__ void merge_groups(const min_distance_result* of_group, std::uint32_t 
   *static_cast<volatile std::uint32_t*>(done) = number;
 }
 
-/// The least distance on a device, frame after frame, one kernel a cloud: nothing is allocated and nothing waited for. Where
-/// the last minima were is a first bound of the next frame, which changes how long it takes, and nothing else.
+/// The least distance on a device, frame after frame, one kernel a cloud: nothing is allocated and nothing waited for.
+/// Where the last minima were is a first bound of the next frame, which changes how long it takes, and nothing else.
 template <class PartView>
 class device_search {
  public:
   device_search(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
-      : on_(on), facts_(model.facts.begin(), model.facts.end()), launch_(on, model, memory), state_(launch_.groups(), on.id, memory),
-        witnesses_(launch_.groups() * scan::most_parts, on.id, memory), records_(launch_.most_blocks() * model.size(), on.id, memory),
-        candidates_(launch_.groups() * launch_.most_blocks(), on.id, memory), of_group_(launch_.groups() == 1 ? 0 : launch_.groups(), on.id, memory) {
+      : on_(on),
+        facts_(model.facts.begin(), model.facts.end()),
+        launch_(on, model, memory),
+        state_(launch_.groups(), on.id, memory),
+        witnesses_(launch_.groups() * scan::most_parts, on.id, memory),
+        records_(launch_.most_blocks() * model.size(), on.id, memory),
+        candidates_(launch_.groups() * launch_.most_blocks(), on.id, memory),
+        of_group_(launch_.groups() == 1 ? 0 : launch_.groups(), on.id, memory) {
     const device_guard guard(on.id);
-    check_cuda(cudaMemsetAsync(witnesses_.data(), 0, witnesses_.size() * sizeof(typename one::witness_type), on.stream), "cudaMemsetAsync");
+    check_cuda(cudaMemsetAsync(witnesses_.data(), 0, witnesses_.size() * sizeof(typename one::witness_type), on.stream),
+               "cudaMemsetAsync");
     forget_bounds();
   }
 
   /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
   void forget() { launch_.forget(), forget_bounds(); }
 
-  /// Of the next frame alone, which must not be `PerPart`, nothing needs to be found that is farther than `within`. Enqueued.
+  /// Of the next frame alone, which must not be `PerPart`, nothing needs to be found that is farther than `within`.
+  /// Enqueued.
   void bound_by(real within) {
     const std::uint32_t bound = ordered(within);
-    for (std::uint32_t group = 0; group < launch_.groups(); ++group) on_.stage(std::span(&bound, 1), state_.data()[group].bound);
+    for (std::uint32_t group = 0; group < launch_.groups(); ++group)
+      on_.stage(std::span(&bound, 1), state_.data()[group].bound);
   }
 
   std::size_t parts() const { return facts_.size(); }
 
-  /// Enqueues one frame; `minima`, one a part, are asked for by `PerPart`. `here(source, cloud)` is what the device can read of
-  /// a cloud; at the end `number` is written to `done`, if that is not null.
+  /// Enqueues one frame; `minima`, one a part, are asked for by `PerPart`. `here(source, cloud)` is what the device can
+  /// read of a cloud; at the end `number` is written to `done`, if that is not null.
   template <bool PerPart, class Clouds, class Here>
-  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result, part_minimum* minima,
-               const Here& here, std::uint32_t* done = nullptr, std::uint32_t number = 0) {
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
+               part_minimum* minima, const Here& here, std::uint32_t* done = nullptr, std::uint32_t number = 0) {
     const ending end{result, minima, done, number};
     try {
       frames::for_each_turn(frame_, facts_, poses, clouds, [&](const auto& anywhere, const frames::turn& now) {
@@ -70,7 +79,8 @@ class device_search {
 
   /// Enqueues one frame with poses in device or pinned memory: one a part, and the cloud's (null: the world's).
   template <bool PerPart, point_source S>
-  void enqueue(const world_transform* poses, const S& source, const world_transform* cloud_pose, min_distance_result* result, part_minimum* minima) {
+  void enqueue(const world_transform* poses, const S& source, const world_transform* cloud_pose,
+               min_distance_result* result, part_minimum* minima) {
     const ending end{result, minima, nullptr, 0};
     launch_.place(poses, cloud_pose, rounding_of(source));
     for (std::uint32_t group = 0; group < launch_.groups(); ++group)
@@ -93,20 +103,24 @@ class device_search {
   }
 
   template <bool PerPart, class Source, class Place>
-  void start(const Source& source, std::uint32_t group, const frames::turn& now, const ending& end, const Place& place) {
+  void start(const Source& source, std::uint32_t group, const frames::turn& now, const ending& end,
+             const Place& place) {
     const bool alone = launch_.groups() == 1;
     const std::uint32_t before = group * scan::most_parts;
     auto a = launch_.template begin<least<PartView, PerPart>>(
         group, now,
-        {state_.data() + group, witnesses_.data() + before, records_.data() + std::size_t(before) * launch_.most_blocks(),
-         candidates_.data() + group * launch_.most_blocks(), alone ? end.result : of_group_.data() + group, PerPart ? end.minima + before : nullptr});
+        {state_.data() + group, witnesses_.data() + before,
+         records_.data() + std::size_t(before) * launch_.most_blocks(),
+         candidates_.data() + group * launch_.most_blocks(), alone ? end.result : of_group_.data() + group,
+         PerPart ? end.minima + before : nullptr});
     if (alone) a.done = end.done, a.number = end.number;
     place(a);
     launch_(source, a);
   }
   void conclude(const ending& end) {
     if (launch_.groups() == 1) return;
-    on_.launch(merge_groups<scan::has_interior<PartView>>, 1, 1, 0, of_group_.data(), launch_.groups(), end.result, end.done, end.number);
+    on_.launch(merge_groups<scan::has_interior<PartView>>, 1, 1, 0, of_group_.data(), launch_.groups(), end.result,
+               end.done, end.number);
   }
 
   device on_;

@@ -47,8 +47,12 @@ struct evidence {
     return false;
   }
 
-  __device__ position at(const arguments& a) const { return a.placed ? a.rest->frame.world_from_cloud(p) : a.frame.world_from_cloud(p); }
-  __device__ contact touching(const arguments& a, bool inside) const { return contact_of(primitive, in_part(), inside, a.pose(r.part)); }
+  __device__ position at(const arguments& a) const {
+    return a.placed ? a.rest->frame.world_from_cloud(p) : a.frame.world_from_cloud(p);
+  }
+  __device__ contact touching(const arguments& a, bool inside) const {
+    return contact_of(primitive, in_part(), inside, a.pose(r.part));
+  }
 
   /// All of it to the result.
   __device__ void write(const arguments& a) {
@@ -63,7 +67,8 @@ struct evidence {
 
 /// The minimum `best` and what is certain of it, if nothing is inside for `certain`; once all clouds are done.
 template <class Answer>
-__device__ min_distance_result bracket_of(const scan::scan_arguments<Answer>& a, const typename Answer::record& best, bool certain) {
+__device__ min_distance_result bracket_of(const scan::scan_arguments<Answer>& a, const typename Answer::record& best,
+                                          bool certain) {
   using parts = scan::frame_parts<Answer>;
   const auto& s = parts::here().answer;
   const frames::frame_facts& frame = a.facts();
@@ -72,8 +77,9 @@ __device__ min_distance_result bracket_of(const scan::scan_arguments<Answer>& a,
   r.distance = key_distance(best.key), r.part = best.part;
   double lower;
   if constexpr (Answer::bound_per_part)
-    lower = certain_distance(a.parts, [&](std::uint32_t k) { return key_distance(s.best[k].key); },
-                             [](std::uint32_t k) -> const part_facts& { return parts::view(k).facts; }, frame.error);
+    lower = certain_distance(
+        a.parts, [&](std::uint32_t k) { return key_distance(s.best[k].key); },
+        [](std::uint32_t k) -> const part_facts& { return parts::view(k).facts; }, frame.error);
   else
     lower = certain_distance(r.distance, frame.slop, frame.error);
   bracket(r, lower, parts::view(best.part).facts.tolerance, certain, frame.error);
@@ -102,7 +108,8 @@ __device__ void write_bracket(const scan::scan_arguments<Answer>& a, min_distanc
   allow_for_too_close(r);
   // Nothing is known where a pose on the device is none: this stops a robot.
   if (!scan::memory_of_block<Answer>().rigid) r.state = clearance::state::possible;
-  out.state = r.state, out.distance = r.distance, out.lower = r.lower, out.upper = r.upper, out.seen = r.seen, out.valid = r.valid;
+  out.state = r.state, out.distance = r.distance, out.lower = r.lower, out.upper = r.upper, out.seen = r.seen,
+  out.valid = r.valid;
   for (int k = 0; k < drop_reasons; ++k) out.dropped[k] = r.dropped[k];
 }
 

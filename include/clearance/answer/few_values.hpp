@@ -10,7 +10,8 @@
 
 namespace clearance::pairwise {
 
-/// A view of values: the first `Few` in itself, if there are no more, so that nothing has to be copied before a kernel starts.
+/// A view of values: the first `Few` in itself, if there are no more, so that nothing has to be copied before a kernel
+/// starts.
 template <class T, std::uint32_t Few>
 struct few_values {
   T here[Few] = {};

@@ -6,9 +6,11 @@
 
 namespace clearance::pairwise {
 
-/// An answer: the first pair within margins, certain ones before others. Whatever comes after a certain one is not looked at.
+/// An answer: the first pair within margins, certain ones before others. Whatever comes after a certain one is not
+/// looked at.
 struct first_within {
-  unsigned long long* word;          ///< One bit for what is not certain, then the point's number through all clouds, then the part.
+  unsigned long long*
+      word;  ///< One bit for what is not certain, then the point's number through all clouds, then the part.
   const real *may_be, *is;           ///< One of each a part.
   const std::uint32_t* first_point;  ///< Of each cloud.
 
@@ -18,13 +20,16 @@ struct first_within {
     return (static_cast<unsigned long long>(first_point[cloud]) + point) << 31 | part;
   }
   CLEARANCE_HD real reach(std::uint32_t part) const { return may_be[part]; }
-  CLEARANCE_HD real reach(std::uint32_t part, real found, real) const { return found <= is[part] ? -infinity : is[part]; }
+  CLEARANCE_HD real reach(std::uint32_t part, real found, real) const {
+    return found <= is[part] ? -infinity : is[part];
+  }
   CLEARANCE_HD bool settled(std::uint32_t cloud, std::uint32_t point, std::uint32_t part) const {
     return load_relaxed(word) < key(cloud, point, part);  // what is not certain is greater than any key
   }
   CLEARANCE_HD bool ended(std::uint32_t cloud, std::uint32_t point) const { return settled(cloud, point, 0); }
   CLEARANCE_HD void take(const pair_distance& pair) const {
-    const unsigned long long mine = key(pair.cloud, pair.point, pair.part) | (pair.distance <= is[pair.part] ? 0 : uncertain);
+    const unsigned long long mine =
+        key(pair.cloud, pair.point, pair.part) | (pair.distance <= is[pair.part] ? 0 : uncertain);
     if (mine < load_relaxed(word)) lower_to(word, mine);
   }
 };

@@ -11,27 +11,31 @@
 
 namespace clearance::minimum {
 
-/// A question about many configurations on the CPU, frame after frame: a tree over each cloud, and each configuration down all of them.
-/// Memory is kept, and where a configuration's last minimum was: its next search begins there, or where that of the configuration
-/// before it ended, which changes how long it takes, and nothing else.
+/// A question about many configurations on the CPU, frame after frame: a tree over each cloud, and each configuration
+/// down all of them. Memory is kept, and where a configuration's last minimum was: its next search begins there, or
+/// where that of the configuration before it ended, which changes how long it takes, and nothing else.
 template <class PartView, class Question>
 class host_batch {
  public:
-  host_batch(const host& on, const model_view<PartView>& model) : workers_(on), model_(model), walk_{stack_need(model.depth, model.width)} {}
+  host_batch(const host& on, const model_view<PartView>& model)
+      : workers_(on), model_(model), walk_{stack_need(model.depth, model.width)} {}
 
   using result_type = typename Question::result_type;
 
-  /// `poses` are rigid, those of a configuration after another; `results` are as many as configurations. What points there were.
+  /// `poses` are rigid, those of a configuration after another; `results` are as many as configurations. What points
+  /// there were.
   template <class Clouds>
-  point_counts operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Question& question, std::span<result_type> results) {
+  point_counts operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Question& question,
+                          std::span<result_type> results) {
     if (results.empty()) return {};
     const std::size_t parts = model_.size(), count = results.size();
     dropped_ = {};
     frames::cloud_frame first;
-    seen_ = frames::for_each_turn(first, model_.facts, poses.first(parts), clouds, [&](const auto& source, const frames::turn& now) {
-      if (trees_.size() <= now.cloud) trees_.resize(now.cloud + 1);
-      trees_[now.cloud].build(workers_, source, dropped_);
-    });
+    seen_ = frames::for_each_turn(first, model_.facts, poses.first(parts), clouds,
+                                  [&](const auto& source, const frames::turn& now) {
+                                    if (trees_.size() <= now.cloud) trees_.resize(now.cloud + 1);
+                                    trees_[now.cloud].build(workers_, source, dropped_);
+                                  });
     if (last_.size() != count) last_.assign(count, {});
     rooms_.resize((count + neighbours - 1) / neighbours);
     workers_.for_pieces(count, neighbours, [&](std::size_t begin, std::size_t end) {
@@ -63,8 +67,8 @@ class host_batch {
   };
 
   template <class Clouds>
-  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Question& question, std::span<const place> starts, room& own,
-           result_type& result) const {
+  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Question& question,
+           std::span<const place> starts, room& own, result_type& result) const {
     const auto parts = std::uint32_t(model_.size());
     typename Question::memory_type all = question.start();
     result = {};
@@ -73,34 +77,38 @@ class host_batch {
       frames::for_each_turn(own.frame, model_.facts, poses, clouds, [](const auto&, const frames::turn&) {});
       before = own.frame.error;
     }
-    frames::for_each_turn(own.frame, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
-      const auto& places = own.frame.places;
-      if constexpr (Question::by_margin) {
-        before.widen(own.frame.error);
-        own.near.clear();
-        for (std::uint32_t k = 0; k < parts; ++k) own.near.push_back(question.near(k, model_.facts[k], before));
-      }
-      const auto answer = question.answer(&all, own.near.data());
-      const scan::scan_body<PartView, S, any_depth, typename Question::answer_type> body{model_.parts, places.data(), parts,  source, own.frame.origin,
-                                                                                         now.first,    nullptr,       answer, walk_};
-      for (const place& p : starts)
-        if (p.cloud == now.cloud && p.point < source.size())
-          if (const sample s = source[p.point]; s.valid()) body.visit(s.position - own.frame.origin, p.point);
-      own.bounds.clear();
-      for (std::uint32_t k = 0; k < parts; ++k) own.bounds.emplace_back(model_.facts[k], places[k].part_from_cloud);
-      const auto& tree = trees_[now.cloud].view();
-      const tree_search<std::remove_const_t<decltype(body)>, cloud_tree::host_tree::view_type> search{body, tree, own.bounds.data()};
-      with_vectors([&] { walk_trees(search, own.pending); });
-      if constexpr (!Question::by_margin)
-        resolve_body<PartView, S, any_depth>{model_.parts, places.data(), parts, source, own.frame.origin, own.frame.world_from_cloud, now.first,
-                                             now.cloud,    answer,        walk_, &result, nullptr}(parts);
-    });
+    frames::for_each_turn(
+        own.frame, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+          const auto& places = own.frame.places;
+          if constexpr (Question::by_margin) {
+            before.widen(own.frame.error);
+            own.near.clear();
+            for (std::uint32_t k = 0; k < parts; ++k) own.near.push_back(question.near(k, model_.facts[k], before));
+          }
+          const auto answer = question.answer(&all, own.near.data());
+          const scan::scan_body<PartView, S, any_depth, typename Question::answer_type> body{
+              model_.parts, places.data(), parts, source, own.frame.origin, now.first, nullptr, answer, walk_};
+          for (const place& p : starts)
+            if (p.cloud == now.cloud && p.point < source.size())
+              if (const sample s = source[p.point]; s.valid()) body.visit(s.position - own.frame.origin, p.point);
+          own.bounds.clear();
+          for (std::uint32_t k = 0; k < parts; ++k) own.bounds.emplace_back(model_.facts[k], places[k].part_from_cloud);
+          const auto& tree = trees_[now.cloud].view();
+          const tree_search<std::remove_const_t<decltype(body)>, cloud_tree::host_tree::view_type> search{
+              body, tree, own.bounds.data()};
+          with_vectors([&] { walk_trees(search, own.pending); });
+          if constexpr (!Question::by_margin)
+            resolve_body<PartView, S, any_depth>{
+                model_.parts, places.data(), parts,  source, own.frame.origin, own.frame.world_from_cloud,
+                now.first,    now.cloud,     answer, walk_,  &result,          nullptr}(parts);
+        });
     if constexpr (Question::by_margin) {
       point_counts counts;
       scan::count(counts, dropped_.dropped, seen_);
       result = question.told(all, counts.valid, counts.dropped[int(drop_reason::too_close)] != 0);
     } else {
-      conclude_body<PartView>{model_.parts, parts, &dropped_, {&all, nullptr}, own.frame.error, own.frame.slop, seen_, &result}(0);
+      conclude_body<PartView>{model_.parts,    parts,          &dropped_, {&all, nullptr},
+                              own.frame.error, own.frame.slop, seen_,     &result}(0);
       if (parts != 0) beyond(result, question.d_max, own.frame.slop, own.frame.error);
     }
   }

@@ -17,8 +17,8 @@
 
 namespace clearance::pointwise {
 
-/// A range of points, by one thread. Neighbours walk together if they are much closer to one another than to the robot; each starts
-/// with what was nearest to one before as a bound.
+/// A range of points, by one thread. Neighbours walk together if they are much closer to one another than to the robot;
+/// each starts with what was nearest to one before as a bound.
 template <class PartView, point_source Source>
 struct host_points {
   using hierarchy_type = typename PartView::hierarchy_type;
@@ -59,7 +59,7 @@ struct host_points {
   struct memory {
     std::vector<near_first::entry_of<hierarchy_type>> pending;
     std::vector<std::pair<real, std::uint32_t>> near;  ///< Parts within reach of a tile, the nearest first.
-    seed last, next;         ///< What was nearest to a point of the last packet, and of this one.
+    seed last, next;           ///< What was nearest to a point of the last packet, and of this one.
     real distance = infinity;  ///< Of the last point.
   };
 
@@ -98,7 +98,8 @@ struct host_points {
     for (std::size_t j = 0; j < Lanes; ++j) all.put(j, t[begin + j], d_max);
     if (m.last.part != none) {
       const auto& primitive = m.last.where.in(parts[m.last.part].tree);
-      for (std::size_t j = 0; j < Lanes; ++j) all.within[j] = min(d_max, primitive.distance(places[m.last.part].part_from_cloud(all[j])));
+      for (std::size_t j = 0; j < Lanes; ++j)
+        all.within[j] = min(d_max, primitive.distance(places[m.last.part].part_from_cloud(all[j])));
     }
     for (const auto& [away, k] : m.near) visit(k, all, lead, m, best + begin);
     m.last = m.next;
@@ -112,7 +113,8 @@ struct host_points {
     std::uint32_t near[Lanes];
     if (!all.mark(sphere{place.around.center, place.around.radius}, near)) return;
     scan::walking_packet<hierarchy_type, Lanes> here;
-    for (std::size_t j = 0; j < Lanes; ++j) here.put(j, place.part_from_cloud(all[j]), near[j] != 0 ? all.within[j] : -infinity);
+    for (std::size_t j = 0; j < Lanes; ++j)
+      here.put(j, place.part_from_cloud(all[j]), near[j] != 0 ? all.within[j] : -infinity);
     if constexpr (scan::has_interior<PartView>)
       for (std::size_t j = 0; j < Lanes; ++j)
         if (here.within[j] > -infinity && parts[k].interior.inside(here[j])) {
@@ -131,14 +133,16 @@ struct host_points {
 
 /// All clouds of a frame.
 template <class PartView, class Clouds>
-distance_certainty on_host(const host& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                           const distances_out& out, real d_max, point_counts* counts) {
+distance_certainty on_host(const host& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
+                           const Clouds& clouds, const distances_out& out, real d_max, point_counts* counts) {
   scan::drop_counts dropped;
   frames::cloud_frame frame;
-  const std::uint64_t seen = frames::for_each_turn(frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
-    on.for_ranges(source.size(), host_points<PartView, S>{model.parts, frame.places, stack_need(model.depth, model.width), source, frame.origin, now.first,
-                                                          &dropped, out, d_max});
-  });
+  const std::uint64_t seen = frames::for_each_turn(
+      frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+        on.for_ranges(source.size(),
+                      host_points<PartView, S>{model.parts, frame.places, stack_need(model.depth, model.width), source,
+                                               frame.origin, now.first, &dropped, out, d_max});
+      });
   scan::count(*counts, dropped.dropped, seen);
   return certainty_of(frame);
 }

@@ -9,29 +9,33 @@
 
 namespace clearance::minimum {
 
-/// The least distance on the CPU, frame after frame: memory and threads are kept, and where the last minima were is a first
-/// bound of the next frame, which changes how long it takes, and nothing else.
+/// The least distance on the CPU, frame after frame: memory and threads are kept, and where the last minima were is a
+/// first bound of the next frame, which changes how long it takes, and nothing else.
 template <class PartView>
 class host_search {
  public:
-  host_search(const host& on, const model_view<PartView>& model) : workers_(on), model_(model), walk_{stack_need(model.depth, model.width)} {}
+  host_search(const host& on, const model_view<PartView>& model)
+      : workers_(on), model_(model), walk_{stack_need(model.depth, model.width)} {}
 
   /// One frame; `minima`, one a part, or null. The clouds share one bound, and are numbered in their order.
   template <class Clouds>
-  void operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result, part_minimum* minima = nullptr) {
+  void operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
+                  part_minimum* minima = nullptr) {
     *result = {}, totals_ = {}, counts_ = {};
     if (const real within = std::exchange(within_, infinity); within < infinity) totals_.best = make_key(within, none);
     part_best_.assign(minima == nullptr ? 0 : model_.size(), no_key);
     std::fill_n(minima, part_best_.size(), part_minimum{});
     const shared_bounds bounds{&totals_, minima == nullptr ? nullptr : part_best_.data()};
-    const std::uint64_t seen = frames::for_each_turn(frame_, model_.facts, poses, clouds, [&](const auto& source, const frames::turn& now) {
-      search(source, now, bounds, result, minima);
-    });
-    conclude_body<PartView>{model_.parts, std::uint32_t(model_.size()), &counts_, bounds, frame_.error, frame_.slop, seen, result}(0);
+    const std::uint64_t seen = frames::for_each_turn(
+        frame_, model_.facts, poses, clouds,
+        [&](const auto& source, const frames::turn& now) { search(source, now, bounds, result, minima); });
+    conclude_body<PartView>{
+        model_.parts, std::uint32_t(model_.size()), &counts_, bounds, frame_.error, frame_.slop, seen, result}(0);
     last_.clear();
     if (result->part != none) last_.push_back({result->cloud, result->point});
     for (std::size_t k = 0; k < part_best_.size(); ++k)
-      if (minima[k].cloud != none && minima[k].point != result->point) last_.push_back({minima[k].cloud, minima[k].point});
+      if (minima[k].cloud != none && minima[k].point != result->point)
+        last_.push_back({minima[k].cloud, minima[k].point});
   }
 
   /// Drops what is known of the last frame. The next one takes longer; its answer is the same.
@@ -54,15 +58,22 @@ class host_search {
               part_minimum* minima) {
     const auto parts = std::uint32_t(model_.size());
     const std::size_t n = source.size();
-    const scan::scan_body<PartView, S, any_depth, shared_bounds> body{model_.parts, frame_.places.data(), parts, source, frame_.origin, now.first,
-                                                                      &counts_,     bounds,               walk_};
+    const scan::scan_body<PartView, S, any_depth, shared_bounds> body{
+        model_.parts, frame_.places.data(), parts, source, frame_.origin, now.first, &counts_, bounds, walk_};
     for (const seen_at& w : last_)
       if (w.cloud == now.cloud) recall(body, w.point);
     if (n >= 4 * sample_tiles * scan::tile_points)
-      scan::sample_tiles(body, sample_tiles, [&](vec3 p, std::size_t i, std::uint32_t k) { seed(body, p, now.first + std::uint32_t(i), k); });
-    workers_.for_pieces(n, scan::piece_points, [&](std::size_t begin, std::size_t end) { body(indices{begin, end, 1}); });
-    const resolve_body<PartView, S, any_depth> resolve{model_.parts, frame_.places.data(), parts, source, frame_.origin, frame_.world_from_cloud, now.first,
-                                                        now.cloud, bounds, walk_, result, minima};
+      scan::sample_tiles(body, sample_tiles, [&](vec3 p, std::size_t i, std::uint32_t k) {
+        seed(body, p, now.first + std::uint32_t(i), k);
+      });
+    workers_.for_pieces(n, scan::piece_points,
+                        [&](std::size_t begin, std::size_t end) { body(indices{begin, end, 1}); });
+    const resolve_body<PartView, S, any_depth> resolve{model_.parts,  frame_.places.data(),
+                                                       parts,         source,
+                                                       frame_.origin, frame_.world_from_cloud,
+                                                       now.first,     now.cloud,
+                                                       bounds,        walk_,
+                                                       result,        minima};
     for (std::uint32_t k = 0; k <= parts; ++k) resolve(k);
   }
 

@@ -21,7 +21,8 @@ class kept_copies {
       auto& copy = copies_[cloud];
       if (copy.size() < bytes.size()) copy = device_buffer<std::byte>(bytes.size(), on_.id, memory_);
       const device_guard guard(on_.id);
-      check_cuda(cudaMemcpyAsync(copy.data(), bytes.data(), bytes.size(), cudaMemcpyDefault, on_.stream), "cudaMemcpyAsync");
+      check_cuda(cudaMemcpyAsync(copy.data(), bytes.data(), bytes.size(), cudaMemcpyDefault, on_.stream),
+                 "cudaMemcpyAsync");
       return source.at(copy.data());
     }
     return source;

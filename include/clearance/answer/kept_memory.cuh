@@ -25,7 +25,8 @@ class memory_on<device> {
     }
   };
 
-  explicit memory_on(const device& on, std::pmr::memory_resource* memory = nullptr) : on_(on), memory_(memory), copies_(on, memory) {}
+  explicit memory_on(const device& on, std::pmr::memory_resource* memory = nullptr)
+      : on_(on), memory_(memory), copies_(on, memory) {}
 
   piece take(std::size_t units) const { return {units, on_.id, memory_}; }
 

@@ -20,7 +20,9 @@ struct alignas(16) memory_unit {
 /// Where the memory is from, and how clouds are read, by where a question runs. Any backend that is not a device:
 template <class On>
 class memory_on {
-  static_assert(!requires { typename On::own_scan; }, "a device keeps its memory otherwise: include the question's .cuh header, not the .hpp");
+  static_assert(
+      !requires { typename On::own_scan; },
+      "a device keeps its memory otherwise: include the question's .cuh header, not the .hpp");
 
  public:
   using piece = typename On::template scratch<memory_unit>;
@@ -56,8 +58,8 @@ class memory_on {
   minimum::cloud_copies<On> copies_;
 };
 
-/// Rooms for what a question keeps of one frame. Those of the next frame are in the same places, one after another, unless they are
-/// larger than ever: only then is memory taken.
+/// Rooms for what a question keeps of one frame. Those of the next frame are in the same places, one after another,
+/// unless they are larger than ever: only then is memory taken.
 template <class On>
 class kept_memory : public memory_on<On> {
  public:
@@ -87,7 +89,8 @@ class kept_memory : public memory_on<On> {
       if (!from.empty()) std::memcpy(staging_.data() + its, from.data(), from.size_bytes());
       return reinterpret_cast<U*>(there + its);
     };
-    const std::tuple all{copy(std::span<const std::ranges::range_value_t<Data>>(data))...};  // braces: from left to right
+    const std::tuple all{
+        copy(std::span<const std::ranges::range_value_t<Data>>(data))...};  // braces: from left to right
     on_.stage(std::span<const memory_unit>(staging_), there);
     return all;
   }

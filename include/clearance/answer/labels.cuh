@@ -8,7 +8,8 @@
 
 namespace clearance::pairwise {
 
-/// An answer that is told of every point, too: it has labels, a byte each, and counts those that are `own` and `uncertain`.
+/// An answer that is told of every point, too: it has labels, a byte each, and counts those that are `own` and
+/// `uncertain`.
 template <class A>
 concept labelling_answer = answer<A> && requires(const A a, const pair_distance pair, std::uint32_t n) {
   *a.label_of(n, n) = a.whose_alone(true);
@@ -34,11 +35,13 @@ struct labels_of {
     if (is_aligned(label) && (reasons & 0x80808080u) == 0) {
       static_assert(sizeof *label == 1 && drop_reasons < 0x80);
       const unsigned dropped = __vcmpne4(reasons, 0);
-      *reinterpret_cast<std::uint32_t*>(label) = (dropped & std::uint32_t(no_point) * 0x01010101u) | (~dropped & std::uint32_t(alone) * 0x01010101u);
+      *reinterpret_cast<std::uint32_t*>(label) =
+          (dropped & std::uint32_t(no_point) * 0x01010101u) | (~dropped & std::uint32_t(alone) * 0x01010101u);
     } else {
 #pragma unroll
       for (int j = 0; j < scan::quad; ++j)
-        if (const unsigned reason = reasons >> 8 * j & 0xff; reason != scan::no_point) label[j] = reason == 0 ? alone : no_point;
+        if (const unsigned reason = reasons >> 8 * j & 0xff; reason != scan::no_point)
+          label[j] = reason == 0 ? alone : no_point;
     }
   }
 
@@ -46,21 +49,26 @@ struct labels_of {
   static __device__ void hand_in(const arguments& a) {
     if (!a.answer.last_group) return;
     count(a);
-    if (const auto& s = scan::memory_of_block<Pairs>().answer; threadIdx.x == 0) a.answer.labelled[blockIdx.x] = {s.own, s.uncertain};
+    if (const auto& s = scan::memory_of_block<Pairs>().answer; threadIdx.x == 0)
+      a.answer.labelled[blockIdx.x] = {s.own, s.uncertain};
   }
   /// By the last block: all blocks' counts to those of the answer.
   static __device__ void conclude(const arguments& a) {
     if (!a.answer.last_group || threadIdx.x >= 32) return;
     label_counts all{0, 0};
-    for (std::uint32_t b = threadIdx.x; b < gridDim.x; b += 32) all.own += a.answer.labelled[b].own, all.uncertain += a.answer.labelled[b].uncertain;
+    for (std::uint32_t b = threadIdx.x; b < gridDim.x; b += 32)
+      all.own += a.answer.labelled[b].own, all.uncertain += a.answer.labelled[b].uncertain;
     all = {scan::sum_of(all.own), scan::sum_of(all.uncertain)};
     auto& counts = *a.answer.answer.counts;
     if (threadIdx.x == 0)
-      counts.own = (a.cloud == 0 ? 0 : counts.own) + all.own, counts.uncertain = (a.cloud == 0 ? 0 : counts.uncertain) + all.uncertain;
+      counts.own = (a.cloud == 0 ? 0 : counts.own) + all.own,
+      counts.uncertain = (a.cloud == 0 ? 0 : counts.uncertain) + all.uncertain;
   }
 
  private:
-  static __device__ bool is_aligned(const point_label* label) { return reinterpret_cast<std::uintptr_t>(label) % scan::quad == 0; }
+  static __device__ bool is_aligned(const point_label* label) {
+    return reinterpret_cast<std::uintptr_t>(label) % scan::quad == 0;
+  }
 
   /// The labels of this block's points, to its own counts.
   static __device__ void count(const arguments& a) {

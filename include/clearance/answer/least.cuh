@@ -24,7 +24,8 @@ struct least {
   using seeds = last_frame<least>;
   static constexpr bool bound_per_part = PerPart, goes_ahead = false;
   static constexpr std::uint32_t slots = PerPart ? scan::most_parts : 1;
-  /// 73 nodes (three levels) of each of eight sphere trees; as much as leaves room for two blocks on a processor of an H200.
+  /// 73 nodes (three levels) of each of eight sphere trees; as much as leaves room for two blocks on a processor of an
+  /// H200.
   static constexpr std::size_t top_bytes = PerPart ? 10000 : 14016;
 
   struct arguments {
@@ -54,7 +55,9 @@ struct least {
   };
 
   static __device__ std::uint32_t slot(std::uint32_t part) { return PerPart ? part : 0; }
-  static __device__ real reach(const block& s, std::uint32_t part) { return from_ordered(scan::fresh(s.answer.bound[slot(part)])); }
+  static __device__ real reach(const block& s, std::uint32_t part) {
+    return from_ordered(scan::fresh(s.answer.bound[slot(part)]));
+  }
   static __device__ real reach_of_part(const block& s, std::uint32_t part, std::uint32_t bound) {
     return PerPart ? reach(s, part) : from_ordered(bound);
   }
@@ -67,11 +70,15 @@ struct least {
     if (u < atomicMin(&s.answer.bound[slot(part)], u)) atomicMin(&s.head.answer.state->bound[slot(part)], u);
   }
 
-  /// Nothing is left to learn; but not for the same point: another part may have been first there, and the lowest counts.
+  /// Nothing is left to learn; but not for the same point: another part may have been first there, and the lowest
+  /// counts.
   static __device__ bool settled(const block& s, std::uint32_t part, std::uint32_t point) {
-    return scan::fresh(s.answer.least[slot(part)]) < make_key(0, point) && load_relaxed(&s.head.answer.state->certain) != 0;
+    return scan::fresh(s.answer.least[slot(part)]) < make_key(0, point) &&
+           load_relaxed(&s.head.answer.state->certain) != 0;
   }
-  static constexpr __device__ bool skips(const block&, std::uint32_t, std::uint32_t, std::uint32_t, vec3) { return false; }
+  static constexpr __device__ bool skips(const block&, std::uint32_t, std::uint32_t, std::uint32_t, vec3) {
+    return false;
+  }
   static __device__ void take_inside(block& s, std::uint32_t part, std::uint32_t point, std::uint32_t) {
     lower(s, part, 0);
     atomicMin(&s.answer.least[slot(part)], make_key(0, point));

@@ -6,7 +6,8 @@
 
 namespace clearance::pairwise {
 
-/// A point may be nearer than `margin` if its computed distance is at most this: gap, tolerance and rounding on the safe side.
+/// A point may be nearer than `margin` if its computed distance is at most this: gap, tolerance and rounding on the
+/// safe side.
 CLEARANCE_HD inline real may_be_within(double margin, const part_facts& facts, const frames::float_error& error) {
   const double most = margin + frames::slop(facts) + error.here;
   return rounded_up(most / (most < 0 ? 1 + error.per_metre : 1 - error.per_metre));
@@ -20,9 +21,11 @@ CLEARANCE_HD inline real is_within(double margin, const part_facts& facts, const
 /// Throws std::invalid_argument if there is neither one margin nor one a part, or one is NaN.
 inline void check_margins(std::span<const double> margins, std::size_t parts) {
   if (margins.size() != 1 && margins.size() != parts)
-    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " + std::to_string(margins.size()) + " margins");
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " +
+                                std::to_string(margins.size()) + " margins");
   for (std::size_t k = 0; k < margins.size(); ++k)
-    if (!(margins[k] == margins[k])) throw std::invalid_argument("clearance: the margin of part " + std::to_string(k) + " is not a number");
+    if (!(margins[k] == margins[k]))
+      throw std::invalid_argument("clearance: the margin of part " + std::to_string(k) + " is not a number");
 }
 
 /// What is known of a frame before anything is asked. Kept, it allocates only for more parts or clouds than ever.
@@ -33,9 +36,11 @@ struct frame_ahead {
 
   /// What all clouds have in common.
   template <class Clouds>
-  const frames::frame_facts& look(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
+  const frames::frame_facts& look(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses,
+                                  const Clouds& clouds) {
     first.clear();
-    frames::for_each_turn(frame, facts, poses, clouds, [&](const auto&, const frames::turn& now) { first.push_back(now.first); });
+    frames::for_each_turn(frame, facts, poses, clouds,
+                          [&](const auto&, const frames::turn& now) { first.push_back(now.first); });
     return frame;
   }
 };

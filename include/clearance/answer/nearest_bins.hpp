@@ -11,17 +11,19 @@ namespace clearance::pairwise {
 
 /// What a pass knows of one part. Distances are their `ordered` words, so that bins are fine where distances are small.
 struct nearest_window {
-  std::uint32_t low = 0;     ///< The first bin begins here; what is less was counted before.
-  std::uint32_t wanted = 0;  ///< So many are still to be found, from there on; 0: nothing is asked of this part.
-  std::uint32_t bound = 0;   ///< No farther one matters: falls while points are counted.
-  std::uint32_t taken = 0;   ///< Points in bins,
+  std::uint32_t low = 0;       ///< The first bin begins here; what is less was counted before.
+  std::uint32_t wanted = 0;    ///< So many are still to be found, from there on; 0: nothing is asked of this part.
+  std::uint32_t bound = 0;     ///< No farther one matters: falls while points are counted.
+  std::uint32_t taken = 0;     ///< Points in bins,
   std::uint32_t lowest = ~0u;  ///< and the first bin that has one.
 };
 
 /// An answer. Enough points at most as far as a bin's end are a bound: what is farther is none of the nearest.
 struct nearest_bins {
   static constexpr std::uint32_t bins = 2048;
-  static constexpr int passes = 3, first_shift = 22;  ///< Two bins from a length to its double; then 2^11 in each, and one a number.
+  static constexpr int passes = 3,
+                       first_shift =
+                           22;  ///< Two bins from a length to its double; then 2^11 in each, and one a number.
   static constexpr int shift_of(int pass) { return first_shift - 11 * pass; }
 
   std::uint32_t* counts;  ///< `bins` a part.
@@ -44,7 +46,9 @@ struct nearest_bins {
   }
 
   /// The end of a bin, as a bound.
-  CLEARANCE_HD static std::uint32_t end_of(std::uint32_t low, std::uint32_t bin, int shift) { return low + (bin << shift) + ((1u << shift) - 1); }
+  CLEARANCE_HD static std::uint32_t end_of(std::uint32_t low, std::uint32_t bin, int shift) {
+    return low + (bin << shift) + ((1u << shift) - 1);
+  }
 
  private:
   /// Counts that others are adding to are at most too small, and the bound then too large.

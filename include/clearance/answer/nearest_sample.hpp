@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How near the k nearest points of each part are at most, before all points are asked: from those that are likely to be near.
+// How near the k nearest points of each part are at most, before all points are asked: from those that are likely to be
+// near.
 
 #include <clearance/backend/host.hpp>
 #include <clearance/frame/clouds.hpp>
@@ -34,19 +35,21 @@ class least_distances {
   std::vector<real> heap_;
 };
 
-/// On a host that is worth it: with a bound nearly all walks end at a root. A device has asked all points by the time this would take.
+/// On a host that is worth it: with a bound nearly all walks end at a root. A device has asked all points by the time
+/// this would take.
 template <class On>
 struct nearest_sample {
   template <class PartView, class Clouds>
-  static void lower(const On&, const model_view<PartView>&, std::span<const Eigen::Isometry3d>, const Clouds&, std::size_t, std::vector<real>&) {}
+  static void lower(const On&, const model_view<PartView>&, std::span<const Eigen::Isometry3d>, const Clouds&,
+                    std::size_t, std::vector<real>&) {}
 };
 
 template <>
 struct nearest_sample<host> {
   /// Lowers `bounds`, one a part, to where k points are for certain, if so many are found.
   template <class PartView, class Clouds>
-  static void lower(const host& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
-                    std::vector<real>& bounds) {
+  static void lower(const host& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
+                    const Clouds& clouds, std::size_t k, std::vector<real>& bounds) {
     host_workers workers(on);
     std::vector<least_distances> found;
     for (const real bound : bounds) found.emplace_back(k, bound);
@@ -70,7 +73,8 @@ struct nearest_sample<host> {
     const std::size_t begin = n * scan::tile_points;
     extent box;
     scan::tally uncounted;
-    if (begin + scan::tile_points <= source.size() && scan::survey(source, begin, box, uncounted)) return {box.lower - origin, box.upper - origin};
+    if (begin + scan::tile_points <= source.size() && scan::survey(source, begin, box, uncounted))
+      return {box.lower - origin, box.upper - origin};
     scan::tile t;
     t.load(source, begin, std::min(scan::tile_points, source.size() - begin), 1, uncounted);
     t.subtract(origin);
@@ -79,14 +83,15 @@ struct nearest_sample<host> {
 
   /// Tiles by how near they are to the part's ball, until none can be nearer, or enough points were asked.
   template <point_source S, class PartView>
-  static void ask(const S& source, const frames::cloud_frame& frame, const std::vector<extent>& boxes, const model_view<PartView>& model, std::uint32_t part,
-                  std::size_t most, least_distances& found) {
+  static void ask(const S& source, const frames::cloud_frame& frame, const std::vector<extent>& boxes,
+                  const model_view<PartView>& model, std::uint32_t part, std::size_t most, least_distances& found) {
     const frames::placement& place = frame.places[part];
     const PartView& its = model.parts[part];
     const any_depth walk{stack_need(model.depth, model.width)};
     std::vector<std::pair<real, std::uint32_t>> order;
     for (std::uint32_t n = 0; n < boxes.size(); ++n)
-      if (const real away = length_to(boxes[n], place.around.center) - place.around.radius; away <= found.bound()) order.emplace_back(away, n);
+      if (const real away = length_to(boxes[n], place.around.center) - place.around.radius; away <= found.bound())
+        order.emplace_back(away, n);
     const auto later = [](const auto& a, const auto& b) { return a > b; };
     std::make_heap(order.begin(), order.end(), later);
     for (std::size_t asked = 0; !order.empty() && asked < most;) {
@@ -94,7 +99,8 @@ struct nearest_sample<host> {
       const auto [away, n] = order.back();
       order.pop_back();
       if (!(away <= found.bound())) return;
-      for (std::size_t i = std::size_t(n) * scan::tile_points, end = std::min(source.size(), i + scan::tile_points); i < end; ++i) {
+      for (std::size_t i = std::size_t(n) * scan::tile_points, end = std::min(source.size(), i + scan::tile_points);
+           i < end; ++i) {
         const sample s = source[i];
         if (!s.valid() || !frames::may_reach(place.around, found.bound(), s.position - frame.origin)) continue;
         ++asked;
@@ -114,7 +120,8 @@ struct nearest_sample<host> {
   static real length_to(const extent& box, vec3 p) {
     const auto beyond = [](real low, real high, real x) { return max(max(low - x, x - high), 0); };
     if (!(box.lower.x <= box.upper.x)) return infinity;
-    return length({beyond(box.lower.x, box.upper.x, p.x), beyond(box.lower.y, box.upper.y, p.y), beyond(box.lower.z, box.upper.z, p.z)});
+    return length({beyond(box.lower.x, box.upper.x, p.x), beyond(box.lower.y, box.upper.y, p.y),
+                   beyond(box.lower.z, box.upper.z, p.z)});
   }
 };
 

@@ -5,8 +5,8 @@
 
 namespace clearance::minimum {
 
-/// Answers about pieces of the same clouds, or about some parts of a robot each, in the numbers of the whole, on their way to that of one
-/// call. Plain data; what adds is associative and commutative.
+/// Answers about pieces of the same clouds, or about some parts of a robot each, in the numbers of the whole, on their
+/// way to that of one call. Plain data; what adds is associative and commutative.
 struct of_pieces {
   min_distance_result all;
   // What the nearest pair alone says.
@@ -14,7 +14,8 @@ struct of_pieces {
   real nearest_upper;
 
   of_pieces() = default;
-  CLEARANCE_HD explicit of_pieces(const min_distance_result& piece) : all(piece), nearest_state(piece.state), nearest_upper(piece.upper) {}
+  CLEARANCE_HD explicit of_pieces(const min_distance_result& piece)
+      : all(piece), nearest_state(piece.state), nearest_upper(piece.upper) {}
 
   /// Other points.
   CLEARANCE_HD void add(const of_pieces& other) {
@@ -27,11 +28,12 @@ struct of_pieces {
     all = merged(all, other.all);
   }
 
-  /// Without a solid (`has_interior`) nothing but the nearest pair decides whether a point is certainly inside. Another piece's nearest
-  /// may be so, less deep, in a part with a smaller tolerance.
+  /// Without a solid (`has_interior`) nothing but the nearest pair decides whether a point is certainly inside. Another
+  /// piece's nearest may be so, less deep, in a part with a smaller tolerance.
   CLEARANCE_HD min_distance_result answer(bool has_interior) const {
     min_distance_result r = all;
-    if (!has_interior && r.state == state::collision && nearest_state != state::collision) r.state = state::possible, r.upper = nearest_upper;
+    if (!has_interior && r.state == state::collision && nearest_state != state::collision)
+      r.state = state::possible, r.upper = nearest_upper;
     return r;
   }
 

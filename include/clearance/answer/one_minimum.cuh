@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The end of a frame where all parts share a bound. While a block is counted, three of its warps draft the answer from its own
-// best, in case that it is the last block and has the best of all, as the slowest block often is and does.
+// The end of a frame where all parts share a bound. While a block is counted, three of its warps draft the answer from
+// its own best, in case that it is the last block and has the best of all, as the slowest block often is and does.
 
 #include <clearance/answer/evidence.cuh>
 
@@ -16,7 +16,9 @@ __forceinline__ __device__ void draft_answer(const scan::scan_arguments<Answer>&
   evidence<Answer> e;
   if (threadIdx.x / 32 != 3) e = {a, source, typename Answer::witness_type{s.best[0], s.nearest}};
   switch (threadIdx.x / 32) {
-    case 1: s.answer.at = e.at(a); break;
+    case 1:
+      s.answer.at = e.at(a);
+      break;
     case 2: {
       const bool inside = e.complete();
       const contact here = e.touching(a, inside);
@@ -25,7 +27,8 @@ __forceinline__ __device__ void draft_answer(const scan::scan_arguments<Answer>&
     }
     case 3: {
       const min_distance_result r = bracket_of(a, s.best[0], false);
-      s.answer.state = r.state, s.answer.part = r.part, s.answer.distance = r.distance, s.answer.lower = r.lower, s.answer.upper = r.upper;
+      s.answer.state = r.state, s.answer.part = r.part, s.answer.distance = r.distance, s.answer.lower = r.lower,
+      s.answer.upper = r.upper;
       break;
     }
   }
@@ -40,7 +43,8 @@ struct one_minimum {
     auto& s = block.answer;
     const std::uint32_t t = threadIdx.x;
     if (t >= 128) return;
-    const bool known = s.best[0].key != no_key && s.best[0].id != none && block.rigid;  // is more than a point inside a solid
+    const bool known =
+        s.best[0].key != no_key && s.best[0].id != none && block.rigid;  // is more than a point inside a solid
     if (t == 0) {
       const auto best = s.best[0];
       s.drafted = known ? best.key : no_key;
@@ -80,7 +84,8 @@ struct one_minimum {
       const counted all(a);
       min_distance_result r;
       if (here)
-        r.state = s.answer.state, r.part = s.answer.part, r.distance = s.answer.distance, r.lower = s.answer.lower, r.upper = s.answer.upper;
+        r.state = s.answer.state, r.part = s.answer.part, r.distance = s.answer.distance, r.lower = s.answer.lower,
+        r.upper = s.answer.upper;
       else
         r = bracket_of(a, key != no_key ? state.best[0] : typename Answer::record{}, false);
       if (all.certain && r.part != none) r.state = clearance::state::collision, r.lower = r.upper = 0;
@@ -88,7 +93,8 @@ struct one_minimum {
     }
     if (won) state.best[0] = mine.r;
     if (mine.r.key != no_key)
-      if (const std::uint32_t place = won ? 0 : atomicAdd(&s.kept, 1u) + 1; place < 32) a.answer.witnesses[place] = mine;
+      if (const std::uint32_t place = won ? 0 : atomicAdd(&s.kept, 1u) + 1; place < 32)
+        a.answer.witnesses[place] = mine;
     if (t == 0 && key == no_key) a.answer.witnesses[0].r = {};
   }
 };

@@ -27,7 +27,8 @@ struct paddings {
   CLEARANCE_HD real is(std::uint32_t k) const { return values[parts + k]; }
 };
 
-/// The answer: a label for each point of all clouds. Once it is certain that a point is the robot's, its other parts are not asked.
+/// The answer: a label for each point of all clouds. Once it is certain that a point is the robot's, its other parts
+/// are not asked.
 struct own_points {
   static constexpr std::uint32_t few_clouds = 4;
 
@@ -35,11 +36,15 @@ struct own_points {
   self_filter_counts* counts;
   paddings near;
   few_values<std::uint32_t, few_clouds> first_point;  ///< Of each cloud.
-  bool all_uncertain;                        ///< Those that are not certainly the robot's.
+  bool all_uncertain;                                 ///< Those that are not certainly the robot's.
 
   CLEARANCE_HD real reach(std::uint32_t part) const { return near.may_be(part); }
-  CLEARANCE_HD real reach(std::uint32_t part, real found, real) const { return found <= near.is(part) ? -infinity : near.is(part); }
-  CLEARANCE_HD bool settled(std::uint32_t cloud, std::uint32_t point, std::uint32_t) const { return load_relaxed(label_of(cloud, point)) == point_label::own; }
+  CLEARANCE_HD real reach(std::uint32_t part, real found, real) const {
+    return found <= near.is(part) ? -infinity : near.is(part);
+  }
+  CLEARANCE_HD bool settled(std::uint32_t cloud, std::uint32_t point, std::uint32_t) const {
+    return load_relaxed(label_of(cloud, point)) == point_label::own;
+  }
   CLEARANCE_HD void take(const pair_distance& pair) const {
     point_label* const label = label_of(pair.cloud, pair.point);
     if (is_late(pair))
@@ -52,7 +57,9 @@ struct own_points {
   CLEARANCE_HD point_label whose_alone(bool valid) const {
     return !valid ? point_label::no_point : all_uncertain ? point_label::uncertain : point_label::rest;
   }
-  CLEARANCE_HD point_label* label_of(std::uint32_t cloud, std::uint32_t point) const { return labels + first_point[cloud] + point; }
+  CLEARANCE_HD point_label* label_of(std::uint32_t cloud, std::uint32_t point) const {
+    return labels + first_point[cloud] + point;
+  }
   /// Comes after all others of its point: what is certain is not overwritten.
   CLEARANCE_HD bool is_late(const pair_distance& pair) const { return pair.distance <= near.is(pair.part); }
 };

@@ -22,7 +22,8 @@ struct pairs_of {
   /// So many pairs walk at once, and do not go down to a leaf first: of an answer that ends, few are as near as that.
   static constexpr std::uint32_t few = ending_answer<Answer> ? 8 * scan::warps : 0;
   static constexpr bool coarse = coarse_answer<Answer>, labels = labelling_answer<Answer>, goes_ahead = true;
-  /// Leaves room for two blocks on a processor of an H200; and up to 20 parts for as much cache as points that are read ahead need there.
+  /// Leaves room for two blocks on a processor of an H200; and up to 20 parts for as much cache as points that are read
+  /// ahead need there.
   static constexpr std::size_t top_bytes = 6400;
 
   struct arguments {
@@ -33,11 +34,12 @@ struct pairs_of {
     bool last_group;           ///< Of parts.
   };
   struct memory {
-    distance_key best[scan::pair_capacity];              ///< Of each pair that is being looked at: its distance and primitive.
-    std::uint32_t least[coarse ? scan::most_parts : 1];  ///< Of each part, `ordered`: the least distance that this block knows of.
-    std::uint32_t own, uncertain;                        ///< Labels.
-    std::uint32_t open_count;                            ///< Pairs that are not known yet,
-    std::uint16_t open[scan::pair_capacity];             ///< and which.
+    distance_key best[scan::pair_capacity];  ///< Of each pair that is being looked at: its distance and primitive.
+    std::uint32_t least[coarse ? scan::most_parts
+                               : 1];          ///< Of each part, `ordered`: the least distance that this block knows of.
+    std::uint32_t own, uncertain;             ///< Labels.
+    std::uint32_t open_count;                 ///< Pairs that are not known yet,
+    std::uint16_t open[scan::pair_capacity];  ///< and which.
 
     __device__ void clear(std::uint32_t thread) {
       if (thread == 0) own = uncertain = open_count = 0;
@@ -53,7 +55,8 @@ struct pairs_of {
     const distance_key best = scan::fresh(s.answer.best[pair]);
     if constexpr (coarse) {
       if (best == no_key) return reach_of_part(s, part, 0);
-      return s.head.answer.answer.reach(s.head.answer.first_part + part, key_distance(best), from_ordered(scan::fresh(s.answer.least[part])));
+      return s.head.answer.answer.reach(s.head.answer.first_part + part, key_distance(best),
+                                        from_ordered(scan::fresh(s.answer.least[part])));
     } else {
       return min(reach_of_part(s, part, 0), key_distance(best));
     }
@@ -61,15 +64,19 @@ struct pairs_of {
   static __device__ std::uint32_t common_bound(const block&) { return 0; }
 
   static __device__ bool settled(const block&, std::uint32_t, std::uint32_t) { return false; }
-  /// Nothing that is left of the part matters to the pair; `x` is its point in the cloud's frame. In a solid it is 0 away.
+  /// Nothing that is left of the part matters to the pair; `x` is its point in the cloud's frame. In a solid it is 0
+  /// away.
   static __device__ bool skips(const block& s, std::uint32_t part, std::uint32_t point, std::uint32_t pair, vec3 x) {
     if constexpr (settling_answer<Answer>)
-      if (s.head.answer.answer.settled(s.head.cloud, point - s.head.first, s.head.answer.first_part + part)) return true;
+      if (s.head.answer.answer.settled(s.head.cloud, point - s.head.first, s.head.answer.first_part + part))
+        return true;
     if (!coarse || scan::fresh(s.answer.best[pair]) == no_key) return false;
     const real reach = reach_of_pair(s, part, pair);
-    return !frames::may_reach(scan::frame_parts<pairs_of>::place(part).root.around, scan::has_interior<PartView> ? max(reach, 0) : reach, x);
+    return !frames::may_reach(scan::frame_parts<pairs_of>::place(part).root.around,
+                              scan::has_interior<PartView> ? max(reach, 0) : reach, x);
   }
-  /// Whoever calls it has the pair for itself. A leaf that it went ahead to may be 0 away, too: that is not what is told then.
+  /// Whoever calls it has the pair for itself. A leaf that it went ahead to may be 0 away, too: that is not what is
+  /// told then.
   static __device__ void take_inside(block& s, std::uint32_t part, std::uint32_t, std::uint32_t pair) {
     if (!(reach_of_part(s, part, 0) >= 0)) return;
     s.answer.best[pair] = make_key(0, none);
@@ -84,9 +91,12 @@ struct pairs_of {
   static __device__ void hear(block& s, std::uint32_t part, std::uint32_t pair, distance_key found) {
     atomicMin(&s.answer.best[pair], found);
     if constexpr (coarse)
-      if (const std::uint32_t distance = ordered(key_distance(found)); distance < scan::fresh(s.answer.least[part])) atomicMin(&s.answer.least[part], distance);
+      if (const std::uint32_t distance = ordered(key_distance(found)); distance < scan::fresh(s.answer.least[part]))
+        atomicMin(&s.answer.least[part], distance);
   }
-  static __device__ void leave_open(block& s, std::uint32_t pair) { s.answer.open[atomicAdd(&s.answer.open_count, 1u)] = std::uint16_t(pair); }
+  static __device__ void leave_open(block& s, std::uint32_t pair) {
+    s.answer.open[atomicAdd(&s.answer.open_count, 1u)] = std::uint16_t(pair);
+  }
   static __device__ std::uint32_t open_pairs(const block& s) { return s.answer.open_count; }
   static __device__ std::uint32_t open_pair(const block& s, std::uint32_t i) { return s.answer.open[i]; }
   /// All threads, when the block has nothing left to walk.
@@ -136,8 +146,8 @@ struct pairs_of {
     for (std::uint32_t i = threadIdx.x; i < count; i += scan::block_threads) {
       const distance_key best = s.answer.best[i];
       if (best == no_key) continue;
-      const pair_distance pair{s.head.cloud, s.pair_table[i].point - s.head.first, s.head.answer.first_part + s.part_of_pair[i], key_index(best),
-                               key_distance(best)};
+      const pair_distance pair{s.head.cloud, s.pair_table[i].point - s.head.first,
+                               s.head.answer.first_part + s.part_of_pair[i], key_index(best), key_distance(best)};
       if (!now(pair)) continue;
       s.answer.best[i] = no_key;
       s.head.answer.answer.take(pair);
@@ -150,15 +160,19 @@ template <class PartView>
 class device_pairs {
  public:
   device_pairs(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
-      : facts_(model.facts.begin(), model.facts.end()), launch_(on, model, memory), labelled_(launch_.most_blocks(), on.id, memory) {}
+      : facts_(model.facts.begin(), model.facts.end()),
+        launch_(on, model, memory),
+        labelled_(launch_.most_blocks(), on.id, memory) {}
 
   /// `counts` in memory that the device can write. `here(source, cloud)` is what the device can read of a cloud.
   template <class Clouds, answer Answer, class Here>
-  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer, point_counts* counts, const Here& here) {
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
+               point_counts* counts, const Here& here) {
     launch_.template pass<pairs_of<PartView, Answer>>(
         facts_, poses, clouds,
         [&](std::uint32_t group) {
-          return typename pairs_of<PartView, Answer>::arguments{answer, group * scan::most_parts, group == 0 ? counts : nullptr, labelled_.data(),
+          return typename pairs_of<PartView, Answer>::arguments{answer, group * scan::most_parts,
+                                                                group == 0 ? counts : nullptr, labelled_.data(),
                                                                 group + 1 == launch_.groups()};
         },
         here);

@@ -62,7 +62,8 @@ struct each_pair {
   }
   template <class Visitor>
   CLEARANCE_HD void take(std::uint32_t index, std::uint32_t k, const Visitor& walked) const {
-    if (const auto found = walked.result(); found.primitive != none) answer.take({cloud, index - first, k, found.primitive, found.distance});
+    if (const auto found = walked.result(); found.primitive != none)
+      answer.take({cloud, index - first, k, found.primitive, found.distance});
   }
 };
 

@@ -49,8 +49,8 @@ struct part_minima {
   using evidence_type = evidence<Answer>;
   static __device__ bool rigid() { return scan::memory_of_block<Answer>().rigid; }
 
-  /// Every part's best, of all blocks' records and of earlier clouds', to s.best; the best of those to all threads; and what is
-  /// behind one, if it is this thread's (the first lanes of warp w have parts w, w + 16, ...).
+  /// Every part's best, of all blocks' records and of earlier clouds', to s.best; the best of those to all threads; and
+  /// what is behind one, if it is this thread's (the first lanes of warp w have parts w, w + 16, ...).
   template <class Source>
   static __device__ evidence_type merge(const scan::scan_arguments<Answer>& a, const Source& source, record& best) {
     auto& s = scan::memory_of_block<Answer>().answer;

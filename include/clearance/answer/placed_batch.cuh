@@ -27,17 +27,20 @@ class placed_batch {
     q_.assign(q.begin(), q.end());
     if (!q.empty()) {
       const device_guard guard(on_.id);
-      check_cuda(cudaMemcpyAsync(there_.data(), q_.data(), q.size_bytes(), cudaMemcpyHostToDevice, on_.stream), "cudaMemcpyAsync");
+      check_cuda(cudaMemcpyAsync(there_.data(), q_.data(), q.size_bytes(), cudaMemcpyHostToDevice, on_.stream),
+                 "cudaMemcpyAsync");
     }
     place(chain, there_.data(), count);
   }
-  /// The same of joint vectors in the device's memory. One that is not finite or beyond its limits makes poses that are not rigid.
+  /// The same of joint vectors in the device's memory. One that is not finite or beyond its limits makes poses that are
+  /// not rigid.
   void place(const joint_chain<device>& chain, const double* q, std::size_t configurations) {
     detail::check_chain(search_.parts(), chain.parts());
     poses_.clear();
     asked_ = configurations;
-    search_.place(std::uint32_t(configurations),
-                  [&](world_transform* there) { on_.for_each(configurations * chain.parts(), place_links{chain.view(), q, there}); });
+    search_.place(std::uint32_t(configurations), [&](world_transform* there) {
+      on_.for_each(configurations * chain.parts(), place_links{chain.view(), q, there});
+    });
   }
 
  protected:
@@ -52,8 +55,10 @@ class placed_batch {
   void copy_out(std::vector<typename Question::result_type>& to, point_counts* counts = nullptr) const {
     to.resize(search_.size());
     if (search_.copy_out(to, counts)) return;
-    throw std::invalid_argument(poses_.empty() ? "clearance: a joint vector is not finite or beyond its joint's limits, or moves a part out of the world"
-                                               : "clearance: a pose is not rigid");
+    throw std::invalid_argument(
+        poses_.empty()
+            ? "clearance: a joint vector is not finite or beyond its joint's limits, or moves a part out of the world"
+            : "clearance: a pose is not rigid");
   }
   template <class F>
   void named(const F& f) const {

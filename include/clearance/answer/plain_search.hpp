@@ -14,21 +14,24 @@ template <class Traversal>
 void check_stack(std::uint32_t depth, std::uint32_t width) {
   if constexpr (bounded_traversal<Traversal>)
     if (stack_need(depth, width) > Traversal::capacity)
-      throw std::invalid_argument("clearance: a tree of depth " + std::to_string(depth) + " and width " + std::to_string(width) +
-                                  " needs a stack of " + std::to_string(stack_need(depth, width)) + " entries, but this traversal has " +
-                                  std::to_string(Traversal::capacity) + "; give it a larger capacity or use the recursive one");
+      throw std::invalid_argument(
+          "clearance: a tree of depth " + std::to_string(depth) + " and width " + std::to_string(width) +
+          " needs a stack of " + std::to_string(stack_need(depth, width)) + " entries, but this traversal has " +
+          std::to_string(Traversal::capacity) + "; give it a larger capacity or use the recursive one");
 }
 
 /// One pair of a point and a part for a bound that something attains, of a point `p` less the frame's origin.
 template <class Body>
 CLEARANCE_HD void seed(const Body& body, vec3 p, std::uint32_t index, std::uint32_t k) {
   const auto& tree = body.parts[k].tree;
-  const real d = scan::descend(scan::plain_steps<std::remove_cvref_t<decltype(tree)>>{tree}, body.places[k].part_from_cloud(p));
+  const real d =
+      scan::descend(scan::plain_steps<std::remove_cvref_t<decltype(tree)>>{tree}, body.places[k].part_from_cloud(p));
   if (d < infinity) body.answer.lower(index, k, d);
 }
 
-/// A few points spread over the cloud, each taken greedily to one leaf, before all others: any real pair is a valid bound,
-/// and a good one saves the rest most of the work. Without it, thousands of threads would start from infinity at once.
+/// A few points spread over the cloud, each taken greedily to one leaf, before all others: any real pair is a valid
+/// bound, and a good one saves the rest most of the work. Without it, thousands of threads would start from infinity at
+/// once.
 template <class Body>
 struct seed_body {
   static constexpr std::size_t samples = 2048;
@@ -57,17 +60,18 @@ struct seed_body {
 template <backend B, class PartView, class Traversal>
 class plain_search {
  public:
-  plain_search(const B& on, const model_view<PartView>& model, const Traversal& walk) : on_(on), model_(model), walk_(walk) {
+  plain_search(const B& on, const model_view<PartView>& model, const Traversal& walk)
+      : on_(on), model_(model), walk_(walk) {
     check_stack<Traversal>(model.depth, model.width);
     if constexpr (recursing_traversal<Traversal>) stack_bytes_ = Traversal::device_stack(model.depth);
   }
 
-  /// Enqueues one frame and waits for nothing: `result` (and `minima`, one a part, or null) are in memory that the backend can
-  /// write, and are there once it has come so far. Clouds must live until then.
-  /// `here(source, cloud)` is what the backend can read of a cloud.
+  /// Enqueues one frame and waits for nothing: `result` (and `minima`, one a part, or null) are in memory that the
+  /// backend can write, and are there once it has come so far. Clouds must live until then. `here(source, cloud)` is
+  /// what the backend can read of a cloud.
   template <class Clouds, class Here>
-  void operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result, part_minimum* minima,
-                  const Here& here) const {
+  void operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
+                  part_minimum* minima, const Here& here) const {
     const auto parts = std::uint32_t(model_.size());
     auto all = on_.template make_scratch<totals>(1);
     auto counts = on_.template make_scratch<scan::drop_counts>(1);
@@ -76,19 +80,24 @@ class plain_search {
     if (minima != nullptr) fill(part_best.data(), no_key, parts), fill(minima, part_minimum{}, parts);
     const shared_bounds bounds{all.data(), minima == nullptr ? nullptr : part_best.data()};
     frames::cloud_frame frame;
-    const std::uint64_t seen = frames::for_each_turn(frame, model_.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
-      const S source = here(anywhere, now.cloud);
-      auto places = on_.template make_scratch<frames::placement>(parts);
-      on_.stage(std::span<const frames::placement>(frame.places), places.data());
-      using loop = scan::scan_body<PartView, S, Traversal, shared_bounds>;
-      const loop body{model_.parts, places.data(), parts, source, frame.origin, now.first, counts.data(), bounds, walk_, stack_bytes_};
-      using seeds = seed_body<loop>;
-      if (const std::size_t n = source.size(); n > 4 * seeds::samples) on_.for_each(seeds::samples, seeds{body, n / seeds::samples});
-      on_.for_ranges(source.size(), body);
-      on_.for_each(parts + 1, resolve_body<PartView, S, Traversal>{model_.parts, places.data(), parts, source, frame.origin, frame.world_from_cloud, now.first,
-                                                                   now.cloud, bounds, walk_, result, minima, stack_bytes_});
-    });
-    on_.for_each(1, conclude_body<PartView>{model_.parts, parts, counts.data(), bounds, frame.error, frame.slop, seen, result});
+    const std::uint64_t seen = frames::for_each_turn(
+        frame, model_.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
+          const S source = here(anywhere, now.cloud);
+          auto places = on_.template make_scratch<frames::placement>(parts);
+          on_.stage(std::span<const frames::placement>(frame.places), places.data());
+          using loop = scan::scan_body<PartView, S, Traversal, shared_bounds>;
+          const loop body{model_.parts, places.data(), parts,  source, frame.origin,
+                          now.first,    counts.data(), bounds, walk_,  stack_bytes_};
+          using seeds = seed_body<loop>;
+          if (const std::size_t n = source.size(); n > 4 * seeds::samples)
+            on_.for_each(seeds::samples, seeds{body, n / seeds::samples});
+          on_.for_ranges(source.size(), body);
+          on_.for_each(parts + 1, resolve_body<PartView, S, Traversal>{
+                                      model_.parts, places.data(), parts, source, frame.origin, frame.world_from_cloud,
+                                      now.first, now.cloud, bounds, walk_, result, minima, stack_bytes_});
+        });
+    on_.for_each(
+        1, conclude_body<PartView>{model_.parts, parts, counts.data(), bounds, frame.error, frame.slop, seen, result});
   }
 
  private:

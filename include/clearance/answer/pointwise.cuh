@@ -30,8 +30,9 @@ struct points_of {
   struct arguments {
     distances_out out;
     real d_max;
-    std::uint32_t first_part;  ///< Number of the kernel's first part; if it is not 0, other kernels have written before.
-    point_counts* counts;      ///< Or null.
+    std::uint32_t
+        first_part;        ///< Number of the kernel's first part; if it is not 0, other kernels have written before.
+    point_counts* counts;  ///< Or null.
     remembered<PartView>* last;  ///< Of each point the nearest in the last frame, then in this; or null.
   };
   struct memory {
@@ -102,24 +103,30 @@ struct points_of {
   static __device__ void reset(const scan::scan_arguments<points_of>&) {}
 };
 
-/// Every point's distance on a device, frame after frame, one kernel a cloud: nothing is allocated and nothing waited for. If it
-/// remembers the last frame, a frame of more points than any before takes memory for that.
+/// Every point's distance on a device, frame after frame, one kernel a cloud: nothing is allocated and nothing waited
+/// for. If it remembers the last frame, a frame of more points than any before takes memory for that.
 template <class PartView>
 class device_points {
  public:
-  device_points(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr, bool remembers = false)
-      : on_(on), memory_(memory), remembers_(remembers), facts_(model.facts.begin(), model.facts.end()), launch_(on, model, memory) {}
+  device_points(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr,
+                bool remembers = false)
+      : on_(on),
+        memory_(memory),
+        remembers_(remembers),
+        facts_(model.facts.begin(), model.facts.end()),
+        launch_(on, model, memory) {}
 
-  /// What is certain of the distances, which are there once the stream has come so far. `here(source, cloud)` is what the device can
-  /// read of a cloud.
+  /// What is certain of the distances, which are there once the stream has come so far. `here(source, cloud)` is what
+  /// the device can read of a cloud.
   template <class Clouds, class Here>
-  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out, real d_max, point_counts* counts,
-                             const Here& here) {
+  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
+                             real d_max, point_counts* counts, const Here& here) {
     if (remembers_) make_room(clouds);
     return certainty_of(launch_.template pass<points_of<PartView>>(
         facts_, poses, clouds,
         [&](std::uint32_t group) {
-          return typename points_of<PartView>::arguments{out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr, last_.data()};
+          return typename points_of<PartView>::arguments{out, d_max, group * scan::most_parts,
+                                                         group == 0 ? counts : nullptr, last_.data()};
         },
         here));
   }
@@ -127,7 +134,9 @@ class device_points {
   /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
   void forget() {
     const device_guard guard(on_.id);
-    if (last_.size() != 0) check_cuda(cudaMemsetAsync(last_.data(), 0xff, last_.size() * sizeof(remembered<PartView>), on_.stream), "cudaMemsetAsync");
+    if (last_.size() != 0)
+      check_cuda(cudaMemsetAsync(last_.data(), 0xff, last_.size() * sizeof(remembered<PartView>), on_.stream),
+                 "cudaMemsetAsync");
   }
 
  private:

@@ -7,11 +7,12 @@
 
 namespace clearance {
 
-/// Where every point's distance goes, in memory that the backend writes: one of each a point of all clouds, in their order.
+/// Where every point's distance goes, in memory that the backend writes: one of each a point of all clouds, in their
+/// order.
 struct distances_out {
-  real* distance;                       ///< Metres; infinite beyond `d_max`, NaN where there is no point.
-  std::uint32_t* part = nullptr;        ///< The nearest part, or ~0u; or null.
-  std::uint32_t* primitive = nullptr;   ///< Its nearest primitive; ~0u if the point is inside the part's solid. Or null.
+  real* distance;                      ///< Metres; infinite beyond `d_max`, NaN where there is no point.
+  std::uint32_t* part = nullptr;       ///< The nearest part, or ~0u; or null.
+  std::uint32_t* primitive = nullptr;  ///< Its nearest primitive; ~0u if the point is inside the part's solid. Or null.
 };
 
 namespace pointwise {
@@ -23,8 +24,9 @@ struct found {
 
   /// Was that nearer?
   CLEARANCE_HD bool offer(const found& other) {
-    const bool nearer = other.distance < distance ||
-                        (other.distance == distance && (other.part < part || (other.part == part && other.primitive < primitive)));
+    const bool nearer =
+        other.distance < distance ||
+        (other.distance == distance && (other.part < part || (other.part == part && other.primitive < primitive)));
     if (nearer) *this = other;
     return nearer;
   }
@@ -36,7 +38,8 @@ CLEARANCE_HD inline void write(const distances_out& out, std::size_t i, const fo
   if (out.primitive != nullptr) out.primitive[i] = f.primitive;
 }
 CLEARANCE_HD inline found read(const distances_out& out, std::size_t i) {
-  return {out.distance[i], out.part != nullptr ? out.part[i] : none, out.primitive != nullptr ? out.primitive[i] : none};
+  return {out.distance[i], out.part != nullptr ? out.part[i] : none,
+          out.primitive != nullptr ? out.primitive[i] : none};
 }
 
 /// As an answer of `scan_body`, after `clear_body`; a point's parts come in order.
@@ -65,7 +68,9 @@ struct clear_body {
   distances_out out;
   std::uint32_t first;
 
-  CLEARANCE_HD void operator()(std::size_t i) const { write(out, first + i, {source[i].valid() ? infinity : not_a_number}); }
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    write(out, first + i, {source[i].valid() ? infinity : not_a_number});
+  }
 };
 
 }  // namespace pointwise

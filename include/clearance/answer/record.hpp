@@ -19,8 +19,8 @@ struct witness {
   Primitive primitive;
 };
 
-/// Lives in device memory from frame to frame; the last block of a frame resets all but the number of witnesses. Where all
-/// parts share a bound, slot 0 is theirs; else each part has its own.
+/// Lives in device memory from frame to frame; the last block of a frame resets all but the number of witnesses. Where
+/// all parts share a bound, slot 0 is theirs; else each part has its own.
 template <class Record>
 struct device_state {
   std::uint32_t bound[scan::most_parts];  ///< ordered() upper bounds of this frame, shared by all blocks.

@@ -35,7 +35,8 @@ struct resolve_body {
   /// Can the key be of part `k`? If not, nothing needs to be looked for in it.
   CLEARANCE_HD bool may_be_of(std::uint32_t k) const {
     const distance_key key = bounds.all->best;
-    return mine(key) && frames::may_reach(places[k].around, key_distance(key), source[key_index(key) - first].position - origin);
+    return mine(key) &&
+           frames::may_reach(places[k].around, key_distance(key), source[key_index(key) - first].position - origin);
   }
 
   CLEARANCE_HD void operator()(std::size_t i) const {
@@ -95,10 +96,12 @@ struct conclude_body {
     const distance_key* const best = bounds.part_best;
     const double lower = best == nullptr
                              ? certain_distance(result->distance, largest_slop, error)
-                             : certain_distance(part_count, [best](std::uint32_t k) { return key_distance(best[k]); },
-                                                [this](std::uint32_t k) -> const part_facts& { return parts[k].facts; }, error);
+                             : certain_distance(
+                                   part_count, [best](std::uint32_t k) { return key_distance(best[k]); },
+                                   [this](std::uint32_t k) -> const part_facts& { return parts[k].facts; }, error);
     scan::count(*result, counts->dropped, seen);
-    bracket(*result, lower, result->part == none ? 0 : parts[result->part].facts.tolerance, bounds.all->certain != 0, error);
+    bracket(*result, lower, result->part == none ? 0 : parts[result->part].facts.tolerance, bounds.all->certain != 0,
+            error);
     allow_for_too_close(*result);
   }
 };

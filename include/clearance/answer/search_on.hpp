@@ -6,8 +6,8 @@
 
 namespace clearance {
 
-/// A backend with a traversal of one's choice: the loop over points, as in the paper, for whom traversals are the question. Goes
-/// where a backend goes.
+/// A backend with a traversal of one's choice: the loop over points, as in the paper, for whom traversals are the
+/// question. Goes where a backend goes.
 template <backend B, class Traversal>
 struct plain {
   B on;
@@ -52,13 +52,15 @@ struct readable_on {
 /// A backend of one's own takes the plain loop.
 template <class On>
 struct search_on {
-  static_assert(!requires { typename On::own_scan; }, "a device has a scan of its own: include <clearance/min_distance.cuh>, not the .hpp");
+  static_assert(
+      !requires { typename On::own_scan; },
+      "a device has a scan of its own: include <clearance/min_distance.cuh>, not the .hpp");
 
   static const On& backend_of(const On& on) { return on; }
   /// One frame, enqueued; with `PerPart` every part's minimum too.
   template <bool PerPart, class PartView, class Clouds, class Here>
-  static void once(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                   min_distance_result* result, part_minimum* minima, const Here& here) {
+  static void once(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
+                   const Clouds& clouds, min_distance_result* result, part_minimum* minima, const Here& here) {
     plain_search<On, PartView, near_first>(on, model, {})(poses, clouds, result, minima, here);
   }
 };
@@ -67,9 +69,11 @@ template <class B, class Traversal>
 struct search_on<plain<B, Traversal>> {
   static const B& backend_of(const plain<B, Traversal>& on) { return on.on; }
   template <bool PerPart, class PartView, class Clouds, class Here>
-  static void once(const plain<B, Traversal>& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                   min_distance_result* result, part_minimum* minima, const Here& here) {
-    static_assert(traversal<Traversal, typename PartView::hierarchy_type, shared_nearest>, "this is no traversal of the parts' trees");
+  static void once(const plain<B, Traversal>& on, const model_view<PartView>& model,
+                   std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
+                   part_minimum* minima, const Here& here) {
+    static_assert(traversal<Traversal, typename PartView::hierarchy_type, shared_nearest>,
+                  "this is no traversal of the parts' trees");
     plain_search<B, PartView, Traversal>(on.on, model, on.walk)(poses, clouds, result, minima, here);
   }
 };
@@ -78,8 +82,8 @@ template <>
 struct search_on<host> {
   static const host& backend_of(const host& on) { return on; }
   template <bool PerPart, class PartView, class Clouds, class Here>
-  static void once(const host& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                   min_distance_result* result, part_minimum* minima, const Here&) {
+  static void once(const host& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
+                   const Clouds& clouds, min_distance_result* result, part_minimum* minima, const Here&) {
     host_search<PartView>(on, model)(poses, clouds, result, minima);
   }
 };

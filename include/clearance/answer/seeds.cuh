@@ -8,15 +8,17 @@
 
 namespace clearance::minimum {
 
-using scan::all_lanes, scan::fresh, scan::least_of, scan::lower_of, scan::memory_of_block, scan::block_threads, scan::warps;
+using scan::all_lanes, scan::fresh, scan::least_of, scan::lower_of, scan::memory_of_block, scan::block_threads,
+    scan::warps;
 
-/// Last frame's minima and their neighbours, looked at anew: sixteen threads a minimum, or four where each part has one.
-/// Nothing of it needs shared memory to be ready.
+/// Last frame's minima and their neighbours, looked at anew: sixteen threads a minimum, or four where each part has
+/// one. Nothing of it needs shared memory to be ready.
 template <class Answer>
 class last_frame {
  public:
   /// Reads what there is; nothing waits for it yet.
-  explicit __device__ last_frame(const scan::scan_arguments<Answer>& a) : w_(a.answer.witnesses[slot()]), witnesses_(a.answer.state->witnesses) {
+  explicit __device__ last_frame(const scan::scan_arguments<Answer>& a)
+      : w_(a.answer.witnesses[slot()]), witnesses_(a.answer.state->witnesses) {
     if (a.first != 0 && slot() < (per_part ? a.parts : 1)) known_ = fresh(a.answer.state->bound[slot()]);
   }
 
@@ -24,7 +26,8 @@ class last_frame {
   template <class Source>
   __device__ void look(const scan::scan_arguments<Answer>& a, const Source& source) {
     const std::uint32_t n = threadIdx.x % each, point = key_index(w_.r.key) - a.first + n - (n == 0 ? 0 : each / 2);
-    const bool live = a.parts > w_.r.part && witnesses_ > slot() && w_.r.id != none && (!per_part || w_.r.part == slot());
+    const bool live =
+        a.parts > w_.r.part && witnesses_ > slot() && w_.r.id != none && (!per_part || w_.r.part == slot());
     if (live && point < a.points) p_ = source[point];
   }
 
@@ -46,7 +49,8 @@ class last_frame {
     }
   }
 
-  /// The bound of all parts, to all threads, after `seed` and a barrier; where each part has its own: `no_bound` if one has none.
+  /// The bound of all parts, to all threads, after `seed` and a barrier; where each part has its own: `no_bound` if one
+  /// has none.
   static __device__ std::uint32_t found(std::uint32_t parts) {
     auto& s = memory_of_block<Answer>().answer;
     const std::uint32_t lane = threadIdx.x & 31;
@@ -70,9 +74,9 @@ class last_frame {
   sample p_{{}, drop_reason::not_finite};
 };
 
-/// No last frame: eight lanes take the most promising of their points down the tree (each eight lanes another part, where
-/// every part needs a bound), and all blocks wait a little for one another. Nothing depends on that wait but speed, so it
-/// gives up rather than hang.
+/// No last frame: eight lanes take the most promising of their points down the tree (each eight lanes another part,
+/// where every part needs a bound), and all blocks wait a little for one another. Nothing depends on that wait but
+/// speed, so it gives up rather than hang.
 template <class Answer>
 __noinline__ __device__ void seed_cold(scan::quad_points p) {
   using parts = scan::frame_parts<Answer>;
@@ -84,12 +88,13 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
     if ((p.reasons >> 8 * j & 0xff) != 0) p.at[j].x = not_a_number;  // is no nearest point
   auto& s = parts::here().answer;
   const auto& a = parts::here().head;
-  // By power: the square of the distance to a ball's centre less the square of its radius. No root, and good enough. One
-  // point a thread and all parts, or all four and a few parts: a handful of tests.
+  // By power: the square of the distance to a ball's centre less the square of its radius. No root, and good enough.
+  // One point a thread and all parts, or all four and a few parts: a handful of tests.
   real least_power = infinity;
   std::uint32_t k_least = 0;
   vec3 x = p.at[0];
-  const std::uint32_t first = per_part ? (threadIdx.x / team.size + blockIdx.x) % a.parts : 0, end = per_part ? first + 1 : a.parts;
+  const std::uint32_t first = per_part ? (threadIdx.x / team.size + blockIdx.x) % a.parts : 0,
+                      end = per_part ? first + 1 : a.parts;
   const auto test = [&](std::uint32_t k, vec3 at) {
     const ball around = parts::place(k).root.around;
     const vec3 d = at - around.center;
@@ -106,7 +111,8 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
   const real nearest = team.least(least_power);
   const int winner = team.first(least_power < infinity && least_power == nearest);
   k_least = team.from(winner, k_least), x = team.from(winner, x);
-  const real d = scan::descend(scan::steps_of_part<Answer>{k_least}, parts::place(k_least).part_from_cloud(x), winner >= 0, team);
+  const real d =
+      scan::descend(scan::steps_of_part<Answer>{k_least}, parts::place(k_least).part_from_cloud(x), winner >= 0, team);
   std::uint32_t bound = d < infinity ? ordered(d) : no_bound;
   if constexpr (!per_part) bound = least_of(all_lanes, bound);
   if ((per_part || (threadIdx.x & 31) == 0) && bound != no_bound) atomicMin(&s.bound[Answer::slot(k_least)], bound);
@@ -121,7 +127,8 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
     }
   }
   __syncthreads();
-  for (std::uint32_t k = threadIdx.x; k < bounds; k += block_threads) atomicMin(&s.bound[k], fresh(a.answer.state->bound[k]));
+  for (std::uint32_t k = threadIdx.x; k < bounds; k += block_threads)
+    atomicMin(&s.bound[k], fresh(a.answer.state->bound[k]));
 }
 
 }  // namespace clearance::minimum

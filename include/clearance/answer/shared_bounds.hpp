@@ -32,7 +32,9 @@ struct shared_bounds {
   totals* all;
   distance_key* part_best;  ///< One bound a part, or null: all parts share `all->best`.
 
-  CLEARANCE_HD distance_key* bound_of(std::uint32_t k) const { return part_best != nullptr ? part_best + k : &all->best; }
+  CLEARANCE_HD distance_key* bound_of(std::uint32_t k) const {
+    return part_best != nullptr ? part_best + k : &all->best;
+  }
   CLEARANCE_HD real reach(std::uint32_t k) const { return key_distance(load_relaxed(bound_of(k))); }
   CLEARANCE_HD real reach_of_pair(std::uint32_t, std::uint32_t k) const { return reach(k); }
   CLEARANCE_HD void lower(std::uint32_t index, std::uint32_t k, real distance) const {
@@ -40,7 +42,8 @@ struct shared_bounds {
     if (const distance_key key = make_key(distance, index); key < load_relaxed(bound)) lower_to(bound, key);
   }
 
-  /// 0 is the least that a part with an interior can have: once a lower point has it for certain, nothing is left to learn.
+  /// 0 is the least that a part with an interior can have: once a lower point has it for certain, nothing is left to
+  /// learn.
   CLEARANCE_HD bool settled(std::uint32_t index, std::uint32_t k) const {
     return load_relaxed(bound_of(k)) <= make_key(0, index) && load_relaxed(&all->certain) != 0;
   }

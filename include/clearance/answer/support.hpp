@@ -25,12 +25,13 @@ struct place_candidates {
   position* at;
 
   CLEARANCE_HD void operator()(std::size_t c) const {
-    if (number[c] >= first && number[c] - first < source.size()) at[c] = world_from_cloud(source[number[c] - first].position);
+    if (number[c] >= first && number[c] - first < source.size())
+      at[c] = world_from_cloud(source[number[c] - first].position);
   }
 };
 
-/// Balls in a cloud's frame around a place in the world, whatever rounding does: what is within `radius` is in the ball, and what is within
-/// `all_within` of its middle (nothing, if that is negative) is within `radius`.
+/// Balls in a cloud's frame around a place in the world, whatever rounding does: what is within `radius` is in the
+/// ball, and what is within `all_within` of its middle (nothing, if that is negative) is within `radius`.
 struct place_around {
   ball near;
   double all_within;
@@ -42,8 +43,8 @@ inline place_around around(position at, double radius, const world_transform& wo
   return {{{real(c.x), real(c.y), real(c.z)}, rounded_up(radius + off)}, radius - off};
 }
 
-/// One more of a cloud's points: is it within `radius` of candidates? In world coordinates, in double; itself counts, too. Candidates that
-/// have enough are not asked again.
+/// One more of a cloud's points: is it within `radius` of candidates? In world coordinates, in double; itself counts,
+/// too. Candidates that have enough are not asked again.
 template <point_source Source>
 struct count_support {
   Source source;
@@ -59,7 +60,9 @@ struct count_support {
     const sample s = source[i];
     if (!s.valid() || !may_be_in(all, s.position)) return;
     for (std::uint32_t c = 0; c < candidates; ++c)
-      if (may_be_in(near[c], s.position) && load_relaxed(support + c) < enough && confirms(world_from_cloud(s.position), c)) count_one(support + c);
+      if (may_be_in(near[c], s.position) && load_relaxed(support + c) < enough &&
+          confirms(world_from_cloud(s.position), c))
+        count_one(support + c);
   }
   CLEARANCE_HD bool confirms(position p, std::uint32_t c) const {
     const position d{p.x - at[c].x, p.y - at[c].y, p.z - at[c].z};
@@ -93,7 +96,8 @@ struct count_support_of_pieces {
     extent box;
     std::uint32_t valid = 0;
     for (std::size_t i = begin; i < end; ++i)
-      if (const sample s = each.source[i]; s.valid()) box.add(s.position), at[valid++] = each.world_from_cloud(s.position);
+      if (const sample s = each.source[i]; s.valid())
+        box.add(s.position), at[valid++] = each.world_from_cloud(s.position);
     if (valid == 0 || !(nearest(box, each.all.center) <= each.all.radius)) return;
     for (std::uint32_t c = 0; c < each.candidates; ++c) {
       const ball& near = each.near[c];
@@ -106,11 +110,15 @@ struct count_support_of_pieces {
   }
   static double nearest(const extent& box, vec3 p) {
     const auto beyond = [](double low, double high, double x) { return std::fmax(std::fmax(low - x, x - high), 0); };
-    return norm(beyond(box.lower.x, box.upper.x, p.x), beyond(box.lower.y, box.upper.y, p.y), beyond(box.lower.z, box.upper.z, p.z)) * (1 - 0x1p-40);
+    return norm(beyond(box.lower.x, box.upper.x, p.x), beyond(box.lower.y, box.upper.y, p.y),
+                beyond(box.lower.z, box.upper.z, p.z)) *
+           (1 - 0x1p-40);
   }
   static double farthest(const extent& box, vec3 p) {
     const auto away = [](double low, double high, double x) { return std::fmax(high - x, x - low); };
-    return norm(away(box.lower.x, box.upper.x, p.x), away(box.lower.y, box.upper.y, p.y), away(box.lower.z, box.upper.z, p.z)) * (1 + 0x1p-40);
+    return norm(away(box.lower.x, box.upper.x, p.x), away(box.lower.y, box.upper.y, p.y),
+                away(box.lower.z, box.upper.z, p.z)) *
+           (1 + 0x1p-40);
   }
   static double norm(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
 };

@@ -9,13 +9,14 @@
 
 namespace clearance::minimum {
 
-/// What a part's distance to a ball of points can be, from its distance to the ball's middle: no point is nearer or farther by more
-/// than the radius, and what is computed less than exactly, at both ends.
+/// What a part's distance to a ball of points can be, from its distance to the ball's middle: no point is nearer or
+/// farther by more than the radius, and what is computed less than exactly, at both ends.
 struct ball_bounds {
   real most;  ///< What arithmetic can cost at distance 0.
 
   ball_bounds() = default;
-  /// Twice what it takes: either end is off by at most `unit_error` of twice the part's extent, that distance, and the radius.
+  /// Twice what it takes: either end is off by at most `unit_error` of twice the part's extent, that distance, and the
+  /// radius.
   CLEARANCE_HD ball_bounds(const part_facts& facts, const rigid_transform& part_from_cloud) {
     const double extent = double(length(facts.center)) + facts.radius + length(part_from_cloud.translation);
     most = rounded_up(4 * frames::arithmetic_error(extent));
@@ -37,17 +38,18 @@ using pair_order = std::conditional_t<scan::has_interior<PartView>, distance_key
 /// What is below a node of the tree over the points, or one of its points, and what is below a node of a part's tree.
 template <class Node>
 struct node_pair {
-  real bound;               ///< No two of them are nearer.
+  real bound;  ///< No two of them are nearer.
   std::uint32_t at, part;
-  std::uint32_t from;       ///< The children of `node` before this one are done with.
+  std::uint32_t from;  ///< The children of `node` before this one are done with.
   Node node;
-  std::uint8_t level;       ///< 0: a point; else one more than the level of the points' node.
-  std::uint8_t depth;       ///< Of `node`, as far as it is counted.
-  bool by_points;           ///< It is the points' node that is to be opened.
-  bool whole;               ///< Points may be inside the part's solid: `node` stays the root.
+  std::uint8_t level;  ///< 0: a point; else one more than the level of the points' node.
+  std::uint8_t depth;  ///< Of `node`, as far as it is counted.
+  bool by_points;      ///< It is the points' node that is to be opened.
+  bool whole;          ///< Points may be inside the part's solid: `node` stays the root.
 };
 
-/// One configuration's parts in one cloud, and a tree over its points. `Body` is a scan_body, whose answer says how near a part must be.
+/// One configuration's parts in one cloud, and a tree over its points. `Body` is a scan_body, whose answer says how
+/// near a part must be.
 template <class Body, class Tree>
 struct tree_search {
   using part_view = std::remove_cvref_t<decltype(*std::declval<Body>().parts)>;
@@ -65,14 +67,17 @@ struct tree_search {
   CLEARANCE_HD real reach(std::uint32_t k) const { return body.answer.reach(k); }
 
   /// Pairs to begin with: each node of the top with each part.
-  CLEARANCE_HD std::uint32_t starts() const { return tree.levels == 0 ? 0 : tree.size(tree.levels - 1) * body.part_count; }
+  CLEARANCE_HD std::uint32_t starts() const {
+    return tree.levels == 0 ? 0 : tree.size(tree.levels - 1) * body.part_count;
+  }
   CLEARANCE_HD bool start(std::uint32_t i, pair& p) const {
     const std::uint32_t top = tree.size(tree.levels - 1);
     p = {-infinity, i % top, i / top, 0, body.parts[i / top].tree.root(), std::uint8_t(tree.levels), 0, true, solid};
     return look(p);
   }
   CLEARANCE_HD std::uint32_t children(const pair& p) const {
-    return p.by_points ? tree.end_below(p.level - 1, p.at) - tree.first_below(p.level - 1, p.at) : body.parts[p.part].tree.size(p.node);
+    return p.by_points ? tree.end_below(p.level - 1, p.at) - tree.first_below(p.level - 1, p.at)
+                       : body.parts[p.part].tree.size(p.node);
   }
   /// Child `j`; false if nothing in it matters any more.
   CLEARANCE_HD bool child(const pair& p, std::uint32_t j, pair& c) const {
@@ -84,9 +89,11 @@ struct tree_search {
     return look(c);
   }
 
-  /// May all of a node's points be as good as one another, for all that bounds can tell? Then it is quicker to look at each than to open nodes.
+  /// May all of a node's points be as good as one another, for all that bounds can tell? Then it is quicker to look at
+  /// each than to open nodes.
   bool is_small(const pair& p) const {
-    return p.by_points && !p.whole && p.level != 0 && body.parts[p.part].tree.is_leaf(p.node) && tree.balls[node_of(p)].radius <= bounds[p.part].most;
+    return p.by_points && !p.whole && p.level != 0 && body.parts[p.part].tree.is_leaf(p.node) &&
+           tree.balls[node_of(p)].radius <= bounds[p.part].most;
   }
   /// Looks at all points of a node that is small. Those in one place, neighbours mostly, are looked at once.
   void look_at_points(const pair& p) const {
@@ -106,7 +113,8 @@ struct tree_search {
     if constexpr (solid) return body.answer.settled(body.first + least(p), 0);
     return false;
   }
-  /// Of two pairs the nearer goes first. A part with an interior has nothing nearer than 0: once that is found, the lowest number does.
+  /// Of two pairs the nearer goes first. A part with an interior has nothing nearer than 0: once that is found, the
+  /// lowest number does.
   using order_type = pair_order<part_view>;
   CLEARANCE_HD order_type order(const pair& p) const {
     if constexpr (solid)
@@ -115,22 +123,28 @@ struct tree_search {
       return ordered(p.bound);
   }
 
-  CLEARANCE_HD void visit(const cloud_tree::numbered_point& p, std::uint32_t k) const { body.visit(p.at - body.origin, body.first + p.number, k); }
+  CLEARANCE_HD void visit(const cloud_tree::numbered_point& p, std::uint32_t k) const {
+    body.visit(p.at - body.origin, body.first + p.number, k);
+  }
 
  private:
   CLEARANCE_HD std::uint32_t node_of(const pair& p) const { return tree.begin[p.level - 1] + p.at; }
-  CLEARANCE_HD std::uint32_t least(const pair& p) const { return p.level == 0 ? tree.points[p.at].number : tree.least[node_of(p)]; }
+  CLEARANCE_HD std::uint32_t least(const pair& p) const {
+    return p.level == 0 ? tree.points[p.at].number : tree.least[node_of(p)];
+  }
   CLEARANCE_HD static bool inside(const part_view& part, vec3 q) {
     if constexpr (solid) return part.interior.inside(q);
     return false;
   }
 
-  /// What a pair can be worth, and which of the two is to be opened; false if nothing in it matters, or all has been looked at.
+  /// What a pair can be worth, and which of the two is to be opened; false if nothing in it matters, or all has been
+  /// looked at.
   CLEARANCE_HD bool look(pair& p) const {
     if (p.level == 0) return look_at_point(p, tree.points[p.at]);
     const ball b = tree.balls[node_of(p)];
     if (!(b.radius >= 0)) return false;  // no point of it counts
-    if (b.radius <= bounds[p.part].most && in_one_place(p)) return look_at_point(p, {tree.boxes[node_of(p)].lower, least(p)});
+    if (b.radius <= bounds[p.part].most && in_one_place(p))
+      return look_at_point(p, {tree.boxes[node_of(p)].lower, least(p)});
     const vec3 x = b.center - body.origin;
     if (solid && p.whole && !look_inside(p, b, x)) return false;
     p.by_points = true;
@@ -144,7 +158,8 @@ struct tree_search {
         bound = bounds[p.part].lower(away(tree.boxes[node_of(p)], b, x, around.center, p.part), size);
       } else {
         bound = bounds[p.part].lower(traits::lower_bound(volume, body.places[p.part].part_from_cloud(x)), b.radius);
-        size = part.facts.radius / real(1u << (p.depth < 20 ? p.depth * 3 / 2 : 30));  // surfaces of eight children each
+        size =
+            part.facts.radius / real(1u << (p.depth < 20 ? p.depth * 3 / 2 : 30));  // surfaces of eight children each
       }
       p.bound = max(p.bound, bound);
       p.by_points = 10 * b.radius > 7 * size || part.tree.is_leaf(p.node);
@@ -152,21 +167,24 @@ struct tree_search {
     return p.bound <= reach(p.part);
   }
 
-  /// How far a position in a part is from a node's points at least: from their box, and from their ball. What is computed is off by no
-  /// more than a point's way into the part's frame: from there to here it is the same way.
+  /// How far a position in a part is from a node's points at least: from their box, and from their ball. What is
+  /// computed is off by no more than a point's way into the part's frame: from there to here it is the same way.
   CLEARANCE_HD real away(const extent& box, const ball& b, vec3 x, vec3 center, std::uint32_t k) const {
     const rigid_transform& to = body.places[k].part_from_cloud;
     const vec3 d = center - to.translation;
-    const vec3 w{to.row[0].x * d.x + to.row[1].x * d.y + to.row[2].x * d.z, to.row[0].y * d.x + to.row[1].y * d.y + to.row[2].y * d.z,
+    const vec3 w{to.row[0].x * d.x + to.row[1].x * d.y + to.row[2].x * d.z,
+                 to.row[0].y * d.x + to.row[1].y * d.y + to.row[2].y * d.z,
                  to.row[0].z * d.x + to.row[1].z * d.y + to.row[2].z * d.z};
     const vec3 low = box.lower - body.origin - w, high = w - (box.upper - body.origin);
-    const vec3 beyond{rough_max(rough_max(low.x, high.x), 0), rough_max(rough_max(low.y, high.y), 0), rough_max(rough_max(low.z, high.z), 0)};
+    const vec3 beyond{rough_max(rough_max(low.x, high.x), 0), rough_max(rough_max(low.y, high.y), 0),
+                      rough_max(rough_max(low.z, high.z), 0)};
     return rough_max(rough_length(beyond), rough_length(x - w) - b.radius * (1 + slack));
   }
 
-  /// Are all of a node's points in one place in the part's frame, as that is computed? Then the one of the lowest number stands for them:
-  /// equal points, and others that are nearer to one another than floats there can tell. What is computed rises or falls with each coordinate,
-  /// so the box's corners tell. (A sum of 0 has a sign that they do not.)
+  /// Are all of a node's points in one place in the part's frame, as that is computed? Then the one of the lowest
+  /// number stands for them: equal points, and others that are nearer to one another than floats there can tell. What
+  /// is computed rises or falls with each coordinate, so the box's corners tell. (A sum of 0 has a sign that they do
+  /// not.)
   CLEARANCE_HD bool in_one_place(const pair& p) const {
     const extent& box = tree.boxes[node_of(p)];
     if (box.lower == box.upper) return true;
@@ -196,21 +214,23 @@ struct tree_search {
     return false;
   }
 
-  /// Points within a part's ball may be inside its solid. From the distance to the surface of their ball's middle follows whether they
-  /// are, how near they can be at least, and how near some of them must be.
+  /// Points within a part's ball may be inside its solid. From the distance to the surface of their ball's middle
+  /// follows whether they are, how near they can be at least, and how near some of them must be.
   CLEARANCE_HD bool look_inside(pair& p, const ball& b, vec3 x) const {
     const frames::placement& place = body.places[p.part];
     const part_view& part = body.parts[p.part];
     if (!frames::may_reach({place.around.center, place.around.radius + b.radius}, 0, x)) return p.whole = false, true;
     if (!(reach(p.part) >= 0)) return false;
-    p.bound = max(p.bound, lowered(length(x - place.around.center) - place.around.radius - b.radius, place.around.radius + b.radius));
+    p.bound = max(p.bound, lowered(length(x - place.around.center) - place.around.radius - b.radius,
+                                   place.around.radius + b.radius));
     if (!(b.radius < part.facts.radius)) return true;
     const vec3 q = place.part_from_cloud(x);
     if (inside(part, q)) return true;
     nearest near{bounds[p.part].within(reach(p.part), b.radius)};
     body.walk(part.tree, q, near);
     if (near.best == nearest::none) return false;
-    if (const real most = bounds[p.part].upper(near.within, b.radius); most < reach(p.part)) body.answer.lower(none, p.part, most);
+    if (const real most = bounds[p.part].upper(near.within, b.radius); most < reach(p.part))
+      body.answer.lower(none, p.part, most);
     p.bound = max(p.bound, bounds[p.part].lower(near.within, b.radius));
     p.whole = !(p.bound > 0);
     return true;

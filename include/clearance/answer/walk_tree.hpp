@@ -20,7 +20,8 @@ struct pending_pair {
 
 /// One configuration against one cloud. `pending` is memory to work with.
 template <class Search>
-void walk_trees(const Search& search, std::vector<pending_pair<typename Search::pair, typename Search::order_type>>& pending) {
+void walk_trees(const Search& search,
+                std::vector<pending_pair<typename Search::pair, typename Search::order_type>>& pending) {
   const auto push = [&](const typename Search::pair& p) {
     pending.push_back({search.order(p), p});
     std::push_heap(pending.begin(), pending.end());

@@ -6,7 +6,8 @@
 
 namespace clearance::minimum {
 
-/// How near a part's points must be, as they are computed, to be perhaps within its margin, and how near to be so for certain.
+/// How near a part's points must be, as they are computed, to be perhaps within its margin, and how near to be so for
+/// certain.
 struct margin_reach {
   real may_be, is;
 };
@@ -31,15 +32,17 @@ struct near_margin {
     return now == margin_word::nothing ? near.may_be : now == margin_word::possible ? near.is : -infinity;
   }
   CLEARANCE_HD void offer(std::uint32_t, real distance) const {
-    const std::uint32_t its = distance <= near.is ? margin_word::certain : distance <= near.may_be ? margin_word::possible : margin_word::nothing;
+    const std::uint32_t its = distance <= near.is       ? margin_word::certain
+                              : distance <= near.may_be ? margin_word::possible
+                                                        : margin_word::nothing;
     if (its < found()) lower_word(&word->found, its);
   }
   CLEARANCE_HD bool result() const { return found() == margin_word::certain; }
 };
 static_assert(visitor<near_margin>);
 
-/// An answer of `scan_body`: is anything within margins? Once something certainly is, nothing is looked at any more; once something may
-/// be, only what certainly is. So it is the same, whatever was found first.
+/// An answer of `scan_body`: is anything within margins? Once something certainly is, nothing is looked at any more;
+/// once something may be, only what certainly is. So it is the same, whatever was found first.
 struct within_margins {
   margin_word* word;
   const margin_reach* margins;  ///< One a part.

@@ -13,7 +13,9 @@ struct written {
   real d_max;
 
   CLEARANCE_HD real reach(std::uint32_t) const { return d_max; }
-  CLEARANCE_HD void take(const pair_distance& pair) const { distance[pair.part * points + first_point[pair.cloud] + pair.point] = pair.distance; }
+  CLEARANCE_HD void take(const pair_distance& pair) const {
+    distance[pair.part * points + first_point[pair.cloud] + pair.point] = pair.distance;
+  }
 };
 static_assert(answer<written>);
 

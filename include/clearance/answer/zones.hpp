@@ -8,24 +8,28 @@
 
 namespace clearance::pairwise {
 
-/// What a scan keeps of one zone of one part, less what is in the zones inside it. Points are numbered through all clouds.
+/// What a scan keeps of one zone of one part, less what is in the zones inside it. Points are numbered through all
+/// clouds.
 struct zone_words {
   unsigned long long points = 0;
   distance_key nearest = no_key;  ///< (distance, point)
   std::uint32_t first = ~0u;      ///< The lowest point.
 };
 
-/// The answer: zones of each part, the innermost first. A point is put into the innermost zone that it is in; how far away it is
-/// matters no more than that, unless it may be the nearest.
+/// The answer: zones of each part, the innermost first. A point is put into the innermost zone that it is in; how far
+/// away it is matters no more than that, unless it may be the nearest.
 struct count_in_zones {
-  static constexpr std::uint32_t copies = 8;  ///< Of all words, to be joined in the end: else threads would wait for one another.
+  static constexpr std::uint32_t copies =
+      8;  ///< Of all words, to be joined in the end: else threads would wait for one another.
 
   zone_words* words;                 ///< `zones` a part, `total` in a copy.
   const real* reaches;               ///< `zones` a part: how near a point must be to be counted.
   const std::uint32_t* first_point;  ///< Of each cloud.
   std::uint32_t zones, total;
 
-  CLEARANCE_HD real reach(std::uint32_t part) const { return zones == 0 ? -infinity : reaches[part * zones + zones - 1]; }
+  CLEARANCE_HD real reach(std::uint32_t part) const {
+    return zones == 0 ? -infinity : reaches[part * zones + zones - 1];
+  }
   CLEARANCE_HD real reach(std::uint32_t part, real found, real nearest) const {
     const std::uint32_t z = innermost(part, found);
     return max(z == 0 ? -infinity : reaches[part * zones + z - 1], min(found, nearest));
@@ -35,7 +39,8 @@ struct count_in_zones {
     if (z == zones) return;
     zone_words& zone = words[copy_for(number) * total + pair.part * zones + z];
     add_one(&zone.points);
-    if (const distance_key key = make_key(pair.distance, number); key < load_relaxed(&zone.nearest)) lower_to(&zone.nearest, key);
+    if (const distance_key key = make_key(pair.distance, number); key < load_relaxed(&zone.nearest))
+      lower_to(&zone.nearest, key);
     if (number < load_relaxed(&zone.first)) lower_word(&zone.first, number);
   }
 
@@ -45,7 +50,8 @@ struct count_in_zones {
     for (std::uint32_t c = 0; c < copies; ++c)
       for (std::size_t k = i - i % zones; k <= i; ++k) {
         const zone_words& w = words[c * total + k];
-        all = {all.points + w.points, w.nearest < all.nearest ? w.nearest : all.nearest, w.first < all.first ? w.first : all.first};
+        all = {all.points + w.points, w.nearest < all.nearest ? w.nearest : all.nearest,
+               w.first < all.first ? w.first : all.first};
       }
     return all;
   }

@@ -59,13 +59,15 @@ struct device {
 
   /// Enqueues a kernel of one's own; a block has `shared` bytes of dynamic shared memory.
   template <class... P, class... A>
-  void launch(void (*kernel)(P...), unsigned blocks, unsigned threads, std::size_t shared, const A&... arguments) const {
+  void launch(void (*kernel)(P...), unsigned blocks, unsigned threads, std::size_t shared,
+              const A&... arguments) const {
     const device_guard guard(id);
     kernel<<<blocks, threads, shared, stream>>>(arguments...);
     check_cuda(cudaGetLastError(), "kernel launch");
   }
 
-  /// Enqueues `body(indices)` over a grid stride; returns at once. A body that recurses says its need in device_stack().
+  /// Enqueues `body(indices)` over a grid stride; returns at once. A body that recurses says its need in
+  /// device_stack().
   template <class F>
   void for_ranges(std::size_t n, F body) const {
     if (n == 0) return;
@@ -93,7 +95,8 @@ struct device {
     const device_guard guard(id);
     buffer<T> copy(data.size(), id);
     if (!data.empty())
-      check_cuda(cudaMemcpyAsync(copy.data(), data.data(), data.size_bytes(), cudaMemcpyHostToDevice, stream), "cudaMemcpyAsync");
+      check_cuda(cudaMemcpyAsync(copy.data(), data.data(), data.size_bytes(), cudaMemcpyHostToDevice, stream),
+                 "cudaMemcpyAsync");
     check_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
     return copy;
   }
@@ -106,7 +109,8 @@ struct device {
   std::vector<T> copy_out(const T* data, std::size_t n) const {
     const device_guard guard(id);
     std::vector<T> copy(n);
-    if (n != 0) check_cuda(cudaMemcpyAsync(copy.data(), data, n * sizeof(T), cudaMemcpyDeviceToHost, stream), "cudaMemcpyAsync");
+    if (n != 0)
+      check_cuda(cudaMemcpyAsync(copy.data(), data, n * sizeof(T), cudaMemcpyDeviceToHost, stream), "cudaMemcpyAsync");
     check_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
     return copy;
   }
@@ -127,7 +131,8 @@ struct device {
       detail::argument_bytes chunk;
       const std::size_t n = std::min(bytes.size() - at, detail::argument_bytes::capacity);
       std::copy_n(bytes.data() + at, n, chunk.bytes);
-      launch(detail::stage_kernel<detail::argument_bytes>, 1, 256, 0, reinterpret_cast<std::byte*>(to) + at, unsigned(n), chunk);
+      launch(detail::stage_kernel<detail::argument_bytes>, 1, 256, 0, reinterpret_cast<std::byte*>(to) + at,
+             unsigned(n), chunk);
     }
   }
 
@@ -157,8 +162,9 @@ struct device {
     std::size_t limit = 0;
     check_cuda(cudaDeviceGetLimit(&limit, cudaLimitStackSize), "cudaDeviceGetLimit");
     if (limit < bytes)
-      throw std::invalid_argument("clearance: this recursion may need " + std::to_string(bytes) + " bytes of call stack a thread, but the device's limit is " +
-                                  std::to_string(limit) + "; raise cudaLimitStackSize or use another traversal");
+      throw std::invalid_argument("clearance: this recursion may need " + std::to_string(bytes) +
+                                  " bytes of call stack a thread, but the device's limit is " + std::to_string(limit) +
+                                  "; raise cudaLimitStackSize or use another traversal");
   }
 };
 

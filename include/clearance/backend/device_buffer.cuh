@@ -28,7 +28,8 @@ class device_buffer {
   using value_type = T;
 
   device_buffer() = default;
-  device_buffer(std::size_t n, int device, std::pmr::memory_resource* from = nullptr) : size_(n), device_(device), from_(from) {
+  device_buffer(std::size_t n, int device, std::pmr::memory_resource* from = nullptr)
+      : size_(n), device_(device), from_(from) {
     const device_guard guard(device);
     if (n == 0) return;
     if (from != nullptr)
@@ -38,16 +39,18 @@ class device_buffer {
   }
   device_buffer(device_buffer&& other) noexcept { *this = std::move(other); }
   device_buffer& operator=(device_buffer&& other) noexcept {
-    std::swap(data_, other.data_), std::swap(size_, other.size_), std::swap(device_, other.device_), std::swap(from_, other.from_);
+    std::swap(data_, other.data_), std::swap(size_, other.size_), std::swap(device_, other.device_),
+        std::swap(from_, other.from_);
     return *this;
   }
   ~device_buffer() {
-    if (data_ != nullptr) on_device(device_, [this] {
-      if (from_ != nullptr)
-        from_->deallocate(data_, size_ * sizeof(T), alignment);
-      else
-        cudaFree(data_);
-    });
+    if (data_ != nullptr)
+      on_device(device_, [this] {
+        if (from_ != nullptr)
+          from_->deallocate(data_, size_ * sizeof(T), alignment);
+        else
+          cudaFree(data_);
+      });
   }
 
   T* data() const { return data_; }
@@ -71,7 +74,8 @@ class stream_buffer {
   stream_buffer(std::size_t n, int device, cudaStream_t stream) : size_(n), device_(device), stream_(stream) {
     const device_guard guard(device);
     if (n == 0) return;
-    check_cuda(cudaMallocFromPoolAsync(reinterpret_cast<void**>(&data_), n * sizeof(T), kept_pool(device), stream), "cudaMallocFromPoolAsync");
+    check_cuda(cudaMallocFromPoolAsync(reinterpret_cast<void**>(&data_), n * sizeof(T), kept_pool(device), stream),
+               "cudaMallocFromPoolAsync");
   }
   stream_buffer(stream_buffer&& other) noexcept { *this = std::move(other); }
   stream_buffer& operator=(stream_buffer&& other) noexcept {

@@ -9,9 +9,9 @@
 
 namespace clearance {
 
-/// Several CUDA devices at once: the robot is on each, and every cloud is divided among them. Each has a stream of its own, behind what
-/// is in its device's default stream; or one of the caller's. A device may be named twice. Copies of this value share the streams. The
-/// caller's current device is left as it was.
+/// Several CUDA devices at once: the robot is on each, and every cloud is divided among them. Each has a stream of its
+/// own, behind what is in its device's default stream; or one of the caller's. A device may be named twice. Copies of
+/// this value share the streams. The caller's current device is left as it was.
 class devices {
  public:
   using own_scan = void;  ///< Operations on devices need their .cuh headers.
@@ -28,7 +28,8 @@ class devices {
     }
     check_any();
   }
-  /// With streams of the caller's, which outlive this. Throws std::invalid_argument, too, if a stream belongs to another device.
+  /// With streams of the caller's, which outlive this. Throws std::invalid_argument, too, if a stream belongs to
+  /// another device.
   explicit devices(std::vector<device> each) : each_(std::move(each)) {
     check_any();
     for (const device& on : each_) check_exists(on.id), check_stream(on);
@@ -67,7 +68,8 @@ class devices {
   }
   static void check_exists(int id) {
     if (const int there = count(); id < 0 || id >= there)
-      throw std::invalid_argument("clearance: there is no CUDA device " + std::to_string(id) + "; this process sees " + std::to_string(there));
+      throw std::invalid_argument("clearance: there is no CUDA device " + std::to_string(id) + "; this process sees " +
+                                  std::to_string(there));
   }
   /// An event does not go into a stream of another device. (To ask a stream for its device needs CUDA 12.8.)
   static void check_stream(const device& on) {
@@ -78,7 +80,8 @@ class devices {
     cudaEventDestroy(event);
     if (recorded == cudaErrorInvalidResourceHandle || recorded == cudaErrorInvalidValue) {
       static_cast<void>(cudaGetLastError());
-      throw std::invalid_argument("clearance: the stream that was given for device " + std::to_string(on.id) + " is not one of that device");
+      throw std::invalid_argument("clearance: the stream that was given for device " + std::to_string(on.id) +
+                                  " is not one of that device");
     }
     check_cuda(recorded, "cudaEventRecord");
   }

@@ -29,10 +29,7 @@ struct host {
     if (n <= grain || threads == 1) return body(indices{0, n, 1});
     const auto all = [&] {
       tbb::parallel_for(
-          tbb::blocked_range<std::size_t>(0, n, grain),
-          [&](const auto& r) {
-            body(indices{r.begin(), r.end(), 1});
-          },
+          tbb::blocked_range<std::size_t>(0, n, grain), [&](const auto& r) { body(indices{r.begin(), r.end(), 1}); },
           tbb::simple_partitioner{});
     };
     if (threads == 0) return all();

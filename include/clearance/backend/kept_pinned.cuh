@@ -8,8 +8,8 @@
 
 namespace clearance {
 
-/// Pinned memory, for any device, that is kept when it is given back: the driver takes 0.2 ms for each piece. Whoever gives one back has
-/// seen to it that no device will write to it any more. It lives as long as the process.
+/// Pinned memory, for any device, that is kept when it is given back: the driver takes 0.2 ms for each piece. Whoever
+/// gives one back has seen to it that no device will write to it any more. It lives as long as the process.
 inline std::pmr::memory_resource* kept_pinned() {
   class from_driver : public std::pmr::memory_resource {
     void* do_allocate(std::size_t bytes, std::size_t) override {
@@ -20,7 +20,8 @@ inline std::pmr::memory_resource* kept_pinned() {
     void do_deallocate(void* memory, std::size_t, std::size_t) override { cudaFreeHost(memory); }
     bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
   };
-  static std::pmr::memory_resource* const kept = new std::pmr::synchronized_pool_resource({64, 64 << 10}, new from_driver);
+  static std::pmr::memory_resource* const kept =
+      new std::pmr::synchronized_pool_resource({64, 64 << 10}, new from_driver);
   return kept;
 }
 

@@ -9,9 +9,9 @@
 
 namespace clearance {
 
-/// A pool of device memory of the library's own, one a device, for what lives in the order of a stream. It keeps some of what it once
-/// had: the driver's default pool gives all back whenever somebody waits, and takes tens of microseconds to get it again. It lives as
-/// long as the process.
+/// A pool of device memory of the library's own, one a device, for what lives in the order of a stream. It keeps some
+/// of what it once had: the driver's default pool gives all back whenever somebody waits, and takes tens of
+/// microseconds to get it again. It lives as long as the process.
 inline cudaMemPool_t kept_pool(int device) {
   static std::mutex one_at_a_time;
   static std::map<int, cudaMemPool_t> pools;

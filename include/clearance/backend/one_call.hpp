@@ -3,7 +3,8 @@
 
 namespace clearance::detail {
 
-/// A prepared question that is made for one call. What `ask(memory...)` answers: on a device (one_call.cuh) it is told of a resource.
+/// A prepared question that is made for one call. What `ask(memory...)` answers: on a device (one_call.cuh) it is told
+/// of a resource.
 template <class On>
 struct one_call {
   template <class Ask>

@@ -8,14 +8,16 @@
 
 namespace clearance {
 
-/// Kernels that may have more shared memory than a block always has. A limit is raised once, because that takes longer than a launch.
-/// Every translation unit has kernels of its own: so they are known by address, not by type, and raised where they are launched.
+/// Kernels that may have more shared memory than a block always has. A limit is raised once, because that takes longer
+/// than a launch. Every translation unit has kernels of its own: so they are known by address, not by type, and raised
+/// where they are launched.
 class raised_limits {
  public:
   /// On the current device.
   void raise(const void* kernel, std::size_t bytes) {
     if (std::find(kernels_.begin(), kernels_.end(), kernel) != kernels_.end()) return;
-    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)), "cudaFuncSetAttribute");
+    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)),
+               "cudaFuncSetAttribute");
     kernels_.push_back(kernel);
   }
 

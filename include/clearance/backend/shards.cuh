@@ -29,7 +29,8 @@ class shards {
       const device_guard guard(its.id);
       memory_.emplace_back(bytes.size(), its.id);
       if (!bytes.empty())
-        check_cuda(cudaMemcpyAsync(memory_.back().data(), bytes.data(), bytes.size(), cudaMemcpyDefault, its.stream), "cudaMemcpyAsync");
+        check_cuda(cudaMemcpyAsync(memory_.back().data(), bytes.data(), bytes.size(), cudaMemcpyDefault, its.stream),
+                   "cudaMemcpyAsync");
       there.push_back(piece.at(memory_.back().data()));
     }
     on.wait();
@@ -40,11 +41,13 @@ class shards {
   sharded<Piece> view_;
 };
 
-/// A cloud's slices, one on each device, for clouds that stay or are too large for one. The points are in host memory or in that of
-/// any device.
+/// A cloud's slices, one on each device, for clouds that stay or are too large for one. The points are in host memory
+/// or in that of any device.
 template <point_source S>
 auto shard(const devices& on, const S& cloud) {
-  static_assert(requires { cloud.at(cloud.bytes().data()); }, "a source that does not say where its bytes are cannot be copied to devices");
+  static_assert(
+      requires { cloud.at(cloud.bytes().data()); },
+      "a source that does not say where its bytes are cannot be copied to devices");
   return shards<decltype(piece_of(cloud, 0, 1))>(on, cloud);
 }
 inline auto shard(const devices& on, const std::vector<vec3>& points) { return shard(on, point_span(points)); }

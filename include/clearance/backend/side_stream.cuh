@@ -5,12 +5,14 @@
 
 namespace clearance {
 
-/// Work that may run beside other work of a stream, and that what follows there waits for. A graph that captures the stream takes both along.
+/// Work that may run beside other work of a stream, and that what follows there waits for. A graph that captures the
+/// stream takes both along.
 class side_stream {
  public:
   explicit side_stream(const device& main) : main_(main), side_(main.id) {
     const device_guard guard(main.id);
-    for (cudaEvent_t& event : events_) check_cuda(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "cudaEventCreateWithFlags");
+    for (cudaEvent_t& event : events_)
+      check_cuda(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "cudaEventCreateWithFlags");
   }
   side_stream(const side_stream&) = delete;
   side_stream& operator=(const side_stream&) = delete;

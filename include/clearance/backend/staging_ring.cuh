@@ -13,8 +13,9 @@
 
 namespace clearance {
 
-/// Bytes on their way to a device, in turns of three rooms: while one is filled, another is copied, and a third is read there. Each
-/// turn: `fill`, `copy`, what reads them into the device's stream, `read`. What is in pinned memory is copied from where it lies.
+/// Bytes on their way to a device, in turns of three rooms: while one is filled, another is copied, and a third is read
+/// there. Each turn: `fill`, `copy`, what reads them into the device's stream, `read`. What is in pinned memory is
+/// copied from where it lies.
 class staging_ring {
  public:
   static constexpr std::size_t rooms = 3;
@@ -27,7 +28,9 @@ class staging_ring {
   /// Before the first turn of a call: as large as its largest, on either side.
   void need(std::size_t pinned, std::size_t there) {
     // Asked of the rooms themselves: some have none where memory once ran out.
-    if (std::ranges::all_of(rooms_, [&](const room& r) { return pinned <= r.pinned.size() && there <= r.there.size(); })) return;
+    if (std::ranges::all_of(rooms_,
+                            [&](const room& r) { return pinned <= r.pinned.size() && there <= r.there.size(); }))
+      return;
     wait();
     for (room& r : rooms_) {
       if (r.pinned.size() < pinned) r.pinned = {}, r.pinned = pinned_buffer<std::byte>(pinned, on_.id);
@@ -48,11 +51,15 @@ class staging_ring {
     const device_guard guard(on_.id);
     const std::byte* from = bytes.data();
     if (!within(r.pinned, from) && !is_pinned(from)) {
-      constexpr std::size_t grain = std::size_t(1) << 16;  // one thread is slower than the link, and short chunks are for all, too
+      constexpr std::size_t grain = std::size_t(1)
+                                    << 16;  // one thread is slower than the link, and short chunks are for all, too
       need_within(bytes.size(), r);
-      tbb::parallel_for(std::size_t(0), (bytes.size() + grain - 1) / grain, [&](std::size_t i) {
-        std::memcpy(r.pinned.data() + i * grain, from + i * grain, std::min(grain, bytes.size() - i * grain));
-      }, tbb::simple_partitioner{});
+      tbb::parallel_for(
+          std::size_t(0), (bytes.size() + grain - 1) / grain,
+          [&](std::size_t i) {
+            std::memcpy(r.pinned.data() + i * grain, from + i * grain, std::min(grain, bytes.size() - i * grain));
+          },
+          tbb::simple_partitioner{});
       from = r.pinned.data();
     }
     const cudaStream_t stream = copies_.on().stream;
@@ -74,9 +81,13 @@ class staging_ring {
   class event {
    public:
     event() = default;
-    explicit event(int id) : id_(id) { check_cuda(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "cudaEventCreateWithFlags"); }
+    explicit event(int id) : id_(id) {
+      check_cuda(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "cudaEventCreateWithFlags");
+    }
     event(event&& other) noexcept { *this = std::move(other); }
-    event& operator=(event&& other) noexcept { return std::swap(event_, other.event_), std::swap(id_, other.id_), *this; }
+    event& operator=(event&& other) noexcept {
+      return std::swap(event_, other.event_), std::swap(id_, other.id_), *this;
+    }
     ~event() {
       if (event_ != nullptr) on_device(id_, [this] { return cudaEventDestroy(event_); });
     }
@@ -93,7 +104,8 @@ class staging_ring {
   };
 
   static bool within(const pinned_buffer<std::byte>& memory, const std::byte* p) {
-    return memory.size() != 0 && std::less_equal<>()(memory.data(), p) && std::less<>()(p, memory.data() + memory.size());
+    return memory.size() != 0 && std::less_equal<>()(memory.data(), p) &&
+           std::less<>()(p, memory.data() + memory.size());
   }
   static bool is_pinned(const void* memory) {
     cudaPointerAttributes attributes{};

@@ -8,8 +8,8 @@
 
 namespace clearance {
 
-/// Device memory for one call, in the order of a stream: taken in large blocks, handed out in pieces, and given back as a whole,
-/// because each request to the driver takes microseconds.
+/// Device memory for one call, in the order of a stream: taken in large blocks, handed out in pieces, and given back as
+/// a whole, because each request to the driver takes microseconds.
 class stream_resource : public std::pmr::memory_resource {
  public:
   stream_resource(int device, cudaStream_t stream) : device_(device), stream_(stream) {}

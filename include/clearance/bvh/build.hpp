@@ -21,8 +21,9 @@ namespace detail {
 
 /// Cuts `items` into at most `width` groups, always the largest that is not yet a leaf; each gets its own range.
 template <class Split>
-std::vector<std::pair<std::uint32_t, std::uint32_t>> cut(std::span<split_item> items, std::uint32_t begin, std::uint32_t end,
-                                                         const build_options& options, const Split& split) {
+std::vector<std::pair<std::uint32_t, std::uint32_t>> cut(std::span<split_item> items, std::uint32_t begin,
+                                                         std::uint32_t end, const build_options& options,
+                                                         const Split& split) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> groups = {{begin, end}};
   while (groups.size() < options.width) {
     const auto largest = std::ranges::max_element(groups, {}, [](auto g) { return g.second - g.first; });
@@ -78,7 +79,8 @@ auto build(const R& input, build_options options = {}, Fit fit = {}, Split split
   const std::span<const P> primitives(input);
   if (primitives.empty()) throw std::invalid_argument("clearance::build: there are no primitives");
   if (options.width != 2 && options.width != 4 && options.width != 8)
-    throw std::invalid_argument("clearance::build: width is " + std::to_string(options.width) + ", but must be 2, 4 or 8");
+    throw std::invalid_argument("clearance::build: width is " + std::to_string(options.width) +
+                                ", but must be 2, 4 or 8");
   if (options.leaf_size == 0) throw std::invalid_argument("clearance::build: leaf_size is 0, but must be at least 1");
 
   std::vector<split_item> items(primitives.size());
@@ -86,7 +88,8 @@ auto build(const R& input, build_options options = {}, Fit fit = {}, Split split
     Eigen::Vector3f lower = Eigen::Vector3f::Constant(infinity), upper = -lower;
     for (const ball& b : primitives[id].balls()) {
       if (!is_finite(b.center) || !(b.radius >= 0) || !is_finite(b.radius))
-        throw std::invalid_argument("clearance::build: primitive " + std::to_string(id) + " is not finite or has a negative radius");
+        throw std::invalid_argument("clearance::build: primitive " + std::to_string(id) +
+                                    " is not finite or has a negative radius");
       const Eigen::Vector3f c(b.center.x, b.center.y, b.center.z);
       lower = lower.cwiseMin((c.array() - b.radius).matrix());
       upper = upper.cwiseMax((c.array() + b.radius).matrix());
@@ -113,8 +116,10 @@ auto build(const R& input, build_options options = {}, Fit fit = {}, Split split
     const auto [begin, end] = shape.range[n];
     const auto& node = tree.nodes[n];
     tree.width = std::max(tree.width, node.is_leaf() ? 1u : node.count());
-    const auto children = node.is_leaf() ? std::span<const V>{} : std::span<const V>(tree.volumes).subspan(node.first, node.count());
-    tree.volumes[n] = fit(std::span<const ball>(balls).subspan(first_ball[begin], first_ball[end] - first_ball[begin]), children);
+    const auto children =
+        node.is_leaf() ? std::span<const V>{} : std::span<const V>(tree.volumes).subspan(node.first, node.count());
+    tree.volumes[n] =
+        fit(std::span<const ball>(balls).subspan(first_ball[begin], first_ball[end] - first_ball[begin]), children);
   }
   return tree;
 }

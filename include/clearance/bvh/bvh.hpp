@@ -20,13 +20,19 @@ struct bvh {
   buffer<std::uint32_t> ids;
   std::uint32_t depth = 0, width = 0;
 
-  bvh_view<V, P> view() const { return {volumes.data(), nodes.data(), primitives.data(), ids.data(), depth, width, std::uint32_t(nodes.size())}; }
+  bvh_view<V, P> view() const {
+    return {volumes.data(), nodes.data(), primitives.data(), ids.data(), depth, width, std::uint32_t(nodes.size())};
+  }
 
   /// A copy of a host tree where `other` runs.
   template <backend Other>
   bvh<V, P, Other> on(const Other& other) const {
-    return {other.copy_in(std::span<const V>(volumes)), other.copy_in(std::span<const bvh_node>(nodes)),
-            other.copy_in(std::span<const P>(primitives)), other.copy_in(std::span<const std::uint32_t>(ids)), depth, width};
+    return {other.copy_in(std::span<const V>(volumes)),
+            other.copy_in(std::span<const bvh_node>(nodes)),
+            other.copy_in(std::span<const P>(primitives)),
+            other.copy_in(std::span<const std::uint32_t>(ids)),
+            depth,
+            width};
   }
 };
 

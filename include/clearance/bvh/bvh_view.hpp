@@ -15,8 +15,9 @@ struct bvh_node {
   CLEARANCE_HD constexpr std::uint32_t count() const { return count_and_kind & ~leaf_bit; }
 };
 
-/// A hierarchy that shows its arrays, in which children and primitives are contiguous and parents come before their children, level by
-/// level; on a device nodes and volumes begin at multiples of 16 bytes. A scan then keeps what a node says, and the first nodes at hand.
+/// A hierarchy that shows its arrays, in which children and primitives are contiguous and parents come before their
+/// children, level by level; on a device nodes and volumes begin at multiples of 16 bytes. A scan then keeps what a
+/// node says, and the first nodes at hand.
 template <class H>
 concept array_hierarchy = hierarchy<H> && requires(const H h) {
   { h.volumes } -> std::convertible_to<const typename H::volume_type*>;

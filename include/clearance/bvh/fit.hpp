@@ -17,8 +17,9 @@ struct wrapped {
 struct layered {
   template <class V>
   V operator()(std::span<const ball> leaves, std::span<const V> children) const {
-    static_assert(requires(const V& v) { std::span<const ball>(bounding_volume_traits<V>::balls(v)); },
-                  "the layered fit needs a volume with balls(): a few balls whose convex hull contains it");
+    static_assert(
+        requires(const V& v) { std::span<const ball>(bounding_volume_traits<V>::balls(v)); },
+        "the layered fit needs a volume with balls(): a few balls whose convex hull contains it");
     if (children.empty()) return bounding_volume_traits<V>::fit(leaves);
     std::vector<ball> all;
     for (const V& child : children)

@@ -68,9 +68,9 @@ struct principal_split {
   }
 };
 
-/// Split rule: two clusters around their mean centres (Lloyd 1982), begun at the ends of the principal direction; neither
-/// side gets less than a tenth, so that the depth stays logarithmic. What batch neural gas (Weller & Zachmann 2009) does
-/// for two clusters once its neighbourhood has shrunk.
+/// Split rule: two clusters around their mean centres (Lloyd 1982), begun at the ends of the principal direction;
+/// neither side gets less than a tenth, so that the depth stays logarithmic. What batch neural gas (Weller & Zachmann
+/// 2009) does for two clusters once its neighbourhood has shrunk.
 struct two_means_split {
   std::size_t operator()(std::span<split_item> items) const {
     const std::size_t n = items.size(), least = std::max<std::size_t>(1, n / 10);
@@ -82,7 +82,8 @@ struct two_means_split {
       if (!(way.norm() > 0)) break;
       std::sort(items.begin(), items.end(), center_order{way});
       const float middle = (near + far).dot(way) / 2;
-      const auto beyond = std::find_if(items.begin(), items.end(), [&](const auto& i) { return i.center().dot(way) > middle; });
+      const auto beyond =
+          std::find_if(items.begin(), items.end(), [&](const auto& i) { return i.center().dot(way) > middle; });
       const auto now = std::clamp(std::size_t(beyond - items.begin()), least, n - least);
       if (now == cut && round > 0) break;
       cut = now;
@@ -98,9 +99,9 @@ struct two_means_split {
   }
 };
 
-/// Split rule: two clusters by batch neural gas (Cottrell et al. 2006), as Weller & Zachmann (2009) split inner sphere trees: each item
-/// pulls the nearer mean by its volume and the farther one by ever less of it, so that little depends on where they begin. Neither side
-/// gets less than a tenth, so that the depth stays logarithmic.
+/// Split rule: two clusters by batch neural gas (Cottrell et al. 2006), as Weller & Zachmann (2009) split inner sphere
+/// trees: each item pulls the nearer mean by its volume and the farther one by ever less of it, so that little depends
+/// on where they begin. Neither side gets less than a tenth, so that the depth stays logarithmic.
 struct neural_gas_split {
   std::size_t operator()(std::span<split_item> items) const {
     const std::size_t n = items.size(), least = std::max<std::size_t>(1, n / 10);
@@ -109,7 +110,8 @@ struct neural_gas_split {
     std::sort(items.begin(), items.end(), center_order{principal});
     std::array<Eigen::Vector3f, 2> mean = {items[n / 4].center(), items[n - 1 - n / 4].center()};
     for (int round = 0; round < rounds; ++round) {
-      const float width = std::pow(0.01f, float(round) / (rounds - 1));  // of the neighbourhood: from one rank to a hundredth
+      const float width =
+          std::pow(0.01f, float(round) / (rounds - 1));  // of the neighbourhood: from one rank to a hundredth
       const std::array<float, 2> pull = {1, std::exp(-1 / width)};
       std::array<Eigen::Vector3f, 2> sum = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
       std::array<float, 2> all = {0, 0};
@@ -128,7 +130,8 @@ struct neural_gas_split {
     if (!(way.norm() > 0) || !way.allFinite()) way = principal;
     std::sort(items.begin(), items.end(), center_order{way});
     const float middle = (mean[0] + mean[1]).dot(way) / 2;
-    const auto beyond = std::find_if(items.begin(), items.end(), [&](const auto& i) { return i.center().dot(way) > middle; });
+    const auto beyond =
+        std::find_if(items.begin(), items.end(), [&](const auto& i) { return i.center().dot(way) > middle; });
     return std::clamp(std::size_t(beyond - items.begin()), least, n - least);
   }
 };

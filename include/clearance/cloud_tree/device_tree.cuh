@@ -31,7 +31,8 @@ __global__ void __launch_bounds__(grid_threads) grid_kernel(const __grid_constan
   const std::uint32_t count = std::uint32_t(__syncthreads_count(s.valid())) / 3;
   if (s.valid()) {
     std::uint32_t rank = 0;
-    for (std::uint32_t j = 0; j < morton_grid::samples; ++j) rank += along[axis][j] < mine || (along[axis][j] == mine && j < t);
+    for (std::uint32_t j = 0; j < morton_grid::samples; ++j)
+      rank += along[axis][j] < mine || (along[axis][j] == mine && j < t);
     if (rank == morton_grid::low_rank(count)) (&ends[0].x)[axis] = mine;
     if (rank == morton_grid::high_rank(count)) (&ends[1].x)[axis] = mine;
   }
@@ -76,22 +77,26 @@ __device__ T of_siblings(T mine, F f) {
   return mine;
 }
 
-/// A node around what siblings have: a box each, which may be empty, and how far `reach(center)` that goes. Of nothing it is a ball
-/// that nothing can be near. All of a warp's lanes call it; where `node` is none, nothing is put.
+/// A node around what siblings have: a box each, which may be empty, and how far `reach(center)` that goes. Of nothing
+/// it is a ball that nothing can be near. All of a warp's lanes call it; where `node` is none, nothing is put.
 template <class Reach>
-__device__ void put_node(const tree_room& to, std::uint32_t node, const extent& mine, std::uint32_t least, Reach reach) {
+__device__ void put_node(const tree_room& to, std::uint32_t node, const extent& mine, std::uint32_t least,
+                         Reach reach) {
   const auto low = [](real x) { return of_siblings(x, [](real a, real b) { return min(a, b); }); };
   const auto high = [](real x) { return of_siblings(x, [](real a, real b) { return max(a, b); }); };
-  const extent box{{low(mine.lower.x), low(mine.lower.y), low(mine.lower.z)}, {high(mine.upper.x), high(mine.upper.y), high(mine.upper.z)}};
+  const extent box{{low(mine.lower.x), low(mine.lower.y), low(mine.lower.z)},
+                   {high(mine.upper.x), high(mine.upper.y), high(mine.upper.z)}};
   const bool nothing = !(box.lower.x <= box.upper.x);
   const vec3 center = nothing ? vec3{0, 0, 0} : middle(box);
   const real radius = high(mine.lower.x <= mine.upper.x ? reach(center) : -infinity);
   least = of_siblings(least, [](std::uint32_t a, std::uint32_t b) { return a < b ? a : b; });
   if (threadIdx.x % siblings != 0 || node == none) return;
-  to.boxes[node] = box, to.balls[node] = {center, nothing ? -infinity : min(radius, farthest(box, center))}, to.least[node] = least;
+  to.boxes[node] = box, to.balls[node] = {center, nothing ? -infinity : min(radius, farthest(box, center))},
+  to.least[node] = least;
 }
 
-/// A node of a level above tiles around its children. `child`: a node of the level below, or none. All of a warp's lanes call it.
+/// A node of a level above tiles around its children. `child`: a node of the level below, or none. All of a warp's
+/// lanes call it.
 template <class Tree>
 __device__ void put_parent(const Tree& tree, std::uint32_t level, std::uint32_t child, const tree_room& to) {
   static_assert(Tree::fan == siblings);
@@ -107,12 +112,14 @@ __device__ void put_parent(const Tree& tree, std::uint32_t level, std::uint32_t 
            [&](vec3 center) { return (rough_length_up(b.center - center) + b.radius) * (1 + slack); });
 }
 
-inline constexpr std::uint32_t tile_threads = siblings * siblings * siblings;  ///< Points of a block, which makes the first three levels.
+inline constexpr std::uint32_t tile_threads =
+    siblings * siblings * siblings;  ///< Points of a block, which makes the first three levels.
 
 /// `number_of(i)` is the number of the point that comes at position i, or none.
 template <class Source, class Tree, class Order>
-__global__ void __launch_bounds__(tile_threads) tile_kernel(const __grid_constant__ Source source, const __grid_constant__ Tree tree,
-                                                            const __grid_constant__ Order number_of, const tree_room to, scan::drop_counts* dropped) {
+__global__ void __launch_bounds__(tile_threads)
+    tile_kernel(const __grid_constant__ Source source, const __grid_constant__ Tree tree,
+                const __grid_constant__ Order number_of, const tree_room to, scan::drop_counts* dropped) {
   static_assert(Tree::tile == siblings);
   const std::uint32_t t = threadIdx.x, i = blockIdx.x * tile_threads + t, tile = i / siblings;
   numbered_point p{{not_a_number, not_a_number, not_a_number}, ~0u};
@@ -127,8 +134,10 @@ __global__ void __launch_bounds__(tile_threads) tile_kernel(const __grid_constan
   }
   if constexpr (Order::counts) mine.add_to(*dropped);
   __syncwarp();
-  put_node(to, tile < tree.size(0) ? tile : none, box, p.number, [&](vec3 center) { return rough_length_up(p.at - center); });
-  for (std::uint32_t level = 1, children = tile_threads / siblings; level < 3 && level < tree.levels; ++level, children /= siblings) {
+  put_node(to, tile < tree.size(0) ? tile : none, box, p.number,
+           [&](vec3 center) { return rough_length_up(p.at - center); });
+  for (std::uint32_t level = 1, children = tile_threads / siblings; level < 3 && level < tree.levels;
+       ++level, children /= siblings) {
     __syncthreads();
     if (t < children || t < 32) put_parent(tree, level, t < children ? blockIdx.x * children + t : none, to);
   }
@@ -136,14 +145,17 @@ __global__ void __launch_bounds__(tile_threads) tile_kernel(const __grid_constan
 
 /// A level by itself.
 template <class Tree>
-__global__ void __launch_bounds__(256) node_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
+__global__ void __launch_bounds__(256)
+    node_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
   put_parent(tree, level, blockIdx.x * 256 + threadIdx.x, to);
 }
 /// All levels from one on, by one block.
 template <class Tree>
-__global__ void __launch_bounds__(1024) top_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
+__global__ void __launch_bounds__(1024)
+    top_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
   for (; level < tree.levels; ++level, __syncthreads())
-    for (std::uint32_t first = 0, size = tree.size(level - 1); first < size; first += 1024) put_parent(tree, level, first + threadIdx.x, to);
+    for (std::uint32_t first = 0, size = tree.size(level - 1); first < size; first += 1024)
+      put_parent(tree, level, first + threadIdx.x, to);
 }
 
 /// Points in the order that they were sorted to.
@@ -156,13 +168,15 @@ struct sorted_order {
 
 }  // namespace detail
 
-/// Owns a tree; built anew for every frame, in memory that is kept. Points that do not count stay among the others, as NaN: so its
-/// shape is known before they are read, and nobody waits. An image's tiles are its pixels' (a pyramid); other points are sorted.
+/// Owns a tree; built anew for every frame, in memory that is kept. Points that do not count stay among the others, as
+/// NaN: so its shape is known before they are read, and nobody waits. An image's tiles are its pixels' (a pyramid);
+/// other points are sorted.
 class device_tree {
  public:
   using view_type = tree_view<8, 8>;
 
-  explicit device_tree(const device& on, std::pmr::memory_resource* memory = nullptr) : on_(on), memory_(memory), grid_(1, on.id, memory) {}
+  explicit device_tree(const device& on, std::pmr::memory_resource* memory = nullptr)
+      : on_(on), memory_(memory), grid_(1, on.id, memory) {}
 
   /// Enqueues it; what does not count is added to `dropped`. The device reads the source as it is.
   template <point_source S>
@@ -192,10 +206,12 @@ class device_tree {
   void put_up(const S& source, const view_type& shape, const Order& order, scan::drop_counts* dropped) {
     view_ = shape;
     grow(points_, view_.count), grow(balls_, view_.nodes()), grow(least_, view_.nodes()), grow(boxes_, view_.nodes());
-    view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(), view_.least = least_.data();
+    view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(),
+    view_.least = least_.data();
     const detail::tree_room to{points_.data(), balls_.data(), least_.data(), boxes_.data()};
     const unsigned blocks = (view_.count - 1) / detail::tile_threads + 1;
-    on_.launch(detail::tile_kernel<S, view_type, Order>, blocks, detail::tile_threads, 0, source, view_, order, to, dropped);
+    on_.launch(detail::tile_kernel<S, view_type, Order>, blocks, detail::tile_threads, 0, source, view_, order, to,
+               dropped);
     std::uint32_t level = 3;
     for (; level < view_.levels && view_.size(level - 1) > 16384; ++level)
       on_.launch(detail::node_kernel<view_type>, (view_.size(level - 1) - 1) / 256 + 1, 256, 0, view_, level, to);
@@ -205,8 +221,8 @@ class device_tree {
   void sort(std::size_t n) {
     const device_guard guard(on_.id);
     const auto call = [&](void* room, std::size_t& bytes) {
-      check_cuda(cub::DeviceRadixSort::SortPairs(room, bytes, codes_.data(), sorted_codes_.data(), numbers_.data(), sorted_.data(), n, first_bit, last_bit,
-                                                 on_.stream),
+      check_cuda(cub::DeviceRadixSort::SortPairs(room, bytes, codes_.data(), sorted_codes_.data(), numbers_.data(),
+                                                 sorted_.data(), n, first_bit, last_bit, on_.stream),
                  "cub::DeviceRadixSort::SortPairs");
     };
     if (n > sort_size_) {

@@ -12,8 +12,8 @@
 
 namespace clearance::cloud_tree {
 
-/// Owns a tree; built anew for every frame, in memory that is kept. The valid points are sorted along a Z-curve: the rows of a
-/// depth image are lines, of which few are near one another, and other clouds have no order at all.
+/// Owns a tree; built anew for every frame, in memory that is kept. The valid points are sorted along a Z-curve: the
+/// rows of a depth image are lines, of which few are near one another, and other clouds have no order at all.
 class host_tree {
  public:
   using view_type = tree_view<8, 8>;
@@ -64,7 +64,8 @@ class host_tree {
     codes_.resize(view_.count), others_.resize(view_.count);
     workers.for_pieces(read_.size(), piece, [&](std::size_t begin, std::size_t) {
       const std::uint32_t first = kept_[begin / piece], count = kept_[begin / piece + 1] - first;
-      for (std::uint32_t j = 0; j < count; ++j) codes_[first + j] = {grid(read_[begin + j].at), std::uint32_t(begin) + j};
+      for (std::uint32_t j = 0; j < count; ++j)
+        codes_[first + j] = {grid(read_[begin + j].at), std::uint32_t(begin) + j};
     });
   }
   morton_grid grid_of_samples() const {
@@ -107,7 +108,8 @@ class host_tree {
     codes_.swap(others_);
   }
 
-  /// Where very many points are in one cell of the curve, neighbours come together by a curve of that cell's own, and equal ones in any case.
+  /// Where very many points are in one cell of the curve, neighbours come together by a curve of that cell's own, and
+  /// equal ones in any case.
   void sort_dense_cells(host_workers& workers) {
     cells_.clear();
     const auto code_less = [](const coded& a, const coded& b) { return a.code < b.code; };
@@ -116,7 +118,8 @@ class host_tree {
         const auto its = std::equal_range(codes_.begin(), codes_.end(), codes_[i], code_less);
         cells_.push_back({std::size_t(its.first - codes_.begin()), std::size_t(its.second - codes_.begin())});
       }
-    workers.for_pieces(cells_.size(), 1, [&](std::size_t k, std::size_t) { sort_cell(cells_[k].begin, cells_[k].end); });
+    workers.for_pieces(cells_.size(), 1,
+                       [&](std::size_t k, std::size_t) { sort_cell(cells_[k].begin, cells_[k].end); });
   }
   void sort_cell(std::size_t begin, std::size_t end) {
     extent box;
@@ -124,18 +127,22 @@ class host_tree {
     if (box.lower == box.upper) return;
     const morton_grid grid(box.lower, box.upper);
     for (std::size_t i = begin; i < end; ++i) codes_[i].code = grid(read_[codes_[i].at].at);
-    std::sort(codes_.begin() + std::ptrdiff_t(begin), codes_.begin() + std::ptrdiff_t(end), [this](const coded& a, const coded& b) {
-      const vec3 p = read_[a.at].at, q = read_[b.at].at;
-      return std::tie(a.code, p.x, p.y, p.z, a.at) < std::tie(b.code, q.x, q.y, q.z, b.at);
-    });
+    std::sort(codes_.begin() + std::ptrdiff_t(begin), codes_.begin() + std::ptrdiff_t(end),
+              [this](const coded& a, const coded& b) {
+                const vec3 p = read_[a.at].at, q = read_[b.at].at;
+                return std::tie(a.code, p.x, p.y, p.z, a.at) < std::tie(b.code, q.x, q.y, q.z, b.at);
+              });
   }
 
   void put_up(host_workers& workers) {
-    points_.resize(view_.count), boxes_.resize(view_.nodes()), balls_.resize(view_.nodes()), least_.resize(view_.nodes());
-    view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(), view_.least = least_.data();
+    points_.resize(view_.count), boxes_.resize(view_.nodes()), balls_.resize(view_.nodes()),
+        least_.resize(view_.nodes());
+    view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(),
+    view_.least = least_.data();
     for (std::uint32_t level = 0; level < view_.levels; ++level)
       workers.for_pieces(view_.size(level), piece / view_type::tile, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) level == 0 ? put_tile(std::uint32_t(n)) : put_node(level, std::uint32_t(n));
+        for (std::size_t n = begin; n < end; ++n)
+          level == 0 ? put_tile(std::uint32_t(n)) : put_node(level, std::uint32_t(n));
       });
   }
   void put_tile(std::uint32_t n) {
@@ -153,13 +160,16 @@ class host_tree {
     boxes_[n] = box, balls_[n] = {center, radius}, least_[n] = least;
   }
   void put_node(std::uint32_t level, std::uint32_t n) {
-    const std::uint32_t below = view_.begin[level - 1], begin = below + view_.first_below(level, n), end = below + view_.end_below(level, n);
+    const std::uint32_t below = view_.begin[level - 1], begin = below + view_.first_below(level, n),
+                        end = below + view_.end_below(level, n);
     extent box;
     std::uint32_t least = ~0u;
-    for (std::uint32_t i = begin; i < end; ++i) box.add(boxes_[i].lower), box.add(boxes_[i].upper), least = std::min(least, least_[i]);
+    for (std::uint32_t i = begin; i < end; ++i)
+      box.add(boxes_[i].lower), box.add(boxes_[i].upper), least = std::min(least, least_[i]);
     const vec3 center = middle(box);
     real radius = 0;
-    for (std::uint32_t i = begin; i < end; ++i) radius = max(radius, (rough_length_up(balls_[i].center - center) + balls_[i].radius) * (1 + slack));
+    for (std::uint32_t i = begin; i < end; ++i)
+      radius = max(radius, (rough_length_up(balls_[i].center - center) + balls_[i].radius) * (1 + slack));
     const std::uint32_t me = view_.begin[level] + n;
     boxes_[me] = box, balls_[me] = {center, min(radius, farthest(box, center))}, least_[me] = least;
   }

@@ -6,8 +6,8 @@
 
 namespace clearance::cloud_tree {
 
-/// Numbers cells of a grid along a Z-curve (Morton). It decides how fast a tree is, and nothing else; so it need not be the same
-/// everywhere.
+/// Numbers cells of a grid along a Z-curve (Morton). It decides how fast a tree is, and nothing else; so it need not be
+/// the same everywhere.
 struct morton_grid {
   static constexpr int bits = 10;  ///< Of each coordinate.
   static constexpr std::uint32_t samples = 256;
@@ -16,8 +16,9 @@ struct morton_grid {
   real per_metre = 0;
 
   morton_grid() = default;
-  /// Around what lies between two positions, and a little more: points beyond are in the outermost cells. Where a few points are
-  /// far away, as lidars see some, the others must not fall into one cell: so these are quantiles of samples, and not the ends.
+  /// Around what lies between two positions, and a little more: points beyond are in the outermost cells. Where a few
+  /// points are far away, as lidars see some, the others must not fall into one cell: so these are quantiles of
+  /// samples, and not the ends.
   CLEARANCE_HD morton_grid(vec3 a, vec3 b) {
     const vec3 size = b - a;
     const real side = max(max(size.x, size.y), size.z) * 1.5f;

@@ -7,8 +7,8 @@
 
 namespace clearance::cloud_tree {
 
-/// Squares of 64 x 64 pixels one after another, row by row, and the pixels of each along a Z-curve: eight of them are a tile of 4 x 2, eight
-/// of those a square, and so on. What lies beyond the image's edges has a place, and no number.
+/// Squares of 64 x 64 pixels one after another, row by row, and the pixels of each along a Z-curve: eight of them are a
+/// tile of 4 x 2, eight of those a square, and so on. What lies beyond the image's edges has a place, and no number.
 struct pixel_order {
   static constexpr bool counts = true;  ///< Nobody has looked at the points before.
   static constexpr std::uint32_t bits = 6, side = 1 << bits;
@@ -19,8 +19,10 @@ struct pixel_order {
   /// None, if those are no whole rows, or more places than can be numbered.
   pixel_order(std::uint32_t pixels, std::uint32_t columns) {
     if (columns == 0 || pixels % columns != 0) return;
-    const std::uint64_t across = (std::uint64_t(columns) + side - 1) / side, down = (std::uint64_t(pixels / columns) + side - 1) / side;
-    if (across * down >> (32 - 2 * bits) == 0) width = columns, height = pixels / columns, squares = std::uint32_t(across);
+    const std::uint64_t across = (std::uint64_t(columns) + side - 1) / side,
+                        down = (std::uint64_t(pixels / columns) + side - 1) / side;
+    if (across * down >> (32 - 2 * bits) == 0)
+      width = columns, height = pixels / columns, squares = std::uint32_t(across);
   }
   std::uint32_t positions() const { return squares * ((height + side - 1) / side) * side * side; }
 

@@ -13,8 +13,8 @@ struct alignas(16) numbered_point {
   std::uint32_t number;
 };
 
-/// Balls around `Tile` neighbours each, above them balls around `Fan` balls each, until no more than `Fan` are left. Where a node's
-/// children are follows from its number, so nothing is stored of that.
+/// Balls around `Tile` neighbours each, above them balls around `Fan` balls each, until no more than `Fan` are left.
+/// Where a node's children are follows from its number, so nothing is stored of that.
 template <std::uint32_t Tile, std::uint32_t Fan>
 struct tree_view {
   static constexpr std::uint32_t tile = Tile, fan = Fan, most_levels = 16;
@@ -40,18 +40,23 @@ struct tree_view {
   CLEARANCE_HD std::uint32_t nodes() const { return begin[levels]; }
   CLEARANCE_HD std::uint32_t size(std::uint32_t level) const { return begin[level + 1] - begin[level]; }
   /// What is below node `n` of a level: nodes of the level below it, or points, from the first to one behind the last.
-  CLEARANCE_HD std::uint32_t first_below(std::uint32_t level, std::uint32_t n) const { return n * (level == 0 ? Tile : Fan); }
+  CLEARANCE_HD std::uint32_t first_below(std::uint32_t level, std::uint32_t n) const {
+    return n * (level == 0 ? Tile : Fan);
+  }
   CLEARANCE_HD std::uint32_t end_below(std::uint32_t level, std::uint32_t n) const {
     const std::uint32_t all = level == 0 ? count : size(level - 1), group = level == 0 ? Tile : Fan;
     return all - n * group < group ? all : (n + 1) * group;
   }
 };
 
-/// The middle of a box, and how far the farthest of its corners is from there. A radius may be too large by a rounding, never too small.
+/// The middle of a box, and how far the farthest of its corners is from there. A radius may be too large by a rounding,
+/// never too small.
 CLEARANCE_HD inline vec3 middle(const extent& box) {
   return {(box.lower.x + box.upper.x) / 2, (box.lower.y + box.upper.y) / 2, (box.lower.z + box.upper.z) / 2};
 }
-CLEARANCE_HD inline real rough_length_up(vec3 d) { return square_root(d.x * d.x + d.y * d.y + d.z * d.z) * (1 + slack); }
+CLEARANCE_HD inline real rough_length_up(vec3 d) {
+  return square_root(d.x * d.x + d.y * d.y + d.z * d.z) * (1 + slack);
+}
 CLEARANCE_HD inline real farthest(const extent& box, vec3 from) {
   const vec3 up = box.upper - from, down = from - box.lower;
   return rough_length_up({max(up.x, down.x), max(up.y, down.y), max(up.z, down.z)});

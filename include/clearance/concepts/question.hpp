@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What is asked: of one tree and one point (visitor), and of all pairs of a point and a part (answer); and who walks the tree.
+// What is asked: of one tree and one point (visitor), and of all pairs of a point and a part (answer); and who walks
+// the tree.
 
 #include <clearance/concepts/tree.hpp>
 
@@ -24,16 +25,22 @@ concept visitor = requires(Q q, const Q c, std::uint32_t id, real distance) {
 template <class Q>
 consteval bool explain_visitor() {
   static_assert(requires { typename Q::result_type; }, "a visitor needs: a type result_type");
-  static_assert(requires(const Q q) { { q.reach() } -> std::same_as<real>; }, "a visitor needs: CLEARANCE_HD real reach() const");
-  static_assert(requires(Q q, std::uint32_t id, real distance) { q.offer(id, distance); },
-                "a visitor needs: CLEARANCE_HD void offer(std::uint32_t id, real distance)");
-  static_assert(requires(const Q q) { { q.result() } -> std::same_as<typename Q::result_type>; },
-                "a visitor needs: CLEARANCE_HD result_type result() const");
+  static_assert(
+      requires(const Q q) {
+        { q.reach() } -> std::same_as<real>;
+      }, "a visitor needs: CLEARANCE_HD real reach() const");
+  static_assert(
+      requires(Q q, std::uint32_t id, real distance) { q.offer(id, distance); },
+      "a visitor needs: CLEARANCE_HD void offer(std::uint32_t id, real distance)");
+  static_assert(
+      requires(const Q q) {
+        { q.result() } -> std::same_as<typename Q::result_type>;
+      }, "a visitor needs: CLEARANCE_HD result_type result() const");
   return visitor<Q>;
 }
 
-/// Shows a visitor every primitive of a leaf: the one place where a traversal meets a primitive. A visitor may also take
-/// `offer(id, distance, primitive)`, if it wants the primitive itself.
+/// Shows a visitor every primitive of a leaf: the one place where a traversal meets a primitive. A visitor may also
+/// take `offer(id, distance, primitive)`, if it wants the primitive itself.
 template <hierarchy H, visitor Q>
 CLEARANCE_HD void offer_leaf(const H& tree, const typename H::node_type n, vec3 p, Q& q) {
   const std::uint32_t size = tree.size(n);
@@ -50,15 +57,18 @@ CLEARANCE_HD void offer_leaf(const H& tree, const typename H::node_type n, vec3 
 struct pair_distance {
   std::uint32_t cloud, point;  ///< The point's number as in its cloud.
   std::uint32_t part;
-  std::uint32_t primitive;  ///< The part's nearest; of equally near ones the lowest. ~0u: the point is inside the part's solid.
+  std::uint32_t
+      primitive;  ///< The part's nearest; of equally near ones the lowest. ~0u: the point is inside the part's solid.
   real distance;
 };
 
 /// What is kept of all pairs (point, part) of a frame: a view, to memory that the scan's backend writes.
 ///
-/// Law: `reach(part)` is how near the part must be to a point for the pair to matter; it never grows while a scan runs, and a
+/// Law: `reach(part)` is how near the part must be to a point for the pair to matter; it never grows while a scan runs,
+/// and a
 ///      stale one costs time and nothing else.
-/// Law: `take(pair)` is called once for every pair that is within reach, and perhaps for others that were so before; by any
+/// Law: `take(pair)` is called once for every pair that is within reach, and perhaps for others that were so before; by
+/// any
 ///      thread, in any order, which changes nothing in the end.
 template <class A>
 concept answer = std::is_trivially_copyable_v<A> && requires(const A a, std::uint32_t part, const pair_distance pair) {
@@ -67,35 +77,48 @@ concept answer = std::is_trivially_copyable_v<A> && requires(const A a, std::uin
 };
 
 /// An answer that can do without some pairs: those are not looked at any further.
-/// Law: `settled(cloud, point, part)` means that `take` of that pair would change nothing; once true it stays so while a scan runs.
+/// Law: `settled(cloud, point, part)` means that `take` of that pair would change nothing; once true it stays so while
+/// a scan runs.
 template <class A>
-concept settling_answer = answer<A> && requires(const A a, std::uint32_t n) { { a.settled(n, n, n) } -> std::same_as<bool>; };
+concept settling_answer = answer<A> && requires(const A a, std::uint32_t n) {
+  { a.settled(n, n, n) } -> std::same_as<bool>;
+};
 
 /// A settling answer that tells when all later points are settled, too: a host then only counts them.
 /// Law: `ended(cloud, point)` means that every pair of that point, and of those after it in that cloud, is settled.
 template <class A>
-concept ending_answer = settling_answer<A> && requires(const A a, std::uint32_t n) { { a.ended(n, n) } -> std::same_as<bool>; };
+concept ending_answer = settling_answer<A> && requires(const A a, std::uint32_t n) {
+  { a.ended(n, n) } -> std::same_as<bool>;
+};
 
 /// An answer that need not know how near a pair is, but only in which range of distances: a walk may then stop early.
-/// Law: `reach(part, found, nearest)` is how near another primitive must be for a pair still to matter, once one is `found` away and some
-///      pair of the part no farther than `nearest`; it never grows as those fall. `take` gets such a pair with a primitive that may not be
-///      its nearest, if no nearer one is within that reach.
+/// Law: `reach(part, found, nearest)` is how near another primitive must be for a pair still to matter, once one is
+/// `found` away and some
+///      pair of the part no farther than `nearest`; it never grows as those fall. `take` gets such a pair with a
+///      primitive that may not be its nearest, if no nearer one is within that reach.
 template <class A>
-concept coarse_answer = answer<A> && requires(const A a, std::uint32_t part, real d) { { a.reach(part, d, d) } -> std::same_as<real>; };
+concept coarse_answer = answer<A> && requires(const A a, std::uint32_t part, real d) {
+  { a.reach(part, d, d) } -> std::same_as<real>;
+};
 
 /// `answer<A>` with reasons.
 template <class A>
 consteval bool explain_answer() {
   static_assert(std::is_trivially_copyable_v<A>, "an answer must be a trivially copyable view");
-  static_assert(requires(const A a, std::uint32_t part) { { a.reach(part) } -> std::same_as<real>; },
-                "an answer needs: CLEARANCE_HD real reach(std::uint32_t part) const");
-  static_assert(requires(const A a, const pair_distance pair) { a.take(pair); }, "an answer needs: CLEARANCE_HD void take(const pair_distance&) const");
+  static_assert(
+      requires(const A a, std::uint32_t part) {
+        { a.reach(part) } -> std::same_as<real>;
+      }, "an answer needs: CLEARANCE_HD real reach(std::uint32_t part) const");
+  static_assert(
+      requires(const A a, const pair_distance pair) { a.take(pair); },
+      "an answer needs: CLEARANCE_HD void take(const pair_distance&) const");
   return answer<A>;
 }
 
 /// Walks a hierarchy for one point.
 ///
-/// Law: shows the visitor each primitive that is no farther from the point than `reach()` at that moment (strict > prunes,
+/// Law: shows the visitor each primitive that is no farther from the point than `reach()` at that moment (strict >
+/// prunes,
 ///      so ties are shown; NaN prunes).
 template <class T, class H, class Q>
 concept traversal = std::is_trivially_copyable_v<T> && hierarchy<H> && visitor<Q> &&
@@ -103,9 +126,13 @@ concept traversal = std::is_trivially_copyable_v<T> && hierarchy<H> && visitor<Q
 
 /// A traversal with a stack of so many entries; deeper trees are refused before it starts.
 template <class T>
-concept bounded_traversal = requires { { T::capacity } -> std::convertible_to<std::uint64_t>; };
+concept bounded_traversal = requires {
+  { T::capacity } -> std::convertible_to<std::uint64_t>;
+};
 /// A traversal that calls itself: `device_stack(depth)` is what a launch needs of cudaLimitStackSize, in bytes.
 template <class T>
-concept recursing_traversal = requires(std::uint32_t depth) { { T::device_stack(depth) } -> std::same_as<std::size_t>; };
+concept recursing_traversal = requires(std::uint32_t depth) {
+  { T::device_stack(depth) } -> std::same_as<std::size_t>;
+};
 
 }  // namespace clearance

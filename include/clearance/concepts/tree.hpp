@@ -13,8 +13,9 @@ namespace clearance {
 
 /// Something stored in the leaves of a tree.
 ///
-/// Law: `p.distance(q)` is the distance in metres from point q to the primitive; negative inside, where it has an inside.
-/// Law: `p.nearest(q)` lies on the primitive, `p.distance(q)` away from q; `p.normal(q)` is the unit vector along which
+/// Law: `p.distance(q)` is the distance in metres from point q to the primitive; negative inside, where it has an
+/// inside. Law: `p.nearest(q)` lies on the primitive, `p.distance(q)` away from q; `p.normal(q)` is the unit vector
+/// along which
 ///      the distance grows fastest at q, the primitive's own where the distance is 0, or (0,0,0) if there is none.
 /// Law: the convex hull of `p.balls()` contains the primitive.
 template <class P>
@@ -25,29 +26,40 @@ concept primitive = std::is_trivially_copyable_v<P> && requires(const P p, vec3 
   { std::span<const ball>(p.balls()) };
 };
 
-/// A primitive that also says whether it may be as near as `reach`, more cheaply than by its distance, and without a branch: a host
-/// asks so for many points at once, in vectors.
-/// Law: `p.may_reach(q, reach)` is true if `p.distance(q) <= reach`.
+/// A primitive that also says whether it may be as near as `reach`, more cheaply than by its distance, and without a
+/// branch: a host asks so for many points at once, in vectors. Law: `p.may_reach(q, reach)` is true if `p.distance(q)
+/// <= reach`.
 template <class P>
-concept foreseen_primitive = primitive<P> && requires(const P p, vec3 q, real reach) { { p.may_reach(q, reach) } -> std::same_as<bool>; };
+concept foreseen_primitive = primitive<P> && requires(const P p, vec3 q, real reach) {
+  { p.may_reach(q, reach) } -> std::same_as<bool>;
+};
 
 /// A primitive that tells quickly how near it can be at most.
 /// Law: `p.lower_bound(q)` is never greater than `p.distance(q)`, rounding included.
 template <class P>
-concept bounded_primitive = primitive<P> && requires(const P p, vec3 q) { { p.lower_bound(q) } -> std::same_as<real>; };
+concept bounded_primitive = primitive<P> && requires(const P p, vec3 q) {
+  { p.lower_bound(q) } -> std::same_as<real>;
+};
 
 /// `primitive<P>` with reasons: nvcc does not say which requirement of a concept failed.
 template <class P>
 consteval bool explain_primitive() {
   static_assert(std::is_trivially_copyable_v<P>, "a primitive must be trivially copyable");
-  static_assert(requires(const P p, vec3 q) { { p.distance(q) } -> std::same_as<real>; },
-                "a primitive needs: CLEARANCE_HD real distance(vec3) const");
-  static_assert(requires(const P p, vec3 q) { { p.nearest(q) } -> std::same_as<vec3>; },
-                "a primitive needs: CLEARANCE_HD vec3 nearest(vec3) const");
-  static_assert(requires(const P p, vec3 q) { { p.normal(q) } -> std::same_as<vec3>; },
-                "a primitive needs: CLEARANCE_HD vec3 normal(vec3) const");
-  static_assert(requires(const P p) { std::span<const ball>(p.balls()); },
-                "a primitive needs: balls() const, a few balls whose convex hull contains it");
+  static_assert(
+      requires(const P p, vec3 q) {
+        { p.distance(q) } -> std::same_as<real>;
+      }, "a primitive needs: CLEARANCE_HD real distance(vec3) const");
+  static_assert(
+      requires(const P p, vec3 q) {
+        { p.nearest(q) } -> std::same_as<vec3>;
+      }, "a primitive needs: CLEARANCE_HD vec3 nearest(vec3) const");
+  static_assert(
+      requires(const P p, vec3 q) {
+        { p.normal(q) } -> std::same_as<vec3>;
+      }, "a primitive needs: CLEARANCE_HD vec3 normal(vec3) const");
+  static_assert(
+      requires(const P p) { std::span<const ball>(p.balls()); },
+      "a primitive needs: balls() const, a few balls whose convex hull contains it");
   return primitive<P>;
 }
 
@@ -55,24 +67,32 @@ consteval bool explain_primitive() {
 template <class V>
 struct bounding_volume_traits {
   static V fit(std::span<const ball> balls)
-    requires requires { { V::fit(balls) } -> std::same_as<V>; }
+    requires requires {
+      { V::fit(balls) } -> std::same_as<V>;
+    }
   {
     return V::fit(balls);
   }
   CLEARANCE_HD static real lower_bound(const V& v, vec3 q)
-    requires requires { { v.lower_bound(q) } -> std::same_as<real>; }
+    requires requires {
+      { v.lower_bound(q) } -> std::same_as<real>;
+    }
   {
     return v.lower_bound(q);
   }
   /// Optional: see rootless_volume.
   CLEARANCE_HD static bool may_reach(const V& v, vec3 q, real reach)
-    requires requires { { v.may_reach(q, reach) } -> std::same_as<bool>; }
+    requires requires {
+      { v.may_reach(q, reach) } -> std::same_as<bool>;
+    }
   {
     return v.may_reach(q, reach);
   }
   /// Optional: see round_volume.
   CLEARANCE_HD static ball as_ball(const V& v)
-    requires requires { { v.as_ball() } -> std::same_as<ball>; }
+    requires requires {
+      { v.as_ball() } -> std::same_as<ball>;
+    }
   {
     return v.as_ball();
   }
@@ -87,7 +107,8 @@ struct bounding_volume_traits {
 /// Byte by byte, as to a device: trivially copyable, or the traits vouch for it with `static constexpr bool
 /// bitwise_copyable = true` (Eigen's types copy so, but do not say it).
 template <class V>
-concept copied_as_bytes = std::is_trivially_copyable_v<V> || requires { requires bounding_volume_traits<V>::bitwise_copyable; };
+concept copied_as_bytes =
+    std::is_trivially_copyable_v<V> || requires { requires bounding_volume_traits<V>::bitwise_copyable; };
 
 /// A convex shape that encloses balls and can say how far away they must be.
 ///
@@ -100,28 +121,37 @@ concept bounding_volume = copied_as_bytes<V> && requires(const V v, vec3 q, std:
   { bounding_volume_traits<V>::lower_bound(v, q) } -> std::same_as<real>;
 };
 
-/// A volume that also says whether anything in it may be as near as `reach`, without a root or a branch: a host asks so for many
-/// points at once, in vectors.
+/// A volume that also says whether anything in it may be as near as `reach`, without a root or a branch: a host asks so
+/// for many points at once, in vectors.
 ///
 /// Law: `may_reach(q, reach)` is true if a primitive in it is computed to be at most `reach` away.
 template <class V>
-concept rootless_volume =
-    bounding_volume<V> && requires(const V v, vec3 q, real reach) { { bounding_volume_traits<V>::may_reach(v, q, reach) } -> std::same_as<bool>; };
+concept rootless_volume = bounding_volume<V> && requires(const V v, vec3 q, real reach) {
+  { bounding_volume_traits<V>::may_reach(v, q, reach) } -> std::same_as<bool>;
+};
 
 /// A volume that is a ball, and says so: how far it is from a box then takes no more than its middle's distance.
 ///
 /// Law: `as_ball(v)` contains all that the volume encloses.
 template <class V>
-concept round_volume = bounding_volume<V> && requires(const V v) { { bounding_volume_traits<V>::as_ball(v) } -> std::same_as<ball>; };
+concept round_volume = bounding_volume<V> && requires(const V v) {
+  { bounding_volume_traits<V>::as_ball(v) } -> std::same_as<ball>;
+};
 
 /// `bounding_volume<V>` with reasons: nvcc does not say which requirement of a concept failed.
 template <class V>
 consteval bool explain_bounding_volume() {
   static_assert(copied_as_bytes<V>, "a bounding volume must be trivially copyable");
-  static_assert(requires(std::span<const ball> balls) { { bounding_volume_traits<V>::fit(balls) } -> std::same_as<V>; },
-                "a bounding volume V needs: static V fit(std::span<const ball>), as a member or in bounding_volume_traits<V>");
-  static_assert(requires(const V v, vec3 q) { { bounding_volume_traits<V>::lower_bound(v, q) } -> std::same_as<real>; },
-                "a bounding volume needs: CLEARANCE_HD real lower_bound(vec3) const, as a member or in bounding_volume_traits<V>");
+  static_assert(
+      requires(std::span<const ball> balls) {
+        { bounding_volume_traits<V>::fit(balls) } -> std::same_as<V>;
+      }, "a bounding volume V needs: static V fit(std::span<const ball>), as a member or in bounding_volume_traits<V>");
+  static_assert(
+      requires(const V v, vec3 q) {
+        { bounding_volume_traits<V>::lower_bound(v, q) } -> std::same_as<real>;
+      },
+      "a bounding volume needs: CLEARANCE_HD real lower_bound(vec3) const, as a member or in "
+      "bounding_volume_traits<V>");
   return bounding_volume<V>;
 }
 
@@ -131,19 +161,20 @@ consteval bool explain_bounding_volume() {
 /// Law: `id` is the primitive's position in the user's array; `depth()` counts the edges from the root to the deepest
 ///      leaf and `width()` is the largest number of children, so depth * (width - 1) + 1 entries suffice for a stack.
 template <class H>
-concept hierarchy = std::is_trivially_copyable_v<H> && requires(const H h, const typename H::node_type n, std::uint32_t k) {
-  requires bounding_volume<typename H::volume_type>;
-  requires primitive<typename H::primitive_type>;
-  { h.root() } -> std::same_as<typename H::node_type>;
-  { h.is_leaf(n) } -> std::same_as<bool>;
-  { h.size(n) } -> std::same_as<std::uint32_t>;  // children of an inner node, primitives of a leaf
-  { h.child(n, k) } -> std::same_as<typename H::node_type>;
-  { h.volume(n) } -> std::convertible_to<const typename H::volume_type&>;
-  { h.primitive(n, k) } -> std::convertible_to<const typename H::primitive_type&>;
-  { h.id(n, k) } -> std::same_as<std::uint32_t>;
-  { h.depth() } -> std::same_as<std::uint32_t>;
-  { h.width() } -> std::same_as<std::uint32_t>;
-};
+concept hierarchy =
+    std::is_trivially_copyable_v<H> && requires(const H h, const typename H::node_type n, std::uint32_t k) {
+      requires bounding_volume<typename H::volume_type>;
+      requires primitive<typename H::primitive_type>;
+      { h.root() } -> std::same_as<typename H::node_type>;
+      { h.is_leaf(n) } -> std::same_as<bool>;
+      { h.size(n) } -> std::same_as<std::uint32_t>;  // children of an inner node, primitives of a leaf
+      { h.child(n, k) } -> std::same_as<typename H::node_type>;
+      { h.volume(n) } -> std::convertible_to<const typename H::volume_type&>;
+      { h.primitive(n, k) } -> std::convertible_to<const typename H::primitive_type&>;
+      { h.id(n, k) } -> std::same_as<std::uint32_t>;
+      { h.depth() } -> std::same_as<std::uint32_t>;
+      { h.width() } -> std::same_as<std::uint32_t>;
+    };
 
 /// Entries that a depth-first walk of a tree can have pending.
 CLEARANCE_HD constexpr std::uint64_t stack_need(std::uint32_t depth, std::uint32_t width) {
@@ -159,32 +190,57 @@ CLEARANCE_HD std::uint64_t stack_need(const H& tree) {
 template <class H>
 consteval bool explain_hierarchy() {
   static_assert(std::is_trivially_copyable_v<H>, "a hierarchy must be a trivially copyable view");
-  static_assert(requires { typename H::node_type; typename H::volume_type; typename H::primitive_type; },
-                "a hierarchy needs the types node_type, volume_type and primitive_type");
+  static_assert(
+      requires {
+        typename H::node_type;
+        typename H::volume_type;
+        typename H::primitive_type;
+      }, "a hierarchy needs the types node_type, volume_type and primitive_type");
   static_assert(explain_bounding_volume<typename H::volume_type>() && explain_primitive<typename H::primitive_type>());
   using node = typename H::node_type;
-  static_assert(requires(const H h) { { h.root() } -> std::same_as<node>; }, "a hierarchy needs: CLEARANCE_HD node_type root() const");
-  static_assert(requires(const H h, const node n) { { h.is_leaf(n) } -> std::same_as<bool>; { h.size(n) } -> std::same_as<std::uint32_t>; },
-                "a hierarchy needs: CLEARANCE_HD bool is_leaf(node_type) const and CLEARANCE_HD std::uint32_t size(node_type) const");
-  static_assert(requires(const H h, const node n, std::uint32_t k) { { h.child(n, k) } -> std::same_as<node>; },
-                "a hierarchy needs: CLEARANCE_HD node_type child(node_type, std::uint32_t) const");
-  static_assert(requires(const H h, const node n) { { h.volume(n) } -> std::convertible_to<const typename H::volume_type&>; },
-                "a hierarchy needs: CLEARANCE_HD const volume_type& volume(node_type) const");
-  static_assert(requires(const H h, const node n, std::uint32_t k) {
-                  { h.primitive(n, k) } -> std::convertible_to<const typename H::primitive_type&>;
-                  { h.id(n, k) } -> std::same_as<std::uint32_t>;
-                }, "a hierarchy needs: primitive(node_type, std::uint32_t) const and std::uint32_t id(node_type, std::uint32_t) const");
-  static_assert(requires(const H h) { { h.depth() } -> std::same_as<std::uint32_t>; { h.width() } -> std::same_as<std::uint32_t>; },
-                "a hierarchy needs: std::uint32_t depth() const and std::uint32_t width() const");
+  static_assert(
+      requires(const H h) {
+        { h.root() } -> std::same_as<node>;
+      }, "a hierarchy needs: CLEARANCE_HD node_type root() const");
+  static_assert(
+      requires(const H h, const node n) {
+        { h.is_leaf(n) } -> std::same_as<bool>;
+        { h.size(n) } -> std::same_as<std::uint32_t>;
+      },
+      "a hierarchy needs: CLEARANCE_HD bool is_leaf(node_type) const and CLEARANCE_HD std::uint32_t size(node_type) "
+      "const");
+  static_assert(
+      requires(const H h, const node n, std::uint32_t k) {
+        { h.child(n, k) } -> std::same_as<node>;
+      }, "a hierarchy needs: CLEARANCE_HD node_type child(node_type, std::uint32_t) const");
+  static_assert(
+      requires(const H h, const node n) {
+        { h.volume(n) } -> std::convertible_to<const typename H::volume_type&>;
+      }, "a hierarchy needs: CLEARANCE_HD const volume_type& volume(node_type) const");
+  static_assert(
+      requires(const H h, const node n, std::uint32_t k) {
+        { h.primitive(n, k) } -> std::convertible_to<const typename H::primitive_type&>;
+        { h.id(n, k) } -> std::same_as<std::uint32_t>;
+      },
+      "a hierarchy needs: primitive(node_type, std::uint32_t) const and std::uint32_t id(node_type, std::uint32_t) "
+      "const");
+  static_assert(
+      requires(const H h) {
+        { h.depth() } -> std::same_as<std::uint32_t>;
+        { h.width() } -> std::same_as<std::uint32_t>;
+      }, "a hierarchy needs: std::uint32_t depth() const and std::uint32_t width() const");
   return hierarchy<H>;
 }
 
 /// The solid of a part, besides its primitives: a view.
 ///
 /// Law: `inside(q)` tells whether q is inside; a point that is is 0 away from the part.
-/// Law: the solid ends where the part's primitives are: no point of it is outside a ball around them, and a way from inside to outside
+/// Law: the solid ends where the part's primitives are: no point of it is outside a ball around them, and a way from
+/// inside to outside
 ///      meets one, except within the part's tolerance of them. So what is not near the primitives need not be asked.
 template <class I>
-concept interior = std::is_trivially_copyable_v<I> && requires(const I i, vec3 q) { { i.inside(q) } -> std::same_as<bool>; };
+concept interior = std::is_trivially_copyable_v<I> && requires(const I i, vec3 q) {
+  { i.inside(q) } -> std::same_as<bool>;
+};
 
 }  // namespace clearance

@@ -41,14 +41,15 @@ struct is_cloud<T> : is_cloud<std::remove_cvref_t<decltype(*std::begin(std::decl
 template <class T>
 inline constexpr bool one_in_each_place = false;
 template <class T>
-  requires(!point_source<T> && !std::is_convertible_v<const T&, point_span>) && requires(const T t) { std::begin(t), std::size(t); }
-inline constexpr bool one_in_each_place<T> = requires(std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))> cloud) {
-  cloud.source, cloud.pose;
-};
+  requires(!point_source<T> && !std::is_convertible_v<const T&, point_span>) &&
+              requires(const T t) { std::begin(t), std::size(t); }
+inline constexpr bool one_in_each_place<T> =
+    requires(std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))> cloud) { cloud.source, cloud.pose; };
 
 }  // namespace detail
 
-/// What callers may pass for clouds: a source, a placed one, or a vector of points; a range of any of these, a tuple, or a variant.
+/// What callers may pass for clouds: a source, a placed one, or a vector of points; a range of any of these, a tuple,
+/// or a variant.
 template <class T>
 concept clouds_of_any_kind = detail::is_cloud<T>::value;
 
@@ -71,7 +72,8 @@ void for_each_cloud(const Clouds& clouds, F&& f) {
   }
 }
 
-/// How many that are. A range that knows its size and holds a cloud in each place is not looked into: to look may be to load.
+/// How many that are. A range that knows its size and holds a cloud in each place is not looked into: to look may be to
+/// load.
 template <class Clouds>
 std::size_t count_clouds(const Clouds& clouds) {
   if constexpr (detail::one_in_each_place<Clouds>) return std::size(clouds);
@@ -88,18 +90,25 @@ consteval bool explain_clouds() {
       explain_point_source<std::remove_cvref_t<decltype(std::declval<const T&>().source)>>();
     else if constexpr (requires(const T t) { *std::begin(t); })
       explain_clouds<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>>();
-    else if constexpr (requires(const T t) { t.size(); t[0]; })
+    else if constexpr (requires(const T t) {
+                         t.size();
+                         t[0];
+                       })
       explain_point_source<T>();
     else
-      static_assert(clouds_of_any_kind<T>, "clouds are: a point source, a placed one, a vector of vec3; or a range, a tuple or variants of those");
+      static_assert(
+          clouds_of_any_kind<T>,
+          "clouds are: a point source, a placed one, a vector of vec3; or a range, a tuple or variants of those");
   }
   return clouds_of_any_kind<T>;
 }
 /// Of what a call is given for clouds.
 template <class First, class... Rest>
 consteval bool explain_given() {
-  static_assert(sizeof...(Rest) == 0 || (sizeof...(Rest) == 1 && (std::is_convertible_v<const Rest&, const Eigen::Isometry3d&> && ...)),
-                "several clouds are a vector or a tuple of placed ones, and one may be followed by its pose, an Eigen::Isometry3d");
+  static_assert(sizeof...(Rest) == 0 ||
+                    (sizeof...(Rest) == 1 && (std::is_convertible_v<const Rest&, const Eigen::Isometry3d&> && ...)),
+                "several clouds are a vector or a tuple of placed ones, and one may be followed by its pose, an "
+                "Eigen::Isometry3d");
   if constexpr (sizeof...(Rest) == 1) return explain_point_source<First>();
   return explain_clouds<First>();
 }
@@ -121,7 +130,8 @@ namespace frames {
 /// Throws std::invalid_argument if there is not one minimum a part.
 inline void check_room(std::size_t parts, std::size_t minima) {
   if (minima != parts)
-    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but room for " + std::to_string(minima) + " minima");
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but room for " +
+                                std::to_string(minima) + " minima");
 }
 
 /// One cloud of a frame: its number, that of its first point among all clouds' points, and whether it is the last.
@@ -130,10 +140,11 @@ struct turn {
   bool last;
 };
 
-/// A frame, cloud by cloud: places the parts in each and calls `f(source, turn)`. Without a cloud there is one of no points. How
-/// many points there were. Throws std::invalid_argument if a pose is not rigid, or numbers run out.
+/// A frame, cloud by cloud: places the parts in each and calls `f(source, turn)`. Without a cloud there is one of no
+/// points. How many points there were. Throws std::invalid_argument if a pose is not rigid, or numbers run out.
 template <class Clouds, class F>
-std::uint64_t for_each_turn(cloud_frame& frame, std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, F f) {
+std::uint64_t for_each_turn(cloud_frame& frame, std::span<const part_facts> facts,
+                            std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, F f) {
   static_assert(explain_clouds<Clouds>());
   frame.start(facts, poses);
   const std::size_t count = count_clouds(clouds);
@@ -141,7 +152,8 @@ std::uint64_t for_each_turn(cloud_frame& frame, std::span<const part_facts> fact
   std::uint32_t cloud = 0;
   const auto next = [&](const auto& source, const Eigen::Isometry3d& pose) {
     const std::uint64_t size = source.size();
-    if (size >= ~std::uint32_t(0) - points) throw std::invalid_argument("clearance: more than 2^32 - 2 points in one call");
+    if (size >= ~std::uint32_t(0) - points)
+      throw std::invalid_argument("clearance: more than 2^32 - 2 points in one call");
     frame.put(facts, pose, cloud, rounding_of(source));
     f(source, turn{cloud, std::uint32_t(points), cloud + 1 >= count});
     ++cloud, points += size;

@@ -16,14 +16,15 @@ struct placement {
   world_transform world_from_part;
 };
 
-/// Arithmetic in floats costs at most 16 units of rounding (2^-24) of |p| + |t| + part size, where p is less the origin:
-/// of |p| that subtraction one, the rotation's own floats 1.8, the sums of products two; of |t| three; of the point in the
-/// part's frame one, and a leaf formula five. That is 11; the other five may be the source's own.
+/// Arithmetic in floats costs at most 16 units of rounding (2^-24) of |p| + |t| + part size, where p is less the
+/// origin: of |p| that subtraction one, the rotation's own floats 1.8, the sums of products two; of |t| three; of the
+/// point in the part's frame one, and a leaf formula five. That is 11; the other five may be the source's own.
 inline constexpr double unit_error = 0x1p-20, source_share = 5 * 0x1p-24;
 /// And this, because squares of lengths below 1e-19 m lose digits, and those of lengths below 2e-23 m are 0.
 inline constexpr double underflow_error = 0x1p-72;
-/// Poses are composed in double, from rotations orthonormal to 1e-14: with R' for the inverse of R a way is 1.5e-14 of itself
-/// off, that from the origin twice, and ten roundings of 2^-53 add 2e-15. All is less than this part of all ways together.
+/// Poses are composed in double, from rotations orthonormal to 1e-14: with R' for the inverse of R a way is 1.5e-14 of
+/// itself off, that from the origin twice, and ten roundings of 2^-53 add 2e-15. All is less than this part of all ways
+/// together.
 inline constexpr double pose_error = 0x1p-44;
 
 /// Most that a distance can be off, by what the distance itself is.
@@ -41,16 +42,19 @@ struct float_error {
 /// What arithmetic in floats costs near a part whose size and distance from the origin sum up to `extent`.
 CLEARANCE_HD inline double arithmetic_error(double extent) { return fma(unit_error * 2, extent, underflow_error); }
 
-/// All that a distance to it can be off. `poses` is the sum of all ways between frames, `origin` that from the source's own
-/// zero to the origin. A point's position is at most extent + distance + origin long, and off by `relative` of that; what
-/// `source_share` covers of the first two is in unit_error, which counts the extent twice. Nothing is certain of a source that is off
-/// by a quarter of its distances, or says no such numbers, nor of a part whose extent is none.
+/// All that a distance to it can be off. `poses` is the sum of all ways between frames, `origin` that from the source's
+/// own zero to the origin. A point's position is at most extent + distance + origin long, and off by `relative` of
+/// that; what `source_share` covers of the first two is in unit_error, which counts the extent twice. Nothing is
+/// certain of a source that is off by a quarter of its distances, or says no such numbers, nor of a part whose extent
+/// is none.
 CLEARANCE_HD inline float_error error_near(double extent, double poses, double origin, const position_error& off) {
-  if (!(off.absolute >= 0 && off.relative >= 0 && off.relative < 0.25 && extent >= 0)) return {double(infinity), unit_error};
+  if (!(off.absolute >= 0 && off.relative >= 0 && off.relative < 0.25 && extent >= 0))
+    return {double(infinity), unit_error};
   const double here = arithmetic_error(extent) + fma(pose_error, poses, fma(off.relative, origin, off.absolute));
   if (off.relative <= source_share) return {here, unit_error};
   const double more = off.relative - source_share;
-  return {fma(more, extent, here) / (1 - more), (unit_error + more) / (1 - more)};  // of the distance as it is, said of the computed one
+  return {fma(more, extent, here) / (1 - more),
+          (unit_error + more) / (1 - more)};  // of the distance as it is, said of the computed one
 }
 
 /// Where the cloud's coordinates start to be subtracted: near the robot, in steps of 64 m, so that ordinary scenes lose
@@ -63,7 +67,8 @@ CLEARANCE_HD inline vec3 origin_near(position robot_in_cloud) {
 /// The mean of the parts' origins, in the cloud's frame; `world_from_part(k)` is part k's pose.
 CLEARANCE_CALLS_ANYTHING
 template <class Pose>
-CLEARANCE_HD position middle_of(const world_transform& world_from_cloud, const Pose& world_from_part, std::size_t parts) {
+CLEARANCE_HD position middle_of(const world_transform& world_from_cloud, const Pose& world_from_part,
+                                std::size_t parts) {
   position sum{0, 0, 0};
   for (std::size_t k = 0; k < parts; ++k) {
     const position at = world_from_part(std::uint32_t(k)).translation();
@@ -75,8 +80,8 @@ CLEARANCE_HD position middle_of(const world_transform& world_from_cloud, const P
 CLEARANCE_HD inline double norm(position p) { return sqrt(fma(p.x, p.x, fma(p.y, p.y, p.z * p.z))); }
 
 /// `part_from_cloud` maps positions that `origin` was subtracted from. Both transforms have passed make_rigid.
-CLEARANCE_HD inline placement place(const part_facts& facts, const world_transform& world_from_part, const world_transform& world_from_cloud,
-                                    vec3 origin, const position_error& off) {
+CLEARANCE_HD inline placement place(const part_facts& facts, const world_transform& world_from_part,
+                                    const world_transform& world_from_cloud, vec3 origin, const position_error& off) {
   const world_transform part_from_world = world_from_part.inverse();
   world_transform part_from_cloud = part_from_world * world_from_cloud;
   const position start = part_from_world(world_from_cloud(origin));
@@ -95,7 +100,8 @@ CLEARANCE_HD inline placement place(const part_facts& facts, const world_transfo
   return p;
 }
 
-/// By how much a part's solid may be nearer than what a distance is computed to; where facts are no lengths, nobody knows.
+/// By how much a part's solid may be nearer than what a distance is computed to; where facts are no lengths, nobody
+/// knows.
 CLEARANCE_HD inline double slop(const part_facts& f) {
   return f.gap >= 0 && f.tolerance >= 0 ? double(f.gap) + double(f.tolerance) : double(infinity);
 }
@@ -125,29 +131,38 @@ class cloud_frame : public frame_facts {
   std::vector<world_transform> poses;
 
   cloud_frame() = default;
-  cloud_frame(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts, const Eigen::Isometry3d& cloud, const position_error& off = {}) {
+  cloud_frame(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts,
+              const Eigen::Isometry3d& cloud, const position_error& off = {}) {
     start(facts, parts), put(facts, cloud, 0, off);
   }
 
-  /// A frame begins: `parts` are world-from-part. Throws std::invalid_argument if there are not as many as parts, or one is not rigid.
+  /// A frame begins: `parts` are world-from-part. Throws std::invalid_argument if there are not as many as parts, or
+  /// one is not rigid.
   void start(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts) {
     if (parts.size() != facts.size())
-      throw std::invalid_argument("clearance: there are " + std::to_string(facts.size()) + " parts, but " + std::to_string(parts.size()) + " poses");
+      throw std::invalid_argument("clearance: there are " + std::to_string(facts.size()) + " parts, but " +
+                                  std::to_string(parts.size()) + " poses");
     with_vectors([&] {
       error = {}, slop = 0;
       poses.clear();
-      for (std::size_t k = 0; k < parts.size(); ++k) poses.push_back(rigid_transform_of(parts[k], "part", std::int64_t(k)));
+      for (std::size_t k = 0; k < parts.size(); ++k)
+        poses.push_back(rigid_transform_of(parts[k], "part", std::int64_t(k)));
     });
   }
 
-  /// The next cloud, number `cloud`, whose errors widen the frame's; `off` is its source's `rounding_of`. Throws std::invalid_argument if its
-  /// pose is not rigid.
-  void put(std::span<const part_facts> facts, const Eigen::Isometry3d& pose, std::uint32_t cloud, const position_error& off) {
+  /// The next cloud, number `cloud`, whose errors widen the frame's; `off` is its source's `rounding_of`. Throws
+  /// std::invalid_argument if its pose is not rigid.
+  void put(std::span<const part_facts> facts, const Eigen::Isometry3d& pose, std::uint32_t cloud,
+           const position_error& off) {
     with_vectors([&] {
       const world_transform world = rigid_transform_of(pose, "cloud", cloud);
       places.clear();
       const float_error before = error;  // a bracket is over all clouds
-      frame_facts::operator=({world, origin_near(middle_of(world, [this](std::uint32_t k) -> const world_transform& { return poses[k]; }, poses.size())), off});
+      frame_facts::operator=(
+          {world,
+           origin_near(middle_of(
+               world, [this](std::uint32_t k) -> const world_transform& { return poses[k]; }, poses.size())),
+           off});
       for (std::size_t k = 0; k < poses.size(); ++k) {
         places.push_back(place(facts[k], poses[k], world, origin, off));
         add(facts[k], places.back().error);

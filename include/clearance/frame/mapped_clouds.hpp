@@ -36,15 +36,14 @@ template <class... T, class F>
 struct mapped<std::tuple<T...>, F> {
   using type = std::tuple<typename mapped<T, F>::type...>;
   static type of(const std::tuple<T...>& clouds, F& f) {
-    return std::apply([&](const T&... each) { return type{mapped<T, F>::of(each, f)...}; }, clouds);  // braces: from left to right
+    return std::apply([&](const T&... each) { return type{mapped<T, F>::of(each, f)...}; },
+                      clouds);  // braces: from left to right
   }
 };
 template <class... T, class F>
 struct mapped<std::variant<T...>, F> {
   using type = std::variant<typename mapped<T, F>::type...>;
-  static type of(const std::variant<T...>& one, F& f) {
-    return at<0>(one, f);
-  }
+  static type of(const std::variant<T...>& one, F& f) { return at<0>(one, f); }
 
  private:
   /// By number: several may become one type.
@@ -52,14 +51,15 @@ struct mapped<std::variant<T...>, F> {
   static type at(const std::variant<T...>& one, F& f) {
     if constexpr (I + 1 < sizeof...(T))
       if (one.index() != I) return at<I + 1>(one, f);
-    return type(std::in_place_index<I>, mapped<std::variant_alternative_t<I, std::variant<T...>>, F>::of(std::get<I>(one), f));
+    return type(std::in_place_index<I>,
+                mapped<std::variant_alternative_t<I, std::variant<T...>>, F>::of(std::get<I>(one), f));
   }
 };
 
 }  // namespace detail
 
-/// The same clouds (any that a call takes), of each source `f(source)`, in their order. Views: what they are of must outlive them. `F` is
-/// no lambda, because its name becomes part of a kernel's.
+/// The same clouds (any that a call takes), of each source `f(source)`, in their order. Views: what they are of must
+/// outlive them. `F` is no lambda, because its name becomes part of a kernel's.
 template <class Clouds, class F>
 auto mapped_clouds(const Clouds& clouds, F f) {
   static_assert(explain_clouds<Clouds>());

@@ -21,7 +21,8 @@ struct root_ball {
   real square, twice;  ///< |c|^2 and 2 |c|.
 
   root_ball() = default;
-  CLEARANCE_HD explicit root_ball(const ball& b) : around(b), square(dot(b.center, b.center)), twice(2 * length(b.center)) {}
+  CLEARANCE_HD explicit root_ball(const ball& b)
+      : around(b), square(dot(b.center, b.center)), twice(2 * length(b.center)) {}
 };
 
 /// Cheap and conservative: may a point x be within reach of a part's ball? `value(x) <= -|x|^2` says perhaps, in the

@@ -84,7 +84,8 @@ CLEARANCE_HD inline vec3 fma(real s, vec3 a, vec3 b) { return {fma(s, a.x, b.x),
 CLEARANCE_HD inline vec3 scaled(real s, vec3 a) { return fma(s, a, vec3{0, 0, 0}); }
 CLEARANCE_HD inline real dot(vec3 a, vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 CLEARANCE_HD inline real length(vec3 a) { return square_root(dot(a, a)); }
-/// The same, quicker on a device, but up to 2^-23 of it wrong there: for bounds, which `slack` covers, and never for answers.
+/// The same, quicker on a device, but up to 2^-23 of it wrong there: for bounds, which `slack` covers, and never for
+/// answers.
 CLEARANCE_HD inline real rough_root(real a) {
 #if defined(__CUDA_ARCH__)
   real root;
@@ -141,8 +142,8 @@ CLEARANCE_HD inline bool is_finite(vec3 a) {
 #endif
 }
 
-/// Rounds, and lets the compiler know no more than that: g++ 12 at -O2 leaves out the rounding of neighbouring conversions
-/// to float and back, and a proof that measures from the rounded number would measure from another.
+/// Rounds, and lets the compiler know no more than that: g++ 12 at -O2 leaves out the rounding of neighbouring
+/// conversions to float and back, and a proof that measures from the rounded number would measure from another.
 CLEARANCE_HD inline real to_float(double x) {
 #if defined(__CUDA_ARCH__)
   return real(x);
@@ -162,10 +163,11 @@ CLEARANCE_HD inline real rounded_up(double x) { return -rounded_down(-x); }
 /// A computed `distance` to a volume of extent `size`, lowered so that rounding cannot push it above a true one.
 CLEARANCE_HD constexpr real lowered(real distance, real size) { return distance - slack * (absolute(distance) + size); }
 
-/// max(a, 0), but NaN of minus infinity; where compilers would make branches of that, and no vectors of the loop around them.
+/// max(a, 0), but NaN of minus infinity; where compilers would make branches of that, and no vectors of the loop around
+/// them.
 CLEARANCE_HD constexpr real positive_part(real a) { return (a + absolute(a)) * 0.5f; }
-/// What the square of a way outside a volume can be, rounding included, if what is inside may be within `reach`: NaN, which nothing
-/// is below, if that is minus infinity.
+/// What the square of a way outside a volume can be, rounding included, if what is inside may be within `reach`: NaN,
+/// which nothing is below, if that is minus infinity.
 CLEARANCE_HD constexpr real square_of_reach(real reach) {
   const real most = positive_part(reach);
   return most * most * (1 + 16 * slack) + least_normal;

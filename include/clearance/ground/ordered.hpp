@@ -31,9 +31,7 @@ CLEARANCE_HD inline std::uint32_t ordered(real distance) {
   return u & 0x80000000u ? ~u : u | 0x80000000u;
 }
 
-CLEARANCE_HD inline real from_ordered(std::uint32_t u) {
-  return from_bits(u & 0x80000000u ? u & 0x7fffffffu : ~u);
-}
+CLEARANCE_HD inline real from_ordered(std::uint32_t u) { return from_bits(u & 0x80000000u ? u & 0x7fffffffu : ~u); }
 
 /// (distance, index); the least is the answer.
 using distance_key = unsigned long long;
@@ -79,7 +77,8 @@ CLEARANCE_HD inline void add_to(unsigned long long* word, unsigned long long val
 CLEARANCE_HD inline void add_one(unsigned long long* word) {
 #if defined(__CUDA_ARCH__)
   const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(word));
-  if ((threadIdx.x & 31) == unsigned(__ffs(int(together)) - 1)) add_to(word, static_cast<unsigned long long>(__popc(together)));
+  if ((threadIdx.x & 31) == unsigned(__ffs(int(together)) - 1))
+    add_to(word, static_cast<unsigned long long>(__popc(together)));
 #else
   add_to(word, 1);
 #endif

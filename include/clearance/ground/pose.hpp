@@ -27,7 +27,9 @@ struct world_transform {
       for (int c = 0; c < 4; ++c) m[r][c] = pose(r, c);
   }
 
-  CLEARANCE_HD position operator()(position p) const { return {along(0, p, m[0][3]), along(1, p, m[1][3]), along(2, p, m[2][3])}; }
+  CLEARANCE_HD position operator()(position p) const {
+    return {along(0, p, m[0][3]), along(1, p, m[1][3]), along(2, p, m[2][3])};
+  }
   CLEARANCE_HD position operator()(vec3 p) const { return (*this)(position{p.x, p.y, p.z}); }
   CLEARANCE_HD vec3 turned(vec3 v) const {
     const position p{v.x, v.y, v.z};
@@ -68,7 +70,8 @@ CLEARANCE_HD inline double skew(const world_transform& t) {
   double most = 0;
   for (int i = 0; i < 3; ++i)
     for (int j = i; j < 3; ++j) {
-      const double d = fma(t.m[0][i], t.m[0][j], fma(t.m[1][i], t.m[1][j], fma(t.m[2][i], t.m[2][j], i == j ? -1.0 : 0.0)));
+      const double d =
+          fma(t.m[0][i], t.m[0][j], fma(t.m[1][i], t.m[1][j], fma(t.m[2][i], t.m[2][j], i == j ? -1.0 : 0.0)));
       const double off = (d < 0 ? -d : d) + 0 * t.m[i][3];
       most = off > most || off != off ? off : most;
     }
@@ -87,8 +90,9 @@ CLEARANCE_HD inline bool too_far(const world_transform& t) {
   return far(t.m[0][3]) || far(t.m[1][3]) || far(t.m[2][3]);
 }
 
-/// Makes the rotation orthonormal to double precision, by Newton's steps towards the closest one: R (3 - R'R) / 2. False if
-/// the pose is not rigid to `most_skew`: scale, shear, a reflection, or a number that is not finite; or beyond 1e18 m.
+/// Makes the rotation orthonormal to double precision, by Newton's steps towards the closest one: R (3 - R'R) / 2.
+/// False if the pose is not rigid to `most_skew`: scale, shear, a reflection, or a number that is not finite; or beyond
+/// 1e18 m.
 CLEARANCE_HD inline bool make_rigid(world_transform& t) {
   double off = skew(t);
   if (!(off <= most_skew) || mirrors(t) || too_far(t)) return false;
@@ -98,7 +102,10 @@ CLEARANCE_HD inline bool make_rigid(world_transform& t) {
       for (int c = 0; c < 3; ++c) {
         double sum = 0;  // of row r of R and column c of R'R - 1
         for (int k = 0; k < 3; ++k)
-          sum = fma(t.m[r][k], fma(t.m[0][k], t.m[0][c], fma(t.m[1][k], t.m[1][c], fma(t.m[2][k], t.m[2][c], k == c ? -1.0 : 0.0))), sum);
+          sum =
+              fma(t.m[r][k],
+                  fma(t.m[0][k], t.m[0][c], fma(t.m[1][k], t.m[1][c], fma(t.m[2][k], t.m[2][c], k == c ? -1.0 : 0.0))),
+                  sum);
         next.m[r][c] = fma(-0.5, sum, t.m[r][c]);
       }
     t = next;
@@ -107,15 +114,18 @@ CLEARANCE_HD inline bool make_rigid(world_transform& t) {
 }
 
 /// `pose` with its rotation made orthonormal to double precision. Throws if it is not rigid to 1e-4: scale, shear, a
-/// reflection, or a number that is not finite; or if it is beyond 1e18 m. `what` and `number` say in the message which pose it was.
-inline world_transform rigid_transform_of(const Eigen::Isometry3d& pose, const char* what = "pose", std::int64_t number = -1) {
+/// reflection, or a number that is not finite; or if it is beyond 1e18 m. `what` and `number` say in the message which
+/// pose it was.
+inline world_transform rigid_transform_of(const Eigen::Isometry3d& pose, const char* what = "pose",
+                                          std::int64_t number = -1) {
   world_transform t(pose);
   if (make_rigid(t)) return t;
-  const std::string why = !pose.matrix().allFinite()   ? "it has a number that is not finite"
-                          : too_far(t)          ? "it is farther from the origin than 1e18 m"
-                          : skew(t) > most_skew ? "its axes deviate from orthonormal by " + std::to_string(skew(t))
-                                                : "it is a reflection";
-  throw std::invalid_argument("clearance: the pose of " + std::string(what) + (number < 0 ? "" : " " + std::to_string(number)) + " is not rigid: " + why);
+  const std::string why = !pose.matrix().allFinite() ? "it has a number that is not finite"
+                          : too_far(t)               ? "it is farther from the origin than 1e18 m"
+                          : skew(t) > most_skew      ? "its axes deviate from orthonormal by " + std::to_string(skew(t))
+                                                     : "it is a reflection";
+  throw std::invalid_argument("clearance: the pose of " + std::string(what) +
+                              (number < 0 ? "" : " " + std::to_string(number)) + " is not rigid: " + why);
 }
 inline Eigen::Isometry3d rigid(const Eigen::Isometry3d& pose, const char* what = "pose", std::int64_t number = -1) {
   return to_isometry(rigid_transform_of(pose, what, number));

@@ -7,7 +7,8 @@
 
 namespace clearance {
 
-/// What nobody writes while a query runs, read in wide pieces. On a device compilers so do not mix it up with shared memory.
+/// What nobody writes while a query runs, read in wide pieces. On a device compilers so do not mix it up with shared
+/// memory.
 template <class T>
 CLEARANCE_HD T read_only(const T* from) {
 #if defined(__CUDA_ARCH__)
@@ -20,7 +21,8 @@ CLEARANCE_HD T read_only(const T* from) {
       word words[sizeof(T) / sizeof(word)];
     } c;
 #pragma unroll
-    for (std::size_t i = 0; i < sizeof(T) / sizeof(word); ++i) c.words[i] = __ldg(reinterpret_cast<const word*>(from) + i);
+    for (std::size_t i = 0; i < sizeof(T) / sizeof(word); ++i)
+      c.words[i] = __ldg(reinterpret_cast<const word*>(from) + i);
     return c.value;
   }
 #endif

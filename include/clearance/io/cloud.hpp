@@ -2,9 +2,9 @@
 #pragma once
 // A point cloud in memory that keeps the numbering and the precision of its file.
 
-#include <clearance/points/strided_points.hpp>
 #include <clearance/frame/clouds.hpp>
 #include <clearance/frame/frame.hpp>
+#include <clearance/points/strided_points.hpp>
 
 #include <optional>
 #include <string>
@@ -34,8 +34,9 @@ struct float_cloud {
   }
 };
 
-/// Points in the file's order, one for each of its records, with the file's coordinates (metres); an invalid record stays
-/// in its place as NaN. A query wants floats: `min_distance(on, model, poses, cloud.near(poses, world_from_cloud).view())`.
+/// Points in the file's order, one for each of its records, with the file's coordinates (metres); an invalid record
+/// stays in its place as NaN. A query wants floats: `min_distance(on, model, poses, cloud.near(poses,
+/// world_from_cloud).view())`.
 struct cloud {
   std::string name;
   std::vector<Eigen::Vector3d> points;
@@ -43,13 +44,16 @@ struct cloud {
   std::size_t width = 0;  // an organised cloud has height rows of width points; any other has height 1
   std::size_t height = 1;
 
-  /// Floats less any origin, a position in the cloud's frame: exact where they can be, else off by 2^-24 of their length,
-  /// which the bracket carries. So it is tight for a robot near the origin, and true for any. Throws if the pose is not rigid.
-  float_cloud relative_to(const Eigen::Vector3d& origin, const Eigen::Isometry3d& world_from_cloud = Eigen::Isometry3d::Identity()) const;
+  /// Floats less any origin, a position in the cloud's frame: exact where they can be, else off by 2^-24 of their
+  /// length, which the bracket carries. So it is tight for a robot near the origin, and true for any. Throws if the
+  /// pose is not rigid.
+  float_cloud relative_to(const Eigen::Vector3d& origin,
+                          const Eigen::Isometry3d& world_from_cloud = Eigen::Isometry3d::Identity()) const;
 
   /// Floats for a robot whose parts have these poses (world-from-part): relative to 0, if that is within 32 m of their
   /// middle, so that a file's floats stay what they are; else to the middle, in whole metres.
-  float_cloud near(std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& world_from_cloud = Eigen::Isometry3d::Identity()) const;
+  float_cloud near(std::span<const Eigen::Isometry3d> poses,
+                   const Eigen::Isometry3d& world_from_cloud = Eigen::Isometry3d::Identity()) const;
 };
 
 inline float_cloud cloud::relative_to(const Eigen::Vector3d& origin, const Eigen::Isometry3d& world_from_cloud) const {
@@ -64,13 +68,15 @@ inline float_cloud cloud::relative_to(const Eigen::Vector3d& origin, const Eigen
     const Eigen::Vector3d way = p - origin;
     made.points.push_back({to_float(way.x()), to_float(way.y()), to_float(way.z())});
     const vec3& f = made.points.back();
-    exact = exact && (!is_finite(f) || (f.x + origin.x() == p.x() && f.y + origin.y() == p.y() && f.z + origin.z() == p.z()));
+    exact = exact &&
+            (!is_finite(f) || (f.x + origin.x() == p.x() && f.y + origin.y() == p.y() && f.z + origin.z() == p.z()));
   }
   if (!exact) made.off.relative = strided_points<double>{}.rounding().relative;
   return made;
 }
 
-inline float_cloud cloud::near(std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& world_from_cloud) const {
+inline float_cloud cloud::near(std::span<const Eigen::Isometry3d> poses,
+                               const Eigen::Isometry3d& world_from_cloud) const {
   const std::vector<world_transform> parts(poses.begin(), poses.end());
   const auto part = [&](std::uint32_t k) -> const world_transform& { return parts[k]; };
   const auto [x, y, z] = frames::middle_of(rigid_transform_of(world_from_cloud, "cloud"), part, parts.size());

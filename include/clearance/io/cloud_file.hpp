@@ -13,7 +13,8 @@ namespace clearance::io {
 /// The end of a file's name in small letters, with its dot.
 inline std::string extension(const std::string& file) {
   std::string end = std::filesystem::path(file).extension().string();
-  std::transform(end.begin(), end.end(), end.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
   return end;
 }
 

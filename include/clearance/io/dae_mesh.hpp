@@ -99,8 +99,7 @@ inline std::vector<Eigen::Vector3d> dae_positions(const xml_place& mesh, const x
         access.in(accessor->children[i]).attribute("name") != std::string(1, "XYZ"[i]))
       access.refuse("of positions has no params X, Y and Z");
   const auto values = dae_numbers<double>(array, &size);
-  if (count > 0 && offset + (count - 1) * stride + 3 > size)
-    access.refuse("needs more values than its array has");
+  if (count > 0 && offset + (count - 1) * stride + 3 > size) access.refuse("needs more values than its array has");
   std::vector<Eigen::Vector3d> made(count);
   for (std::uint64_t i = 0; i < count; ++i)
     for (int k = 0; k < 3; ++k) {
@@ -147,11 +146,13 @@ inline void dae_faces(const xml_place& list, const std::string& vertices, polygo
   for (const xml_element* each : lists) {
     const auto at = list.in(*each);
     const auto all = dae_numbers<std::int64_t>(at);
-    if (all.size() % stride) at.refuse("has " + std::to_string(all.size()) + " indices, in groups of " + std::to_string(stride));
+    if (all.size() % stride)
+      at.refuse("has " + std::to_string(all.size()) + " indices, in groups of " + std::to_string(stride));
     std::vector<std::uint32_t> corners;
     for (std::size_t i = where; i < all.size(); i += stride) {
       if (all[i] < 0 || std::uint64_t(all[i]) >= mesh.vertices.size())
-        at.refuse("has the vertex " + std::to_string(all[i]) + ", and the mesh has " + std::to_string(mesh.vertices.size()));
+        at.refuse("has the vertex " + std::to_string(all[i]) + ", and the mesh has " +
+                  std::to_string(mesh.vertices.size()));
       corners.push_back(std::uint32_t(all[i]));
     }
     if (kind == "triangles") sizes.assign(count, 3);
@@ -184,16 +185,16 @@ inline polygon_mesh dae_geometry(const xml_place& geometry) {
   const xml_element* element = geometry.child("mesh");
   if (!element) geometry.refuse("has no mesh");
   const auto mesh = geometry.in(*element);
-  mesh.only({}, {"source", "vertices", "triangles", "polylist", "polygons", "tristrips", "trifans", "lines", "linestrips",
-                 "extra"});
+  mesh.only({}, {"source", "vertices", "triangles", "polylist", "polygons", "tristrips", "trifans", "lines",
+                 "linestrips", "extra"});
   const xml_element* vertices = mesh.child("vertices");
   if (!vertices) mesh.refuse("has no vertices");
   const std::string& id = mesh.in(*vertices).attribute("id");
   polygon_mesh made;
   made.vertices = dae_positions(mesh, mesh.in(*vertices));
   for (const auto& child : element->children)
-    if (child.name == "triangles" || child.name == "polylist" || child.name == "polygons" || child.name == "tristrips" ||
-        child.name == "trifans")
+    if (child.name == "triangles" || child.name == "polylist" || child.name == "polygons" ||
+        child.name == "tristrips" || child.name == "trifans")
       dae_faces(mesh.in(child), id, made);
   return made;
 }

@@ -34,7 +34,8 @@ inline digest digest_of(std::string_view bytes) {
   return made;
 }
 
-/// Of all that decides which points are inside: corners, triangles with their caps, which of them count, and what a flood found.
+/// Of all that decides which points are inside: corners, triangles with their caps, which of them count, and what a
+/// flood found.
 inline digest digest_of(const closed_mesh& mesh) {
   byte_writer out;
   const auto& vertices = mesh.surface.vertices;

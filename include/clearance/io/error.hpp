@@ -77,7 +77,7 @@ class files_read {
 /// The whole file, or what a pipe gives until it ends, as bytes. A missing, unreadable or empty one (0 bytes), a folder
 /// and a device are errors that name it.
 inline std::string read_bytes(const std::string& file, const read_limits& limits = {}) {
-  struct ::stat status {};
+  struct ::stat status{};
   // A NUL would end the name for the system, but not for us.
   if (file.find('\0') != file.npos || ::stat(file.c_str(), &status) != 0) refuse(file, "there is no such file");
   if (S_ISDIR(status.st_mode)) refuse(file, "is a folder, not a file");

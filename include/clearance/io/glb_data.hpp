@@ -53,7 +53,8 @@ class glb_data {
       primitive.only({"attributes", "indices", "material", "mode", "targets", "extensions", "extras"});
       if (primitive.has("targets")) primitive.refuse("has morph targets, which are not supported");
       const std::uint64_t mode = primitive.integer("mode", 4);
-      if (mode < 4 || mode > 6) primitive.refuse("has the mode " + std::to_string(mode) + ", which is none of triangles");
+      if (mode < 4 || mode > 6)
+        primitive.refuse("has the mode " + std::to_string(mode) + ", which is none of triangles");
       const gltf_value attributes = primitive["attributes"];
       const std::size_t first = made.vertices.size();
       for (const auto& [key, unused] : attributes.value.items()) check_attribute(attributes, key);
@@ -89,8 +90,8 @@ class glb_data {
     std::size_t count, stride;
   };
 
-  /// The bytes of an accessor whose elements have this size, inside its buffer. glTF wants each component aligned to its
-  /// own size; an offset that is not is a damaged one.
+  /// The bytes of an accessor whose elements have this size, inside its buffer. glTF wants each component aligned to
+  /// its own size; an offset that is not is a damaged one.
   view open(const gltf_value& accessor, std::size_t size, std::size_t component) const {
     accessor.only({"bufferView", "byteOffset", "componentType", "normalized", "count", "type", "max", "min", "sparse",
                    "name", "extensions", "extras"});

@@ -80,12 +80,15 @@ struct gltf_value {
   const std::string& file;
   std::string name;
 
-  [[noreturn]] void refuse(const std::string& why) const { io::refuse(file, (name.empty() ? "its JSON" : name) + " " + why); }
+  [[noreturn]] void refuse(const std::string& why) const {
+    io::refuse(file, (name.empty() ? "its JSON" : name) + " " + why);
+  }
 
   const gltf_value& only(std::initializer_list<std::string_view> known) const {
     if (!value.is_object()) refuse("is no object");
     for (const auto& [key, unused] : value.items())
-      if (std::ranges::find(known, key) == known.end()) refuse("has a member " + io::quoted(key) + ", which is not known");
+      if (std::ranges::find(known, key) == known.end())
+        refuse("has a member " + io::quoted(key) + ", which is not known");
     return *this;
   }
   bool has(const char* key) const { return value.contains(key); }

@@ -9,21 +9,24 @@
 
 namespace clearance::io {
 
-/// What each value of the configuration does to a link, in the frame of `at`: 6 x tree.size(), of which a column is the velocity of the
-/// link's point that is at `at` now (3) and the link's angular velocity (3), for each metre or radian a second. Mimic joints count for
-/// the value that they follow. `link_poses` are those of all links, as link_poses gives them or moved together. Throws
-/// std::invalid_argument if there are more or fewer, or the tree has no such link.
-inline Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const kinematic_tree& tree, std::span<const Eigen::Isometry3d> link_poses, std::size_t link,
-                                                         const Eigen::Vector3d& at) {
+/// What each value of the configuration does to a link, in the frame of `at`: 6 x tree.size(), of which a column is the
+/// velocity of the link's point that is at `at` now (3) and the link's angular velocity (3), for each metre or radian a
+/// second. Mimic joints count for the value that they follow. `link_poses` are those of all links, as link_poses gives
+/// them or moved together. Throws std::invalid_argument if there are more or fewer, or the tree has no such link.
+inline Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const kinematic_tree& tree,
+                                                         std::span<const Eigen::Isometry3d> link_poses,
+                                                         std::size_t link, const Eigen::Vector3d& at) {
   if (link_poses.size() != tree.links().size() || link >= link_poses.size())
-    throw std::invalid_argument("the robot has " + std::to_string(tree.links().size()) + " links; here are " + std::to_string(link_poses.size()) +
-                                " poses and link number " + std::to_string(link));
-  Eigen::Matrix<double, 6, Eigen::Dynamic> all = Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, Eigen::Index(tree.size()));
+    throw std::invalid_argument("the robot has " + std::to_string(tree.links().size()) + " links; here are " +
+                                std::to_string(link_poses.size()) + " poses and link number " + std::to_string(link));
+  Eigen::Matrix<double, 6, Eigen::Dynamic> all =
+      Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, Eigen::Index(tree.size()));
   for (std::size_t j; (j = tree.joint_above(link)) != tree.none; link = tree.link(tree.joints()[j].parent)) {
     const joint& by = tree.joints()[j];
     if (by.kind == joint_kind::fixed) continue;
     const joint_drive& drive = tree.drive(j);
-    const Eigen::Vector3d axis = drive.factor * (link_poses[link].linear() * by.axis);  // a turn about it, or a shift along it, leaves it
+    const Eigen::Vector3d axis =
+        drive.factor * (link_poses[link].linear() * by.axis);  // a turn about it, or a shift along it, leaves it
     auto column = all.col(Eigen::Index(drive.value));
     if (by.kind == joint_kind::prismatic) {
       column.head<3>() += axis;
@@ -35,9 +38,11 @@ inline Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const kinematic_tree& t
   return all;
 }
 
-/// The gradient of a distance with respect to the configuration: metres for each metre or radian of its values; nothing if that with
-/// respect to the link's pose is not known. `g` and `link_poses` are in the same frame. Throws as jacobian.
-inline std::optional<Eigen::VectorXd> joint_gradient(const kinematic_tree& tree, std::span<const Eigen::Isometry3d> link_poses, std::size_t link,
+/// The gradient of a distance with respect to the configuration: metres for each metre or radian of its values; nothing
+/// if that with respect to the link's pose is not known. `g` and `link_poses` are in the same frame. Throws as
+/// jacobian.
+inline std::optional<Eigen::VectorXd> joint_gradient(const kinematic_tree& tree,
+                                                     std::span<const Eigen::Isometry3d> link_poses, std::size_t link,
                                                      const pose_gradient& g) {
   const auto moved = jacobian(tree, link_poses, link, {g.about.x, g.about.y, g.about.z});
   if (!g) return std::nullopt;
@@ -46,14 +51,17 @@ inline std::optional<Eigen::VectorXd> joint_gradient(const kinematic_tree& tree,
   return Eigen::VectorXd(moved.transpose() * by);
 }
 
-/// Of a part of a robot in its configuration `q`, whose base is at `base`. Throws as kinematic_tree::link_poses, or if there is no such part.
+/// Of a part of a robot in its configuration `q`, whose base is at `base`. Throws as kinematic_tree::link_poses, or if
+/// there is no such part.
 template <class Robot>
   requires requires(const Robot& r) { r.kinematics().link_poses({}), r.parts()[0].link; }
-std::optional<Eigen::VectorXd> joint_gradient(const Robot& robot, std::span<const double> q, std::uint32_t part, const pose_gradient& g,
-                                              joint_options options = {}, const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity()) {
+std::optional<Eigen::VectorXd> joint_gradient(const Robot& robot, std::span<const double> q, std::uint32_t part,
+                                              const pose_gradient& g, joint_options options = {},
+                                              const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity()) {
   if (!g) return std::nullopt;
   if (part >= robot.parts().size())
-    throw std::invalid_argument("the robot has " + std::to_string(robot.parts().size()) + " parts, and none of number " + std::to_string(part));
+    throw std::invalid_argument("the robot has " + std::to_string(robot.parts().size()) +
+                                " parts, and none of number " + std::to_string(part));
   std::vector<Eigen::Isometry3d> poses = robot.kinematics().link_poses(q, options);
   for (Eigen::Isometry3d& pose : poses) pose = base * pose;
   return joint_gradient(robot.kinematics(), poses, robot.parts()[part].link, g);

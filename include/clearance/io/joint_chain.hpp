@@ -6,10 +6,11 @@
 
 namespace clearance::io {
 
-/// A kinematic tree's links for many configurations at once, on any backend. Part k is link `links[k]`, and the base is at `base`. Poses
-/// agree with kinematic_tree::link_poses to double's rounding; those of a chain are the same everywhere. Throws std::invalid_argument if
-/// there is no such link, no joint moves, or `base` is not rigid.
-inline joint_chain<> joint_chain_of(const kinematic_tree& tree, std::span<const std::size_t> links, joint_options options = {},
+/// A kinematic tree's links for many configurations at once, on any backend. Part k is link `links[k]`, and the base is
+/// at `base`. Poses agree with kinematic_tree::link_poses to double's rounding; those of a chain are the same
+/// everywhere. Throws std::invalid_argument if there is no such link, no joint moves, or `base` is not rigid.
+inline joint_chain<> joint_chain_of(const kinematic_tree& tree, std::span<const std::size_t> links,
+                                    joint_options options = {},
                                     const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity()) {
   std::vector<chain_link> all(tree.links().size());
   for (std::size_t link = 0; link < all.size(); ++link) {
@@ -26,18 +27,23 @@ inline joint_chain<> joint_chain_of(const kinematic_tree& tree, std::span<const 
   }
   std::vector<std::uint32_t> of_part;
   for (const std::size_t link : links) {
-    if (link >= all.size()) throw std::invalid_argument("the robot has " + std::to_string(all.size()) + " links, and none of number " + std::to_string(link));
+    if (link >= all.size())
+      throw std::invalid_argument("the robot has " + std::to_string(all.size()) + " links, and none of number " +
+                                  std::to_string(link));
     of_part.push_back(std::uint32_t(link));
   }
   std::vector<joint_value> values;
   for (std::size_t i = 0; i < tree.size(); ++i)
-    values.push_back({tree.movable(i).name, options.ignore_limits ? joint_range{} : joint_range{tree.movable(i).lower, tree.movable(i).upper}});
+    values.push_back({tree.movable(i).name, options.ignore_limits
+                                                ? joint_range{}
+                                                : joint_range{tree.movable(i).lower, tree.movable(i).upper}});
   return joint_chain<>(std::move(all), std::move(of_part), std::move(values), base);
 }
 /// Of a robot with its parts.
 template <class Robot>
   requires requires(const Robot& r) { r.kinematics().joints(), r.parts()[0].link; }
-joint_chain<> joint_chain_of(const Robot& robot, joint_options options = {}, const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity()) {
+joint_chain<> joint_chain_of(const Robot& robot, joint_options options = {},
+                             const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity()) {
   std::vector<std::size_t> links;
   for (const auto& part : robot.parts()) links.push_back(part.link);
   return joint_chain_of(robot.kinematics(), links, options, base);

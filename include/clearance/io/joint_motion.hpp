@@ -6,18 +6,25 @@
 
 namespace clearance::io {
 
-/// A robot whose every joint goes from one value to another at constant speed; a mimic joint as what it follows. The tree must stay.
+/// A robot whose every joint goes from one value to another at constant speed; a mimic joint as what it follows. The
+/// tree must stay.
 class joint_motion {
  public:
-  /// Part k is link `links[k]`, and the base is at `base`. Throws std::invalid_argument as kinematic_tree::link_poses of either
-  /// configuration, or if there is no such link, or `base` is not rigid.
-  joint_motion(const kinematic_tree& tree, std::vector<std::size_t> links, std::span<const double> from, std::span<const double> to,
-               joint_options options = {}, const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity())
-      : tree_(&tree), links_(std::move(links)), from_(from.begin(), from.end()), to_(to.begin(), to.end()), base_(rigid(base, "the base")) {
+  /// Part k is link `links[k]`, and the base is at `base`. Throws std::invalid_argument as kinematic_tree::link_poses
+  /// of either configuration, or if there is no such link, or `base` is not rigid.
+  joint_motion(const kinematic_tree& tree, std::vector<std::size_t> links, std::span<const double> from,
+               std::span<const double> to, joint_options options = {},
+               const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity())
+      : tree_(&tree),
+        links_(std::move(links)),
+        from_(from.begin(), from.end()),
+        to_(to.begin(), to.end()),
+        base_(rigid(base, "the base")) {
     tree.link_poses(from, options), tree.link_poses(to, options);
     for (const std::size_t link : links_)
       if (link >= tree.links().size())
-        throw std::invalid_argument("the robot has " + std::to_string(tree.links().size()) + " links, and none of number " + std::to_string(link));
+        throw std::invalid_argument("the robot has " + std::to_string(tree.links().size()) +
+                                    " links, and none of number " + std::to_string(link));
   }
   /// Of a robot with its parts.
   template <class Robot>
@@ -29,10 +36,12 @@ class joint_motion {
   /// Throws std::invalid_argument if there are not as many parts as links.
   moment at(double t, std::span<const part_facts> parts) const {
     if (parts.size() != links_.size())
-      throw std::invalid_argument("clearance: there are " + std::to_string(parts.size()) + " parts, but a motion of " + std::to_string(links_.size()));
+      throw std::invalid_argument("clearance: there are " + std::to_string(parts.size()) + " parts, but a motion of " +
+                                  std::to_string(links_.size()));
     std::vector<double> q;
     for (std::size_t i = 0; i < from_.size(); ++i) q.push_back(std::lerp(from_[i], to_[i], t));
-    std::vector<Eigen::Isometry3d> poses = tree_->link_poses(q, {.ignore_limits = true});  // between two that were asked about
+    std::vector<Eigen::Isometry3d> poses =
+        tree_->link_poses(q, {.ignore_limits = true});  // between two that were asked about
     for (Eigen::Isometry3d& pose : poses) pose = base_ * pose;
     moment now;
     for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -50,8 +59,8 @@ class joint_motion {
     return all;
   }
 
-  /// Up the chain, joint by joint. Of each: how far the solid is from its axis now, how far it may ever be from where the axis is (the
-  /// ways between frames add up), and how fast the joints below can change that.
+  /// Up the chain, joint by joint. Of each: how far the solid is from its axis now, how far it may ever be from where
+  /// the axis is (the ways between frames add up), and how fast the joints below can change that.
   part_travel travel(const std::vector<Eigen::Isometry3d>& poses, std::size_t link, const part_facts& facts) const {
     const double radius = solid_radius(facts);
     const Eigen::Vector3d center = poses[link] * center_of(facts);

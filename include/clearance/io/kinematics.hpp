@@ -39,8 +39,8 @@ struct joint {
   bool movable() const { return kind != joint_kind::fixed && !follows; }
 };
 
-/// How a joint follows the configuration: through all that it follows, its value is `factor` times value number `value` plus `offset`,
-/// which is a sum of numbers that are at most `offsets` together. A fixed joint follows none.
+/// How a joint follows the configuration: through all that it follows, its value is `factor` times value number `value`
+/// plus `offset`, which is a sum of numbers that are at most `offsets` together. A fixed joint follows none.
 struct joint_drive {
   std::size_t value = std::size_t(-1);
   double factor = 0, offset = 0, offsets = 0;
@@ -50,15 +50,17 @@ struct joint_options {
   bool ignore_limits = false;
 };
 
-/// `outer` * `inner`, such as a base and a link of it. Throws std::invalid_argument if their ways are so long, and cancel so well, that double
-/// loses what no bracket covers; `who` is what is put there.
-inline Eigen::Isometry3d carried(const Eigen::Isometry3d& outer, const Eigen::Isometry3d& inner, const std::string& who) {
+/// `outer` * `inner`, such as a base and a link of it. Throws std::invalid_argument if their ways are so long, and
+/// cancel so well, that double loses what no bracket covers; `who` is what is put there.
+inline Eigen::Isometry3d carried(const Eigen::Isometry3d& outer, const Eigen::Isometry3d& inner,
+                                 const std::string& who) {
   const Eigen::Isometry3d made = outer * inner;
   chain_rounding rounding;
   rounding.turned();
   rounding.step(2 * inner.translation().norm(), made.translation().norm());
   if (made.matrix().allFinite() && !rounding.covered(made.translation().norm()))
-    throw std::invalid_argument(who + " is put there by ways that cancel, and double loses up to " + std::to_string(1e3 * rounding.lost) + " mm of them");
+    throw std::invalid_argument(who + " is put there by ways that cancel, and double loses up to " +
+                                std::to_string(1e3 * rounding.lost) + " mm of them");
   return made;
 }
 
@@ -132,8 +134,8 @@ class kinematic_tree {
   }
 
   /// base-from-link for every link, composed in double. Throws std::invalid_argument if there are too many or too few
-  /// values, or if one is not finite or beyond its limits, or puts a link where no number can say, or by ways that are so long and
-  /// cancel so well that double loses what no bracket covers.
+  /// values, or if one is not finite or beyond its limits, or puts a link where no number can say, or by ways that are
+  /// so long and cancel so well that double loses what no bracket covers.
   std::vector<Eigen::Isometry3d> link_poses(std::span<const double> q, joint_options options = {}) const {
     if (q.size() != size())
       throw std::invalid_argument("the robot has " + std::to_string(size()) + " movable joints, here are " +
@@ -157,7 +159,9 @@ class kinematic_tree {
       rounding[child] = rounding[parent];
       rounding[child].step(at(poses[parent].translation()), at(by.origin.translation()), at(poses[child].translation()),
                            by.origin.translation().norm());
-      if (by.kind == joint_kind::revolute || by.kind == joint_kind::continuous || by.origin.linear() != Eigen::Matrix3d::Identity()) rounding[child].turned();
+      if (by.kind == joint_kind::revolute || by.kind == joint_kind::continuous ||
+          by.origin.linear() != Eigen::Matrix3d::Identity())
+        rounding[child].turned();
       if (by.kind == joint_kind::prismatic) {
         const position before = at(poses[child].translation());
         poses[child].translate(value[j] * by.axis);
@@ -168,7 +172,8 @@ class kinematic_tree {
       if (!poses[child].matrix().allFinite())
         throw std::invalid_argument("joint \"" + by.name + "\" puts its link beyond what a number can hold");
       if (!rounding[child].covered(poses[child].translation().norm()))
-        throw std::invalid_argument("joint \"" + by.name + "\" puts its link there by ways that cancel, and double loses up to " +
+        throw std::invalid_argument("joint \"" + by.name +
+                                    "\" puts its link there by ways that cancel, and double loses up to " +
                                     std::to_string(1e3 * rounding[child].lost) + " mm of them");
     }
     return poses;
@@ -255,7 +260,8 @@ class kinematic_tree {
     drives_[j] = {above.value, by.multiplier * above.factor, by.multiplier * above.offset + by.offset,
                   std::abs(by.multiplier) * above.offsets + std::abs(by.offset)};
     if (!std::isfinite(drives_[j].factor) || !std::isfinite(drives_[j].offsets))
-      throw std::invalid_argument("joint \"" + joints_[j].name + "\" follows \"" + joints_[movable_[above.value]].name + "\" by a factor that is not finite");
+      throw std::invalid_argument("joint \"" + joints_[j].name + "\" follows \"" + joints_[movable_[above.value]].name +
+                                  "\" by a factor that is not finite");
   }
 
   std::size_t find(const std::string& name, const std::string& for_whom) const {

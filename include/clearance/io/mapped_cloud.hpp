@@ -29,16 +29,19 @@ struct mapped_cloud {
   }
 };
 
-/// Records of x, y, z in floats (12 bytes each), `header` bytes after the file's beginning. Throws std::runtime_error if the file is
-/// cut short in one, or a header puts floats where a processor cannot read them.
+/// Records of x, y, z in floats (12 bytes each), `header` bytes after the file's beginning. Throws std::runtime_error
+/// if the file is cut short in one, or a header puts floats where a processor cannot read them.
 inline mapped_cloud<point_span> map_points(const std::string& file, std::size_t header = 0) {
   const auto mapped = std::make_shared<const mapped_file>(file);
   const std::size_t bytes = mapped->bytes().size();
   if (bytes < header || (bytes - header) % sizeof(vec3) != 0)
-    refuse(file, "ends in the middle of a record of 12 bytes: it has " + std::to_string(bytes) + " bytes, " + std::to_string(header) +
-                     " of them before the first");
-  if (header % alignof(vec3) != 0) refuse(file, "has a header of " + std::to_string(header) + " bytes, which is no multiple of 4 (map_records takes it)");
-  return {mapped, point_span(reinterpret_cast<const vec3*>(mapped->bytes().data() + header), (bytes - header) / sizeof(vec3))};
+    refuse(file, "ends in the middle of a record of 12 bytes: it has " + std::to_string(bytes) + " bytes, " +
+                     std::to_string(header) + " of them before the first");
+  if (header % alignof(vec3) != 0)
+    refuse(file,
+           "has a header of " + std::to_string(header) + " bytes, which is no multiple of 4 (map_records takes it)");
+  return {mapped,
+          point_span(reinterpret_cast<const vec3*>(mapped->bytes().data() + header), (bytes - header) / sizeof(vec3))};
 }
 
 static_assert(addressed_cloud<mapped_cloud<point_span>>);
@@ -46,18 +49,21 @@ static_assert(addressed_cloud<mapped_cloud<point_span>>);
 namespace detail {
 
 template <class Scalar>
-mapped_cloud<strided_points<Scalar>> records_of(const std::shared_ptr<const mapped_file>& mapped, strided_points<Scalar> layout, std::size_t header) {
+mapped_cloud<strided_points<Scalar>> records_of(const std::shared_ptr<const mapped_file>& mapped,
+                                                strided_points<Scalar> layout, std::size_t header) {
   const std::string& file = mapped->name();
   const std::size_t bytes = mapped->bytes().size();
   for (const std::uint32_t offset : layout.offset)
     if (offset + sizeof(Scalar) > layout.step)
-      refuse(file, "a coordinate at byte " + std::to_string(offset) + " of records of " + std::to_string(layout.step) + " bytes");
+      refuse(file, "a coordinate at byte " + std::to_string(offset) + " of records of " + std::to_string(layout.step) +
+                       " bytes");
   if (layout.width != 0) refuse(file, "records in padded rows cannot be mapped");
   const std::size_t there = bytes < header ? 0 : (bytes - header) / layout.step;
   if (layout.count == 0 && (bytes < header || (bytes - header) % layout.step != 0))
-    refuse(file, "ends in the middle of a record of " + std::to_string(layout.step) + " bytes: it has " + std::to_string(bytes) + " bytes, " +
-                     std::to_string(header) + " of them before the first");
-  if (layout.count > there) refuse(file, "has " + std::to_string(there) + " records, not " + std::to_string(layout.count));
+    refuse(file, "ends in the middle of a record of " + std::to_string(layout.step) + " bytes: it has " +
+                     std::to_string(bytes) + " bytes, " + std::to_string(header) + " of them before the first");
+  if (layout.count > there)
+    refuse(file, "has " + std::to_string(there) + " records, not " + std::to_string(layout.count));
   if (layout.count == 0) layout.count = there;
   layout.data = mapped->bytes().data() + header;
   return {mapped, layout, {}};
@@ -67,35 +73,39 @@ mapped_cloud<strided_points<Scalar>> records_of(const std::shared_ptr<const mapp
 
 /// Records as `layout` says: its step, offsets, origin and filter. Its `count` is what the file has, if it is 0.
 template <class Scalar>
-mapped_cloud<strided_points<Scalar>> map_records(const std::string& file, const strided_points<Scalar>& layout, std::size_t header = 0) {
+mapped_cloud<strided_points<Scalar>> map_records(const std::string& file, const strided_points<Scalar>& layout,
+                                                 std::size_t header = 0) {
   return detail::records_of(std::make_shared<const mapped_file>(file), layout, header);
 }
 
-/// A PCD file with DATA binary, whose x, y, z are Scalars. Throws std::runtime_error as load_pcd, and if it is another kind of PCD file.
+/// A PCD file with DATA binary, whose x, y, z are Scalars. Throws std::runtime_error as load_pcd, and if it is another
+/// kind of PCD file.
 template <class Scalar = float>
 mapped_cloud<strided_points<Scalar>> map_pcd(const std::string& file) {
   // Opened once: by the time that its header is read there may be another file of that name.
   const auto mapped = std::make_shared<const mapped_file>(file);
   const std::span<const std::byte> all = mapped->bytes();
-  const std::span<const std::byte> start = all.first(std::min<std::size_t>(all.size(), 1 << 20));  // no more is looked through for a header
+  const std::span<const std::byte> start =
+      all.first(std::min<std::size_t>(all.size(), 1 << 20));  // no more is looked through for a header
   mapped->bring(start);
   std::string_view rest(reinterpret_cast<const char*>(start.data()), start.size());
   const pcd_header header = take_pcd_header(rest, file);
   const std::size_t before = start.size() - rest.size();
   if (rest.empty() && start.size() < all.size()) refuse(file, "has a PCD header of 1 MiB or more");
   rest = std::string_view(reinterpret_cast<const char*>(all.data()), all.size()).substr(before);
-  if (header.data != pcd_header::encoding::binary) refuse(file, "is a PCD file whose DATA is not binary, which alone can be mapped (load_pcd reads it)");
+  if (header.data != pcd_header::encoding::binary)
+    refuse(file, "is a PCD file whose DATA is not binary, which alone can be mapped (load_pcd reads it)");
   if (header.points > rest.size() / header.record_bytes)
-    refuse(file, "POINTS says " + std::to_string(header.points) + " records of " + std::to_string(header.record_bytes) + " bytes, but the file ends " +
-                     std::to_string(rest.size()) + " bytes after the header");
+    refuse(file, "POINTS says " + std::to_string(header.points) + " records of " + std::to_string(header.record_bytes) +
+                     " bytes, but the file ends " + std::to_string(rest.size()) + " bytes after the header");
   mapped->bring(all.last(std::min<std::size_t>(rest.size() - header.points * header.record_bytes, 4096)));
   check_pcd_end(rest.substr(header.points * header.record_bytes), header, file);
   strided_points<Scalar> layout;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const pcd_field& field = header.fields[header.xyz[axis]];
     if (field.type != 'F' || field.size != sizeof(Scalar))
-      refuse(file, "field " + field.name + " is of TYPE " + field.type + " and SIZE " + std::to_string(field.size) + ", not F and " +
-                       std::to_string(sizeof(Scalar)));
+      refuse(file, "field " + field.name + " is of TYPE " + field.type + " and SIZE " + std::to_string(field.size) +
+                       ", not F and " + std::to_string(sizeof(Scalar)));
     layout.offset[axis] = std::uint32_t(field.offset);
   }
   if (header.record_bytes > 0xffffffff) refuse(file, "records of " + std::to_string(header.record_bytes) + " bytes");

@@ -3,8 +3,8 @@
 
 #include <clearance/io/error.hpp>
 
-#include <sys/mman.h>
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -13,8 +13,8 @@
 
 namespace clearance::io {
 
-/// A file as memory, read when it is looked at. Whoever looks calls `bring` first: it tells in a sentence what would otherwise end the
-/// process by a signal. (A file that becomes shorter between that and the look still does.)
+/// A file as memory, read when it is looked at. Whoever looks calls `bring` first: it tells in a sentence what would
+/// otherwise end the process by a signal. (A file that becomes shorter between that and the look still does.)
 class mapped_file {
  public:
   /// Throws std::runtime_error if there is no such file, or it is empty, a folder or a device, or cannot be mapped.
@@ -22,10 +22,13 @@ class mapped_file {
     errno = ENOENT;
     descriptor_ = file.find('\0') != file.npos ? -1 : ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor_ < 0)
-      refuse(file, errno == ENOENT || errno == ENOTDIR ? "there is no such file" : std::string("cannot be opened for reading: ") + std::strerror(errno));
+      refuse(file, errno == ENOENT || errno == ENOTDIR
+                       ? "there is no such file"
+                       : std::string("cannot be opened for reading: ") + std::strerror(errno));
     try {
-      struct ::stat status {};
-      if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) refuse(file, "is no regular file, which alone can be mapped");
+      struct ::stat status{};
+      if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode))
+        refuse(file, "is no regular file, which alone can be mapped");
       if (status.st_size == 0) refuse(file, "is empty (0 bytes)");
       files_read::note({status.st_dev, status.st_ino});
       size_ = std::size_t(status.st_size);
@@ -47,20 +50,24 @@ class mapped_file {
   const std::string& name() const { return file_; }
   std::span<const std::byte> bytes() const { return {data_, size_}; }
 
-  /// Reads some of its bytes to memory, if they are not there. Throws std::runtime_error if the file has another size than when it was
-  /// opened, or cannot be read.
+  /// Reads some of its bytes to memory, if they are not there. Throws std::runtime_error if the file has another size
+  /// than when it was opened, or cannot be read.
   void bring(std::span<const std::byte> some) const {
-    struct ::stat status {};
+    struct ::stat status{};
     if (::fstat(descriptor_, &status) != 0) refuse(file_, std::string("cannot be read: ") + std::strerror(errno));
     if (std::size_t(status.st_size) != size_)
-      refuse(file_, "had " + std::to_string(size_) + " bytes when it was opened, and has " + std::to_string(status.st_size) + " now");
+      refuse(file_, "had " + std::to_string(size_) + " bytes when it was opened, and has " +
+                        std::to_string(status.st_size) + " now");
     if (some.empty()) return;
     const auto page = std::uintptr_t(::sysconf(_SC_PAGESIZE)), first = reinterpret_cast<std::uintptr_t>(some.data());
     const std::uintptr_t begin = first / page * page, length = first + some.size() - begin;
-    ::madvise(reinterpret_cast<void*>(begin), length, MADV_WILLNEED);  // all of it at once, where it is not in memory yet
-    constexpr int populate_read = 22;  // MADV_POPULATE_READ, of Linux 5.14; an older one says EINVAL, and reads at the look
+    ::madvise(reinterpret_cast<void*>(begin), length,
+              MADV_WILLNEED);  // all of it at once, where it is not in memory yet
+    constexpr int populate_read =
+        22;  // MADV_POPULATE_READ, of Linux 5.14; an older one says EINVAL, and reads at the look
     if (::madvise(reinterpret_cast<void*>(begin), length, populate_read) != 0 && errno != EINVAL)
-      refuse(file_, "cannot be read at byte " + std::to_string(some.data() - data_) + ": " + (errno == EFAULT ? "Input/output error" : std::strerror(errno)));
+      refuse(file_, "cannot be read at byte " + std::to_string(some.data() - data_) + ": " +
+                        (errno == EFAULT ? "Input/output error" : std::strerror(errno)));
   }
 
  private:

@@ -31,15 +31,16 @@ inline std::string mesh_format(const std::filesystem::path& path, std::string_vi
 
 /// Reads a mesh file: all its meshes, with the transforms of its scene graph, its faces in their order as triangles.
 /// Metres, except that a COLLADA file's unit is honoured. Throws std::runtime_error with a sentence that names the file
-/// if it is missing, no regular file, damaged, beyond a limit, has indices out of range, coordinates that are not finite,
-/// or meshes that its scene does not place, or has no triangle.
+/// if it is missing, no regular file, damaged, beyond a limit, has indices out of range, coordinates that are not
+/// finite, or meshes that its scene does not place, or has no triangle.
 inline triangle_mesh load_mesh(const std::filesystem::path& path, const mesh_limits& limits = {}) {
   const std::string file = path.string();
   return within_memory(file, [&] {
     std::error_code failed;
     const auto there = std::filesystem::status(path, failed);
     if (std::filesystem::exists(there) && !std::filesystem::is_directory(there)) {
-      if (!std::filesystem::is_regular_file(there)) refuse(file, "is no regular file, and meshes are only read from those");
+      if (!std::filesystem::is_regular_file(there))
+        refuse(file, "is no regular file, and meshes are only read from those");
       if (std::filesystem::file_size(path, failed) > limits.bytes)
         refuse(file, "is longer than the " + std::to_string(limits.bytes) +
                          " bytes that the limit leaves (mesh_limits::bytes)");

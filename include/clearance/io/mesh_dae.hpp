@@ -23,13 +23,29 @@ class dae_reader {
 
   polygon_mesh read() {
     if (root_.element.name != "COLLADA") root_.refuse("begins the file, which is not a COLLADA file");
-    root_.only({"version", "xmlns", "base"},
-               {"asset", "library_animations", "library_animation_clips", "library_cameras", "library_controllers",
-                "library_effects", "library_force_fields", "library_formulas", "library_geometries", "library_images",
-                "library_joints", "library_kinematics_models", "library_kinematics_scenes",
-                "library_articulated_systems", "library_lights", "library_materials", "library_nodes",
-                "library_physics_materials", "library_physics_models", "library_physics_scenes",
-                "library_visual_scenes", "scene", "extra"});
+    root_.only({"version", "xmlns", "base"}, {"asset",
+                                              "library_animations",
+                                              "library_animation_clips",
+                                              "library_cameras",
+                                              "library_controllers",
+                                              "library_effects",
+                                              "library_force_fields",
+                                              "library_formulas",
+                                              "library_geometries",
+                                              "library_images",
+                                              "library_joints",
+                                              "library_kinematics_models",
+                                              "library_kinematics_scenes",
+                                              "library_articulated_systems",
+                                              "library_lights",
+                                              "library_materials",
+                                              "library_nodes",
+                                              "library_physics_materials",
+                                              "library_physics_models",
+                                              "library_physics_scenes",
+                                              "library_visual_scenes",
+                                              "scene",
+                                              "extra"});
     for (const auto& library : root_.element.children) {
       const auto each = [&](const char* name, const char* item, auto act) {
         if (library.name != name) return;
@@ -48,7 +64,8 @@ class dae_reader {
     }
     const xml_element* shown = root_.child("scene");
     if (!shown) root_.refuse("has no <scene>, so nothing in it has a place");
-    root_.in(*shown).only({}, {"instance_visual_scene", "instance_physics_scene", "instance_kinematics_scene", "extra"});
+    root_.in(*shown).only({},
+                          {"instance_visual_scene", "instance_physics_scene", "instance_kinematics_scene", "extra"});
     const xml_element* instance = root_.in(*shown).child("instance_visual_scene");
     if (!instance) root_.in(*shown).refuse("has no visual scene");
     const auto visual = root_.in(scenes_.find(root_.in(*instance), "url"));
@@ -57,7 +74,8 @@ class dae_reader {
     const std::string axis = up(root_, "Y_UP");
     const Eigen::Affine3d metres(Eigen::Scaling(metre));
     for (const auto& library : root_.element.children)
-      if (library.name == "library_geometries" || library.name == "library_nodes" || library.name == "library_visual_scenes")
+      if (library.name == "library_geometries" || library.name == "library_nodes" ||
+          library.name == "library_visual_scenes")
         check_assets(root_.in(library), metre, axis);
     for (const xml_element* node : dae_children(visual.element, "node")) walk(visual.in(*node), metres, 1);
     for (const auto& [geometry, mesh] : meshes_)
@@ -70,8 +88,8 @@ class dae_reader {
   static double unit(const xml_place& of, double otherwise) {
     const xml_element* asset = of.child("asset");
     if (!asset) return otherwise;
-    of.in(*asset).only({}, {"contributor", "coverage", "created", "keywords", "modified", "revision", "subject", "title",
-                            "unit", "up_axis", "extra"});
+    of.in(*asset).only({}, {"contributor", "coverage", "created", "keywords", "modified", "revision", "subject",
+                            "title", "unit", "up_axis", "extra"});
     const xml_element* unit = of.in(*asset).child("unit");
     if (!unit) return otherwise;
     of.in(*unit).only({"meter", "name"}, {});

@@ -66,7 +66,8 @@ inline polygon_mesh read_glb(std::string_view bytes, const std::string& file, co
   const glb_data data(root, chunks.data);
   std::vector<std::optional<polygon_mesh>> meshes(root.size("meshes"));
   const std::size_t nodes = root.size("nodes"), scenes = root.size("scenes");
-  if (scenes != 1 && !root.has("scene")) root.refuse("has " + std::to_string(scenes) + " scenes, and does not say which");
+  if (scenes != 1 && !root.has("scene"))
+    root.refuse("has " + std::to_string(scenes) + " scenes, and does not say which");
   const gltf_value scene = root["scenes"][root.has("scene") ? root["scene"].index(scenes) : 0];
   scene.only({"nodes", "name", "extensions", "extras"});
 

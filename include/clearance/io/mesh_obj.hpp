@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Mesh readers are our own: assimp 5.2 loses triangle order among materials, refuses ".8e-1", reads "1.#IND" as 1, drops
-// what it does not understand, and hangs or crashes on damaged files. These keep doubles too.
+// Mesh readers are our own: assimp 5.2 loses triangle order among materials, refuses ".8e-1", reads "1.#IND" as 1,
+// drops what it does not understand, and hangs or crashes on damaged files. These keep doubles too.
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
@@ -46,12 +46,11 @@ inline std::size_t numbers_left(std::string_view line, const std::string& file, 
 /// Is this the first word of an OBJ statement? Of all that the format has, and skin weights, which some tools add.
 inline bool obj_statement(std::string_view word) {
   for (const std::string_view known :
-       {"v",        "vt",       "vn",         "vp",        "vw",     "f",      "l",      "p",     "g",
-        "o",        "s",        "usemtl",     "mtllib",    "usemap", "maplib", "mg",     "bevel", "lod",
-        "c_interp", "d_interp", "shadow_obj", "trace_obj", "cstype", "deg",    "bmat",   "step",  "curv",
-        "curv2",    "surf",     "parm",       "trim",      "hole",   "scrv",   "sp",     "end",   "con",
-        "ctech",    "stech",    "call",       "csh",       "bsp",    "bzp",    "cdc",    "cdp",   "res",
-        "maxsize"})
+       {"v",          "vt",        "vn",     "vp",     "vw",     "f",      "l",     "p",     "g",        "o",
+        "s",          "usemtl",    "mtllib", "usemap", "maplib", "mg",     "bevel", "lod",   "c_interp", "d_interp",
+        "shadow_obj", "trace_obj", "cstype", "deg",    "bmat",   "step",   "curv",  "curv2", "surf",     "parm",
+        "trim",       "hole",      "scrv",   "sp",     "end",    "con",    "ctech", "stech", "call",     "csh",
+        "bsp",        "bzp",       "cdc",    "cdp",    "res",    "maxsize"})
     if (word == known) return true;
   return false;
 }
@@ -138,9 +137,12 @@ class obj_reader {
 
   polygon_mesh finish() {
     if (largest_ > made_.vertices.size())
-      refuse(file_, "a face has vertex " + std::to_string(largest_) + ", the file has " +
-                        std::to_string(made_.vertices.size()), largest_at_);
-    if (short_at_ != 0 && !any_) refuse(file_, "a face has fewer than three vertices, and so has every other", short_at_);
+      refuse(
+          file_,
+          "a face has vertex " + std::to_string(largest_) + ", the file has " + std::to_string(made_.vertices.size()),
+          largest_at_);
+    if (short_at_ != 0 && !any_)
+      refuse(file_, "a face has fewer than three vertices, and so has every other", short_at_);
     return std::move(made_);
   }
 

@@ -49,7 +49,8 @@ inline polygon_mesh read_off(std::string_view rest, const std::string& file) {
     mesh.vertices.push_back(take_vertex(line, file, at));
     const std::size_t more = numbers_left(line, file, at);
     if (more < least || more > most)
-      refuse(file, "a vertex of " + std::to_string(3 + more) + " numbers; the file is " + std::string(prefix) + "OFF", at);
+      refuse(file, "a vertex of " + std::to_string(3 + more) + " numbers; the file is " + std::string(prefix) + "OFF",
+             at);
     least = most = more;  // all colours have an alpha, or none
   }
   for (std::uint64_t i = 0; i < faces; ++i) {

@@ -26,8 +26,8 @@ inline void check_ply_faces(const ply_header& header, const std::string& file) {
   }
 }
 
-/// Adds the faces of triangle strips; -1 ends one. Every second triangle of a strip is turned round. False if a strip has
-/// one vertex or two.
+/// Adds the faces of triangle strips; -1 ends one. Every second triangle of a strip is turned round. False if a strip
+/// has one vertex or two.
 inline bool add_strips(polygon_mesh& mesh, const std::vector<double>& listed) {
   std::size_t begin = 0;  // of the strip
   for (std::size_t i = 0; i <= listed.size(); ++i) {

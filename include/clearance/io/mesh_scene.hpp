@@ -44,7 +44,8 @@ class mesh_scene {
   /// Counts a node that is `depth` nodes down.
   void visit(std::size_t depth) {
     if (depth > limits_.depth)
-      refuse(file_, "has more than " + std::to_string(limits_.depth) + " nodes inside one another (mesh_limits::depth)");
+      refuse(file_,
+             "has more than " + std::to_string(limits_.depth) + " nodes inside one another (mesh_limits::depth)");
     if (++nodes_ > limits_.nodes)
       refuse(file_, "has more than " + std::to_string(limits_.nodes) +
                         " nodes, instances counted each time (mesh_limits::nodes)");

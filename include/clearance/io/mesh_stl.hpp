@@ -47,10 +47,10 @@ inline polygon_mesh read_ascii_stl(std::string_view rest, const std::string& fil
     line = {};  // its name
     for (word = next(); word != "endsolid"; word = next()) {
       if (word != "facet")
-        refuse(file,
-               "expected \"facet\" or \"endsolid\", " +
-                   (word.empty() ? "but the file ends" : "found " + io::quoted(word)),
-               at);
+        refuse(
+            file,
+            "expected \"facet\" or \"endsolid\", " + (word.empty() ? "but the file ends" : "found " + io::quoted(word)),
+            at);
       expect("normal");
       three_numbers(true);  // which may be anything
       expect("outer");
@@ -96,8 +96,7 @@ inline polygon_mesh read_stl(std::string_view bytes, const std::string& file) {
   const std::string_view text = without_mark(bytes);
   const std::string_view start = text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
   const bool says_solid = start.starts_with("solid") || start.starts_with("SOLID") || start.starts_with("Solid");
-  const std::uint64_t count =
-      bytes.size() < 84 ? 0 : byte_reader(bytes.substr(80, 4), file).take<std::uint32_t>();
+  const std::uint64_t count = bytes.size() < 84 ? 0 : byte_reader(bytes.substr(80, 4), file).take<std::uint32_t>();
   if (bytes.size() >= 84 && bytes.size() == 84 + 50 * count)  // even where the header says "solid"
     return read_binary_stl(bytes, count, file);
   if (says_solid && bytes.find('\0') == bytes.npos) return read_ascii_stl(text, file);

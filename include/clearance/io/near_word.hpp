@@ -26,12 +26,14 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
         continue;
       }
       d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
     }
   return d[a.size()][b.size()];
 }
 
-/// Whether a word may be another one misspelt: two letters are wrong, one in a word of four letters or fewer; capitals do not count.
+/// Whether a word may be another one misspelt: two letters are wrong, one in a word of four letters or fewer; capitals
+/// do not count.
 inline bool near_word(std::string_view word, std::string_view known) {
   const std::size_t wrong = known.size() > 4 ? 2 : 1;
   return word.size() <= known.size() + wrong && known.size() <= word.size() + wrong &&

@@ -81,8 +81,9 @@ inline std::filesystem::path guess_package(const std::filesystem::path& inside, 
   return {};
 }
 
-/// The file that a URDF means by package://name/path, model://name/path (the same, by the name of a simulator), file:///path, or a path from the URDF's own folder. Throws
-/// std::runtime_error if the package is nowhere, or if the scheme is another.
+/// The file that a URDF means by package://name/path, model://name/path (the same, by the name of a simulator),
+/// file:///path, or a path from the URDF's own folder. Throws std::runtime_error if the package is nowhere, or if the
+/// scheme is another.
 inline std::filesystem::path resolve_uri(const std::string& uri, const std::filesystem::path& urdf,
                                          const std::map<std::string, std::filesystem::path>& packages) {
   const std::size_t scheme = uri.find("://");
@@ -90,7 +91,8 @@ inline std::filesystem::path resolve_uri(const std::string& uri, const std::file
   if (scheme == uri.npos) return urdf.parent_path() / uri;
   if (uri.starts_with("file:///")) return uri.substr(7);
   if (!uri.starts_with("package://") && !uri.starts_with("model://"))
-    refuse(urdf.string(), io::quoted(uri) + " is none of package://name/path, model://name/path, file:///path and a relative path");
+    refuse(urdf.string(),
+           io::quoted(uri) + " is none of package://name/path, model://name/path, file:///path and a relative path");
   std::string_view rest = std::string_view(uri).substr(scheme + 3);
   rest.remove_prefix(std::min(rest.find_first_not_of('/'), rest.size()));  // package:///name is meant as package://name
   const std::string name(rest.substr(0, rest.find('/')));
@@ -102,9 +104,10 @@ inline std::filesystem::path resolve_uri(const std::string& uri, const std::file
     if (std::filesystem::exists(folder / inside, failed)) return folder / inside;
   if (!folders.empty()) return folders.front() / inside;  // whoever opens it says that it is missing
   const std::string likely = guess_package(inside, urdf).string();
-  refuse(urdf.string(), "the package " + io::quoted(name) + " is not found: --package " + sentence(name, 60) + "=" +
-                            (likely.empty() ? "FOLDER says where it is, as do ROS_PACKAGE_PATH and AMENT_PREFIX_PATH"
-                                            : sentence(likely, 120) + " would do, where " + sentence(inside, 60) + " is"));
+  refuse(urdf.string(),
+         "the package " + io::quoted(name) + " is not found: --package " + sentence(name, 60) + "=" +
+             (likely.empty() ? "FOLDER says where it is, as do ROS_PACKAGE_PATH and AMENT_PREFIX_PATH"
+                             : sentence(likely, 120) + " would do, where " + sentence(inside, 60) + " is"));
 }
 
 }  // namespace clearance::io

@@ -14,8 +14,8 @@ namespace clearance::io {
 struct packed_part {
   std::string name;      ///< The link; may be empty.
   packing spheres;       ///< In the part's frame. Without a certificate the gap is infinite.
-  double tolerance = 0;  ///< How far the packed mesh may differ from the true surface, metres (tessellation); read from a file, the
-                         ///< spheres' own is in it.
+  double tolerance = 0;  ///< How far the packed mesh may differ from the true surface, metres (tessellation); read from
+                         ///< a file, the spheres' own is in it.
   digest solid;          ///< Of the mesh that the certificate is about.
   digest recipe;         ///< Of that mesh and the options of `pack`; see packing_key.
 };

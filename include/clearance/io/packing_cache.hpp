@@ -73,7 +73,8 @@ class packing_cache {
     std::error_code failed;
     std::filesystem::create_directories(folder_, failed);
     try {
-      save_ist(std::vector{packed_part{.name = "", .spheres = made, .solid = solid, .recipe = key}}, file(key).string());
+      save_ist(std::vector{packed_part{.name = "", .spheres = made, .solid = solid, .recipe = key}},
+               file(key).string());
       return true;
     } catch (const std::exception&) {
       return false;
@@ -122,7 +123,8 @@ std::vector<cached_packing> pack_cached(const R& meshes, const pack_options& opt
 /// By `pack` on the host: a closed mesh, or several.
 template <class M>
 auto pack_cached(const M& meshes, const pack_options& options, const packing_cache& cache) {
-  return pack_cached(meshes, options, cache, "host", [](const mesh_solid& s, const pack_options& o) { return pack(s, o); });
+  return pack_cached(meshes, options, cache, "host",
+                     [](const mesh_solid& s, const pack_options& o) { return pack(s, o); });
 }
 
 }  // namespace clearance::io

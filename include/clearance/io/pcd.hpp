@@ -19,16 +19,26 @@ inline double pcd_value(const char* bytes, const pcd_field& field) {
     return double(value);
   };
   switch (field.size | (field.type == 'F' ? 16u : field.type == 'I' ? 32u : 64u)) {
-    case 16 | 4: return as(float{});
-    case 16 | 8: return as(double{});
-    case 32 | 1: return as(std::int8_t{});
-    case 32 | 2: return as(std::int16_t{});
-    case 32 | 4: return as(std::int32_t{});
-    case 32 | 8: return as(std::int64_t{});
-    case 64 | 1: return as(std::uint8_t{});
-    case 64 | 2: return as(std::uint16_t{});
-    case 64 | 4: return as(std::uint32_t{});
-    default: return as(std::uint64_t{});
+    case 16 | 4:
+      return as(float{});
+    case 16 | 8:
+      return as(double{});
+    case 32 | 1:
+      return as(std::int8_t{});
+    case 32 | 2:
+      return as(std::int16_t{});
+    case 32 | 4:
+      return as(std::int32_t{});
+    case 32 | 8:
+      return as(std::int64_t{});
+    case 64 | 1:
+      return as(std::uint8_t{});
+    case 64 | 2:
+      return as(std::uint16_t{});
+    case 64 | 4:
+      return as(std::uint32_t{});
+    default:
+      return as(std::uint64_t{});
   }
 }
 
@@ -50,14 +60,18 @@ inline std::vector<Eigen::Vector3d> pcd_records(const char* data, const pcd_head
 inline double pcd_spelt(std::string_view word, const pcd_field& field, const std::string& file, std::size_t line) {
   const auto value = number<double>(word);
   if (!value) refuse(file, quoted(word) + " is not a number", line);
-  const double most = std::exp2(8.0 * double(field.size) - (field.type == 'I' ? 1 : 0));  // the first beyond whole types
-  const bool fits = field.type == 'F' ? field.size > 4 || !std::isfinite(*value) || std::isfinite(float(*value))
-                                      : *value == std::floor(*value) && *value >= (field.type == 'I' ? -most : 0) && *value < most;
-  if (!fits) refuse(file, quoted(word) + " is not of TYPE " + field.type + " and SIZE " + std::to_string(field.size), line);
+  const double most =
+      std::exp2(8.0 * double(field.size) - (field.type == 'I' ? 1 : 0));  // the first beyond whole types
+  const bool fits = field.type == 'F'
+                        ? field.size > 4 || !std::isfinite(*value) || std::isfinite(float(*value))
+                        : *value == std::floor(*value) && *value >= (field.type == 'I' ? -most : 0) && *value < most;
+  if (!fits)
+    refuse(file, quoted(word) + " is not of TYPE " + field.type + " and SIZE " + std::to_string(field.size), line);
   return *value;
 }
 
-inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_header& header, const std::string& file) {
+inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_header& header,
+                                              const std::string& file) {
   if (header.points > rest.size() / 2 + 1)  // a record needs a digit and an end of line at least
     refuse(file, "POINTS says " + std::to_string(header.points) + ", more than a file of this size can hold");
   std::vector<Eigen::Vector3d> points;
@@ -70,8 +84,10 @@ inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_h
     if (points.size() == header.points)
       refuse(file, "POINTS says " + std::to_string(header.points) + ", but here is another record", at);
     if (values.size() != header.record_words)
-      refuse(file, "a record needs " + std::to_string(header.record_words) + " values, here are " +
-                       std::to_string(values.size()), at);
+      refuse(file,
+             "a record needs " + std::to_string(header.record_words) + " values, here are " +
+                 std::to_string(values.size()),
+             at);
     Eigen::Vector3d p;
     for (int axis = 0; axis < 3; ++axis) {
       const auto& field = header.fields[header.xyz[std::size_t(axis)]];
@@ -85,13 +101,15 @@ inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_h
   return points;
 }
 
-/// Refuses data that POINTS does not count: more than the zeros that some writers fill a page with, and a line end before or
-/// behind them.
+/// Refuses data that POINTS does not count: more than the zeros that some writers fill a page with, and a line end
+/// before or behind them.
 inline void check_pcd_end(std::string_view rest, const pcd_header& header, const std::string& file) {
   std::string_view zeros = rest;
   for (const std::string_view end : {"\r\n", "\n"})
-    if (zeros.size() == rest.size() && zeros.ends_with(end)) zeros.remove_suffix(end.size());
-    else if (zeros.size() == rest.size() && zeros.starts_with(end)) zeros.remove_prefix(end.size());
+    if (zeros.size() == rest.size() && zeros.ends_with(end))
+      zeros.remove_suffix(end.size());
+    else if (zeros.size() == rest.size() && zeros.starts_with(end))
+      zeros.remove_prefix(end.size());
   if (zeros.size() >= 4096 || zeros.find_first_not_of('\0') != zeros.npos)
     refuse(file, "POINTS says " + std::to_string(header.points) + ", but " + std::to_string(rest.size()) +
                      " bytes follow the last record");
@@ -118,7 +136,8 @@ inline std::vector<Eigen::Vector3d> pcd_compressed(std::string_view rest, const 
   const std::uint64_t memory = unpacked + header.points * (sizeof(Eigen::Vector3d) + sizeof(vec3));
   if (memory > limits.unfolded)
     refuse(file, std::to_string(rest.size()) + " bytes unfold to " + mebibytes(memory) +
-                     " of points, more than the limit of " + mebibytes(limits.unfolded) + " (read_limits::unfolded), which --unfold-limit of the command raises");
+                     " of points, more than the limit of " + mebibytes(limits.unfolded) +
+                     " (read_limits::unfolded), which --unfold-limit of the command raises");
   std::vector<char> data(unpacked);
   if (lzf_decompress(rest.data(), packed, data.data(), unpacked) != unpacked)
     refuse(file, "the compressed block is damaged");
@@ -131,7 +150,9 @@ inline cloud read_pcd(std::string_view bytes, const std::string& file, const rea
   const pcd_header header = take_pcd_header(rest, file);
   std::vector<Eigen::Vector3d> points;
   switch (header.data) {
-    case pcd_header::encoding::ascii: points = pcd_ascii(rest, header, file); break;
+    case pcd_header::encoding::ascii:
+      points = pcd_ascii(rest, header, file);
+      break;
     case pcd_header::encoding::binary:
       if (header.points > rest.size() / header.record_bytes)
         refuse(file, "POINTS says " + std::to_string(header.points) + " records of " +
@@ -140,7 +161,9 @@ inline cloud read_pcd(std::string_view bytes, const std::string& file, const rea
       check_pcd_end(rest.substr(header.points * header.record_bytes), header, file);
       points = pcd_records(rest.data(), header, false);
       break;
-    case pcd_header::encoding::binary_compressed: points = pcd_compressed(rest, header, file, limits); break;
+    case pcd_header::encoding::binary_compressed:
+      points = pcd_compressed(rest, header, file, limits);
+      break;
   }
   cloud made = make_cloud(file, points, header.width, header.height);
   made.viewpoint = header.viewpoint;

@@ -57,8 +57,8 @@ inline void lay_out(pcd_header& header, const std::string& file) {
   }
   for (int axis = 0; axis < 3; ++axis)
     if (found[std::size_t(axis)] != 1)
-      refuse(file, std::string("the PCD header has ") + (found[std::size_t(axis)] ? "more than one" : "no") + " field " +
-                       "xyz"[axis]);
+      refuse(file, std::string("the PCD header has ") + (found[std::size_t(axis)] ? "more than one" : "no") +
+                       " field " + "xyz"[axis]);
 }
 
 namespace detail {
@@ -118,8 +118,8 @@ class pcd_entries {
   }
 
   void check_entry(std::string_view key) {
-    constexpr std::string_view known[] = {"VERSION", "FIELDS", "COLUMNS", "SIZE", "TYPE", "COUNT",
-                                          "WIDTH", "HEIGHT", "POINTS", "VIEWPOINT", "DATA"};
+    constexpr std::string_view known[] = {"VERSION", "FIELDS", "COLUMNS", "SIZE",      "TYPE", "COUNT",
+                                          "WIDTH",   "HEIGHT", "POINTS",  "VIEWPOINT", "DATA"};
     if (std::ranges::find(known, key) == std::end(known))
       refuse(file_, quoted(key) + " is no PCD header entry", made.lines);
     if (values_.empty()) refuse(file_, std::string(key) + " has no value", made.lines);
@@ -138,8 +138,10 @@ class pcd_entries {
   void for_fields(const char* what, Take take) {
     if (!has("FIELDS")) refuse(file_, std::string(what) + " comes before FIELDS", made.lines);
     if (values_.size() != made.fields.size())
-      refuse(file_, std::string(what) + " has " + std::to_string(values_.size()) + " entries for " +
-                        std::to_string(made.fields.size()) + " fields", made.lines);
+      refuse(file_,
+             std::string(what) + " has " + std::to_string(values_.size()) + " entries for " +
+                 std::to_string(made.fields.size()) + " fields",
+             made.lines);
     for (std::size_t i = 0; i < values_.size(); ++i) take(made.fields[i], values_[i]);
   }
 

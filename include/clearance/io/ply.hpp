@@ -18,8 +18,8 @@ inline cloud read_ply(std::string_view rest, const std::string& file) {
 }
 
 /// Reads the vertices of a PLY file, ascii or binary, in the file's order, in double; all else is checked and passed
-/// over. Throws std::runtime_error with a sentence for a value that does not fit its type, and if the counts are not those
-/// of the data.
+/// over. Throws std::runtime_error with a sentence for a value that does not fit its type, and if the counts are not
+/// those of the data.
 inline cloud load_ply(const std::string& file, const read_limits& limits = {}) {
   return read_ply(read_bytes(file, limits), file);
 }

@@ -23,7 +23,8 @@ constexpr bool is_whole(ply_type type) { return type < ply_type::float32; }
 
 inline std::optional<ply_type> ply_type_of(std::string_view name) {
   constexpr std::string_view old_names[] = {"char", "uchar", "short", "ushort", "int", "uint", "float", "double"};
-  constexpr std::string_view new_names[] = {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
+  constexpr std::string_view new_names[] = {"int8",  "uint8",  "int16",   "uint16",
+                                            "int32", "uint32", "float32", "float64"};
   for (std::size_t k = 0; k < 8; ++k)
     if (name == old_names[k] || name == new_names[k]) return ply_type(k);
   return std::nullopt;
@@ -73,7 +74,8 @@ inline void take_ply_property(ply_header& header, const std::vector<std::string_
     refuse(file, "a PLY property needs an element before it, a known type and a name", header.lines);
   if (count && !is_whole(*count)) refuse(file, "the count of a PLY list must be of a whole type", header.lines);
   for (const auto& other : header.elements.back().properties)
-    if (other.name == line.back()) refuse(file, "the property " + quoted(line.back()) + " is declared twice", header.lines);
+    if (other.name == line.back())
+      refuse(file, "the property " + quoted(line.back()) + " is declared twice", header.lines);
   header.elements.back().properties.push_back({std::string(line.back()), *type, count});
 }
 

@@ -8,8 +8,8 @@
 
 namespace clearance::io {
 
-/// The values of a PLY file, one after another, each checked to be of its type. A number of any type is a double without
-/// loss.
+/// The values of a PLY file, one after another, each checked to be of its type. A number of any type is a double
+/// without loss.
 class ply_values {
  public:
   ply_values(std::string_view rest, const ply_header& header, const std::string& file)
@@ -54,8 +54,9 @@ class ply_values {
   /// After the last element there is nothing more.
   void finish() const {
     if (ascii() ? !blank(rest_, " \t\r\n\v\f") : !rest_.empty())
-      refuse(file_, "has more data than its header says, after " +
-                        (element_ ? "the last of " + io::quoted(element_->name) : std::string("the header")),
+      refuse(file_,
+             "has more data than its header says, after " +
+                 (element_ ? "the last of " + io::quoted(element_->name) : std::string("the header")),
              ascii() ? at_ + 1 : 0);
   }
 
@@ -97,14 +98,22 @@ class ply_values {
     }
     rest_.remove_prefix(size);
     switch (type) {
-      case ply_type::int8: return double(std::int8_t(bits));
-      case ply_type::uint8: return double(std::uint8_t(bits));
-      case ply_type::int16: return double(std::int16_t(bits));
-      case ply_type::uint16: return double(std::uint16_t(bits));
-      case ply_type::int32: return double(std::int32_t(bits));
-      case ply_type::uint32: return double(std::uint32_t(bits));
-      case ply_type::float32: return double(std::bit_cast<float>(std::uint32_t(bits)));
-      default: return std::bit_cast<double>(bits);
+      case ply_type::int8:
+        return double(std::int8_t(bits));
+      case ply_type::uint8:
+        return double(std::uint8_t(bits));
+      case ply_type::int16:
+        return double(std::int16_t(bits));
+      case ply_type::uint16:
+        return double(std::uint16_t(bits));
+      case ply_type::int32:
+        return double(std::int32_t(bits));
+      case ply_type::uint32:
+        return double(std::uint32_t(bits));
+      case ply_type::float32:
+        return double(std::bit_cast<float>(std::uint32_t(bits)));
+      default:
+        return std::bit_cast<double>(bits);
     }
   }
 
@@ -116,9 +125,9 @@ class ply_values {
   std::uint64_t number_ = 0;
 };
 
-/// Walks through all the values of a PLY file in their order: `vertex(values, position)` is called for each record of the
-/// element vertex, `list(element, property, values, listed)` for each list; `values` says where. Refuses what does not fit
-/// the header, data after its last element included.
+/// Walks through all the values of a PLY file in their order: `vertex(values, position)` is called for each record of
+/// the element vertex, `list(element, property, values, listed)` for each list; `values` says where. Refuses what does
+/// not fit the header, data after its last element included.
 template <class Vertex, class List>
 void read_ply_values(std::string_view rest, const ply_header& header, const std::string& file, Vertex vertex,
                      List list) {

@@ -18,7 +18,8 @@ namespace clearance::io {
 /// One number a point, by the name that a viewer shows. "red", "green" and "blue" of 8 bits are its colour.
 struct ply_column {
   std::string name;
-  std::variant<std::vector<float>, std::vector<std::uint8_t>, std::vector<std::int32_t>, std::vector<std::uint32_t>> values;
+  std::variant<std::vector<float>, std::vector<std::uint8_t>, std::vector<std::int32_t>, std::vector<std::uint32_t>>
+      values;
 };
 
 /// Points with their columns, of which a file is made one after another.
@@ -27,7 +28,8 @@ struct ply_piece {
   std::vector<ply_column> columns;
 };
 
-/// What stands before the records of `count` points with such columns. Throws std::invalid_argument if a column has a name that is no word.
+/// What stands before the records of `count` points with such columns. Throws std::invalid_argument if a column has a
+/// name that is no word.
 inline std::string ply_header(std::size_t count, std::span<const ply_column> columns, const std::string& comment = {}) {
   constexpr const char* kinds[] = {"float", "uchar", "int", "uint"};
   std::string out = "ply\nformat binary_little_endian 1.0\n";
@@ -41,8 +43,8 @@ inline std::string ply_header(std::size_t count, std::span<const ply_column> col
   return out + "end_header\n";
 }
 
-/// The records of points: positions in double, then the columns in their order. Throws std::invalid_argument if a column has not one value
-/// a point.
+/// The records of points: positions in double, then the columns in their order. Throws std::invalid_argument if a
+/// column has not one value a point.
 inline std::string ply_records(std::span<const Eigen::Vector3d> points, std::span<const ply_column> columns) {
   byte_writer out;
   std::size_t record = 3 * sizeof(double);
@@ -50,8 +52,9 @@ inline std::string ply_records(std::span<const Eigen::Vector3d> points, std::spa
     std::visit(
         [&](const auto& values) {
           if (values.size() != points.size())
-            throw std::invalid_argument("clearance: the PLY column " + io::quoted(column.name) + " has " + std::to_string(values.size()) + " values for " +
-                                        std::to_string(points.size()) + " points");
+            throw std::invalid_argument("clearance: the PLY column " + io::quoted(column.name) + " has " +
+                                        std::to_string(values.size()) + " values for " + std::to_string(points.size()) +
+                                        " points");
           record += sizeof values[0];
         },
         column.values);
@@ -72,18 +75,20 @@ inline std::string ply_records(std::span<const Eigen::Vector3d> points, std::spa
 }
 
 /// A PLY file, binary and little-endian. Throws std::invalid_argument as the two above.
-inline std::string ply_bytes(std::span<const Eigen::Vector3d> points, std::span<const ply_column> columns, const std::string& comment = {}) {
+inline std::string ply_bytes(std::span<const Eigen::Vector3d> points, std::span<const ply_column> columns,
+                             const std::string& comment = {}) {
   return ply_header(points.size(), columns, comment) + ply_records(points, columns);
 }
 
 /// Writes it, whole or not at all. Throws std::runtime_error naming the file.
-inline void save_ply(const std::string& file, std::span<const Eigen::Vector3d> points, std::span<const ply_column> columns, const std::string& comment = {}) {
+inline void save_ply(const std::string& file, std::span<const Eigen::Vector3d> points,
+                     std::span<const ply_column> columns, const std::string& comment = {}) {
   write_bytes(file, ply_bytes(points, columns, comment));
 }
 
-/// The same of `count` points that need not be in memory at once: `next()` gives a ply_piece, at least once, and as often as points are
-/// missing. All pieces have columns of the same names and kinds. Throws std::invalid_argument if a piece has none of the missing points, or
-/// more.
+/// The same of `count` points that need not be in memory at once: `next()` gives a ply_piece, at least once, and as
+/// often as points are missing. All pieces have columns of the same names and kinds. Throws std::invalid_argument if a
+/// piece has none of the missing points, or more.
 template <class Next>
 void save_ply_pieces(const std::string& file, std::size_t count, Next next, const std::string& comment = {}) {
   std::size_t done = 0;
@@ -92,7 +97,8 @@ void save_ply_pieces(const std::string& file, std::size_t count, Next next, cons
     if (begun && done == count) return {};
     const ply_piece piece = next();
     if (piece.points.size() > count - done || (piece.points.empty() && count != 0))
-      throw std::invalid_argument("clearance: a piece of " + std::to_string(piece.points.size()) + " points where " + std::to_string(count - done) + " are missing");
+      throw std::invalid_argument("clearance: a piece of " + std::to_string(piece.points.size()) + " points where " +
+                                  std::to_string(count - done) + " are missing");
     done += piece.points.size();
     const std::string before = std::exchange(begun, true) ? std::string() : ply_header(count, piece.columns, comment);
     return before + ply_records(piece.points, piece.columns);

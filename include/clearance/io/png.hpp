@@ -100,7 +100,8 @@ namespace clearance::io {
   if (unpacked < 0 || std::size_t(unpacked) != size)
     refuse(file, "the PNG image is damaged (its data are not those of " + std::to_string(image.width) + "x" +
                      std::to_string(image.height) + " pixels)");
-  if (image.packed.size() < 4 || png_number(std::string_view(image.packed).substr(image.packed.size() - 4)) != adler32(raw))
+  if (image.packed.size() < 4 ||
+      png_number(std::string_view(image.packed).substr(image.packed.size() - 4)) != adler32(raw))
     refuse(file, "the PNG image is damaged (the checksum of its data does not match)");
   return {file, png_pixels(image, raw, file), image.width, image.height};
 }

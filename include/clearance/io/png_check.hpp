@@ -65,8 +65,8 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
       height = png_number(data.substr(4));
       const int depth = std::uint8_t(data[8]), colour = std::uint8_t(data[9]);
       if (depth != 16 || colour != 0) {
-        constexpr std::array<const char*, 7> kinds = {"grey", "?", "colour", "palette", "grey with alpha", "?",
-                                                      "colour with alpha"};
+        constexpr std::array<const char*, 7> kinds = {
+            "grey", "?", "colour", "palette", "grey with alpha", "?", "colour with alpha"};
         refuse(file, "a depth image must be a 16-bit grey PNG, this one is " + std::to_string(depth) + "-bit " +
                          (colour < 7 ? kinds[std::size_t(colour)] : "?"));
       }
@@ -89,7 +89,8 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
   if (width > (1u << 24) || height > (1u << 24) || (2 * width + 1) * height > 1032 * packed)
     refuse(file, "the PNG image says " + std::to_string(width) + "x" + std::to_string(height) +
                      " pixels, more than its data can hold");
-  if (const std::uint64_t memory = 4 * width * height; memory > limits.unfolded)  // of the pixels, and while they are unpacked
+  if (const std::uint64_t memory = 4 * width * height;
+      memory > limits.unfolded)  // of the pixels, and while they are unpacked
     refuse(file, std::to_string(packed) + " bytes unfold to " + std::to_string(width) + "x" + std::to_string(height) +
                      " pixels of " + mebibytes(memory) + ", more than the limit of " + mebibytes(limits.unfolded) +
                      " (read_limits::unfolded), which --unfold-limit of the command raises");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// From the unpacked data of a 16-bit grey PNG to its pixels. stb_image does this too, but compares neither the checksum nor
-// the length of what it unpacked, so damaged data would be depths that are wrong without a word.
+// From the unpacked data of a 16-bit grey PNG to its pixels. stb_image does this too, but compares neither the checksum
+// nor the length of what it unpacked, so damaged data would be depths that are wrong without a word.
 
 #include <clearance/io/png_check.hpp>
 
@@ -31,8 +31,12 @@ constexpr std::uint32_t adler32(std::string_view bytes) {
 struct png_pass {
   std::size_t x, y, across, down;
 
-  std::size_t width(const png_image& image) const { return x < image.width ? (image.width - x + across - 1) / across : 0; }
-  std::size_t height(const png_image& image) const { return y < image.height ? (image.height - y + down - 1) / down : 0; }
+  std::size_t width(const png_image& image) const {
+    return x < image.width ? (image.width - x + across - 1) / across : 0;
+  }
+  std::size_t height(const png_image& image) const {
+    return y < image.height ? (image.height - y + down - 1) / down : 0;
+  }
   /// Each row has a byte that says its filter. A pass without pixels has no rows.
   std::size_t bytes(const png_image& image) const { return width(image) ? height(image) * (2 * width(image) + 1) : 0; }
 };
@@ -57,17 +61,22 @@ inline void png_unfilter(std::uint8_t* row, const std::uint8_t* above, std::size
     }
   };
   switch (row[-1]) {
-    case 0: return;
-    case 1: return each([](int left, int, int) { return left; });
-    case 2: return each([](int, int up, int) { return up; });
-    case 3: return each([](int left, int up, int) { return (left + up) / 2; });
+    case 0:
+      return;
+    case 1:
+      return each([](int left, int, int) { return left; });
+    case 2:
+      return each([](int, int up, int) { return up; });
+    case 3:
+      return each([](int left, int up, int) { return (left + up) / 2; });
     case 4:
       return each([](int left, int up, int corner) {
         const int guess = left + up - corner;
         const int a = std::abs(guess - left), b = std::abs(guess - up), c = std::abs(guess - corner);
         return a <= b && a <= c ? left : b <= c ? up : corner;
       });
-    default: refuse(file, "the PNG image is damaged (a row has the unknown filter " + std::to_string(row[-1]) + ")");
+    default:
+      refuse(file, "the PNG image is damaged (a row has the unknown filter " + std::to_string(row[-1]) + ")");
   }
 }
 

@@ -48,7 +48,8 @@ class robot {
 /// std::runtime_error if a file is damaged or missing, std::invalid_argument if a link to exclude does not exist.
 inline robot load_robot(const std::filesystem::path& urdf, const robot_options& options = {}) {
   if (!(options.tessellation > 0)) throw std::invalid_argument("the tessellation error must be above 0");
-  urdf_file file = within_memory(urdf.string(), [&] { return read_urdf(urdf.string(), options.limits, options.strict); });
+  urdf_file file =
+      within_memory(urdf.string(), [&] { return read_urdf(urdf.string(), options.limits, options.strict); });
   for (const auto& name : options.exclude_links)
     if (std::none_of(file.links.begin(), file.links.end(), [&](const auto& link) { return link.name == name; }))
       throw std::invalid_argument("the robot has no link " + io::quoted(name) + " to exclude");
@@ -77,7 +78,8 @@ inline robot load_robot(const std::filesystem::path& urdf, const robot_options& 
     }
     for (const urdf_shape& shape : shapes(link)) {
       if (shape.flat())
-        file.notes.add("has a shape without volume (a side, radius or length is 0), which is taken as 0.002 mm thick", "link " + io::quoted(part.name), shape.line);
+        file.notes.add("has a shape without volume (a side, radius or length is 0), which is taken as 0.002 mm thick",
+                       "link " + io::quoted(part.name), shape.line);
       within_memory(urdf.string(), [&] { reader.add(part, shape); });
     }
     parts.push_back(std::move(part));

@@ -22,11 +22,11 @@ struct robot_options {
   robot_geometry geometry = robot_geometry::collision;      // a link that has none of it gives the other, with a note
   std::map<std::string, std::filesystem::path> packages{};  // where package://name is
   std::vector<std::string> exclude_links{};
-  double tessellation = 1e-4;  // metres; round shapes become meshes no farther from them,
-  std::uint32_t shape_triangles = 8000;  // except where one would need more triangles than this,
+  double tessellation = 1e-4;                   // metres; round shapes become meshes no farther from them,
+  std::uint32_t shape_triangles = 8000;         // except where one would need more triangles than this,
   std::uint32_t all_shape_triangles = 400'000;  // or more than its share of these
-  bool strict = false;                   // what would be noted is refused
-  mesh_limits limits{};                  // of the description and all its meshes together
+  bool strict = false;                          // what would be noted is refused
+  mesh_limits limits{};                         // of the description and all its meshes together
 };
 
 /// One link that has geometry: all its meshes and shapes as one mesh in the link's frame, triangles in the file's
@@ -44,8 +44,12 @@ class robot_reader {
  public:
   /// `round`: how many spheres, cylinders and capsules will be added.
   robot_reader(const std::filesystem::path& urdf, const robot_options& options, std::size_t round)
-      : urdf_(urdf), file_(urdf.string()), options_(options), left_(options.limits),
-        each_(std::uint32_t(std::min<std::size_t>(options.shape_triangles, options.all_shape_triangles / std::max<std::size_t>(round, 1)))) {}
+      : urdf_(urdf),
+        file_(urdf.string()),
+        options_(options),
+        left_(options.limits),
+        each_(std::uint32_t(std::min<std::size_t>(options.shape_triangles,
+                                                  options.all_shape_triangles / std::max<std::size_t>(round, 1)))) {}
 
   /// Adds one visual or collision to a part.
   void add(robot_part& part, const urdf_shape& shape) {
@@ -60,8 +64,9 @@ class robot_reader {
     }
     const std::uint64_t triangles = added.mesh.triangles.size();
     if (triangles > left_.triangles)
-      refuse(file_, owner + "with it the robot has more than " + std::to_string(options_.limits.triangles) +
-                        " triangles (mesh_limits::triangles)",
+      refuse(file_,
+             owner + "with it the robot has more than " + std::to_string(options_.limits.triangles) +
+                 " triangles (mesh_limits::triangles)",
              shape.line);
     left_.triangles -= triangles;
     const auto first = std::uint32_t(part.mesh.vertices.size());
@@ -93,9 +98,12 @@ class robot_reader {
       if (side == 0) side = 2 * least;
     return thick(tessellate_box(size), (box.size.array() == 0).count());
   }
-  tessellation make(const urdf_sphere& s) const { return thick(tessellate_sphere(s.radius > 0 ? s.radius : least, options_.tessellation, each_), s.radius == 0); }
+  tessellation make(const urdf_sphere& s) const {
+    return thick(tessellate_sphere(s.radius > 0 ? s.radius : least, options_.tessellation, each_), s.radius == 0);
+  }
   tessellation make(const urdf_cylinder& c) const {
-    return thick(tessellate_cylinder(c.radius > 0 ? c.radius : least, c.length > 0 ? c.length : 2 * least, options_.tessellation, each_),
+    return thick(tessellate_cylinder(c.radius > 0 ? c.radius : least, c.length > 0 ? c.length : 2 * least,
+                                     options_.tessellation, each_),
                  (c.radius == 0) + (c.length == 0));
   }
   tessellation make(const urdf_capsule& c) const {

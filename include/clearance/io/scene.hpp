@@ -16,7 +16,7 @@ namespace clearance::io {
 
 struct scene_body {
   std::string name;
-  triangle_mesh mesh;  // in the body's frame
+  triangle_mesh mesh;                                      // in the body's frame
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // world-from-body
   colour paint = {0.75f, 0.75f, 0.78f, 1};
   std::string group = {};  // the name of a node for all bodies and balls of one group; empty: none
@@ -61,10 +61,12 @@ inline std::string scene_bytes(const scene& world, const std::string& file) {
   const auto add = [&](const std::string& name, const drawn_mesh& mesh, Eigen::Isometry3d pose, colour paint,
                        const std::string& group = {}) {
     pose.translation() -= world.origin;
-    if (!mesh.positions.empty()) out.add(scene_name(name), mesh, pose, paint, group.empty() ? group : scene_name(group));
+    if (!mesh.positions.empty())
+      out.add(scene_name(name), mesh, pose, paint, group.empty() ? group : scene_name(group));
   };
   for (const auto& body : world.bodies) add(body.name, faces_of(body.mesh), body.pose, body.paint, body.group);
-  for (const auto& cloud : world.clouds) add(cloud.name, points_of(cloud.points, cloud.colours), cloud.pose, cloud.paint);
+  for (const auto& cloud : world.clouds)
+    add(cloud.name, points_of(cloud.points, cloud.colours), cloud.pose, cloud.paint);
   for (const auto& set : world.balls) add(set.name, faces_of(set.balls), set.pose, set.paint, set.group);
   for (const auto& s : world.segments) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

@@ -68,7 +68,8 @@ inline triangle_mesh rod(const Eigen::Vector3d& v) {
   const Eigen::Vector3d end = v.norm() > thick ? v : Eigen::Vector3d(along * thick);
   triangle_mesh mesh;
   for (const Eigen::Vector3d& at : {Eigen::Vector3d(Eigen::Vector3d::Zero()), end})
-    for (const Eigen::Vector3d& corner : {Eigen::Vector3d(a + b), Eigen::Vector3d(b - a), Eigen::Vector3d(-a - b), Eigen::Vector3d(a - b)})
+    for (const Eigen::Vector3d& corner :
+         {Eigen::Vector3d(a + b), Eigen::Vector3d(b - a), Eigen::Vector3d(-a - b), Eigen::Vector3d(a - b)})
       mesh.vertices.push_back(at + corner);
   mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}};
   for (std::uint32_t k = 0; k < 4; ++k) {

@@ -68,9 +68,9 @@ inline constexpr std::size_t longest_sentence = 400;
 /// A message as it may be shown: printable, and at most `most` bytes. A text of megabytes costs no more than its ends.
 inline std::string sentence(std::string_view text, std::size_t most = longest_sentence) {
   if (text.size() > 4 * longest_sentence)
-    return shortened(printable(text.substr(0, longest_sentence)) + "..." +
-                         printable(text.substr(text.size() - longest_sentence)),
-                     most);
+    return shortened(
+        printable(text.substr(0, longest_sentence)) + "..." + printable(text.substr(text.size() - longest_sentence)),
+        most);
   return shortened(printable(text), most);
 }
 

@@ -42,8 +42,8 @@ inline tessellation tessellate_box(const Eigen::Vector3d& size) {
 /// for an error of 0.1 mm, and one of 1 m is off by 0.73 mm.
 inline constexpr std::uint32_t most_triangles = 8000;
 
-/// Along z, its middle at the origin. As many sides as keep the error below `tolerance`, though at least 12, and at most
-/// `triangles` triangles.
+/// Along z, its middle at the origin. As many sides as keep the error below `tolerance`, though at least 12, and at
+/// most `triangles` triangles.
 inline tessellation tessellate_cylinder(double radius, double length, double tolerance = 1e-4,
                                         std::uint32_t triangles = most_triangles) {
   using std::numbers::pi;
@@ -144,7 +144,8 @@ inline tessellation tessellate_capsule(double radius, double length, double tole
     }
     made.mesh.triangles.push_back({1, vertex(2 * rings, i + 1), vertex(2 * rings, i)});
   }
-  triangle_mesh ball = made.mesh;  // without the cylinder, whose sides are as far in as the corners of a ring leave them
+  triangle_mesh ball =
+      made.mesh;  // without the cylinder, whose sides are as far in as the corners of a ring leave them
   for (std::uint32_t v = 0; v < ball.vertices.size(); ++v)
     ball.vertices[v].z() += (v == 0 || (v > 1 && v < 2 + rings * n) ? -0.5 : 0.5) * length;
   const auto upper = [&](std::uint32_t v) { return v >= 2 && v < 2 + rings * n; };

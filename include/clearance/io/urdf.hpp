@@ -70,7 +70,8 @@ inline joint read_urdf_joint(const xml_place& at, note_tally& notes) {
 
 /// A joint that follows one of another file is one that moves by itself: where it is, that file says, and a user must.
 /// What is nearly the name of a joint here is that, misspelt.
-inline void free_followers(std::vector<joint>& joints, const std::vector<const xml_element*>& at, const std::string& file, note_tally& notes) {
+inline void free_followers(std::vector<joint>& joints, const std::vector<const xml_element*>& at,
+                           const std::string& file, note_tally& notes) {
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (!joints[i].follows) continue;
     const std::string& leader = joints[i].follows->joint;
@@ -78,7 +79,10 @@ inline void free_followers(std::vector<joint>& joints, const std::vector<const x
     const std::string who = "joint " + io::quoted(joints[i].name);
     for (const joint& other : joints)
       if (&other != &joints[i] && edit_distance(other.name, leader) == 1)
-        refuse(file, who + ": follows " + io::quoted(leader) + ", which is not in this file (" + io::quoted(other.name) + "?)", at[i]->line);
+        refuse(
+            file,
+            who + ": follows " + io::quoted(leader) + ", which is not in this file (" + io::quoted(other.name) + "?)",
+            at[i]->line);
     joints[i].follows.reset();
     notes.add("follows a joint that is not in this file, and takes a value of its own", who, at[i]->line);
   }

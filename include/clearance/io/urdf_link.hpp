@@ -40,12 +40,15 @@ struct urdf_shape {
   bool flat() const {
     if (const auto* box = std::get_if<urdf_box>(&geometry)) return (box->size.array() == 0).any();
     if (const auto* sphere = std::get_if<urdf_sphere>(&geometry)) return sphere->radius == 0;
-    if (const auto* cylinder = std::get_if<urdf_cylinder>(&geometry)) return cylinder->radius == 0 || cylinder->length == 0;
+    if (const auto* cylinder = std::get_if<urdf_cylinder>(&geometry))
+      return cylinder->radius == 0 || cylinder->length == 0;
     const auto* capsule = std::get_if<urdf_capsule>(&geometry);
     return capsule && capsule->radius == 0;
   }
   /// Becomes triangles that are not quite it.
-  bool round() const { return !std::holds_alternative<urdf_box>(geometry) && !std::holds_alternative<urdf_mesh>(geometry); }
+  bool round() const {
+    return !std::holds_alternative<urdf_box>(geometry) && !std::holds_alternative<urdf_mesh>(geometry);
+  }
 };
 
 struct urdf_link {
@@ -77,10 +80,10 @@ inline Eigen::Isometry3d urdf_origin(const xml_place& around) {
   }
   if (element->attribute("rpy")) {
     const auto rpy = origin.numbers<3>("rpy");
-    pose.linear() = (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) *
-                     Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
-                     Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
-                        .toRotationMatrix();
+    pose.linear() =
+        (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
+            .toRotationMatrix();
   }
   return pose;
 }
@@ -91,7 +94,8 @@ inline urdf_geometry read_urdf_geometry(const xml_place& around) {
   for (const auto& child : around.element.children)
     for (const char* known : {"box", "sphere", "cylinder", "capsule", "mesh"})
       if (child.name == known) only = &child, ++count;
-  if (count == 0 && around.element.children.size() == 1) around.in(around.element.children.front()).refuse("is no shape of URDF");
+  if (count == 0 && around.element.children.size() == 1)
+    around.in(around.element.children.front()).refuse("is no shape of URDF");
   if (count != 1) around.refuse("has " + std::to_string(count) + " shapes, not one");
   const xml_place shape = around.in(*only);
   const std::string& kind = shape.element.name;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What may stand where in a URDF file, and what becomes of all else: refused is what may change the answer, noted what cannot.
+// What may stand where in a URDF file, and what becomes of all else: refused is what may change the answer, noted what
+// cannot.
 
 #include <clearance/io/near_word.hpp>
 #include <clearance/io/note_tally.hpp>
@@ -18,26 +19,33 @@ struct urdf_words {
   std::string_view element;
   std::string_view attributes, attributes_unused;  ///< Read; defined, but of no use here.
   std::string_view children, children_unused;      ///< The same of elements. No shape may be in those of no use.
-  std::string_view children_noted = {};            ///< Others that are often there, whatever they look like; a bare <geometry> may be in them.
-  std::string_view watched = {};                   ///< Would change the answer if they meant what they say: refused, attribute or element.
-  bool places = false;                             ///< It says where something is, or how large: nothing near its words passes.
+  /// Others that are often there, whatever they look like; a bare <geometry> may be in them.
+  std::string_view children_noted = {};
+  /// Would change the answer if they meant what they say: refused, attribute or element.
+  std::string_view watched = {};
+  bool places = false;  ///< It says where something is, or how large: nothing near its words passes.
 };
 
-inline constexpr std::string_view placing = "pose transform translation rotation position orientation quaternion quat quat_xyzw wxyz";
+inline constexpr std::string_view placing =
+    "pose transform translation rotation position orientation quaternion quat quat_xyzw wxyz";
 
 inline constexpr urdf_words urdf_vocabulary[] = {
-    {"robot", "name", "version", "link joint", "material transmission gazebo sensor ros2_control", "", "include macro robot"},
-    {"link", "name", "type", "visual collision", "inertial contact sensor", "self_collision_checking collision_checking self_filter origin", "include"},
+    {"robot", "name", "version", "link joint", "material transmission gazebo sensor ros2_control", "",
+     "include macro robot"},
+    {"link", "name", "type", "visual collision", "inertial contact sensor",
+     "self_collision_checking collision_checking self_filter origin", "include"},
     {"visual", "", "name group", "origin geometry", "material contact_coefficients verbose", "", placing},
     {"collision", "", "name group", "origin geometry", "material contact_coefficients verbose", "", placing},
     {"geometry", "", "name", "box sphere cylinder capsule mesh", "", "", "origin scale"},
-    {"origin", "xyz rpy", "", "", "", "", "pose quat quat_xyzw quaternion wxyz rotation translation position orientation x y z roll pitch yaw", true},
+    {"origin", "xyz rpy", "", "", "", "",
+     "pose quat quat_xyzw quaternion wxyz rotation translation position orientation x y z roll pitch yaw", true},
     {"box", "size", "", "", "", "", "origin", true},
     {"sphere", "radius", "", "", "", "", "origin", true},
     {"cylinder", "radius length", "", "", "", "", "origin", true},
     {"capsule", "radius length", "", "", "", "", "origin", true},
     {"mesh", "filename scale", "", "", "", "", "origin", true},
-    {"joint", "name type", "", "origin parent child axis limit mimic", "dynamics calibration safety_controller disable_collision", "", placing},
+    {"joint", "name type", "", "origin parent child axis limit mimic",
+     "dynamics calibration safety_controller disable_collision", "", placing},
     {"parent", "link", "", "", "", "", "origin", true},
     {"child", "link", "", "", "", "", "origin", true},
     {"axis", "xyz", "", "", "", "", "origin", true},
@@ -66,7 +74,8 @@ inline std::string_view local_name(std::string_view name) { return name.substr(n
 
 /// Which of the words a name may be, misspelt or with a prefix before it.
 inline std::string_view meant_by(std::string_view name, std::string_view words) {
-  return first_word(words, [&](std::string_view word) { return near_word(name, word) || near_word(local_name(name), word); });
+  return first_word(words,
+                    [&](std::string_view word) { return near_word(name, word) || near_word(local_name(name), word); });
 }
 
 /// Whether there is an element of one of these names in another, at any depth.
@@ -78,7 +87,9 @@ inline bool holds_any(const xml_element& element, std::string_view words) {
 /// Whether a link or joint is in an element, and not only the name of one.
 inline bool holds_robot(const xml_element& element) {
   return std::ranges::any_of(element.children, [](const xml_element& child) {
-    const auto has = [&](const char* name) { return std::ranges::any_of(child.children, [&](const auto& e) { return e.name == name; }); };
+    const auto has = [&](const char* name) {
+      return std::ranges::any_of(child.children, [&](const auto& e) { return e.name == name; });
+    };
     return child.name == "link" || (child.name == "joint" && has("parent") && has("child")) || holds_robot(child);
   });
 }
@@ -109,7 +120,8 @@ class urdf_judge {
       refuse_xacro(child);
       const xml_place inner{child, file_, part ? child.name + " " + io::quoted(*name) : at.owner};
       const bool read = judged && element(at, inner, *words);
-      if (read && has_word(urdf_single, child.name) && std::any_of(at.element.children.data(), &child, [&](const auto& e) { return e.name == child.name; }))
+      if (read && has_word(urdf_single, child.name) &&
+          std::any_of(at.element.children.data(), &child, [&](const auto& e) { return e.name == child.name; }))
         note(inner, "is there twice, the same both times");  // else it is refused where it is read
       enter(inner, read);
       open_.pop_back();
@@ -118,17 +130,20 @@ class urdf_judge {
 
   void attributes(const xml_place& at, const urdf_words& words) {
     for (const auto& [name, value] : at.element.attributes) {
-      if (has_word(words.attributes, name) || has_word(words.attributes_unused, name) || name == "xmlns" || name.starts_with("xmlns:") ||
-          name.starts_with("xml:"))
+      if (has_word(words.attributes, name) || has_word(words.attributes_unused, name) || name == "xmlns" ||
+          name.starts_with("xmlns:") || name.starts_with("xml:"))
         continue;
       // What must be there is missed where it is misspelt.
       const auto matters = [](std::string_view word) { return word != "name" && word != "type"; };
       const std::string_view meant = first_word(words.attributes, [&](std::string_view word) {
-        return matters(word) && (!meant_by(name, word).empty() || (words.places && lower_case(name).find(word) != name.npos));
+        return matters(word) &&
+               (!meant_by(name, word).empty() || (words.places && lower_case(name).find(word) != name.npos));
       });
       if (!meant.empty() || has_word(words.watched, lower_case(local_name(name))))
-        at.refuse("has an attribute " + io::quoted(name) + ", which is not known" + (meant.empty() ? "" : " (" + std::string(meant) + "?)"));
-      if (!of_others(name)) note(at, "has an attribute " + io::quoted(name) + ", which is not known, and is passed over");
+        at.refuse("has an attribute " + io::quoted(name) + ", which is not known" +
+                  (meant.empty() ? "" : " (" + std::string(meant) + "?)"));
+      if (!of_others(name))
+        note(at, "has an attribute " + io::quoted(name) + ", which is not known, and is passed over");
     }
   }
 
@@ -137,7 +152,8 @@ class urdf_judge {
     const std::string& name = child.element.name;
     if (has_word(words.children, name)) return true;
     if (has_word(words.children_unused, name)) {
-      if (name != "gazebo" && holds_any(child.element, urdf_shapely)) child.refuse("has a shape in it, which belongs elsewhere");
+      if (name != "gazebo" && holds_any(child.element, urdf_shapely))
+        child.refuse("has a shape in it, which belongs elsewhere");
       return false;
     }
     const bool shapes = holds_any(child.element, "visual collision geometry box sphere cylinder capsule mesh");
@@ -147,9 +163,13 @@ class urdf_judge {
     } else {
       std::string_view meant = meant_by(name, words.children);
       if (meant.empty()) meant = meant_by(name, urdf_parts);
-      if (meant.empty()) meant = first_word(words.attributes, [&](auto word) { return word != "name" && word != "type" && !meant_by(name, word).empty(); });
+      if (meant.empty())
+        meant = first_word(words.attributes, [&](auto word) {
+          return word != "name" && word != "type" && !meant_by(name, word).empty();
+        });
       if (meant.empty() && shapes)
-        meant = first_word(urdf_shapely, [&](std::string_view word) { return lower_case(name).find(word) != name.npos; });
+        meant =
+            first_word(urdf_shapely, [&](std::string_view word) { return lower_case(name).find(word) != name.npos; });
       if (!meant.empty()) child.refuse(where + (meant == name ? "" : " (" + std::string(meant) + "?)"));
       if (has_word(words.watched, lower_case(local_name(name)))) child.refuse(where + ", and may change the answer");
       if (holds_robot(child.element)) child.refuse(where + ", and has a part of a robot in it");
@@ -167,13 +187,15 @@ class urdf_judge {
     std::string bare;
     for (const char c : all)
       if (std::string_view(" \t\r\n").find(c) == std::string_view::npos) bare += c;
-    const bool element = bare.find("=\"") != bare.npos || bare.find("='") != bare.npos || bare.find('<') != bare.npos || bare.find("!--") != bare.npos;
+    const bool element = bare.find("=\"") != bare.npos || bare.find("='") != bare.npos || bare.find('<') != bare.npos ||
+                         bare.find("!--") != bare.npos;
     if (places || element) at.no_text();
     note(at, "has text in it, which is passed over");
   }
 
   void note(const xml_place& at, const std::string& what) {
-    notes_.add("<" + at.element.name.substr(0, 60) + "> " + what, at.owner.empty() ? "line " + std::to_string(at.element.line) : at.owner, at.element.line);
+    notes_.add("<" + at.element.name.substr(0, 60) + "> " + what,
+               at.owner.empty() ? "line " + std::to_string(at.element.line) : at.owner, at.element.line);
   }
 
   /// The vocabulary that a name's prefix stands for: nothing if that is not declared.

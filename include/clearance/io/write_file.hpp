@@ -18,7 +18,7 @@ namespace clearance::io {
 /// Refuses what may not be replaced by a new file: a folder, a device or pipe, a symbolic link (the file behind it is
 /// meant, or is it?). Returns what is there now.
 inline std::optional<struct ::stat> check_target(const std::string& file) {
-  struct ::stat there {};
+  struct ::stat there{};
   if (file.empty() || file.find('\0') != file.npos) refuse(file, "is no name of a file");
   if (::lstat(file.c_str(), &there) != 0) {
     if (errno != ENOENT) refuse(file, std::string("cannot be written: ") + std::strerror(errno));
@@ -32,8 +32,8 @@ inline std::optional<struct ::stat> check_target(const std::string& file) {
 
 namespace detail {
 
-/// A new file in the folder of `file`, without a name until it is put in place, so that whatever ends the program leaves
-/// nothing. Where the system has no such files, it has a name that nobody can foresee, and loses it at the end.
+/// A new file in the folder of `file`, without a name until it is put in place, so that whatever ends the program
+/// leaves nothing. Where the system has no such files, it has a name that nobody can foresee, and loses it at the end.
 class file_beside {
  public:
   file_beside(const std::string& file, ::mode_t mode) : file_(file) {

@@ -39,22 +39,26 @@ struct xml_element {
   }
 };
 
-/// Whether a name may have a prefix that no xmlns declares. By the standard it may; other readers of a format may not mind.
+/// Whether a name may have a prefix that no xmlns declares. By the standard it may; other readers of a format may not
+/// mind.
 enum class xml_prefixes { declared, any };
 
 /// Reads one document. What is not well-formed, declares a document type (and so entities), or goes beyond the limits
 /// is refused.
 class xml_reader {
  public:
-  xml_reader(const std::string& file, const mesh_limits& limits, xml_prefixes prefixes) : file_(file), limits_(limits), prefixes_(prefixes) {}
+  xml_reader(const std::string& file, const mesh_limits& limits, xml_prefixes prefixes)
+      : file_(file), limits_(limits), prefixes_(prefixes) {}
 
   xml_element read(std::string_view bytes) {
-    const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), &XML_ParserFree);
+    const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr),
+                                                                              &XML_ParserFree);
     if (!parser) throw std::bad_alloc();
     parser_ = parser.get();
     XML_SetUserData(parser_, this);
     XML_SetElementHandler(
-        parser_, [](void* self, const char* name, const char** with) { static_cast<xml_reader*>(self)->begin(name, with); },
+        parser_,
+        [](void* self, const char* name, const char** with) { static_cast<xml_reader*>(self)->begin(name, with); },
         [](void* self, const char*) { static_cast<xml_reader*>(self)->open_.pop_back(); });
     XML_SetCharacterDataHandler(parser_, [](void* self, const char* text, int size) {
       auto& reader = *static_cast<xml_reader*>(self);
@@ -110,7 +114,8 @@ class xml_reader {
   /// Names of other vocabularies have a prefix that is declared; a damaged name has one by chance.
   void check_prefix(const std::string& name, const xml_element& here) const {
     const std::size_t colon = name.find(':');
-    if (prefixes_ == xml_prefixes::any || colon == name.npos || name.starts_with("xml:") || name.starts_with("xmlns:")) return;
+    if (prefixes_ == xml_prefixes::any || colon == name.npos || name.starts_with("xml:") || name.starts_with("xmlns:"))
+      return;
     const std::string declared = "xmlns:" + name.substr(0, colon);
     if (!here.attribute(declared) &&
         std::ranges::none_of(open_, [&](const xml_element* around) { return around->attribute(declared); }))
@@ -146,7 +151,8 @@ struct xml_place {
 
   /// Refuses attributes and children that are not listed, and text between children. Names with a colon are of other
   /// vocabularies, and are not ours to judge.
-  void only(std::initializer_list<std::string_view> attributes, std::initializer_list<std::string_view> children) const {
+  void only(std::initializer_list<std::string_view> attributes,
+            std::initializer_list<std::string_view> children) const {
     const auto known = [](auto& list, const std::string& name) {
       return std::ranges::find(list, name) != list.end() || name.find(':') != name.npos || name == "xmlns";
     };

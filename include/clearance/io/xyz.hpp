@@ -58,8 +58,8 @@ inline std::optional<std::string_view> take_field(std::string_view& line) {
 
 /// Reads a text file with a point on each line: x y z in metres, then anything, in as many words on every line: two
 /// lines that became one are refused. Blanks, tabs, commas and semicolons separate; a word that starts with # starts a
-/// comment, and so does a line with //; "nan" keeps a record's place. Throws std::runtime_error naming file and line, also
-/// for decimal commas and for a coordinate that is empty.
+/// comment, and so does a line with //; "nan" keeps a record's place. Throws std::runtime_error naming file and line,
+/// also for decimal commas and for a coordinate that is empty.
 inline cloud load_xyz(const std::string& file, const read_limits& limits = {}) {
   const std::string bytes = read_bytes(file, limits);
   std::string_view rest = without_mark(bytes);

@@ -17,7 +17,8 @@
 
 namespace clearance::mpi {
 
-/// Throws std::runtime_error where a communicator returns its errors (MPI_ERRORS_RETURN); by default they end the program.
+/// Throws std::runtime_error where a communicator returns its errors (MPI_ERRORS_RETURN); by default they end the
+/// program.
 inline void check(int error, const char* call) {
   if (error == MPI_SUCCESS) return;
   char text[MPI_MAX_ERROR_STRING] = {};
@@ -58,18 +59,21 @@ void reduce(MPI_Comm comm, T* values, std::size_t count) {
 template <class T>
 std::vector<T> gather(MPI_Comm comm, int ranks, const T* values, std::size_t count) {
   std::vector<T> all(std::size_t(ranks) * count);
-  check(MPI_Allgather(values, int(count * sizeof(T)), MPI_BYTE, all.data(), int(count * sizeof(T)), MPI_BYTE, comm), "MPI_Allgather");
+  check(MPI_Allgather(values, int(count * sizeof(T)), MPI_BYTE, all.data(), int(count * sizeof(T)), MPI_BYTE, comm),
+        "MPI_Allgather");
   return all;
 }
 
-/// One question of all ranks. Every rank does the same with it, whatever goes wrong on one: what that one threw ends all.
+/// One question of all ranks. Every rank does the same with it, whatever goes wrong on one: what that one threw ends
+/// all.
 class question {
  public:
   explicit question(MPI_Comm comm) : comm_(comm) {
     int started = 0, ended = 0;
     MPI_Initialized(&started), MPI_Finalized(&ended);
     if (started == 0 || ended != 0 || comm == MPI_COMM_NULL)
-      throw std::invalid_argument("clearance: ranks, but MPI_Init was not called, or MPI_Finalize was, or there is no communicator");
+      throw std::invalid_argument(
+          "clearance: ranks, but MPI_Init was not called, or MPI_Finalize was, or there is no communicator");
     check(MPI_Comm_rank(comm, &rank_), "MPI_Comm_rank");
     check(MPI_Comm_size(comm, &ranks_), "MPI_Comm_size");
   }
@@ -86,14 +90,17 @@ class question {
     }
   }
 
-  /// Throws on all ranks if one has thrown, or asks about another number of parts or clouds, or other poses. Then `first` is known.
+  /// Throws on all ranks if one has thrown, or asks about another number of parts or clouds, or other poses. Then
+  /// `first` is known.
   template <class Clouds>
   void agree(std::size_t parts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
     said mine{parts, 0, 0, 0, 0};
     std::vector<std::uint64_t> sizes;
     attempt([&] {
       for (const Eigen::Isometry3d& pose : poses) mine.add(pose);
-      for_each_cloud(clouds, [&](const auto& cloud, const Eigen::Isometry3d& pose) { sizes.push_back(cloud.size()), mine.add(pose); });
+      for_each_cloud(clouds, [&](const auto& cloud, const Eigen::Isometry3d& pose) {
+        sizes.push_back(cloud.size()), mine.add(pose);
+      });
       mine.clouds = sizes.size(), mine.points = sizes.empty() ? 0 : sizes[0];
     });
     mine.thrown = thrown_ ? 1 : 0;
@@ -102,12 +109,14 @@ class question {
       if (all[std::size_t(r)].thrown != 0) end_all(r);
     for (int r = 1; r < ranks_; ++r) {
       const auto differs = [&](const char* what, std::uint64_t its, std::uint64_t others) {
-        return "clearance: rank " + std::to_string(r) + " asks about " + std::to_string(its) + " " + what + ", rank 0 about " + std::to_string(others);
+        return "clearance: rank " + std::to_string(r) + " asks about " + std::to_string(its) + " " + what +
+               ", rank 0 about " + std::to_string(others);
       };
       const said& its = all[std::size_t(r)];
       if (its.parts != all[0].parts) throw std::invalid_argument(differs("parts", its.parts, all[0].parts));
       if (its.clouds != all[0].clouds) throw std::invalid_argument(differs("clouds", its.clouds, all[0].clouds));
-      if (its.poses != all[0].poses) throw std::invalid_argument("clearance: rank " + std::to_string(r) + " asks about other poses than rank 0");
+      if (its.poses != all[0].poses)
+        throw std::invalid_argument("clearance: rank " + std::to_string(r) + " asks about other poses than rank 0");
     }
     std::vector<std::uint64_t> table;
     for (const said& its : all) table.push_back(its.points);
@@ -139,10 +148,12 @@ class question {
   struct said {
     std::uint64_t parts, clouds, poses, points, thrown;
 
-    /// Each step is one to one, and spreads every bit: half a turn, which flips the signs of some numbers, must not hide itself.
+    /// Each step is one to one, and spreads every bit: half a turn, which flips the signs of some numbers, must not
+    /// hide itself.
     void add(const Eigen::Isometry3d& pose) {
       for (int k = 0; k < 16; ++k) {
-        poses = (poses ^ std::bit_cast<std::uint64_t>(pose.matrix().data()[k] + 0.0)) * 0xbf58476d1ce4e5b9;  // -0 is 0; as splitmix64
+        poses = (poses ^ std::bit_cast<std::uint64_t>(pose.matrix().data()[k] + 0.0)) *
+                0xbf58476d1ce4e5b9;  // -0 is 0; as splitmix64
         poses = (poses ^ poses >> 30) * 0x94d049bb133111eb;
         poses ^= poses >> 31;
       }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far is a robot from what the sensors of many machines see? Each rank of an MPI program has a piece of every cloud. Needs an MPI
-// library; nothing else includes this.
+// How far is a robot from what the sensors of many machines see? Each rank of an MPI program has a piece of every
+// cloud. Needs an MPI library; nothing else includes this.
 
 #include <clearance/min_distance_query.hpp>
 #include <clearance/mpi/ranks.hpp>
@@ -9,10 +9,11 @@
 
 namespace clearance::mpi {
 
-/// The backend of min_distance, min_distance_per_part and min_distance_query on all ranks of `comm` at once: each asks `on` (host{},
-/// device{}, devices{...}) about its own pieces of the clouds, and all get the one answer about them together, which is that of one backend
-/// to the bit. Points are numbered through the ranks in their order; a rank may have none. All ranks ask at the same time, about the same
-/// poses, with the robot where its own `on` wants it. What one rank throws ends the call on all.
+/// The backend of min_distance, min_distance_per_part and min_distance_query on all ranks of `comm` at once: each asks
+/// `on` (host{}, device{}, devices{...}) about its own pieces of the clouds, and all get the one answer about them
+/// together, which is that of one backend to the bit. Points are numbered through the ranks in their order; a rank may
+/// have none. All ranks ask at the same time, about the same poses, with the robot where its own `on` wants it. What
+/// one rank throws ends the call on all.
 template <class On>
 struct shard {
   MPI_Comm comm;
@@ -31,17 +32,20 @@ template <class On, class PartView>
 class min_distance_query<mpi::shard<On>, PartView> {
  public:
   template <robot Robot>
-  min_distance_query(const mpi::shard<On>& on, const Robot& robot) : comm_(on.comm), parts_(view_of(robot).facts.size()), query_(on.on, robot) {}
+  min_distance_query(const mpi::shard<On>& on, const Robot& robot)
+      : comm_(on.comm), parts_(view_of(robot).facts.size()), query_(on.on, robot) {}
 
-  /// As min_distance. Throws std::invalid_argument if ranks do not ask the same, and what its own part of it throws; the others then throw
-  /// std::runtime_error with that sentence.
+  /// As min_distance. Throws std::invalid_argument if ranks do not ask the same, and what its own part of it throws;
+  /// the others then throw std::runtime_error with that sentence.
   template <class... Clouds>
   min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds&... clouds) {
     return ask(poses, as_clouds(clouds...), {}, [&](const auto& mine) { return query_(poses, mine); });
   }
   template <class Clouds>
-  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<part_minimum> minima) {
-    // `query_` refuses minima of another number than parts, within `attempt`: a rank that threw here would leave the others waiting.
+  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                               std::span<part_minimum> minima) {
+    // `query_` refuses minima of another number than parts, within `attempt`: a rank that threw here would leave the
+    // others waiting.
     return ask(poses, clouds, minima, [&](const auto& mine) { return query_.per_part(poses, mine, minima); });
   }
 
@@ -49,7 +53,8 @@ class min_distance_query<mpi::shard<On>, PartView> {
 
  private:
   template <class Clouds, class Local>
-  min_distance_result ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<part_minimum> minima, const Local& local) {
+  min_distance_result ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                          std::span<part_minimum> minima, const Local& local) {
     static_assert(explain_clouds<Clouds>());
     mpi::question all(comm_);
     all.agree(parts_, poses, clouds);
@@ -71,14 +76,16 @@ struct search_on<mpi::shard<On>> {
   static host backend_of(const mpi::shard<On>&) { return {}; }
 
   template <bool PerPart, class View, class Clouds, class Here>
-  static void once(const mpi::shard<On>& on, const View& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
-                   part_minimum* minima, const Here&) {
-    static_assert(!std::is_same_v<Here, as_it_is>, "ranks have no one stream to enqueue in: their answer is waited for");
+  static void once(const mpi::shard<On>& on, const View& robot, std::span<const Eigen::Isometry3d> poses,
+                   const Clouds& clouds, min_distance_result* result, part_minimum* minima, const Here&) {
+    static_assert(!std::is_same_v<Here, as_it_is>,
+                  "ranks have no one stream to enqueue in: their answer is waited for");
     mpi::question all(on.comm);
     all.agree(robot.size(), poses, clouds);
     min_distance_result mine;
     std::vector<part_minimum> each(PerPart ? robot.size() : 0);
-    all.attempt([&] { mine = detail::least_distance<PerPart>(on.on, robot, poses, clouds, PerPart ? &each : nullptr); });
+    all.attempt(
+        [&] { mine = detail::least_distance<PerPart>(on.on, robot, poses, clouds, PerPart ? &each : nullptr); });
     *result = all.answer(mine, each, scan::has_interior<typename View::part_type>);
     if constexpr (PerPart) std::ranges::copy(each, minima);
   }

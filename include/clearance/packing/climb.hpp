@@ -5,8 +5,8 @@
 
 namespace clearance {
 
-/// The room around a place, from the few spheres and pieces of the surface that are near: exact while it is below `reach`
-/// minus the way from the place, and never too large. Where they are too many, or are not known, all are asked.
+/// The room around a place, from the few spheres and pieces of the surface that are near: exact while it is below
+/// `reach` minus the way from the place, and never too large. Where they are too many, or are not known, all are asked.
 template <solid_view V, class Lanes>
 class local_list {
  public:
@@ -33,7 +33,8 @@ class local_list {
     if (count_ > capacity) return all_.room(p, within, enough);
     const double known = reach_ - (p - place_).norm();
     if (known < within) within = known;
-    for (std::uint32_t k = pieces_; k < count_ && within > enough; ++k) within = all_.spheres[items_[k]].nearer(p, within);
+    for (std::uint32_t k = pieces_; k < count_ && within > enough; ++k)
+      within = all_.spheres[items_[k]].nearer(p, within);
     if constexpr (knows_pieces) {
       for (std::uint32_t k = 0; k < pieces_ && within > enough; ++k) within = all_.solid.nearer(items_[k], p, within);
     } else {
@@ -61,8 +62,8 @@ class local_list {
 /// Moves an inside sphere, which no other may touch, to a local maximum of the room, not farther than `farthest`. Each
 /// step stays in the ball that is known to be inside, so none can leave the solid through a thin wall.
 template <solid_view V, class Lanes>
-CLEARANCE_HD solid_sphere climb(const room_view<V>& in, std::uint32_t* memory, const solid_sphere& from, double farthest,
-                                Lanes lanes) {
+CLEARANCE_HD solid_sphere climb(const room_view<V>& in, std::uint32_t* memory, const solid_sphere& from,
+                                double farthest, Lanes lanes) {
   local_list<V, Lanes> around(in, memory, lanes);
   return compass_search(
       from, 1e-3, lanes, [&](const solid_sphere& now) { around.prepare(now); },

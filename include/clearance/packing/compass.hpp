@@ -39,8 +39,8 @@ CLEARANCE_HD inline vec3d compass(int k) {
 }
 
 /// Compass search for a place worth more. `worth(p, most, least)` says what p is worth, which is at most `most`, or
-/// anything not above `least`; `prepare(now)` is called before each step. Ends: with each step what the place is worth rises by a
-/// 5e4th (and no place is worth more than the solid is large), or the step becomes half as long.
+/// anything not above `least`; `prepare(now)` is called before each step. Ends: with each step what the place is worth
+/// rises by a 5e4th (and no place is worth more than the solid is large), or the step becomes half as long.
 CLEARANCE_CALLS_ANYTHING
 template <class Lanes, class G, class F>
 CLEARANCE_HD solid_sphere compass_search(const solid_sphere& from, double precision, Lanes lanes, G prepare, F worth) {

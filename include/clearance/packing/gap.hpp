@@ -91,8 +91,8 @@ struct is_above {
 
 /// The largest distance from any point of the solid to the nearest sphere, 0 if they cover it: a proven upper bound, by
 /// branch and bound in double rounded up, at most `tolerance` (relative) or 10 um or 1e-5 of the solid above the truth;
-/// more only where the search would take too long. All cells of one size at once: of the gap met so far they all know the
-/// same, so the result does not depend on their order.
+/// more only where the search would take too long. All cells of one size at once: of the gap met so far they all know
+/// the same, so the result does not depend on their order.
 template <backend B, class Steps, solid S, solid_view V>
 gap_report measure_gap(const B& on, Steps& steps, const S& s, const room_view<V>& in, double tolerance) {
   gap_report report;
@@ -131,13 +131,15 @@ gap_report measure_gap(const B& on, Steps& steps, const S& s, const room_view<V>
   double upper = 0;
   while (n > 0) {  // cells become half as large, until 4 * reach <= slack, which is at least `finest`
     const double slack = std::max(least * tolerance, finest);
-    steps.each(n, detail::gap_visit<V>{in, cells.data(), met.reserve(n), open.reserve(n), closed.reserve(n), least, least + slack, slack});
+    steps.each(n, detail::gap_visit<V>{in, cells.data(), met.reserve(n), open.reserve(n), closed.reserve(n), least,
+                                       least + slack, slack});
     least = std::max(least, steps.largest(n, detail::value_of{met.data()}));
     upper = std::max(upper, steps.largest(n, detail::value_of{closed.data()}));
     const double enough = std::max(upper, least + std::max(least * tolerance, finest));
     upper = std::max(upper, steps.largest(n, detail::if_not_above{open.data(), enough}));
     const std::size_t split = steps.select(n, detail::is_above{open.data(), enough}, some.reserve(n));
-    if (8 * split > Steps::cells) {  // the gap of a ball in a ball, say, is the same all over, which no search can narrow down
+    if (8 * split >
+        Steps::cells) {  // the gap of a ball in a ball, say, is the same all over, which no search can narrow down
       upper = std::max(upper, steps.largest(n, detail::value_of{open.data()}));
       break;
     }

@@ -37,8 +37,8 @@ struct pack_limits {
   pack_stop exhausted() const { return smallest > least_room ? pack_stop::smallest_radius : pack_stop::no_room; }
 };
 
-/// Asked between spheres: reports progress, and says why to stop, if there is a reason. The certified gap takes long, so it
-/// is only asked for when there are a quarter more spheres than the last time.
+/// Asked between spheres: reports progress, and says why to stop, if there is a reason. The certified gap takes long,
+/// so it is only asked for when there are a quarter more spheres than the last time.
 class stop_check {
  public:
   explicit stop_check(const pack_options& options) : options_(options) {}

@@ -8,8 +8,8 @@
 namespace clearance {
 
 /// Packs spheres into a solid on a GPU: a mesh solid, or another with `on(device)`. As on the host: spheres are proven
-/// inside and apart in double, the gap is certified, and the same options and seed give the same bits on every run. Throws
-/// what `pack` on the host throws, and cuda_error.
+/// inside and apart in double, the gap is certified, and the same options and seed give the same bits on every run.
+/// Throws what `pack` on the host throws, and cuda_error.
 template <solid_for<device> S>
 packing pack(const device& on, const S& s, const pack_options& options = {}) {
   const device_guard guard(on.id);
@@ -34,7 +34,8 @@ std::vector<packing> pack(const device& on, const R& solids, const pack_options&
 
 template <solid S>
 packing pack(const device&, const S&, const pack_options& = {}) {
-  static_assert(sizeof(S) == 0, "on a device only solids with on(device) can be packed; pack others on the host: pack(solid, options)");
+  static_assert(sizeof(S) == 0,
+                "on a device only solids with on(device) can be packed; pack others on the host: pack(solid, options)");
   return {};
 }
 

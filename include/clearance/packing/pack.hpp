@@ -23,7 +23,9 @@ packing pack(const S& s, const pack_options& options = {}) {
 }
 
 /// Closes the mesh first; throws std::invalid_argument if it has no inside.
-inline packing pack(const triangle_mesh& mesh, const pack_options& options = {}) { return pack(mesh_solid(mesh), options); }
+inline packing pack(const triangle_mesh& mesh, const pack_options& options = {}) {
+  return pack(mesh_solid(mesh), options);
+}
 
 /// A range of solids, or of meshes that solids are made of.
 template <class R>
@@ -45,9 +47,9 @@ std::vector<packing> pack_each(const R& solids, const pack_options& options, con
   });
 }
 
-/// Packs several, such as the links of a robot, beside one another: the same packings as one by one, sooner. `seconds` is
-/// for each; `progress` counts all spheres. Each element is asked for once, from any thread. Throws solid_error for the
-/// first that is wrong.
+/// Packs several, such as the links of a robot, beside one another: the same packings as one by one, sooner. `seconds`
+/// is for each; `progress` counts all spheres. Each element is asked for once, from any thread. Throws solid_error for
+/// the first that is wrong.
 template <class R>
   requires packable_range<const R>
 std::vector<packing> pack(const R& solids, const pack_options& options = {}) {

@@ -10,17 +10,17 @@
 
 namespace clearance {
 
-/// Fills a solid with spheres, the largest first. The room at a point is its distance to the surface and to the spheres so
-/// far; it changes by no more than the way between two points, so a cube's room is at most that of its middle plus half
-/// its diagonal (branch and bound on ProtoSphere's field, Weller & Zachmann 2010). In rounds, for machines that do much at
-/// once: of all cubes with nearly the largest bound those that are small against their room are climbed from, of the
-/// spheres found those are taken that conflict with none larger, and the other cubes are divided.
+/// Fills a solid with spheres, the largest first. The room at a point is its distance to the surface and to the spheres
+/// so far; it changes by no more than the way between two points, so a cube's room is at most that of its middle plus
+/// half its diagonal (branch and bound on ProtoSphere's field, Weller & Zachmann 2010). In rounds, for machines that do
+/// much at once: of all cubes with nearly the largest bound those that are small against their room are climbed from,
+/// of the spheres found those are taken that conflict with none larger, and the other cubes are divided.
 ///
 /// `Steps` are what a backend does not offer, and how much it does at once. each(n, f), where one f takes long;
-/// climbers(n, f), which calls f(i, lanes); select(n, f, out), numbers of those for which f holds, in order; largest(n, f),
-/// at least 0; next(keys, n, most, out, least), numbers of at most so many cells whose keys are positive and at least
-/// `least`, nearly the largest, none where there are none; forget(), after a change of keys of other cells than these; and
-/// `cells`, so many before they pile up.
+/// climbers(n, f), which calls f(i, lanes); select(n, f, out), numbers of those for which f holds, in order; largest(n,
+/// f), at least 0; next(keys, n, most, out, least), numbers of at most so many cells whose keys are positive and at
+/// least `least`, nearly the largest, none where there are none; forget(), after a change of keys of other cells than
+/// these; and `cells`, so many before they pile up.
 template <backend B, class Steps, solid_for<B> S>
 class packer {
  public:
@@ -40,7 +40,8 @@ class packer {
     const gap_report gap = certify();
     out.gap = gap.certified, out.gap_mean = gap.mean, out.gap_p95 = gap.p95;
     for (const solid_sphere& s : spheres_.here())
-      out.spheres.push_back({{real(s.center.x), real(s.center.y), real(s.center.z)}, real(s.radius)});  // floats: see `fit`
+      out.spheres.push_back(
+          {{real(s.center.x), real(s.center.y), real(s.center.z)}, real(s.radius)});  // floats: see `fit`
     if constexpr (requires { solid_.tolerance(); }) out.tolerance = solid_.tolerance();
     double volume = double(infinity);
     if constexpr (requires { solid_.volume(); }) volume = solid_.volume();
@@ -62,10 +63,10 @@ class packer {
     return measure_gap(on_, steps_, solid_, field().in, options_.gap_tolerance);
   }
 
-  /// Ends, because each round does one of these to every cell whose turn it is, and none for ever: it is brought up to date
-  /// (once a cell and sphere), or divided or given up (half as large, down to `finest`), or offers a sphere; and of those the
-  /// largest is taken (at most `count` times). It does not take for ever either: of a plate that is thinner than any sphere
-  /// looked for there are 1e12 cells, so the search also ends where so many find no sphere.
+  /// Ends, because each round does one of these to every cell whose turn it is, and none for ever: it is brought up to
+  /// date (once a cell and sphere), or divided or given up (half as large, down to `finest`), or offers a sphere; and
+  /// of those the largest is taken (at most `count` times). It does not take for ever either: of a plate that is
+  /// thinner than any sphere looked for there are 1e12 cells, so the search also ends where so many find no sphere.
   pack_stop fill() {
     std::mt19937_64 random(options_.seed);
     Eigen::Vector3d shift;
@@ -76,13 +77,15 @@ class packer {
     std::size_t tidy_at = 1u << 16;
     stop_check check(options_);
     for (;;) {
-      if (const auto why = check(spheres_.size(), [this] { return seconds(); }, [this] { return certify().certified; })) return *why;
+      if (const auto why = check(spheres_.size(), [this] { return seconds(); }, [this] { return certify().certified; }))
+        return *why;
       if (alive_ > std::min(tidy_at, pile_)) {
         tidy(), tidy_at = std::max(tidy_at, alive_ + alive_ / 2);
         while (alive_ > pile_ - pile_ / 8) trust_less(), pile_ += pile_ / 2;  // less would soon be as many again
       }
       if (alive_ > most_cells || divided_ > most_divided) return pack_stop::search_limit;
-      // All of a thin plate's cells have nearly one key. Before they pile up bounds shall be trusted less, and then some go deep.
+      // All of a thin plate's cells have nearly one key. Before they pile up bounds shall be trusted less, and then
+      // some go deep.
       const std::size_t room = (pile_ - alive_) / 8 + most_climbers;
       double least;
       const std::size_t some = steps_.next(keys_.data(), alive_, room, some_.reserve(alive_), least);
@@ -95,7 +98,8 @@ class packer {
     spheres_.plant(128 + spheres_.size() / 16);
     const rounds::field<view_type> f = field();
     const std::size_t before = spheres_.size();
-    steps_.each(some, rounds::refresh<view_type>{f, some_.data(), cells_.data(), keys_.data(), least, deeds_.reserve(some)});
+    steps_.each(some,
+                rounds::refresh<view_type>{f, some_.data(), cells_.data(), keys_.data(), least, deeds_.reserve(some)});
     const rounds::is_deed climbing{deeds_.data(), rounds::deed::climb}, dividing{deeds_.data(), rounds::deed::divide};
     const std::size_t climbers = std::min(most_climbers, steps_.select(some, climbing, these_.reserve(some)));
     if (climbers != 0) {
@@ -107,7 +111,8 @@ class packer {
     }
     const std::size_t divided = steps_.select(some, dividing, these_.data());
     cells_.reserve(alive_ + 8 * divided, alive_), keys_.reserve(alive_ + 8 * divided, alive_);
-    steps_.each(8 * divided, rounds::divide<view_type>{field(), some_.data(), these_.data(), cells_.data(), keys_.data(), alive_});
+    steps_.each(8 * divided,
+                rounds::divide<view_type>{field(), some_.data(), these_.data(), cells_.data(), keys_.data(), alive_});
     alive_ += 8 * divided;
     divided_ = spheres_.size() > before ? 0 : divided_ + divided;
   }
@@ -115,7 +120,8 @@ class packer {
   void take(std::size_t climbers) {
     steps_.each(climbers, rounds::judge{offers_.data(), climbers, limits_.scale, verdicts_.reserve(climbers)});
     std::size_t taken = steps_.select(climbers, rounds::is_taken{verdicts_.data()}, taken_.reserve(climbers));
-    if (const std::size_t wanted = options_.count - spheres_.size(); taken > wanted) {  // the last round: whose turn came first
+    if (const std::size_t wanted = options_.count - spheres_.size();
+        taken > wanted) {  // the last round: whose turn came first
       const auto offers = on_.copy_out(offers_.data(), climbers);
       auto which = on_.copy_out(taken_.data(), taken);
       std::stable_sort(which.begin(), which.end(), [&](auto i, auto j) { return offers[i].key > offers[j].key; });

@@ -9,17 +9,17 @@
 namespace clearance {
 
 struct pack_options {
-  std::size_t count = 2048;      ///< At most so many spheres.
-  double smallest_radius = 0;    ///< Metres; never below 1e-6 of the solid's diagonal, which is also the default.
-  double gap_target = 0;         ///< Metres: stop once the certified gap is no larger. 0: do not ask.
-  double seconds = 0;            ///< Stop after about so long. 0: take the time it takes. The only thing not repeatable.
-  std::uint64_t seed = 0;        ///< Another seed, another of many equally good packings.
-  unsigned threads = 0;          ///< 0: as many as TBB likes. The result does not depend on it.
+  std::size_t count = 2048;    ///< At most so many spheres.
+  double smallest_radius = 0;  ///< Metres; never below 1e-6 of the solid's diagonal, which is also the default.
+  double gap_target = 0;       ///< Metres: stop once the certified gap is no larger. 0: do not ask.
+  double seconds = 0;          ///< Stop after about so long. 0: take the time it takes. The only thing not repeatable.
+  std::uint64_t seed = 0;      ///< Another seed, another of many equally good packings.
+  unsigned threads = 0;        ///< 0: as many as TBB likes. The result does not depend on it.
   /// A place farther from the spheres than so many times the radius that is next gets a smaller sphere before its turn,
   /// so that thin walls and sharp corners do not decide the gap. Infinity: strictly the largest first.
   double gap_per_radius = 1.6;
-  bool allow_overlap = false;    ///< Spheres may overlap: fewer do for the same gap.
-  double gap_tolerance = 0.01;   ///< The certified gap is at most this part above the true one (or 10 um, if more).
+  bool allow_overlap = false;   ///< Spheres may overlap: fewer do for the same gap.
+  double gap_tolerance = 0.01;  ///< The certified gap is at most this part above the true one (or 10 um, if more).
   /// Now and then, from the calling thread; when several solids are packed at once, from any, but one call at a time.
   std::function<void(std::size_t done, std::size_t of)> progress = {};
   std::function<bool()> cancelled = {};  ///< Asked as often, in the same way; true: stop with what there is.
@@ -32,11 +32,11 @@ struct packing {
   std::vector<inner_sphere> spheres;  ///< Largest first; inside the solid and apart from one another, in double.
   /// Certified: no point of the solid, surface and interior, is farther from the spheres than this.
   double gap = 0;
-  double tolerance = 0;               ///< From the solid's surface, within which it is not certain what is inside.
-  double gap_mean = 0, gap_p95 = 0;   ///< Mean and 95th percentile over the surface, from samples. 0 if it has none.
-  double fill = 0;                    ///< The spheres' part of the solid's volume; with overlaps counted as often as they are.
+  double tolerance = 0;              ///< From the solid's surface, within which it is not certain what is inside.
+  double gap_mean = 0, gap_p95 = 0;  ///< Mean and 95th percentile over the surface, from samples. 0 if it has none.
+  double fill = 0;  ///< The spheres' part of the solid's volume; with overlaps counted as often as they are.
   double radius_min = 0, radius_max = 0;
-  double room = 0;                    ///< Certified: no further sphere that fits is larger than this.
+  double room = 0;  ///< Certified: no further sphere that fits is larger than this.
   pack_stop stopped_by = pack_stop::count;
   double seconds = 0;
 
@@ -47,13 +47,20 @@ struct packing {
 inline std::string packing::reason() const {
   const auto mm = [](double metres) { return std::to_string(metres * 1000) + " mm"; };
   switch (stopped_by) {
-    case pack_stop::count: return "the number of spheres was reached";
-    case pack_stop::no_room: return "no further sphere larger than 1e-6 of the solid fits";
-    case pack_stop::smallest_radius: return "no further sphere as large as the smallest radius fits";
-    case pack_stop::gap: return "the gap target was reached";
-    case pack_stop::time: return "the time was up";
-    case pack_stop::cancelled: return "it was cancelled";
-    case pack_stop::search_limit: return "the search for room grew too large; a further sphere is smaller than " + mm(room);
+    case pack_stop::count:
+      return "the number of spheres was reached";
+    case pack_stop::no_room:
+      return "no further sphere larger than 1e-6 of the solid fits";
+    case pack_stop::smallest_radius:
+      return "no further sphere as large as the smallest radius fits";
+    case pack_stop::gap:
+      return "the gap target was reached";
+    case pack_stop::time:
+      return "the time was up";
+    case pack_stop::cancelled:
+      return "it was cancelled";
+    case pack_stop::search_limit:
+      return "the search for room grew too large; a further sphere is smaller than " + mm(room);
   }
   return {};
 }

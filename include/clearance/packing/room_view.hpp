@@ -22,8 +22,7 @@ struct room_view {
     return within;
   }
   /// The same for all; or, sooner, one that is no larger than `enough`.
-  CLEARANCE_HD double gap(const vec3d& p, double within,
-                          double enough = -double(infinity)) const {
+  CLEARANCE_HD double gap(const vec3d& p, double within, double enough = -double(infinity)) const {
     within = tree_gap(p, within, enough);
     return within <= enough ? within : gap_from(tree.items, p, within);
   }

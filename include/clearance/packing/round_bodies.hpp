@@ -36,7 +36,9 @@ struct field {
   double scale;
 
   /// 0: nothing fits. Of a cell that is given up the key is its bound, negative.
-  CLEARANCE_HD double key(const cell& c) const { return c.bound() >= rules.smallest ? rules.key(c.depth, c.reach(), c.gap) : 0; }
+  CLEARANCE_HD double key(const cell& c) const {
+    return c.bound() >= rules.smallest ? rules.key(c.depth, c.reach(), c.gap) : 0;
+  }
 };
 
 template <solid_view V>
@@ -118,7 +120,8 @@ struct climb_cells {
     const cell& c = cells[some[these[i]]];
     // Taken before its turn: stay here, there is more room elsewhere.
     const double key = keys[some[these[i]]], farthest = key > c.bound() ? c.room() / 2 : double(infinity);
-    solid_sphere found = climb(f.in, memory + i * local_list<V, Lanes>::capacity, {c.middle, c.room()}, farthest, lanes);
+    solid_sphere found =
+        climb(f.in, memory + i * local_list<V, Lanes>::capacity, {c.middle, c.room()}, farthest, lanes);
     const solid_sphere grown = fit(f, overlap ? grow(f.in.solid, found, lanes) : found, overlap);
     if (lanes.rank() != 0) return;
     const double least = 0.98 * found.radius;

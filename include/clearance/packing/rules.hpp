@@ -15,7 +15,8 @@ struct pack_rules {
 
   static constexpr double promotion = 8;  ///< A cell goes before ones with at most so much more room.
 
-  pack_rules(double per_radius, double smallest) : gap_per_radius(per_radius), promotes(per_radius < double(infinity)), smallest(smallest) {}
+  pack_rules(double per_radius, double smallest)
+      : gap_per_radius(per_radius), promotes(per_radius < double(infinity)), smallest(smallest) {}
 
   /// What is taken first: the largest bound; but where the spheres are much farther than it is large, as in thin walls
   /// and sharp corners, a cell may be taken before its turn.
@@ -27,8 +28,8 @@ struct pack_rules {
     const double last = 1e-3 * smallest;
     return key > last ? key : last / (2 - key / last);
   }
-  /// Is a cell too small to be divided? So no cell is divided for ever: from one of these no sphere can be climbed to that
-  /// floats can tell, or the largest that is there is a 2^-30th below the smallest.
+  /// Is a cell too small to be divided? So no cell is divided for ever: from one of these no sphere can be climbed to
+  /// that floats can tell, or the largest that is there is a 2^-30th below the smallest.
   CLEARANCE_HD bool finest(double reach) const { return reach < 0x1p-30 * smallest; }
   /// Is a cell so small against its room that it is climbed from? Else it is divided.
   CLEARANCE_HD bool small(double room, double reach) const {

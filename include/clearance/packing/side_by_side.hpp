@@ -26,7 +26,8 @@ struct solid_error : std::invalid_argument {
 template <class F>
 void for_each_packing(std::size_t n, unsigned threads, const F& f) {
   const auto all = [&] {
-    // A context of their own: were the caller's tasks cancelled, loops within would do nothing, and a packing never end.
+    // A context of their own: were the caller's tasks cancelled, loops within would do nothing, and a packing never
+    // end.
     tbb::task_group_context own(tbb::task_group_context::isolated);
     // A thread that waits within a packing must not begin another: the first would stand still until that is done.
     const auto one = [&](std::size_t i) { tbb::this_task_arena::isolate([&] { f(i); }); };
@@ -37,14 +38,14 @@ void for_each_packing(std::size_t n, unsigned threads, const F& f) {
   arena.execute(all);
 }
 
-/// One set of options for several packings at once: its functions are called by one thread at a time, progress is that of
-/// all together, and all are cancelled as one.
+/// One set of options for several packings at once: its functions are called by one thread at a time, progress is that
+/// of all together, and all are cancelled as one.
 class shared_pack_options {
  public:
   shared_pack_options(const pack_options& options, std::size_t packings)
       : options_(options),
         of_(options.count > std::numeric_limits<std::size_t>::max() / packings ? std::numeric_limits<std::size_t>::max()
-                                                                              : options.count * packings),
+                                                                               : options.count * packings),
         done_(packings, 0) {}
 
   /// For packing i. It uses the threads of where it runs.

@@ -18,7 +18,10 @@ class spheres_there {
 
   template <solid_view V>
   room_view<V> room_in(const V& solid) {
-    return {solid, there_.data(), std::uint32_t(size()), {nodes_.data(), order_.data(), tree_.view().items, tree_.view().root}};
+    return {solid,
+            there_.data(),
+            std::uint32_t(size()),
+            {nodes_.data(), order_.data(), tree_.view().items, tree_.view().root}};
   }
 
   /// Where `n` more may be written there; `add` makes them count.

@@ -14,24 +14,34 @@ struct intrinsics {
 
 /// A depth image, deprojected while it is read: `std::uint16_t` pixels times `scale`, or `float` metres (REP 118).
 ///
-/// 0 is missing, 65535 in 16 bits saturated, NaN and Inf not finite, but -Inf too close; `nearest` and `farthest` bound z, in metres.
+/// 0 is missing, 65535 in 16 bits saturated, NaN and Inf not finite, but -Inf too close; `nearest` and `farthest` bound
+/// z, in metres.
 template <class Pixel>
 struct depth_image {
-  static_assert(std::is_same_v<Pixel, std::uint16_t> || std::is_same_v<Pixel, float>, "depth pixels are 16-bit integers or floats");
+  static_assert(std::is_same_v<Pixel, std::uint16_t> || std::is_same_v<Pixel, float>,
+                "depth pixels are 16-bit integers or floats");
 
   const Pixel* pixels = nullptr;
   std::uint32_t width = 0, height = 0;
   std::uint32_t row = 0;  ///< Pixels from one row to the next.
   real scale = 1;         ///< Metres a unit.
   real nearest = 0, farthest = infinity;
-  bool minus_infinity_is_near = true;  ///< A float pixel of -inf is `too_close` (REP 117); else it is not finite, and no more.
+  bool minus_infinity_is_near =
+      true;  ///< A float pixel of -inf is `too_close` (REP 117); else it is not finite, and no more.
   real inverse_fx = 1, inverse_fy = 1, cx = 0, cy = 0;
 
   depth_image() = default;
   depth_image(const Pixel* pixels, std::uint32_t width, std::uint32_t height, intrinsics camera,
               double scale = std::is_same_v<Pixel, float> ? 1.0 : 0.001)
-      : pixels(pixels), width(width), height(height), row(width), scale(real(scale)), inverse_fx(real(1 / camera.fx)),
-        inverse_fy(real(1 / camera.fy)), cx(real(camera.cx)), cy(real(camera.cy)) {}
+      : pixels(pixels),
+        width(width),
+        height(height),
+        row(width),
+        scale(real(scale)),
+        inverse_fx(real(1 / camera.fx)),
+        inverse_fy(real(1 / camera.fy)),
+        cx(real(camera.cx)),
+        cy(real(camera.cy)) {}
 
   CLEARANCE_HD std::size_t size() const { return std::size_t(width) * height; }
   std::uint32_t columns() const { return width; }
@@ -65,16 +75,18 @@ struct depth_image {
   /// The point that pixel (u, v) shows if it holds `d`.
   CLEARANCE_HD sample deproject(Pixel d, std::uint32_t u, std::uint32_t v) const {
     const real z = product(real(d), scale);
-    return depth_sample(d, {product((real(u) - cx) * inverse_fx, z), product((real(v) - cy) * inverse_fy, z), z}, nearest, farthest, minus_infinity_is_near);
+    return depth_sample(d, {product((real(u) - cx) * inverse_fx, z), product((real(v) - cy) * inverse_fy, z), z},
+                        nearest, farthest, minus_infinity_is_near);
   }
 
-  /// See `surveyed_source`. Pixels are compared, and only the corners of what they span are deprojected: rounded arithmetic is
-  /// monotonic too.
+  /// See `surveyed_source`. Pixels are compared, and only the corners of what they span are deprojected: rounded
+  /// arithmetic is monotonic too.
   bool survey(std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) const {
     const std::size_t end = begin + surveyed_points - 1;
     const std::uint32_t v[2] = {std::uint32_t(begin / width), std::uint32_t(end / width)};
     if (v[0] != v[1] && row != width) return false;
-    const std::uint32_t u[2] = {v[0] == v[1] ? std::uint32_t(begin % width) : 0, v[0] == v[1] ? std::uint32_t(end % width) : width - 1};
+    const std::uint32_t u[2] = {v[0] == v[1] ? std::uint32_t(begin % width) : 0,
+                                v[0] == v[1] ? std::uint32_t(end % width) : width - 1};
     const detail::depths<Pixel> seen(pixels + std::size_t(v[0]) * row + begin % width);
     if (seen.strange) return false;
     box = {};
@@ -97,7 +109,8 @@ struct depth_image {
   position_error rounding() const {
     const auto square = [](double a) { return a * a; };
     const auto widest = [](double c, double n) { return std::fmax(std::fabs(c), std::fabs(n - 1 - c)); };
-    const double slant = square(widest(cx, width) * inverse_fx) + square(widest(cy, height) * inverse_fy);  // of the outermost ray
+    const double slant =
+        square(widest(cx, width) * inverse_fx) + square(widest(cy, height) * inverse_fy);  // of the outermost ray
     const double centre = std::sqrt(square(double(cx) * inverse_fx) + square(double(cy) * inverse_fy));
     return {0, 0x1.001p-24 * (std::sqrt((36 * slant + 4) / (slant + 1)) + centre)};
   }
@@ -116,6 +129,7 @@ struct depth_image {
   }
 };
 
-static_assert(fetched_source<depth_image<std::uint16_t>> && image_source<depth_image<float>> && surveyed_source<depth_image<float>>);
+static_assert(fetched_source<depth_image<std::uint16_t>> && image_source<depth_image<float>> &&
+              surveyed_source<depth_image<float>>);
 
 }  // namespace clearance

@@ -10,10 +10,13 @@
 
 namespace clearance {
 
-/// A cloud that comes in ranges of points. Optional: `static constexpr bool in_place = true`, if nothing has to be brought.
+/// A cloud that comes in ranges of points. Optional: `static constexpr bool in_place = true`, if nothing has to be
+/// brought.
 ///
-/// Law: `load(begin, end, room)` gives points `begin` to `end - 1`, from memory of its own or from the `room(end - begin)` bytes that it
-///      is given (aligned to 64), or throws why it cannot. It is called by one thread at a time, while others read what was loaded before.
+/// Law: `load(begin, end, room)` gives points `begin` to `end - 1`, from memory of its own or from the `room(end -
+/// begin)` bytes that it
+///      is given (aligned to 64), or throws why it cannot. It is called by one thread at a time, while others read what
+///      was loaded before.
 template <class C>
 concept loaded_cloud = requires(const C c, std::size_t i, std::byte* room) {
   { c.size() } -> std::convertible_to<std::size_t>;
@@ -23,10 +26,11 @@ concept loaded_cloud = requires(const C c, std::size_t i, std::byte* room) {
 template <loaded_cloud C>
 using loaded_source = decltype(std::declval<const C&>().load(0, 0, nullptr));
 
-/// One whose points have a place in the host's memory whether they are there or not: many ranges are then searched as one.
-/// Law: `whole()` is a view of all points, in which those that were loaded may be read.
+/// One whose points have a place in the host's memory whether they are there or not: many ranges are then searched as
+/// one. Law: `whole()` is a view of all points, in which those that were loaded may be read.
 template <class C>
-concept addressed_cloud = loaded_cloud<C> && requires(const C c) { requires point_source<std::remove_cvref_t<decltype(c.whole())>>; };
+concept addressed_cloud =
+    loaded_cloud<C> && requires(const C c) { requires point_source<std::remove_cvref_t<decltype(c.whole())>>; };
 
 /// A source in memory, of any kind: host memory, pinned or not, or a device's. `chunked` makes it of a source.
 template <point_source S>
@@ -43,9 +47,9 @@ struct in_memory {
   auto load(std::size_t begin, std::size_t end, std::byte*) const { return slice(source, begin, end); }
 };
 
-/// Records that somebody reads: `read(offset, bytes)` fills `bytes` (a span) with those that begin `offset` bytes after the first
-/// record's start, or throws; `view(memory, count)` is a source over that many records in memory. Throws std::invalid_argument if a record
-/// has no bytes, or all together more than can be counted.
+/// Records that somebody reads: `read(offset, bytes)` fills `bytes` (a span) with those that begin `offset` bytes after
+/// the first record's start, or throws; `view(memory, count)` is a source over that many records in memory. Throws
+/// std::invalid_argument if a record has no bytes, or all together more than can be counted.
 template <class Read, class View>
 struct read_records {
   std::size_t count, record_bytes;
@@ -55,7 +59,8 @@ struct read_records {
   read_records(std::size_t count, std::size_t record_bytes, Read read, View view)
       : count(count), record_bytes(record_bytes), read(std::move(read)), view(std::move(view)) {
     if (record_bytes == 0 || count > ~std::size_t(0) / record_bytes)
-      throw std::invalid_argument("clearance: " + std::to_string(count) + " records of " + std::to_string(record_bytes) + " bytes");
+      throw std::invalid_argument("clearance: " + std::to_string(count) + " records of " +
+                                  std::to_string(record_bytes) + " bytes");
   }
 
   std::size_t size() const { return count; }

@@ -2,8 +2,8 @@
 #pragma once
 // Points that a mask hides, such as the robot's own.
 
-#include <clearance/ground/read_only.hpp>
 #include <clearance/concepts.hpp>
+#include <clearance/ground/read_only.hpp>
 
 namespace clearance {
 
@@ -31,8 +31,9 @@ struct masked_types<S> {
 };
 }  // namespace detail
 
-/// A source without the points that are labelled `own`, as fast as the source itself: they are dropped as `masked`, and the others
-/// keep their numbers. `labels`, one a point, lie in memory that the query's backend can read; the source may be anywhere.
+/// A source without the points that are labelled `own`, as fast as the source itself: they are dropped as `masked`, and
+/// the others keep their numbers. `labels`, one a point, lie in memory that the query's backend can read; the source
+/// may be anywhere.
 template <point_source S>
 struct masked : detail::masked_types<S> {
   S source;
@@ -70,7 +71,8 @@ struct masked : detail::masked_types<S> {
     unsigned reasons = source.look(f.source, i, at);
     CLEARANCE_UNROLL
     for (int j = 0; j < 4; ++j)
-      if ((f.labels >> 8 * j & 0xff) == unsigned(point_label::own) && (reasons >> 8 * j & 0xff) == 0) reasons |= unsigned(drop_reason::masked) << 8 * j;
+      if ((f.labels >> 8 * j & 0xff) == unsigned(point_label::own) && (reasons >> 8 * j & 0xff) == 0)
+        reasons |= unsigned(drop_reason::masked) << 8 * j;
     return reasons;
   }
 

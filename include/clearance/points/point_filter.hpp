@@ -44,7 +44,8 @@ struct point_filter {
   }
 };
 
-/// What a pixel that holds `d` says, if its point is `p`: 0 is missing, 65535 in 16 bits saturated; z is bounded, in metres.
+/// What a pixel that holds `d` says, if its point is `p`: 0 is missing, 65535 in 16 bits saturated; z is bounded, in
+/// metres.
 template <class Pixel>
 CLEARANCE_HD sample depth_sample(Pixel d, vec3 p, real nearest, real farthest, bool minus_infinity_is_near) {
   if (d == 0) return {p, drop_reason::missing};

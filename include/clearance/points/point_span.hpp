@@ -15,7 +15,8 @@ struct point_span {
   position_error off = {};  ///< What the floats have lost, if they were made from something finer.
 
   point_span() = default;
-  point_span(const vec3* points, std::size_t count, point_filter filter = {}) : points(points), count(count), filter(filter) {}
+  point_span(const vec3* points, std::size_t count, point_filter filter = {})
+      : points(points), count(count), filter(filter) {}
   point_span(std::span<const vec3> s, point_filter filter = {}) : point_span(s.data(), s.size(), filter) {}
   point_span(const std::vector<vec3>& v, point_filter filter = {}) : point_span(v.data(), v.size(), filter) {}
 

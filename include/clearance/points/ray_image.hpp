@@ -15,7 +15,8 @@ struct ray {
 /// memory that the query's backend can read; the pixels may be anywhere). Otherwise as depth_image.
 template <class Pixel>
 struct ray_image {
-  static_assert(std::is_same_v<Pixel, std::uint16_t> || std::is_same_v<Pixel, float>, "depth pixels are 16-bit integers or floats");
+  static_assert(std::is_same_v<Pixel, std::uint16_t> || std::is_same_v<Pixel, float>,
+                "depth pixels are 16-bit integers or floats");
 
   const Pixel* pixels = nullptr;
   const ray* rays = nullptr;
@@ -23,7 +24,8 @@ struct ray_image {
   std::uint32_t row = 0;  ///< Pixels from one row to the next; the table has no padding.
   real scale = 1;         ///< Metres a unit.
   real nearest = 0, farthest = infinity;
-  bool minus_infinity_is_near = true;  ///< A float pixel of -inf is `too_close` (REP 117); else it is not finite, and no more.
+  bool minus_infinity_is_near =
+      true;  ///< A float pixel of -inf is `too_close` (REP 117); else it is not finite, and no more.
 
   ray_image() = default;
   ray_image(const Pixel* pixels, const ray* rays, std::uint32_t width, std::uint32_t height,
@@ -93,6 +95,7 @@ struct ray_image {
   }
 };
 
-static_assert(fetched_source<ray_image<std::uint16_t>> && image_source<ray_image<float>> && fetched_source<ray_image<float>>);
+static_assert(fetched_source<ray_image<std::uint16_t>> && image_source<ray_image<float>> &&
+              fetched_source<ray_image<float>>);
 
 }  // namespace clearance

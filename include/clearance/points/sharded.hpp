@@ -11,8 +11,8 @@
 
 namespace clearance {
 
-/// Sources of one kind, one behind another: points are numbered through all of them, and each piece may be in the memory of another
-/// device. It may be empty. At most 16.
+/// Sources of one kind, one behind another: points are numbered through all of them, and each piece may be in the
+/// memory of another device. It may be empty. At most 16.
 template <point_source S>
 class sharded {
  public:
@@ -44,13 +44,15 @@ class sharded {
 
  private:
   template <std::size_t... K>
-  sharded(const std::vector<S>& pieces, std::index_sequence<K...>) : piece_{pieces[std::min(K, pieces.size() - 1)]...}, pieces_(pieces.size()) {
+  sharded(const std::vector<S>& pieces, std::index_sequence<K...>)
+      : piece_{pieces[std::min(K, pieces.size() - 1)]...}, pieces_(pieces.size()) {
     for (std::size_t k = 0; k < most; ++k) first_[k + 1] = first_[k] + (k < pieces_ ? piece_[k].size() : 0);
   }
   static const std::vector<S>& checked(const std::vector<S>& pieces) {
     if (pieces.empty()) throw std::invalid_argument("clearance: a cloud of no pieces; an empty piece is one");
     if (pieces.size() > most)
-      throw std::invalid_argument("clearance: a cloud of " + std::to_string(pieces.size()) + " pieces, more than " + std::to_string(most));
+      throw std::invalid_argument("clearance: a cloud of " + std::to_string(pieces.size()) + " pieces, more than " +
+                                  std::to_string(most));
     return pieces;
   }
 
@@ -59,8 +61,8 @@ class sharded {
   std::size_t first_[most + 1] = {};
 };
 
-/// How a cloud is dealt to `n`: sharded ones as they are, all others in about equal slices. The number of the first point of piece
-/// `k`; of the n-th, how many points there are.
+/// How a cloud is dealt to `n`: sharded ones as they are, all others in about equal slices. The number of the first
+/// point of piece `k`; of the n-th, how many points there are.
 template <point_source S>
 std::size_t first_of_piece(const S& cloud, std::size_t k, std::size_t n) {
   if constexpr (requires { cloud.piece(k); })
@@ -81,7 +83,8 @@ template <point_source S>
 void check_pieces(const S& cloud, std::size_t n) {
   if constexpr (requires { cloud.pieces(); })
     if (cloud.pieces() != n)
-      throw std::invalid_argument("clearance: a cloud of " + std::to_string(cloud.pieces()) + " pieces for " + std::to_string(n) + " devices");
+      throw std::invalid_argument("clearance: a cloud of " + std::to_string(cloud.pieces()) + " pieces for " +
+                                  std::to_string(n) + " devices");
 }
 
 }  // namespace clearance

@@ -18,13 +18,15 @@ struct fetched_types<S> {
 };
 }  // namespace detail
 
-/// Points `begin` to `begin + count - 1` of any source, as fast as the source itself where `begin` is a multiple of four.
+/// Points `begin` to `begin + count - 1` of any source, as fast as the source itself where `begin` is a multiple of
+/// four.
 template <point_source S>
 struct sliced : detail::fetched_types<S> {
   S whole;
   std::size_t begin, count;
 
-  CLEARANCE_HD sliced(const S& whole, std::size_t begin, std::size_t count) : whole(whole), begin(begin), count(count) {}
+  CLEARANCE_HD sliced(const S& whole, std::size_t begin, std::size_t count)
+      : whole(whole), begin(begin), count(count) {}
 
   CLEARANCE_HD std::size_t size() const { return count; }
   CLEARANCE_HD sample operator[](std::size_t i) const { return whole[begin + i]; }
@@ -64,7 +66,8 @@ struct sliced : detail::fetched_types<S> {
   }
   position_error rounding() const { return rounding_of(whole); }
 
-  /// All of the source's; or of one that has `bytes(begin, end)` what these points need, from a multiple of 256 on, as copies are aligned.
+  /// All of the source's; or of one that has `bytes(begin, end)` what these points need, from a multiple of 256 on, as
+  /// copies are aligned.
   std::span<const std::byte> bytes() const
     requires requires(const S s) { s.bytes(); }
   {
@@ -81,8 +84,10 @@ struct sliced : detail::fetched_types<S> {
     requires requires(const S s, const std::byte* b) { s.at(b); }
   {
     if (count == 0) return *this;
-    const auto before = reinterpret_cast<std::uintptr_t>(bytes().data()) - reinterpret_cast<std::uintptr_t>(whole.bytes().data());
-    return sliced(whole.at(reinterpret_cast<const std::byte*>(reinterpret_cast<std::uintptr_t>(copy) - before)), begin, count);
+    const auto before =
+        reinterpret_cast<std::uintptr_t>(bytes().data()) - reinterpret_cast<std::uintptr_t>(whole.bytes().data());
+    return sliced(whole.at(reinterpret_cast<const std::byte*>(reinterpret_cast<std::uintptr_t>(copy) - before)), begin,
+                  count);
   }
 };
 
@@ -90,14 +95,18 @@ struct sliced : detail::fetched_types<S> {
 CLEARANCE_CALLS_ANYTHING
 template <point_source S>
 CLEARANCE_HD auto slice(const S& source, std::size_t begin, std::size_t end) {
-  if constexpr (requires { { source.slice(begin, end) } -> point_source; })
+  if constexpr (requires {
+                  { source.slice(begin, end) } -> point_source;
+                })
     return source.slice(begin, end);
   else
     return sliced<S>(source, begin, end - begin);
 }
 
-/// Where slice k of `n` about equal ones of a cloud of so many points begins: at a multiple of four, so that points are read by fours;
-/// of one that fits, all are. The n-th begins where the points end.
-inline std::size_t first_of_slice(std::size_t points, std::size_t k, std::size_t n) { return std::min(points, (points + 3) / 4 * k / n * 4); }
+/// Where slice k of `n` about equal ones of a cloud of so many points begins: at a multiple of four, so that points are
+/// read by fours; of one that fits, all are. The n-th begins where the points end.
+inline std::size_t first_of_slice(std::size_t points, std::size_t k, std::size_t n) {
+  return std::min(points, (points + 3) / 4 * k / n * 4);
+}
 
 }  // namespace clearance

@@ -11,21 +11,23 @@ namespace clearance {
 /// Records of any size with x, y, z at any byte offset, aligned or not: a ROS PointCloud2 (little-endian), a PCL array.
 template <class Scalar = float>
 struct strided_points {
-  static_assert(std::is_same_v<Scalar, float> || std::is_same_v<Scalar, double>, "PointCloud2 coordinates are FLOAT32 or FLOAT64");
+  static_assert(std::is_same_v<Scalar, float> || std::is_same_v<Scalar, double>,
+                "PointCloud2 coordinates are FLOAT32 or FLOAT64");
 
   const std::byte* data = nullptr;
   std::size_t count = 0;
-  std::uint32_t step = 0;              ///< point_step, bytes.
+  std::uint32_t step = 0;               ///< point_step, bytes.
   std::uint32_t offset[3] = {0, 4, 8};  ///< of x, y and z within a record, bytes.
-  std::uint32_t width = 0;             ///< Records a row, where rows are padded; 0: all records follow one another.
-  std::size_t row_step = 0;            ///< Bytes from one row to the next, if `width` is not 0.
-  vec3 origin = {0, 0, 0};             ///< Subtracted from doubles before they become floats.
+  std::uint32_t width = 0;              ///< Records a row, where rows are padded; 0: all records follow one another.
+  std::size_t row_step = 0;             ///< Bytes from one row to the next, if `width` is not 0.
+  vec3 origin = {0, 0, 0};              ///< Subtracted from doubles before they become floats.
   point_filter filter = {};
 
   CLEARANCE_HD std::size_t size() const { return count; }
   CLEARANCE_HD sample operator[](std::size_t i) const {
     const std::byte* record = data + (width == 0 ? i * step : i / width * row_step + i % width * step);
-    return filter({load(record + offset[0], origin.x), load(record + offset[1], origin.y), load(record + offset[2], origin.z)});
+    return filter(
+        {load(record + offset[0], origin.x), load(record + offset[1], origin.y), load(record + offset[2], origin.z)});
   }
 
   /// Four records' coordinates; see `fetched_source`.
@@ -44,7 +46,8 @@ struct strided_points {
     CLEARANCE_UNROLL
     for (int j = 0; j < 4; ++j) {
       CLEARANCE_UNROLL
-      for (int k = 0; k < 3; ++k) r.f[3 * j + k] = read_only(reinterpret_cast<const Scalar*>(c + std::size_t(j) * step + offset[k]));
+      for (int k = 0; k < 3; ++k)
+        r.f[3 * j + k] = read_only(reinterpret_cast<const Scalar*>(c + std::size_t(j) * step + offset[k]));
     }
     return r;
   }
@@ -58,7 +61,9 @@ struct strided_points {
 
   CLEARANCE_HD bool unfiltered() const { return filter.plain(); }
 
-  std::span<const std::byte> bytes() const { return {data, width == 0 ? count * step : (count + width - 1) / width * row_step}; }
+  std::span<const std::byte> bytes() const {
+    return {data, width == 0 ? count * step : (count + width - 1) / width * row_step};
+  }
   /// What points `begin` to `end - 1` need of it.
   std::span<const std::byte> bytes(std::size_t begin, std::size_t end) const {
     if (begin == end) return {};
@@ -88,6 +93,7 @@ struct strided_points {
   }
 };
 
-static_assert(fetched_source<strided_points<float>> && fetched_source<strided_points<double>> && unfiltered_source<strided_points<float>>);
+static_assert(fetched_source<strided_points<float>> && fetched_source<strided_points<double>> &&
+              unfiltered_source<strided_points<float>>);
 
 }  // namespace clearance

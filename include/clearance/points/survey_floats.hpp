@@ -47,8 +47,8 @@ struct surveyed {
   extent box;
   std::uint32_t not_finite;
 };
-/// Asks for what will be surveyed soon: the work on one tile would otherwise begin with a wait for memory. To ask for what is not there
-/// does nothing.
+/// Asks for what will be surveyed soon: the work on one tile would otherwise begin with a wait for memory. To ask for
+/// what is not there does nothing.
 inline void ask_ahead(const real* f) {
   constexpr std::size_t tile = 3 * surveyed_points * sizeof(real), tiles = 4, line = 64;
   const auto there = reinterpret_cast<std::uintptr_t>(f) + tiles * tile;

@@ -15,7 +15,8 @@ struct inner_sphere {
   CLEARANCE_HD real distance(vec3 q) const { return length(q - center) - radius; }
   CLEARANCE_HD vec3 nearest(vec3 q) const {
     const vec3 n = normal(q);
-    return fma(radius, n == vec3{0, 0, 0} ? vec3{1, 0, 0} : n, center);  // at the centre all of the surface is equally near
+    return fma(radius, n == vec3{0, 0, 0} ? vec3{1, 0, 0} : n,
+               center);  // at the centre all of the surface is equally near
   }
   CLEARANCE_HD vec3 normal(vec3 q) const {
     const vec3 d = q - center;

@@ -10,9 +10,9 @@ namespace clearance {
 /// A flat triangle, slivers and degenerate ones included; the distance is unsigned.
 ///
 /// Three clamped segments are always right, so they decide; the plane is asked only where the point surely projects
-/// inside: it does so by every side's sign, and the nearest side is near with its interior (to a convex polygon's inside
-/// no corner is the nearest). Signs alone would let through points beyond the tip of a needle, metres away. The unit
-/// normal is made in double, so that no error grows with the triangle's aspect, as in region-based formulas.
+/// inside: it does so by every side's sign, and the nearest side is near with its interior (to a convex polygon's
+/// inside no corner is the nearest). Signs alone would let through points beyond the tip of a needle, metres away. The
+/// unit normal is made in double, so that no error grows with the triangle's aspect, as in region-based formulas.
 struct triangle {
   vec3 a, b, c;
   vec3 unit_normal;  ///< (b-a) x (c-a), normalised in double; (0,0,0) for a triangle without area.
@@ -38,18 +38,22 @@ struct triangle {
     const vec3 ab = b - a, bc = c - b, ca = a - c;
     const vec3 aq = q - a, bq = q - b, cq = q - c;
     const real noise = 0x1p-20f * (extent(aq) + extent(ab) + extent(ca));
-    const real edges = min(min(rough_square(aq, ab), rough_square(bq, bc)), rough_square(cq, ca)), height = dot(aq, unit_normal);
-    const real inward = min(min(dot(cross(unit_normal, ab), aq), dot(cross(unit_normal, bc), bq)), dot(cross(unit_normal, ca), cq));
+    const real edges = min(min(rough_square(aq, ab), rough_square(bq, bc)), rough_square(cq, ca)),
+               height = dot(aq, unit_normal);
+    const real inward =
+        min(min(dot(cross(unit_normal, ab), aq), dot(cross(unit_normal, bc), bq)), dot(cross(unit_normal, ca), cq));
     const real beside = positive_part(-inward) * largest_real;
     return min(edges, height * height + beside) <= square_of_reach(reach + noise);
   }
 
-  /// Never above `distance(q)`, hardly below it except over the tips of needles, and half its work: the same formulas with rough quotients and roots.
+  /// Never above `distance(q)`, hardly below it except over the tips of needles, and half its work: the same formulas
+  /// with rough quotients and roots.
   CLEARANCE_HD real lower_bound(vec3 q) const {
     const vec3 ab = b - a, bc = c - b, ca = a - c;
     const vec3 aq = q - a, bq = q - b, cq = q - c;
     const real ab2 = dot(ab, ab), bc2 = dot(bc, bc), ca2 = dot(ca, ca);
-    const real edge = rough_root(rough_min(rough_min(near_side(aq, ab, ab2), near_side(bq, bc, bc2)), near_side(cq, ca, ca2)));
+    const real edge =
+        rough_root(rough_min(rough_min(near_side(aq, ab, ab2), near_side(bq, bc, bc2)), near_side(cq, ca, ca2)));
     const bool perhaps_over = over_face(ab, bc, ca, aq, bq, cq);
     const real d = perhaps_over ? rough_min(edge, absolute(dot(aq, unit_normal))) : edge;
     const real size = 2 * rough_root(rough_max(ab2, ca2));
@@ -115,7 +119,8 @@ struct triangle {
   }
   /// By every side's sign.
   CLEARANCE_HD bool over_face(vec3 ab, vec3 bc, vec3 ca, vec3 aq, vec3 bq, vec3 cq) const {
-    return dot(cross(unit_normal, ab), aq) > 0 && dot(cross(unit_normal, bc), bq) > 0 && dot(cross(unit_normal, ca), cq) > 0;
+    return dot(cross(unit_normal, ab), aq) > 0 && dot(cross(unit_normal, bc), bq) > 0 &&
+           dot(cross(unit_normal, ca), cq) > 0;
   }
   CLEARANCE_HD static real near_side(vec3 p, vec3 edge, real length2) {
     const vec3 offset = fma(-saturated(dot(p, edge) * rough_inverse(length2)), edge, p);

@@ -6,16 +6,18 @@
 
 namespace clearance {
 
-/// A robot and an object put on one of its links: both one's parts, the object's behind the robot's, so that poses follow in that order
-/// (an object's is world-from-link * link-from-object). Only views are copied; robot and object must outlive it. It is taken off by
-/// asking the robot itself again.
+/// A robot and an object put on one of its links: both one's parts, the object's behind the robot's, so that poses
+/// follow in that order (an object's is world-from-link * link-from-object). Only views are copied; robot and object
+/// must outlive it. It is taken off by asking the robot itself again.
 template <class PartView, class B = host>
 class attached {
   static_assert(backend<B>);
 
  public:
   attached(const B& on, const model_view<PartView>& robot, const model_view<PartView>& object)
-      : facts_(robot.facts.begin(), robot.facts.end()), depth_(std::max(robot.depth, object.depth)), width_(std::max(robot.width, object.width)) {
+      : facts_(robot.facts.begin(), robot.facts.end()),
+        depth_(std::max(robot.depth, object.depth)),
+        width_(std::max(robot.width, object.width)) {
     facts_.insert(facts_.end(), object.facts.begin(), object.facts.end());
     std::vector<PartView> views = on.copy_out(robot.parts, robot.size());
     for (const PartView& its : on.copy_out(object.parts, object.size())) views.push_back(its);
@@ -31,12 +33,14 @@ class attached {
   typename B::template buffer<PartView> views_;
 };
 
-/// Both have to be where `on` runs, and of the same kind of part: spheres on spheres, meshes on meshes, the same volume in their trees.
+/// Both have to be where `on` runs, and of the same kind of part: spheres on spheres, meshes on meshes, the same volume
+/// in their trees.
 template <backend B, robot Robot, robot Object>
 auto attach(const B& on, const Robot& robot, const Object& object) {
   using part = typename decltype(view_of(robot))::part_type;
-  static_assert(std::is_same_v<part, typename decltype(view_of(object))::part_type>,
-                "what is attached has to be of the same kind of part as the robot: the same primitives, volumes and interior");
+  static_assert(
+      std::is_same_v<part, typename decltype(view_of(object))::part_type>,
+      "what is attached has to be of the same kind of part as the robot: the same primitives, volumes and interior");
   return attached<part, B>(on, view_of(robot), view_of(object));
 }
 

@@ -13,8 +13,8 @@
 
 namespace clearance {
 
-/// How a link hangs on its parent: `origin`, then a turn about `axis` (of length 1), or a shift along it, by `factor` times the joint
-/// vector's number `value` plus `offset`, in radians or metres.
+/// How a link hangs on its parent: `origin`, then a turn about `axis` (of length 1), or a shift along it, by `factor`
+/// times the joint vector's number `value` plus `offset`, in radians or metres.
 struct chain_link {
   world_transform origin;
   position axis{1, 0, 0};
@@ -42,8 +42,8 @@ struct joint_chain_view {
     return true;
   }
 
-  /// World-from-part; of joint vectors that are not allowed, or that put it by ways that cancel as no bracket covers, all numbers are NaN,
-  /// which no question takes for a pose.
+  /// World-from-part; of joint vectors that are not allowed, or that put it by ways that cancel as no bracket covers,
+  /// all numbers are NaN, which no question takes for a pose.
   CLEARANCE_HD world_transform pose(const double* q, std::uint32_t part) const {
     world_transform below;
     chain_rounding rounding;
@@ -61,7 +61,8 @@ struct joint_chain_view {
       if (by.slides) {
         const double shift = fma(by.factor, q[by.value], by.offset);
         if (by.origin.m[0][0] != 1 || by.origin.m[1][1] != 1 || by.origin.m[2][2] != 1) rounding.turned();
-        rounding.step(by.origin.translation(), {shift * by.axis.x, shift * by.axis.y, shift * by.axis.z}, step.translation(), shift < 0 ? -shift : shift);
+        rounding.step(by.origin.translation(), {shift * by.axis.x, shift * by.axis.y, shift * by.axis.z},
+                      step.translation(), shift < 0 ? -shift : shift);
       }
       on(step);
     }
@@ -112,17 +113,21 @@ struct joint_value {
   joint_range range;
 };
 
-/// A robot's links, joined: an owner, as `model` is of its trees. `io::joint_chain_of` makes one of a robot description.
+/// A robot's links, joined: an owner, as `model` is of its trees. `io::joint_chain_of` makes one of a robot
+/// description.
 template <class B = host>
 class joint_chain {
   static_assert(backend<B>);
 
  public:
-  /// Part k is link `link_of_part[k]`, and `base` is world-from-base. Throws std::invalid_argument if links hang on one another in a ring,
-  /// a number is of nothing, nothing moves, or a pose is not rigid.
+  /// Part k is link `link_of_part[k]`, and `base` is world-from-base. Throws std::invalid_argument if links hang on one
+  /// another in a ring, a number is of nothing, nothing moves, or a pose is not rigid.
   joint_chain(std::vector<chain_link> links, std::vector<std::uint32_t> link_of_part, std::vector<joint_value> values,
               const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity(), const B& on = {})
-      : links_(std::move(links)), of_part_(std::move(link_of_part)), values_(std::move(values)), base_(rigid(base, "the base")) {
+      : links_(std::move(links)),
+        of_part_(std::move(link_of_part)),
+        values_(std::move(values)),
+        base_(rigid(base, "the base")) {
     check();
     std::vector<joint_range> ranges;
     for (const joint_value& value : values_) ranges.push_back(value.range);
@@ -134,7 +139,8 @@ class joint_chain {
   std::size_t parts() const { return of_part_.size(); }
   const std::vector<joint_value>& values() const { return values_; }
   joint_chain_view view() const {
-    return {links_there_.data(), of_part_there_.data(), ranges_there_.data(), std::uint32_t(parts()), std::uint32_t(values_.size()), world_transform(base_)};
+    return {links_there_.data(),    of_part_there_.data(),         ranges_there_.data(),
+            std::uint32_t(parts()), std::uint32_t(values_.size()), world_transform(base_)};
   }
 
   /// A copy where `other` runs.
@@ -143,28 +149,33 @@ class joint_chain {
     return joint_chain<Other>(links_, of_part_, values_, base_, other);
   }
 
-  /// How many configurations `q` is: one number a value, one configuration after another. Throws std::invalid_argument if they are not
-  /// whole, or a number is not finite, or outside its range, or turns a link by more than 2^30 rad, or puts a part by ways that cancel so that
-  /// double loses what no bracket covers.
+  /// How many configurations `q` is: one number a value, one configuration after another. Throws std::invalid_argument
+  /// if they are not whole, or a number is not finite, or outside its range, or turns a link by more than 2^30 rad, or
+  /// puts a part by ways that cancel so that double loses what no bracket covers.
   std::size_t count(std::span<const double> q) const {
     if (q.size() % values_.size() != 0)
-      throw std::invalid_argument("clearance: " + std::to_string(q.size()) + " numbers are no whole joint vectors of " + std::to_string(values_.size()));
+      throw std::invalid_argument("clearance: " + std::to_string(q.size()) + " numbers are no whole joint vectors of " +
+                                  std::to_string(values_.size()));
     for (std::size_t i = 0; i < q.size(); ++i) {
       const auto& [name, range] = values_[i % values_.size()];
       if (q[i] >= range.lower && q[i] <= range.upper && q[i] - q[i] == 0) continue;
-      throw std::invalid_argument("clearance: configuration " + std::to_string(i / values_.size()) + ": joint \"" + name + "\" at " + std::to_string(q[i]) +
-                                  " is outside " + std::to_string(range.lower) + " to " + std::to_string(range.upper));
+      throw std::invalid_argument("clearance: configuration " + std::to_string(i / values_.size()) + ": joint \"" +
+                                  name + "\" at " + std::to_string(q[i]) + " is outside " +
+                                  std::to_string(range.lower) + " to " + std::to_string(range.upper));
     }
     for (std::size_t first = 0; first < q.size(); first += values_.size())
       for (const chain_link& link : links_)
-        if (link.value != none && !link.slides && !(std::abs(fma(link.factor, q[first + link.value], link.offset)) <= 0x1p30))
-          throw std::invalid_argument("clearance: configuration " + std::to_string(first / values_.size()) + ": joint \"" + values_[link.value].name +
+        if (link.value != none && !link.slides &&
+            !(std::abs(fma(link.factor, q[first + link.value], link.offset)) <= 0x1p30))
+          throw std::invalid_argument("clearance: configuration " + std::to_string(first / values_.size()) +
+                                      ": joint \"" + values_[link.value].name +
                                       "\" turns a link by more than 2^30 rad");
     check_ways(q);
     return q.size() / values_.size();
   }
 
-  /// World-from-part, one a part of the first configuration, then those of the next, as min_distances takes them. Throws as `count`.
+  /// World-from-part, one a part of the first configuration, then those of the next, as min_distances takes them.
+  /// Throws as `count`.
   std::vector<Eigen::Isometry3d> poses(std::span<const double> q) const
     requires std::is_same_v<B, host>
   {
@@ -184,12 +195,14 @@ class joint_chain {
     for (std::size_t first = 0; first < q.size(); first += values_.size()) {
       double ways = origins;
       for (const chain_link& link : links_)
-        if (link.value != none && link.slides) ways += 2 * std::abs(fma(link.factor, q[first + link.value], link.offset));
+        if (link.value != none && link.slides)
+          ways += 2 * std::abs(fma(link.factor, q[first + link.value], link.offset));
       if (each * ways <= 1e-9) continue;
       joint_chain_view here{links_.data(), of_part_.data(), nullptr, std::uint32_t(parts()), 0, world_transform(base_)};
       for (std::uint32_t part = 0; part < parts(); ++part)
         if (const world_transform pose = here.pose(q.data() + first, part); !(pose.m[0][3] - pose.m[0][3] == 0))
-          throw std::invalid_argument("clearance: configuration " + std::to_string(first / values_.size()) + " puts part " + std::to_string(part) +
+          throw std::invalid_argument("clearance: configuration " + std::to_string(first / values_.size()) +
+                                      " puts part " + std::to_string(part) +
                                       " by ways that cancel, and double loses more of them than a bracket covers");
     }
   }
@@ -200,13 +213,16 @@ class joint_chain {
     std::vector<bool> hangs(links_.size());  // is known to, on the base
     for (const chain_link& link : links_) {
       rigid_transform_of(to_isometry(link.origin), "a link's origin");
-      if (link.value != none && link.value >= values_.size()) refuse("has a link that moves by number " + std::to_string(link.value) + ", which is none");
+      if (link.value != none && link.value >= values_.size())
+        refuse("has a link that moves by number " + std::to_string(link.value) + ", which is none");
       const double length = std::hypot(link.axis.x, link.axis.y, link.axis.z);
-      if (link.value != none && !(std::abs(length - 1) < 1e-9)) refuse("has an axis of length " + std::to_string(length) + ", which must be 1");
+      if (link.value != none && !(std::abs(length - 1) < 1e-9))
+        refuse("has an axis of length " + std::to_string(length) + ", which must be 1");
       std::size_t steps = 0;
       for (std::uint32_t at = link.parent; at != none && (at >= links_.size() || !hangs[at]); at = links_[at].parent)
         if (at >= links_.size() || ++steps > links_.size()) refuse("has links that hang on no base");
-      for (std::uint32_t at = std::uint32_t(&link - links_.data()); at != none && !hangs[at]; at = links_[at].parent) hangs[at] = true;
+      for (std::uint32_t at = std::uint32_t(&link - links_.data()); at != none && !hangs[at]; at = links_[at].parent)
+        hangs[at] = true;
     }
     for (const std::uint32_t link : of_part_)
       if (link >= links_.size()) refuse("has a part that is link " + std::to_string(link) + ", which is none");

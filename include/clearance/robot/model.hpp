@@ -9,7 +9,8 @@
 namespace clearance {
 
 /// What an operation takes of a robot: part views in the memory of a backend, and their facts on the host.
-/// Whoever has trees of his own fills this in himself; his facts are those of the part views, and are checked as a model's.
+/// Whoever has trees of his own fills this in himself; his facts are those of the part views, and are checked as a
+/// model's.
 template <class PartView>
 struct model_view {
   using part_type = PartView;
@@ -29,8 +30,10 @@ void check(const model_view<PartView>& view) {
 
 /// What operations take for a robot: a `model` or its view. `view_of` gives the view.
 template <class Robot>
-concept robot = requires(const Robot r) { { r.facts } -> std::convertible_to<std::span<const part_facts>>; r.parts; } ||
-                requires(const Robot r) { r.view().facts; };
+concept robot = requires(const Robot r) {
+  { r.facts } -> std::convertible_to<std::span<const part_facts>>;
+  r.parts;
+} || requires(const Robot r) { r.view().facts; };
 template <robot Robot>
 auto view_of(const Robot& r) {
   if constexpr (requires { r.view(); })

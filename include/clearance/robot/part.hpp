@@ -17,9 +17,11 @@ struct part_facts {
   real tolerance = 0;  ///< How far the solid may differ from the true surface, either way (tessellation).
 };
 
-/// Throws std::invalid_argument unless `metres` is a length, from 0 to infinity: what is less, or no number, would make points free that are not.
+/// Throws std::invalid_argument unless `metres` is a length, from 0 to infinity: what is less, or no number, would make
+/// points free that are not.
 inline void check_length(double metres, const std::string& what) {
-  if (!(metres >= 0)) throw std::invalid_argument("clearance: " + what + " is " + std::to_string(metres) + " m, which must be 0 or more");
+  if (!(metres >= 0))
+    throw std::invalid_argument("clearance: " + what + " is " + std::to_string(metres) + " m, which must be 0 or more");
 }
 /// The one rule of what is known of a part; `number` says in the message which it is.
 inline void check(const part_facts& facts, std::int64_t number = -1) {
@@ -110,15 +112,16 @@ struct part {
   auto on(const Other& other) const {
     using tree_there = decltype(detail::copy_or_self(tree, other));
     using interior_there = decltype(detail::copy_or_self(interior, other));
-    return part<tree_there, interior_there>{detail::copy_or_self(tree, other), detail::copy_or_self(interior, other), facts};
+    return part<tree_there, interior_there>{detail::copy_or_self(tree, other), detail::copy_or_self(interior, other),
+                                            facts};
   }
 };
 
 template <class Tree, class Interior>
 part(Tree, Interior, part_facts) -> part<Tree, Interior>;
 
-/// A part whose primitives are all there is of the solid; or, with a certified `gap`, all but that. Metres. Throws std::invalid_argument if
-/// gap or tolerance is negative or NaN.
+/// A part whose primitives are all there is of the solid; or, with a certified `gap`, all but that. Metres. Throws
+/// std::invalid_argument if gap or tolerance is negative or NaN.
 template <bounding_volume V, primitive P>
 part<bvh<V, P>> make_part(bvh<V, P> tree, double gap = 0, double tolerance = 0) {
   check_length(gap, "the gap of a part"), check_length(tolerance, "the tolerance of a part");

@@ -7,14 +7,16 @@
 
 namespace clearance::scan {
 
-inline constexpr std::uint32_t most_parts = 128;    ///< In one kernel.
-inline constexpr std::uint32_t inline_parts = 12;   ///< As many as travel with the launch.
-inline constexpr std::uint32_t most_children = 8;   ///< Of a node,
-inline constexpr std::uint32_t deepest_stack = 64;  ///< and what a tree's depth-first stack may need; trees that `build` makes keep to both.
+inline constexpr std::uint32_t most_parts = 128;   ///< In one kernel.
+inline constexpr std::uint32_t inline_parts = 12;  ///< As many as travel with the launch.
+inline constexpr std::uint32_t most_children = 8;  ///< Of a node,
+inline constexpr std::uint32_t deepest_stack =
+    64;  ///< and what a tree's depth-first stack may need; trees that `build` makes keep to both.
 inline constexpr std::uint32_t most_width = most_children << 15;  ///< Children of a node of any other tree.
-inline constexpr std::uint32_t cluster = 8;         ///< Parts that are first tested together, as one ball.
+inline constexpr std::uint32_t cluster = 8;  ///< Parts that are first tested together, as one ball.
 inline constexpr std::uint32_t most_clusters = most_parts / cluster;
-inline constexpr std::uint32_t no_bound = 0xff800000u;  ///< ordered(infinity): nothing is known of how near anything is.
+inline constexpr std::uint32_t no_bound =
+    0xff800000u;  ///< ordered(infinity): nothing is known of how near anything is.
 
 /// Lives in device memory from scan to scan: the last block of a scan sets it back.
 struct scan_state {
@@ -31,7 +33,8 @@ struct alignas(16) frame_part {
   real away;  ///< The farthest that its ball reaches from its cluster's centre.
 
   frame_part() = default;
-  CLEARANCE_HD explicit frame_part(const frames::placement& p) : part_from_cloud(p.part_from_cloud), root(p.around), error(p.error) {}
+  CLEARANCE_HD explicit frame_part(const frames::placement& p)
+      : part_from_cloud(p.part_from_cloud), root(p.around), error(p.error) {}
 };
 
 /// Some parts of a frame, and a ball around each eight of them.
@@ -59,8 +62,8 @@ struct alignas(16) frame_parts_of {
   }
 };
 
-/// In device memory: all parts, if poses live there and a kernel of its own has made them ready, or if there are too many
-/// to travel with the launch.
+/// In device memory: all parts, if poses live there and a kernel of its own has made them ready, or if there are too
+/// many to travel with the launch.
 struct placed_parts {
   frames::frame_facts frame;
   bool rigid;
@@ -68,19 +71,20 @@ struct placed_parts {
   world_transform world_from_part[most_parts];
 };
 
-/// One cloud, in few words: what every block keeps. `Answer` is an answer as a block gives it, such as `minimum::least`.
+/// One cloud, in few words: what every block keeps. `Answer` is an answer as a block gives it, such as
+/// `minimum::least`.
 template <class Answer>
 struct alignas(16) scan_head {
   using part_type = typename Answer::part_type;
 
   std::uint32_t points, parts;
-  std::uint32_t cloud, first;  ///< The cloud's number, and that of its first point among all clouds' points.
-  std::uint32_t rounds;        ///< Until every point has been read by some block;
-  std::uint32_t ahead;         ///< and how many of them are read a round ahead.
-  std::uint32_t top_stride;    ///< First nodes of a tree that there is room for in shared memory.
-  bool last;                   ///< No cloud follows: conclude.
-  bool far;                    ///< All parts are in `rest`,
-  bool placed;                 ///< and so is the frame.
+  std::uint32_t cloud, first;   ///< The cloud's number, and that of its first point among all clouds' points.
+  std::uint32_t rounds;         ///< Until every point has been read by some block;
+  std::uint32_t ahead;          ///< and how many of them are read a round ahead.
+  std::uint32_t top_stride;     ///< First nodes of a tree that there is room for in shared memory.
+  bool last;                    ///< No cloud follows: conclude.
+  bool far;                     ///< All parts are in `rest`,
+  bool placed;                  ///< and so is the frame.
   std::uint32_t columns;        ///< Of an image whose tiles are packets; or 0.
   std::uint32_t overflow_room;  ///< Entries that `overflow` has for each warp, and then for each block,
   std::byte* overflow;          ///< for trees that are too deep or wide for stacks in shared memory; or null.
@@ -106,7 +110,9 @@ struct scan_arguments : scan_head<Answer> {
   CLEARANCE_HD const frame_part* part() const { return far ? rest->parts.part : near.part; }
   CLEARANCE_HD const frames::root_ball* clusters() const { return far ? rest->parts.cluster : near.cluster; }
   CLEARANCE_HD const frames::frame_facts& facts() const { return placed ? rest->frame : frame; }
-  CLEARANCE_HD world_transform pose(std::uint32_t k) const { return far ? rest->world_from_part[k] : world_from_part[k]; }
+  CLEARANCE_HD world_transform pose(std::uint32_t k) const {
+    return far ? rest->world_from_part[k] : world_from_part[k];
+  }
 };
 
 }  // namespace clearance::scan

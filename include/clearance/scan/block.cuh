@@ -49,9 +49,9 @@ struct block_memory {
   scan_head<Answer> head;
   typename Answer::memory answer;
   std::uint32_t dropped[drop_reasons];
-  std::uint32_t last;        ///< Not 0: this is the last block to finish.
-  alignas(16) vec3 origin;   ///< Is subtracted from points, if it is not 0 (`shifted`); read as sixteen bytes, with
-  bool rigid, shifted;       ///< what nobody writes any more by then.
+  std::uint32_t last;       ///< Not 0: this is the last block to finish.
+  alignas(16) vec3 origin;  ///< Is subtracted from points, if it is not 0 (`shifted`); read as sixteen bytes, with
+  bool rigid, shifted;      ///< what nobody writes any more by then.
   frames::root_test near_cluster[most_clusters], near_part[most_parts];
   frames::root_ball cluster[most_clusters];
   tree_tops<hierarchy_type, Answer::top_bytes> tops;
@@ -88,7 +88,8 @@ constexpr std::size_t memory_bytes(std::uint32_t parts) {
   return sizeof(typename Answer::block) + parts * sizeof(block_part<typename Answer::part_type>);
 }
 
-/// A block's shared memory. Functions that are not inlined ask for it themselves, so that they know what kind of memory it is.
+/// A block's shared memory. Functions that are not inlined ask for it themselves, so that they know what kind of memory
+/// it is.
 template <class Answer>
 __device__ typename Answer::block& memory_of_block() {
   extern __shared__ __align__(16) std::byte scan_memory[];

@@ -21,7 +21,8 @@ __global__ void __launch_bounds__(boxing_threads) box_pieces(const __grid_consta
     for (unsigned w = 0; w < words; ++w) to[w] = __shfl_xor_sync(~0u, from[w], step);
     return other;
   };
-  const std::size_t begin = blockIdx.x * piece_points, all = source.size(), end = all - begin < piece_points ? all : begin + piece_points;
+  const std::size_t begin = blockIdx.x * piece_points, all = source.size(),
+                    end = all - begin < piece_points ? all : begin + piece_points;
   boxed_piece mine;
   for (std::size_t i = begin + threadIdx.x; i < end; i += boxing_threads) mine.add(source[i]);
   for (unsigned step = 16; step != 0; step /= 2) {
@@ -43,7 +44,9 @@ __global__ void __launch_bounds__(boxing_threads) box_pieces(const __grid_consta
 /// Enqueues it; `pieces`, on the device, one for each `piece_points` of the source, are written.
 template <point_source S>
 void enqueue_boxes(const device& on, const S& source, boxed_piece* pieces) {
-  if (source.size() != 0) on.launch(box_pieces<S>, unsigned((source.size() + piece_points - 1) / piece_points), boxing_threads, 0, source, pieces);
+  if (source.size() != 0)
+    on.launch(box_pieces<S>, unsigned((source.size() + piece_points - 1) / piece_points), boxing_threads, 0, source,
+              pieces);
 }
 
 }  // namespace clearance::scan

@@ -8,8 +8,8 @@
 
 namespace clearance::scan {
 
-/// What is known of `piece_points` neighbours: a box around those that count, and how many do not. A cache line, because several threads
-/// write neighbouring ones.
+/// What is known of `piece_points` neighbours: a box around those that count, and how many do not. A cache line,
+/// because several threads write neighbouring ones.
 struct alignas(64) boxed_piece {
   extent box;
   std::uint32_t dropped[drop_reasons] = {};
@@ -30,12 +30,13 @@ struct alignas(64) boxed_piece {
 inline double away(const ball& around, const extent& box) {
   const auto beyond = [](double low, double high, double c) { return std::max({low - c, c - high, 0.0}); };
   const vec3 c = around.center;
-  const double x = beyond(box.lower.x, box.upper.x, c.x), y = beyond(box.lower.y, box.upper.y, c.y), z = beyond(box.lower.z, box.upper.z, c.z);
+  const double x = beyond(box.lower.x, box.upper.x, c.x), y = beyond(box.lower.y, box.upper.y, c.y),
+               z = beyond(box.lower.z, box.upper.z, c.z);
   return std::sqrt(x * x + y * y + z * z) - around.radius;
 }
 
-/// A source that writes down what a host's scan sees of it on its way. `pieces`: one for each `piece_points`, which one thread scans; or
-/// null. The tile that is not whole is not surveyed: `add_rest` adds it.
+/// A source that writes down what a host's scan sees of it on its way. `pieces`: one for each `piece_points`, which one
+/// thread scans; or null. The tile that is not whole is not surveyed: `add_rest` adds it.
 template <point_source S>
 struct boxing {
   S source;
@@ -63,12 +64,13 @@ struct boxing {
     return true;
   }
   void add_rest() const {
-    for (std::size_t i = size() / tile_points * tile_points; pieces != nullptr && i < size(); ++i) pieces[i / piece_points].add(source[i]);
+    for (std::size_t i = size() / tile_points * tile_points; pieces != nullptr && i < size(); ++i)
+      pieces[i / piece_points].add(source[i]);
   }
 };
 
-/// Some of a source's pieces as one source: piece k of it is piece `numbers[k]` of the whole. Only the last may be the whole's last, which
-/// may be shorter.
+/// Some of a source's pieces as one source: piece k of it is piece `numbers[k]` of the whole. Only the last may be the
+/// whole's last, which may be shorter.
 template <point_source S>
 struct listed_pieces {
   S whole;
@@ -76,7 +78,9 @@ struct listed_pieces {
   std::size_t count;  ///< Of points.
 
   CLEARANCE_HD std::size_t size() const { return count; }
-  CLEARANCE_HD std::size_t at(std::size_t i) const { return numbers[i / piece_points] * piece_points + i % piece_points; }
+  CLEARANCE_HD std::size_t at(std::size_t i) const {
+    return numbers[i / piece_points] * piece_points + i % piece_points;
+  }
   CLEARANCE_HD sample operator[](std::size_t i) const { return whole[at(i)]; }
   position_error rounding() const { return rounding_of(whole); }
   bool unfiltered() const

@@ -55,10 +55,11 @@ struct nearest_passed {
   CLEARANCE_HD bool wants(real lower) const { return lower <= reach; }
 };
 
-/// From the root always to the child whose volume is nearest: a leaf; `live` becomes false if that leads nowhere. Those that are not
-/// `live` go along. `others` hears of a team's share of what is left aside.
+/// From the root always to the child whose volume is nearest: a leaf; `live` becomes false if that leads nowhere. Those
+/// that are not `live` go along. `others` hears of a team's share of what is left aside.
 template <class Steps, class Team = alone, class Others = nobody>
-CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, bool& live, const Team& team = {}, Others&& others = {}) {
+CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, bool& live, const Team& team = {},
+                                                    Others&& others = {}) {
   using traits = bounding_volume_traits<typename Steps::volume_type>;
   typename Steps::node_type n{};
   if (live) n = steps.root();
@@ -86,7 +87,8 @@ CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, 
   return n;
 }
 
-/// The distance to what is in that leaf, or to this one's share of it if a team goes down together; infinite if there is none.
+/// The distance to what is in that leaf, or to this one's share of it if a team goes down together; infinite if there
+/// is none.
 template <class Steps, class Team = alone>
 CLEARANCE_HD real descend(const Steps& steps, vec3 q, bool live = true, const Team& team = {}) {
   const typename Steps::node_type n = nearest_leaf(steps, q, live, team);

@@ -6,7 +6,8 @@
 
 namespace clearance::scan {
 
-/// Sets the root tests to the present bounds, a thread each; `bound` is all parts', if they share one. Nobody may be reading them.
+/// Sets the root tests to the present bounds, a thread each; `bound` is all parts', if they share one. Nobody may be
+/// reading them.
 template <class Answer>
 __device__ void sharpen(std::uint32_t thread, std::uint32_t bound) {
   using parts = frame_parts<Answer>;
@@ -36,15 +37,15 @@ __device__ void shift(quad_points& p) {
   for (int j = 0; j < quad; ++j) p.at[j] = p.at[j] - s.origin;
 }
 
-/// Where a warp has stopped for want of room, if it has (not 0): in the last of so many clusters, of whose pairs with this
-/// lane's points `those` are still to be handed over.
+/// Where a warp has stopped for want of room, if it has (not 0): in the last of so many clusters, of whose pairs with
+/// this lane's points `those` are still to be handed over.
 struct unfinished {
   std::uint32_t clusters = 0;
   unsigned those = ~0u;
 };
 
-/// Hands four points to the search, pair by pair, with the parts of all clusters, or with what was `left` of that; false:
-/// there was no room for some. The whole warp calls it.
+/// Hands four points to the search, pair by pair, with the parts of all clusters, or with what was `left` of that;
+/// false: there was no room for some. The whole warp calls it.
 template <class Answer, class Index>
 __device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clusters, unfinished& left) {
   using pairs = pair_search<Answer>;

@@ -13,7 +13,8 @@ __noinline__ __device__ void finish_block(const scan_arguments<Answer>& a, const
   auto& s = memory_of_block<Answer>();
   const std::uint32_t t = threadIdx.x;
   scan_state& state = *a.state;
-  if (t < drop_reasons && s.dropped[t] != 0) atomicAdd(&state.dropped[t], static_cast<unsigned long long>(s.dropped[t]));
+  if (t < drop_reasons && s.dropped[t] != 0)
+    atomicAdd(&state.dropped[t], static_cast<unsigned long long>(s.dropped[t]));
   Answer::hand_in(a, source);
   if (t == 0) s.last = count_in(state.done) + 1 == gridDim.x;
   __syncthreads();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A cloud in one kernel: a first bound, every point read once and tested against the parts' balls in its own frame, the few
-// near ones against the trees. The last block to finish writes the answer.
+// A cloud in one kernel: a first bound, every point read once and tested against the parts' balls in its own frame, the
+// few near ones against the trees. The last block to finish writes the answer.
 
 #include <clearance/scan/ahead.cuh>
 #include <clearance/scan/filter.cuh>
@@ -15,8 +15,8 @@ CLEARANCE_HD constexpr std::uint32_t rounds_of_batch(std::uint32_t pairs, std::u
 }
 
 template <class Answer, class Source>
-__global__ void __launch_bounds__(block_threads, 2) scan_kernel(const __grid_constant__ Source source,
-                                                                const __grid_constant__ scan_arguments<Answer> a) {
+__global__ void __launch_bounds__(block_threads, 2)
+    scan_kernel(const __grid_constant__ Source source, const __grid_constant__ scan_arguments<Answer> a) {
   using pairs = pair_search<Answer>;
   auto& s = memory_of_block<Answer>();
   const std::uint32_t t = threadIdx.x, rounds = a.rounds, ahead = a.ahead, clusters = (a.parts + cluster - 1) / cluster;
@@ -38,8 +38,8 @@ __global__ void __launch_bounds__(block_threads, 2) scan_kernel(const __grid_con
     __syncthreads();
     bound = Answer::common_bound(s);
   }
-  // All that these loops call is inlined: what lives across a call would be kept in memory, for every point. A warp that finds
-  // no room for a pair stops where it is, and goes on from there once the table of pairs is empty.
+  // All that these loops call is inlined: what lives across a call would be kept in memory, for every point. A warp
+  // that finds no room for a pair stops where it is, and goes on from there once the table of pairs is empty.
   drop_counter dropped;
   unfinished left;
   std::uint32_t r = 0, end = 0, batch = cold ? 8 : 16;
@@ -91,8 +91,8 @@ struct by_pairs {
   }
 };
 
-/// The same with fewer points for a block, so that few fill the device, too: for answers that want many pairs, each of which takes longer
-/// than it takes to read its point.
+/// The same with fewer points for a block, so that few fill the device, too: for answers that want many pairs, each of
+/// which takes longer than it takes to read its point.
 struct by_many_pairs : by_pairs {
   static constexpr std::uint32_t in_block = in_block_round / 2;
 };

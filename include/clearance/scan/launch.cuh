@@ -20,20 +20,32 @@ class launcher {
  public:
   /// Throws std::invalid_argument if trees in arrays are deeper or wider than `build` makes them.
   launcher(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory)
-      : on_(on), parts_(std::uint32_t(model.size())), processors_(ask(cudaDevAttrMultiProcessorCount)),
-        most_shared_(ask(cudaDevAttrMaxSharedMemoryPerBlockOptin)), shared_of_processor_(ask(cudaDevAttrMaxSharedMemoryPerMultiprocessor)),
-        state_(groups(), on.id, memory), views_(model.size(), on.id, memory), placed_(groups(), on.id, memory) {
-    if (const std::uint64_t need = stack_need(model.depth, model.width); model.width > most_children || need > deepest_stack) {
+      : on_(on),
+        parts_(std::uint32_t(model.size())),
+        processors_(ask(cudaDevAttrMultiProcessorCount)),
+        most_shared_(ask(cudaDevAttrMaxSharedMemoryPerBlockOptin)),
+        shared_of_processor_(ask(cudaDevAttrMaxSharedMemoryPerMultiprocessor)),
+        state_(groups(), on.id, memory),
+        views_(model.size(), on.id, memory),
+        placed_(groups(), on.id, memory) {
+    if (const std::uint64_t need = stack_need(model.depth, model.width);
+        model.width > most_children || need > deepest_stack) {
       if constexpr (!node_of<typename PartView::hierarchy_type>::any_size)
-        throw std::invalid_argument("clearance: a tree of depth " + std::to_string(model.depth) + " and width " + std::to_string(model.width) +
+        throw std::invalid_argument("clearance: a tree of depth " + std::to_string(model.depth) + " and width " +
+                                    std::to_string(model.width) +
                                     ", which `build` would not make; a device takes it as an any_tree");
       if (model.width > most_width)
-        throw std::invalid_argument("clearance: a node has " + std::to_string(model.width) + " children; a device takes " + std::to_string(most_width));
-      overflow_room_ = std::uint32_t(std::max<std::uint64_t>(need, std::uint64_t(model.depth) * most_children + 2 * stack_capacity));
-      overflow_ = device_buffer<std::byte>(std::size_t(processors_) * (warps + 1) * overflow_room_ * sizeof(pending<linked_node>), on.id, memory);
+        throw std::invalid_argument("clearance: a node has " + std::to_string(model.width) +
+                                    " children; a device takes " + std::to_string(most_width));
+      overflow_room_ =
+          std::uint32_t(std::max<std::uint64_t>(need, std::uint64_t(model.depth) * most_children + 2 * stack_capacity));
+      overflow_ = device_buffer<std::byte>(
+          std::size_t(processors_) * (warps + 1) * overflow_room_ * sizeof(pending<linked_node>), on.id, memory);
     }
     const device_guard guard(on.id);
-    check_cuda(cudaMemcpyAsync(views_.data(), model.parts, model.size() * sizeof(PartView), cudaMemcpyDefault, on.stream), "cudaMemcpyAsync");
+    check_cuda(
+        cudaMemcpyAsync(views_.data(), model.parts, model.size() * sizeof(PartView), cudaMemcpyDefault, on.stream),
+        "cudaMemcpyAsync");
     forget();
   }
 
@@ -49,10 +61,12 @@ class launcher {
 
   /// One cloud against a group of parts.
   template <class Answer>
-  scan_arguments<Answer> begin(std::uint32_t group, const frames::turn& now, const typename Answer::arguments& answer) const {
+  scan_arguments<Answer> begin(std::uint32_t group, const frames::turn& now,
+                               const typename Answer::arguments& answer) const {
     scan_arguments<Answer> a{};
     const std::uint32_t before = group * most_parts;
-    a.parts = std::min(parts_ - before, most_parts), a.views = views_.data() + before, a.state = state_.data() + group, a.rest = placed_.data() + group;
+    a.parts = std::min(parts_ - before, most_parts), a.views = views_.data() + before, a.state = state_.data() + group,
+    a.rest = placed_.data() + group;
     a.overflow = overflow_.data(), a.overflow_room = overflow_room_;
     a.cloud = now.cloud, a.first = now.first, a.last = now.last, a.answer = answer;
     return a;
@@ -63,7 +77,8 @@ class launcher {
   void put(const frames::cloud_frame& frame, std::uint32_t group, scan_arguments<Answer>& a) {
     const auto places = std::span(frame.places).subspan(group * most_parts, a.parts);
     const auto fill = [&](auto& parts, world_transform* world) {
-      for (std::uint32_t k = 0; k < a.parts; ++k) parts.part[k] = frame_part(places[k]), world[k] = places[k].world_from_part;
+      for (std::uint32_t k = 0; k < a.parts; ++k)
+        parts.part[k] = frame_part(places[k]), world[k] = places[k].world_from_part;
       for (std::uint32_t c = 0; c * cluster < a.parts; ++c) parts.gather(c, a.parts);
     };
     a.frame = frame;
@@ -83,11 +98,11 @@ class launcher {
     on_.launch(place_kernel<PartView>, 1, most_parts, 0, poses, cloud, views_.data(), parts_, off, placed_.data());
   }
 
-  /// All clouds of a frame against all groups: `answer(group)` is what the answer is told, `here(source, cloud)` what the device can
-  /// read of a cloud. What all clouds have in common.
+  /// All clouds of a frame against all groups: `answer(group)` is what the answer is told, `here(source, cloud)` what
+  /// the device can read of a cloud. What all clouds have in common.
   template <class Answer, class Clouds, class Arguments, class Here>
-  const frames::frame_facts& pass(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                                  const Arguments& answer, const Here& here) {
+  const frames::frame_facts& pass(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses,
+                                  const Clouds& clouds, const Arguments& answer, const Here& here) {
     try {
       frames::for_each_turn(frame_, facts, poses, clouds, [&](const auto& anywhere, const frames::turn& now) {
         const auto source = here(anywhere, now.cloud);
@@ -109,7 +124,8 @@ class launcher {
   void operator()(const Source& source, scan_arguments<Answer>& a) {
     const std::uint64_t end = std::uint64_t(a.first) + source.size();
     if (const std::uint32_t most = none - block_threads * 8 * processors_; end >= most)
-      throw std::invalid_argument("clearance: " + std::to_string(end) + " points are too many for one call; this device takes " + std::to_string(most - 1));
+      throw std::invalid_argument("clearance: " + std::to_string(end) +
+                                  " points are too many for one call; this device takes " + std::to_string(most - 1));
     a.points = std::uint32_t(source.size());
     const device_guard guard(on_.id);
     start(source, a);
@@ -129,7 +145,8 @@ class launcher {
     using how = typename Answer::scan_type;
     const auto kernel = how::template kernel<Answer, Source>();
     limits_.raise(reinterpret_cast<const void*>(kernel), most_shared_);
-    const unsigned resident = 2 * (shared + 1024) <= shared_of_processor_ && a.overflow == nullptr ? processors_ * 2 : processors_;
+    const unsigned resident =
+        2 * (shared + 1024) <= shared_of_processor_ && a.overflow == nullptr ? processors_ * 2 : processors_;
     const unsigned blocks = std::max(1u, std::min(resident, (a.points + how::in_block - 1) / how::in_block));
     how::plan(source, a, blocks);
     on_.launch(kernel, blocks, block_threads, shared, source, a);

@@ -13,9 +13,9 @@ struct leaf_first : tree_steps<Answer> {
   using frame = frame_parts<Answer>;
   using steps = tree_steps<Answer>;
 
-  /// All pairs of the table go down greedily and at once: eight lanes each if they are few, or four, or two, or a lane each. If whatever
-  /// they have passed by on their way is too far to matter, they are done; the others are left open, with a bound for their walk. The
-  /// whole block calls it.
+  /// All pairs of the table go down greedily and at once: eight lanes each if they are few, or four, or two, or a lane
+  /// each. If whatever they have passed by on their way is too far to matter, they are done; the others are left open,
+  /// with a bound for their walk. The whole block calls it.
   static __device__ void go(std::uint32_t count) {
     auto& s = frame::here();
     if (count <= Answer::few) {
@@ -63,11 +63,13 @@ struct leaf_first : tree_steps<Answer> {
       }
       if (live && key_distance(best) <= Answer::reach_of_part(s, part, 0)) Answer::hear(s, part, i, best);
       const real passed = team.least(others.bound);
-      if (i < count && team.rank() == 0) passed_by(i) = !live ? not_a_number : has_interior<typename Answer::part_type> ? -infinity : passed;
+      if (i < count && team.rank() == 0)
+        passed_by(i) = !live ? not_a_number : has_interior<typename Answer::part_type> ? -infinity : passed;
     }
   }
 
-  /// How near what pair `i` has passed by may be; of one that may be in a solid all is yet to be found. Kept where nobody has a stack yet.
+  /// How near what pair `i` has passed by may be; of one that may be in a solid all is yet to be found. Kept where
+  /// nobody has a stack yet.
   static __device__ real& passed_by(std::uint32_t i) {
     auto& s = frame::here();
     static_assert(pair_capacity <= warps * stack_capacity);

@@ -13,12 +13,13 @@ struct linked_node {
   std::uint32_t words[2];
 };
 
-/// Of any hierarchy. `place` is where a primitive is found again; `any_size`: of any depth and width, for which a stack may go on
-/// in memory.
+/// Of any hierarchy. `place` is where a primitive is found again; `any_size`: of any depth and width, for which a stack
+/// may go on in memory.
 template <hierarchy H>
 struct node_of {
   static constexpr bool any_size = true;
-  static_assert(sizeof(typename H::node_type) <= sizeof(linked_node), "on a device a tree's node_type has at most 8 bytes");
+  static_assert(sizeof(typename H::node_type) <= sizeof(linked_node),
+                "on a device a tree's node_type has at most 8 bytes");
   using type = linked_node;
   struct place {
     linked_node leaf;

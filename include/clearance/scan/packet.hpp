@@ -55,7 +55,8 @@ struct walking_packet : packet<Lanes> {
 
   walking_packet() { std::fill_n(best, Lanes, nearest::none); }
 
-  /// Shows each lane what is within its reach. Children go in the order of the lane `lead`; `pending` has `stack_need(tree)` entries.
+  /// Shows each lane what is within its reach. Children go in the order of the lane `lead`; `pending` has
+  /// `stack_need(tree)` entries.
   void walk(const H& tree, std::size_t lead, near_first::entry_of<H>* pending) {
     std::uint32_t count = 0;
     pending[count++] = {0, tree.root()};
@@ -72,7 +73,8 @@ struct walking_packet : packet<Lanes> {
         const auto c = tree.child(node, k);
         const typename H::volume_type& volume = tree.volume(c);
         if (!reaches(volume)) continue;
-        near_first::push<H>(pending, base, count, {bounding_volume_traits<typename H::volume_type>::lower_bound(volume, (*this)[lead]), c});
+        near_first::push<H>(pending, base, count,
+                            {bounding_volume_traits<typename H::volume_type>::lower_bound(volume, (*this)[lead]), c});
       }
       tested = count > base;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A cloud in one kernel for answers whose bound belongs to a single point: a warp takes 32 neighbours after another, and then helps.
+// A cloud in one kernel for answers whose bound belongs to a single point: a warp takes 32 neighbours after another,
+// and then helps.
 
 #include <clearance/scan/filter.cuh>
 #include <clearance/scan/finish.cuh>
@@ -19,7 +20,8 @@ __device__ bool near_any(vec3 x, std::uint32_t parts) {
   for (std::uint32_t c = 0; c * cluster < parts; ++c) {
     const bool perhaps = s.near_cluster[c].passes(x);
     if (!__any_sync(all_lanes, perhaps)) continue;
-    for (std::uint32_t k = c * cluster; k < (c + 1) * cluster && k < parts; ++k) near |= perhaps && s.near_part[k].passes(x);
+    for (std::uint32_t k = c * cluster; k < (c + 1) * cluster && k < parts; ++k)
+      near |= perhaps && s.near_part[k].passes(x);
   }
   return near;
 }
@@ -45,11 +47,12 @@ __device__ inline std::uint32_t place_in_packet(std::uint32_t b, std::uint32_t c
 }
 
 template <class Answer, class Source>
-__global__ void __launch_bounds__(block_threads, 2) packet_kernel(const __grid_constant__ Source source,
-                                                                  const __grid_constant__ scan_arguments<Answer> a) {
+__global__ void __launch_bounds__(block_threads, 2)
+    packet_kernel(const __grid_constant__ Source source, const __grid_constant__ scan_arguments<Answer> a) {
   using sharing = shared_walk<Answer>;
   auto& s = memory_of_block<Answer>();
-  const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds, packets = (a.points + 31) / 32;
+  const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds,
+                      packets = (a.points + 31) / 32;
   std::uint32_t packet = (t / 32 * gridDim.x + blockIdx.x) * row, left = row, dropped = 0;
   const auto read = [&](std::uint32_t p) {
     const std::uint32_t i = place_in_packet(p, a.columns);
@@ -109,7 +112,8 @@ struct by_packets {
 
   template <class Answer, class Source>
   static void plan(const Source& source, scan_arguments<Answer>& a, unsigned blocks) {
-    // Packets in a row: one, so that all warps end at about the same time; or some, where most are far and asking would take longer.
+    // Packets in a row: one, so that all warps end at about the same time; or some, where most are far and asking would
+    // take longer.
     a.rounds = Answer::all_near(a.answer) ? 1 : std::clamp(a.points / (32 * 4 * warps * blocks), 1u, 4u);
     a.columns = 0;
     if constexpr (image_source<Source>) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Neighbouring points down the trees as packets: a warp walks once for 32 of them, a lane a point, and all lanes look at the same
-// node. It is taken if any of them wants it, the nearest first. Where the depth jumps, points before and behind go one after the other:
-// alone, a point a lane, they would be the last to end. Points that are no neighbours at all do walk alone. (A ball around the packet that
-// first tells which children may be wanted takes longer: at some distance it tells of too many.)
+// Neighbouring points down the trees as packets: a warp walks once for 32 of them, a lane a point, and all lanes look
+// at the same node. It is taken if any of them wants it, the nearest first. Where the depth jumps, points before and
+// behind go one after the other: alone, a point a lane, they would be the last to end. Points that are no neighbours at
+// all do walk alone. (A ball around the packet that first tells which children may be wanted takes longer: at some
+// distance it tells of too many.)
 
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/shared_walk.cuh>
@@ -75,7 +76,8 @@ struct packet_search : tree_steps<Answer> {
   /// How far the nearest part is, about.
   static __device__ real gap_to(vec3 middle) {
     real gap = infinity;
-    for (std::uint32_t k = lane(); k < frame::here().head.parts; k += 32) gap = min(gap, rough_length(middle - frame::place(k).root.around.center));
+    for (std::uint32_t k = lane(); k < frame::here().head.parts; k += 32)
+      gap = min(gap, rough_length(middle - frame::place(k).root.around.center));
     return from_bits(least_of(all_lanes, to_bits(gap)));
   }
 
@@ -96,7 +98,8 @@ struct packet_search : tree_steps<Answer> {
       for (;;) {
         const std::uint32_t nearest = least_of(all_lanes, mine);
         if (nearest == no_bound) break;
-        const std::uint32_t its = std::uint32_t(__ffs(int(__ballot_sync(all_lanes, mine == nearest)))) - 1, k = begin + its;
+        const std::uint32_t its = std::uint32_t(__ffs(int(__ballot_sync(all_lanes, mine == nearest)))) - 1,
+                            k = begin + its;
         if (lane() == its) mine = no_bound;
         if (__any_sync(all_lanes, live && from_ordered(nearest) <= v.reach(k))) ask(k, live, x, v);
       }
@@ -110,7 +113,9 @@ struct packet_search : tree_steps<Answer> {
   }
   static __device__ stacked* own_stack() {
     auto& s = frame::here();
-    if (too_deep()) return reinterpret_cast<stacked*>(s.head.overflow) + std::size_t(blockIdx.x * warps + threadIdx.x / 32) * s.head.overflow_room;
+    if (too_deep())
+      return reinterpret_cast<stacked*>(s.head.overflow) +
+             std::size_t(blockIdx.x * warps + threadIdx.x / 32) * s.head.overflow_room;
     return s.stack[threadIdx.x / 32];
   }
 
@@ -119,7 +124,8 @@ struct packet_search : tree_steps<Answer> {
   static __device__ bool inside(std::uint32_t k, vec3 x, Visitor& v) {
     if constexpr (has_interior<typename Answer::part_type>) {
       const frame_part& place = frame::place(k);
-      if (frames::may_reach(place.root.around, 0, x) && frame::view(k).interior.inside(place.part_from_cloud(x))) return v.offer_inside(k), true;
+      if (frames::may_reach(place.root.around, 0, x) && frame::view(k).interior.inside(place.part_from_cloud(x)))
+        return v.offer_inside(k), true;
     }
     return false;
   }
@@ -139,8 +145,8 @@ struct packet_search : tree_steps<Answer> {
     std::uint32_t part;
   };
 
-  /// Every lane by itself, through eight parts after the others; but step by step, because lanes that part ways would each have the
-  /// warp to themselves.
+  /// Every lane by itself, through eight parts after the others; but step by step, because lanes that part ways would
+  /// each have the warp to themselves.
   template <class Visitor>
   static __noinline__ __device__ Visitor alone(bool live, vec3 x, Visitor v) {
     const std::uint32_t parts = frame::here().head.parts;
@@ -175,7 +181,8 @@ struct packet_search : tree_steps<Answer> {
         for (std::uint32_t j = 0; __any_sync(all_lanes, j < count); ++j) {
           if (j < count && leaf) {
             const auto place = steps::place_of(here.node, j);
-            if (const real d = steps::primitive(k, place).distance(q); d <= v.reach(k)) v.offer(k, place, steps::id(k, place), d);
+            if (const real d = steps::primitive(k, place).distance(q); d <= v.reach(k))
+              v.offer(k, place, steps::id(k, place), d);
           } else if (j < count) {
             const auto step = steps::child(k, here.node, j);
             if (const real b = traits::lower_bound(step.volume, q); b <= v.reach(k)) keep({b, step.node, k});
@@ -211,12 +218,14 @@ struct packet_search : tree_steps<Answer> {
           const auto primitive = steps::primitive(k, place);
           if constexpr (bounded_primitive<typename hierarchy::primitive_type>)  // most need no more than a rough look
             if (__all_sync(all_lanes, primitive.lower_bound(q) > reach)) continue;
-          if (const real d = primitive.distance(q); d <= reach) v.offer(k, place, steps::id(k, place), d), reach = v.reach(k);
+          if (const real d = primitive.distance(q); d <= reach)
+            v.offer(k, place, steps::id(k, place), d), reach = v.reach(k);
         }
         continue;
       }
 #pragma unroll 1
-      for (std::uint32_t begin = 0; begin < count; begin += at_once) top = push(k, e.node, begin, count, q, reach, stack, top);
+      for (std::uint32_t begin = 0; begin < count; begin += at_once)
+        top = push(k, e.node, begin, count, q, reach, stack, top);
       if (top > worth_sharing && sharing::asked() && !too_deep()) {
         sharing::talk(v);
         reach = min(reach, v.reach(k));
@@ -226,9 +235,11 @@ struct packet_search : tree_steps<Answer> {
   }
 
   /// Of eight children those that some point wants, the nearest on top; the stack's new size.
-  static __device__ std::uint32_t push(std::uint32_t k, const node_type& node, std::uint32_t begin, std::uint32_t count, vec3 q, real reach,
-                                       stacked* stack, std::uint32_t top) {
-    constexpr std::uint32_t unwanted = none, number = at_once - 1;  // a child's number is in the lowest bits of its bound: no two are equal
+  static __device__ std::uint32_t push(std::uint32_t k, const node_type& node, std::uint32_t begin, std::uint32_t count,
+                                       vec3 q, real reach, stacked* stack, std::uint32_t top) {
+    constexpr std::uint32_t unwanted = none,
+                            number =
+                                at_once - 1;  // a child's number is in the lowest bits of its bound: no two are equal
     std::uint32_t low[at_once];
 #pragma unroll
     for (std::uint32_t four = 0; four < at_once; four += 4) {
@@ -250,7 +261,8 @@ struct packet_search : tree_steps<Answer> {
 #pragma unroll
     for (std::uint32_t h = 0; h < at_once; ++h) all += low[h] != unwanted, nearer += low[h] < mine;
     __syncwarp();  // all have read the node
-    if (mine != unwanted) stack[top + all - 1 - nearer] = {from_ordered(mine & ~number), steps::child(k, node, begin + lane()).node};
+    if (mine != unwanted)
+      stack[top + all - 1 - nearer] = {from_ordered(mine & ~number), steps::child(k, node, begin + lane()).node};
     return top + all;
   }
 };

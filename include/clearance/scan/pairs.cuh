@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The few points near a part, against the trees. Every warp walks with some of them: eight nodes at once, four lanes to a node's
-// children, from a stack that is its own, and gives away what is too much for it, to be dealt to all warps when they are done.
+// The few points near a part, against the trees. Every warp walks with some of them: eight nodes at once, four lanes to
+// a node's children, from a stack that is its own, and gives away what is too much for it, to be dealt to all warps
+// when they are done.
 
 #include <clearance/ground/ordered.hpp>
 #include <clearance/scan/alone.cuh>
@@ -22,8 +23,8 @@ struct pair_search : tree_steps<Answer> {
   using node_type = typename steps::node_type;
   static constexpr bool any_size = node_of<hierarchy>::any_size;
 
-  /// Keeps those of a lane's points for `drain` that are near a part of the cluster from `first_part` on, four bits a part;
-  /// says which it has no room for. There is room for all of those that come first.
+  /// Keeps those of a lane's points for `drain` that are near a part of the cluster from `first_part` on, four bits a
+  /// part; says which it has no room for. There is room for all of those that come first.
   static __device__ unsigned add(unsigned those, const quad_points& p, std::uint32_t first, std::uint32_t first_part) {
     static_assert(quad * cluster <= 32 && pair_capacity >= quad * cluster);
     memory& s = frame::here();
@@ -72,23 +73,26 @@ struct pair_search : tree_steps<Answer> {
       const auto& view = frame::view(k);
       if (!view.interior.inside(q)) return false;
       Answer::take_inside(s, k, point, pair);
-      if (Answer::wants_certain(s) && certainly_inside(view, q, frame::place(k).error, walk_alone<Answer>{})) Answer::take_certain(s);
+      if (Answer::wants_certain(s) && certainly_inside(view, q, frame::place(k).error, walk_alone<Answer>{}))
+        Answer::take_certain(s);
       return true;
     }
     return false;
   }
 
-  /// A pair's point into its part's frame; and onto the stack what is within reach below the root of that part's tree, or the
-  /// root if it is a leaf, unless the pair ends here. Four lanes to a pair.
+  /// A pair's point into its part's frame; and onto the stack what is within reach below the root of that part's tree,
+  /// or the root if it is a leaf, unless the pair ends here. Four lanes to a pair.
   static __device__ std::uint32_t admit(std::uint32_t i, bool live, pending* stack, std::uint32_t top) {
     memory& s = frame::here();
     const pair c = live ? s.pair_table[i] : pair{};
     const std::uint32_t part = live ? s.part_of_pair[i] : 0;
     live = live && s.near_part[part].passes(c.x) && !Answer::skips(s, part, c.point, i, c.x);
-    if constexpr (Answer::goes_ahead) live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0;  // others may be changing what decides it
+    if constexpr (Answer::goes_ahead)
+      live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0;  // others may be changing what decides it
     const vec3 q = frame::place(part).part_from_cloud(c.x);
     if constexpr (has_interior<typename Answer::part_type>) {
-      const unsigned gone = __ballot_sync(all_lanes, live && lane() == 0 && inside(q, c.point, part, i)) >> group() * mates;
+      const unsigned gone =
+          __ballot_sync(all_lanes, live && lane() == 0 && inside(q, c.point, part, i)) >> group() * mates;
       live = live && (gone & 1) == 0;
     }
     __syncwarp();  // all have read the pair
@@ -99,13 +103,14 @@ struct pair_search : tree_steps<Answer> {
     const std::uint32_t pair_and_part = part << 16 | i;
     const real reach = Answer::reach_of_pair(s, part, i);
     top = push({-infinity, root, pair_and_part}, leaf && lane() == 0, stack, top);
-    return push_children(-infinity, root, live && !leaf ? steps::size(part, root) : 0, pair_and_part, q, reach, stack, top);
+    return push_children(-infinity, root, live && !leaf ? steps::size(part, root) : 0, pair_and_part, q, reach, stack,
+                         top);
   }
 
-  /// A warp's share of the pairs, then of what warps have given away: a far point can be about equally far from hundreds of
-  /// nodes. It takes nodes from the end of its stack, and fewer as that fills, at last one, whose whole subtree then fits into
-  /// what is kept free: so the stack cannot overflow. Of trees for which that is not enough it takes one node at a time, and the
-  /// lower end of the stack goes to memory.
+  /// A warp's share of the pairs, then of what warps have given away: a far point can be about equally far from
+  /// hundreds of nodes. It takes nodes from the end of its stack, and fewer as that fills, at last one, whose whole
+  /// subtree then fits into what is kept free: so the stack cannot overflow. Of trees for which that is not enough it
+  /// takes one node at a time, and the lower end of the stack goes to memory.
   static __device__ void walk(std::uint32_t count) {
     memory& s = frame::here();
     const std::uint32_t warp = threadIdx.x / 32;
@@ -139,7 +144,8 @@ struct pair_search : tree_steps<Answer> {
       }
       if (round % 8 == 7) elsewhere.hear(s);
       constexpr std::uint32_t room = stack_capacity - deepest_stack, growth = most_children - 1;
-      static_assert(at_once - 1 + at_once * most_children <= room - at_once * growth && at_once - 1 + at_once * (most_children + 1) < stack_capacity);
+      static_assert(at_once - 1 + at_once * most_children <= room - at_once * growth &&
+                    at_once - 1 + at_once * (most_children + 1) < stack_capacity);
       std::uint32_t taken = top < at_once ? top : at_once;
       if (top > room - at_once * growth) taken = top + 2 * growth <= room ? 2 : 1;
       __syncwarp();  // all that has been pushed is there
@@ -171,7 +177,8 @@ struct pair_search : tree_steps<Answer> {
   /// This warp's share of the memory for what is below the stack.
   static __device__ pending* memory_below() {
     const auto& head = frame::here().head;
-    return reinterpret_cast<pending*>(head.overflow) + std::size_t(blockIdx.x * warps + threadIdx.x / 32) * head.overflow_room;
+    return reinterpret_cast<pending*>(head.overflow) +
+           std::size_t(blockIdx.x * warps + threadIdx.x / 32) * head.overflow_room;
   }
   /// All of the stack's nodes but the last eight to there. All lanes of a warp call it.
   static __noinline__ __device__ void sink(pending* stack, std::uint32_t top, std::uint32_t below) {
@@ -192,8 +199,8 @@ struct pair_search : tree_steps<Answer> {
     __syncwarp();
   }
 
-  /// All but the first of a warp's nodes, if there is room for all; the stack's new size. If another warp is quicker, some are
-  /// kept and given, and looked at twice. All lanes of a warp call it.
+  /// All but the first of a warp's nodes, if there is room for all; the stack's new size. If another warp is quicker,
+  /// some are kept and given, and looked at twice. All lanes of a warp call it.
   static __device__ std::uint32_t give(const pending* stack, std::uint32_t top) {
     memory& s = frame::here();
     const std::uint32_t lane = threadIdx.x % 32, some = top - at_once;
@@ -202,7 +209,8 @@ struct pair_search : tree_steps<Answer> {
     at = __shfl_sync(all_lanes, at, 0);
     __syncwarp();  // all that has been pushed is there
 #pragma unroll 1
-    for (std::uint32_t k = lane; k < some && at + k < memory::given_capacity; k += 32) s.given_nodes[at + k] = stack[at_once + k];
+    for (std::uint32_t k = lane; k < some && at + k < memory::given_capacity; k += 32)
+      s.given_nodes[at + k] = stack[at_once + k];
     return at + some <= memory::given_capacity ? at_once : top;
   }
 
@@ -232,13 +240,14 @@ struct pair_search : tree_steps<Answer> {
     return top;
   }
 
-  /// The first of `count` children of an inner node, as far as they are within reach, and for the others the node again; the
-  /// stack's new size.
-  static __device__ std::uint32_t push_children(real bound, const node_type& node, std::uint32_t count, std::uint32_t pair_and_part, vec3 q,
-                                                real reach, pending* stack, std::uint32_t top) {
+  /// The first of `count` children of a node that are within reach, and for the others the node; the stack's new size.
+  static __device__ std::uint32_t push_children(real bound, const node_type& node, std::uint32_t count,
+                                                std::uint32_t pair_and_part, vec3 q, real reach, pending* stack,
+                                                std::uint32_t top) {
     constexpr std::uint32_t each = most_children / mates;
     if constexpr (any_size) {
-      if (count > most_children && (frame::here().head.overflow == nullptr || first_of(pair_and_part) + count > most_width))
+      if (count > most_children &&
+          (frame::here().head.overflow == nullptr || first_of(pair_and_part) + count > most_width))
         __trap();  // the tree is wider than it said
       pending others{bound, node, pair_and_part};
       steps::skip(others.pair);
@@ -270,7 +279,8 @@ struct pair_search : tree_steps<Answer> {
   }
 
   /// The primitives of leaves. All lanes of a warp call it.
-  static __device__ void look(const node_type& leaf, std::uint32_t count, std::uint32_t part, std::uint32_t pair, const scan::pair& v, real reach) {
+  static __device__ void look(const node_type& leaf, std::uint32_t count, std::uint32_t part, std::uint32_t pair,
+                              const scan::pair& v, real reach) {
 #pragma unroll 1
     for (std::uint32_t k = lane(); __any_sync(all_lanes, k < count); k += mates) {
       typename Answer::record r;
@@ -279,7 +289,8 @@ struct pair_search : tree_steps<Answer> {
         const auto place = steps::place_of(leaf, k);
         const std::uint32_t id = steps::id(part, place);
         primitive = steps::primitive(part, place);
-        if (const real distance = primitive.distance(v.x); distance <= reach) r = {make_key(distance, v.point), part, id, place};
+        if (const real distance = primitive.distance(v.x); distance <= reach)
+          r = {make_key(distance, v.point), part, id, place};
       }
       if (__any_sync(all_lanes, r.key != no_key)) Answer::take(frame::here(), r, primitive, pair);
     }

@@ -33,10 +33,12 @@ struct frame_parts {
       copy_parts(a.rest->parts.part, a.views, a.parts, t, meanwhile);
     else
       copy_parts(a.near.part, a.views, a.parts, dealt, meanwhile);
-    constexpr std::uint32_t head_words = sizeof(s.head) / sizeof(uint4), ball_words = sizeof(frames::root_ball) / sizeof(uint2);
+    constexpr std::uint32_t head_words = sizeof(s.head) / sizeof(uint4),
+                            ball_words = sizeof(frames::root_ball) / sizeof(uint2);
     static_assert(sizeof(s.head) % sizeof(uint4) == 0 && sizeof(frames::root_ball) % sizeof(uint2) == 0);
     if (const std::uint32_t last = block_threads - 1 - t; last < head_words)
-      reinterpret_cast<uint4*>(&s.head)[last] = reinterpret_cast<const uint4*>(static_cast<const scan_head<Answer>*>(&a))[last];
+      reinterpret_cast<uint4*>(&s.head)[last] =
+          reinterpret_cast<const uint4*>(static_cast<const scan_head<Answer>*>(&a))[last];
     if (const std::uint32_t i = t - 128; i < (a.parts + cluster - 1) / cluster * ball_words)
       reinterpret_cast<uint2*>(s.cluster)[i] = reinterpret_cast<const uint2*>(a.clusters())[i];
     if (t < drop_reasons) s.dropped[t] = 0;
@@ -52,9 +54,11 @@ struct frame_parts {
  private:
   /// Every thread first reads, and then writes: it waits once.
   template <class F>
-  static __device__ void copy_parts(const frame_part* places, const view_type* views, std::uint32_t count, std::uint32_t thread, F meanwhile) {
+  static __device__ void copy_parts(const frame_part* places, const view_type* views, std::uint32_t count,
+                                    std::uint32_t thread, F meanwhile) {
     using word = std::conditional_t<sizeof(view_type) % sizeof(uint4) == 0, uint4, std::uint32_t>;
-    constexpr std::uint32_t place_words = sizeof(frame_part) / sizeof(uint4), view_words = sizeof(view_type) / sizeof(word);
+    constexpr std::uint32_t place_words = sizeof(frame_part) / sizeof(uint4),
+                            view_words = sizeof(view_type) / sizeof(word);
     static_assert(sizeof(frame_part) % sizeof(uint4) == 0 && sizeof(view_type) % sizeof(word) == 0);
     const std::uint32_t words = count * (place_words > view_words ? place_words : view_words);
     std::uint32_t i = thread;

@@ -6,13 +6,17 @@
 
 namespace clearance::scan {
 
-/// What the host does with poses, for poses in memory that the device reads: one block, each of its threads a part of every group.
+/// What the host does with poses, for poses in memory that the device reads: one block, each of its threads a part of
+/// every group.
 template <class PartView>
-__global__ void __launch_bounds__(most_parts) place_kernel(const world_transform* world_from_part, const world_transform* world_from_cloud,
-                                                           const PartView* views, std::uint32_t count, position_error off, placed_parts* groups) {
+__global__ void __launch_bounds__(most_parts)
+    place_kernel(const world_transform* world_from_part, const world_transform* world_from_cloud, const PartView* views,
+                 std::uint32_t count, position_error off, placed_parts* groups) {
   __shared__ frames::frame_facts frame;
   const std::uint32_t t = threadIdx.x;
-  const auto pose = [groups](std::uint32_t k) -> world_transform& { return groups[k / most_parts].world_from_part[k % most_parts]; };
+  const auto pose = [groups](std::uint32_t k) -> world_transform& {
+    return groups[k / most_parts].world_from_part[k % most_parts];
+  };
   bool rigid = true;
   for (std::uint32_t k = t; k < count; k += most_parts) {
     world_transform its = world_from_part[k];
@@ -31,7 +35,8 @@ __global__ void __launch_bounds__(most_parts) place_kernel(const world_transform
         frame_part(frames::place(views[k].facts, pose(k), frame.world_from_cloud, frame.origin, off));
   __syncthreads();
   if (t == 0)
-    for (std::uint32_t k = 0; k < count; ++k) frame.add(views[k].facts, groups[k / most_parts].parts.part[k % most_parts].error);
+    for (std::uint32_t k = 0; k < count; ++k)
+      frame.add(views[k].facts, groups[k / most_parts].parts.part[k % most_parts].error);
   __syncthreads();
   for (std::uint32_t first = 0, g = 0; first < count || g == 0; first += most_parts, ++g) {
     const std::uint32_t parts = lower_of(count - first, most_parts);

@@ -9,25 +9,29 @@
 
 namespace clearance::scan {
 
-/// All clouds of a frame by a loop over their points, on any backend that has no scan of its own; enqueued. `answer(source, turn)` is
-/// that of `scan_body` for a cloud, `here(source, cloud)` what the backend can read of it. What all clouds have in common.
+/// All clouds of a frame by a loop over their points, on any backend that has no scan of its own; enqueued.
+/// `answer(source, turn)` is that of `scan_body` for a cloud, `here(source, cloud)` what the backend can read of it.
+/// What all clouds have in common.
 template <class On, class PartView, class Clouds, class Answer, class Here>
-frames::frame_facts plain_pass(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                               const Answer& answer, point_counts* counts, const Here& here) {
+frames::frame_facts plain_pass(const On& on, const model_view<PartView>& model,
+                               std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
+                               point_counts* counts, const Here& here) {
   const auto parts = std::uint32_t(model.size());
   const any_depth walk{stack_need(model.depth, model.width)};
   auto dropped = on.template make_scratch<drop_counts>(1);
   const drop_counts start;
   on.stage(std::span(&start, 1), dropped.data());
   frames::cloud_frame frame;
-  const std::uint64_t seen = frames::for_each_turn(frame, model.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
-    const S source = here(anywhere, now.cloud);
-    auto places = on.template make_scratch<frames::placement>(parts);
-    on.stage(std::span<const frames::placement>(frame.places), places.data());
-    const auto its = answer(source, now);
-    on.for_ranges(source.size(), scan_body<PartView, S, any_depth, std::remove_const_t<decltype(its)>>{
-                                     model.parts, places.data(), parts, source, frame.origin, now.first, dropped.data(), its, walk});
-  });
+  const std::uint64_t seen = frames::for_each_turn(
+      frame, model.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
+        const S source = here(anywhere, now.cloud);
+        auto places = on.template make_scratch<frames::placement>(parts);
+        on.stage(std::span<const frames::placement>(frame.places), places.data());
+        const auto its = answer(source, now);
+        on.for_ranges(source.size(), scan_body<PartView, S, any_depth, std::remove_const_t<decltype(its)>>{
+                                         model.parts, places.data(), parts, source, frame.origin, now.first,
+                                         dropped.data(), its, walk});
+      });
   on.for_each(1, [from = dropped.data(), counts, seen](std::size_t) { count(*counts, from->dropped, seen); });
   return frame;
 }

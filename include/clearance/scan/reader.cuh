@@ -6,7 +6,7 @@
 
 namespace clearance::scan {
 
-inline constexpr int quad = 4;     ///< Points that a thread has in hand, in a row.
+inline constexpr int quad = 4;  ///< Points that a thread has in hand, in a row.
 inline constexpr std::uint32_t in_block_round = block_threads * quad;
 
 /// A thread's points, less the frame's origin; and why they do not count, a byte each: a drop_reason, or `no_point`.
@@ -16,8 +16,8 @@ struct quad_points {
 };
 inline constexpr unsigned no_point = 0xff;  ///< There is none.
 
-/// Neighbouring points share their fate, and a block that gets many that are near some part keeps all others waiting: so
-/// the pieces are dealt out to the blocks like cards.
+/// Neighbouring points share their fate, and a block that gets many that are near some part keeps all others waiting:
+/// so the pieces are dealt out to the blocks like cards.
 template <class Answer>
 class cards {
  public:
@@ -34,8 +34,8 @@ class cards {
   }
 
  private:
-  /// Whose points in a row stay together: few, where each part has a bound and so more points are near; and one, where pairs take long and
-  /// nothing evens out what a block is dealt in its only round.
+  /// Whose points in a row stay together: few, where each part has a bound and so more points are near; and one, where
+  /// pairs take long and nothing evens out what a block is dealt in its only round.
   __device__ std::uint32_t threads() const {
     if constexpr (!Answer::bound_per_part)
       return 4;
@@ -51,8 +51,8 @@ class cards {
   [[maybe_unused]] bool once_;
 };
 
-/// Counts of a thread's points that do not count, a byte for each of the first reasons; the others go to the block's at once, because
-/// another register would be one too many for all that lives across the loop.
+/// Counts of a thread's points that do not count, a byte for each of the first reasons; the others go to the block's at
+/// once, because another register would be one too many for all that lives across the loop.
 class drop_counter {
  public:
   __device__ void add(unsigned reasons, std::uint32_t (&block)[drop_reasons]) {
@@ -62,17 +62,20 @@ class drop_counter {
     } else {
 #pragma unroll
       for (int j = 0; j < quad; ++j)
-        dropped_ += __funnelshift_lc(0u, 1u, 8 * (reasons >> 8 * j & 0xff) - 8);  // 0, other reasons and no_point are shifted out
+        dropped_ += __funnelshift_lc(
+            0u, 1u, 8 * (reasons >> 8 * j & 0xff) - 8);  // 0, other reasons and no_point are shifted out
 #pragma unroll
       for (unsigned reason = in_bytes + 1; reason < drop_reasons; ++reason)
-        if (const unsigned those = __vcmpeq4(reasons, reason * 0x01010101u); those != 0) atomicAdd(&block[reason], unsigned(__popc(those)) / 8);
+        if (const unsigned those = __vcmpeq4(reasons, reason * 0x01010101u); those != 0)
+          atomicAdd(&block[reason], unsigned(__popc(those)) / 8);
     }
   }
 
   /// Adds this warp's to the block's; due before 63 rounds are over, or a byte is full.
   __device__ void report(std::uint32_t (&block)[drop_reasons]) {
     if (!__any_sync(all_lanes, dropped_ != 0)) return;
-    const std::uint32_t odd = sum_of(dropped_ & 0xff00ffu), even = sum_of(dropped_ >> 8 & 0xff00ffu), lane = threadIdx.x & 31;
+    const std::uint32_t odd = sum_of(dropped_ & 0xff00ffu), even = sum_of(dropped_ >> 8 & 0xff00ffu),
+                        lane = threadIdx.x & 31;
     const std::uint32_t sum = (lane % 2 == 0 ? odd : even) >> (lane & 2) * 8 & 0xffffu;
     if (lane < in_bytes && sum != 0) atomicAdd(&block[lane + 1], sum);
     dropped_ = 0;

@@ -12,8 +12,9 @@ template <class Place>
 struct record {
   distance_key key = no_key;
   std::uint32_t part = none;
-  std::uint32_t id = none;  ///< The primitive's number in the user's array (none: the point is inside, no primitive is known),
-  Place place = {};         ///< and where in the tree it is.
+  std::uint32_t id =
+      none;          ///< The primitive's number in the user's array (none: the point is inside, no primitive is known),
+  Place place = {};  ///< and where in the tree it is.
 };
 
 /// Lexicographic: distance, point, part, primitive.

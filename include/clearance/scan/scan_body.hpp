@@ -8,8 +8,8 @@
 
 namespace clearance::scan {
 
-/// A range of points against every part, by one thread: the loop of any backend that has none of its own. `Answer` says how
-/// near something must be, what a walk carries, and takes what it found.
+/// A range of points against every part, by one thread: the loop of any backend that has none of its own. `Answer` says
+/// how near something must be, what a walk carries, and takes what it found.
 template <class PartView, point_source Source, class Traversal, class Answer>
 struct scan_body {
   const PartView* parts;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Warps of a block that have no packet left help those that have: some packets take many times as long as most, and a block ends with
-// its last. Whoever walks for a shared packet finds for itself, and tells how near; who is done last has all that was found. Nobody
-// waits for another's walk, and who does what changes no answer: of what is found the least counts, in whatever order.
+// Warps of a block that have no packet left help those that have: some packets take many times as long as most, and a
+// block ends with its last. Whoever walks for a shared packet finds for itself, and tells how near; who is done last
+// has all that was found. Nobody waits for another's walk, and who does what changes no answer: of what is found the
+// least counts, in whatever order.
 
 #include <clearance/ground/ordered.hpp>
 #include <clearance/result.hpp>
@@ -87,9 +88,11 @@ struct shared_walk {
     release(p);
   }
 
-  /// Hands every second of the nodes that this warp has still to look at in part k to an idle one, the nearest not; `stacks` are all warps'.
+  /// Hands every second of the nodes that this warp has still to look at in part k to an idle one, the nearest not;
+  /// `stacks` are all warps'.
   template <class Node, std::size_t Room>
-  static __device__ void hand_over(std::uint32_t k, real reach, const visitor& v, Node (&stacks)[warps][Room], std::uint32_t top) {
+  static __device__ void hand_over(std::uint32_t k, real reach, const visitor& v, Node (&stacks)[warps][Room],
+                                   std::uint32_t top) {
     auto& s = memory();
     Node* const mine = stacks[warp()];
     __syncwarp();  // all that has been pushed is there

@@ -34,11 +34,15 @@ struct steps_down : frame_parts<Answer> {
   static __device__ primitive_type primitive(std::uint32_t k, const place_type& p) {
     return tree(k).primitive(kind::unpack(p.leaf), p.number);
   }
-  static __device__ std::uint32_t id(std::uint32_t k, const place_type& p) { return tree(k).id(kind::unpack(p.leaf), p.number); }
+  static __device__ std::uint32_t id(std::uint32_t k, const place_type& p) {
+    return tree(k).id(kind::unpack(p.leaf), p.number);
+  }
   static __device__ place_type place_of(const node_type& leaf, std::uint32_t j) { return {leaf, j}; }
-  /// Of more than eight children the first that are not yet pushed: their number goes with the pair, in bits that it leaves. Those count to
-  /// `most_width`.
-  static __device__ std::uint32_t begin(std::uint32_t pair) { return (pair >> 10 & 63 | pair >> 23 << 6) * most_children; }
+  /// Of more than eight children the first that are not yet pushed: their number goes with the pair, in bits that it
+  /// leaves. Those count to `most_width`.
+  static __device__ std::uint32_t begin(std::uint32_t pair) {
+    return (pair >> 10 & 63 | pair >> 23 << 6) * most_children;
+  }
   static __device__ void skip(std::uint32_t& pair) {
     const std::uint32_t eights = begin(pair) / most_children + 1;
     pair = from_first(pair) | (eights & 63) << 10 | eights >> 6 << 23;
@@ -68,7 +72,9 @@ struct steps_down<Answer, H> : frame_parts<Answer> {
     const std::uint32_t c = n.first + j;
     return {node(k, c), volume(k, c)};
   }
-  static __device__ primitive_type primitive(std::uint32_t k, std::uint32_t place) { return read_only(tree(k).primitives + place); }
+  static __device__ primitive_type primitive(std::uint32_t k, std::uint32_t place) {
+    return read_only(tree(k).primitives + place);
+  }
   static __device__ std::uint32_t id(std::uint32_t k, std::uint32_t place) { return read_only(tree(k).ids + place); }
   static __device__ std::uint32_t place_of(const bvh_node& leaf, std::uint32_t j) { return leaf.first + j; }
   static __device__ std::uint32_t pair_of(std::uint32_t pair) { return pair & 0xffff; }
@@ -95,18 +101,22 @@ struct steps_down<Answer, H> : frame_parts<Answer> {
   /// Node n of part k, and its volume: from shared memory, if it is one of the first.
   static __device__ bvh_node node(std::uint32_t k, std::uint32_t n) {
     if constexpr (Answer::top_bytes > 0)
-      if (const std::uint32_t stride = parts::here().head.top_stride; n < stride) return near(parts::here().tops.nodes + k * stride + n);
+      if (const std::uint32_t stride = parts::here().head.top_stride; n < stride)
+        return near(parts::here().tops.nodes + k * stride + n);
     return far(tree(k).nodes + n);
   }
   static __device__ volume_type volume(std::uint32_t k, std::uint32_t n) {
     if constexpr (Answer::top_bytes > 0)
-      if (const std::uint32_t stride = parts::here().head.top_stride; n < stride) return near(parts::here().tops.volumes + k * stride + n);
+      if (const std::uint32_t stride = parts::here().head.top_stride; n < stride)
+        return near(parts::here().tops.volumes + k * stride + n);
     return far(tree(k).volumes + n);
   }
-  /// In as few pieces as its size allows, whatever its members ask for: these arrays begin where the largest may. A minimum's walks wait
-  /// for one another and not for that.
+  /// In as few pieces as its size allows, whatever its members ask for: these arrays begin where the largest may. A
+  /// minimum's walks wait for one another and not for that.
   template <class T>
-  static constexpr std::size_t piece = sizeof(T) % 16 == 0 ? 16 : sizeof(T) % 8 == 0 ? 8 : 4;
+  static constexpr std::size_t piece = sizeof(T) % 16 == 0  ? 16
+                                       : sizeof(T) % 8 == 0 ? 8
+                                                            : 4;
   template <class T>
   static constexpr bool has_pieces = sizeof(T) % piece<T> == 0 && alignof(T) >= 4;
   template <class T, class Read>
@@ -119,7 +129,8 @@ struct steps_down<Answer, H> : frame_parts<Answer> {
       word words[sizeof(T) / sizeof(word)];
     } c;
 #pragma unroll
-    for (std::size_t i = 0; i < sizeof(T) / sizeof(word); ++i) c.words[i] = read(reinterpret_cast<const word*>(from) + i);
+    for (std::size_t i = 0; i < sizeof(T) / sizeof(word); ++i)
+      c.words[i] = read(reinterpret_cast<const word*>(from) + i);
     return c.value;
   }
   template <class T>
@@ -129,7 +140,8 @@ struct steps_down<Answer, H> : frame_parts<Answer> {
   }
   template <class T>
   static __device__ T far(const T* from) {
-    if constexpr (Answer::goes_ahead && has_pieces<T>) return in_pieces(from, [](const auto* word) { return __ldg(word); });
+    if constexpr (Answer::goes_ahead && has_pieces<T>)
+      return in_pieces(from, [](const auto* word) { return __ldg(word); });
     return read_only(from);
   }
   template <class T>

@@ -11,7 +11,8 @@ struct drop_counts {
   unsigned long long dropped[drop_reasons] = {};
 };
 
-/// From that to how many points there were, and how many of them count. `Counts`: point_counts, or a result that has the same.
+/// From that to how many points there were, and how many of them count. `Counts`: point_counts, or a result that has
+/// the same.
 template <class Counts>
 CLEARANCE_HD void count(Counts& r, const unsigned long long (&dropped)[drop_reasons], std::uint64_t seen) {
   r.seen = r.valid = seen;

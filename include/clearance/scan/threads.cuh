@@ -17,8 +17,8 @@ __device__ T fresh(const T& shared) {
   return *static_cast<const volatile T*>(&shared);
 }
 
-/// Adds one to a counter of the whole device and returns what it was. What this thread has written, and read, before it is
-/// seen by who counts later; what others wrote before they counted is seen after it.
+/// Adds one to a counter of the whole device and returns what it was. What this thread has written, and read, before it
+/// is seen by who counts later; what others wrote before they counted is seen after it.
 __device__ inline std::uint32_t count_in(std::uint32_t& counter) {
   return cuda::atomic_ref<std::uint32_t, cuda::thread_scope_device>(counter).fetch_add(1, cuda::memory_order_acq_rel);
 }

@@ -65,8 +65,8 @@ inline bool may_reach(const ball& around, real reach, const extent& box) {
   return limit >= 0 && dx * dx + dy * dy + dz * dz <= limit * limit;
 }
 
-/// A box around all that is within reach of some part now, and so later on: no box that `may_reach` says yes to is beside it. (Slack enough
-/// for what that rounds, and for the sums here; and squares may vanish.)
+/// A box around all that is within reach of some part now, and so later on: no box that `may_reach` says yes to is
+/// beside it. (Slack enough for what that rounds, and for the sums here; and squares may vanish.)
 template <class Body>
 extent within_reach(const Body& body) {
   extent all;
@@ -81,8 +81,8 @@ extent within_reach(const Body& body) {
   return all;
 }
 inline bool beside(const extent& a, const extent& b) {
-  const bool together = int(a.lower.x <= b.upper.x) & int(b.lower.x <= a.upper.x) & int(a.lower.y <= b.upper.y) & int(b.lower.y <= a.upper.y) &
-                        int(a.lower.z <= b.upper.z) & int(b.lower.z <= a.upper.z);
+  const bool together = int(a.lower.x <= b.upper.x) & int(b.lower.x <= a.upper.x) & int(a.lower.y <= b.upper.y) &
+                        int(b.lower.y <= a.upper.y) & int(a.lower.z <= b.upper.z) & int(b.lower.z <= a.upper.z);
   return !together;
 }
 

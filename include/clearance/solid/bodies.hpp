@@ -16,8 +16,8 @@ struct body_report {
   double one_sided_area = 0;        ///< Square metres.
 };
 
-/// Finds the bodies, and turns their triangles until neighbours agree, if asked to. Of a body's two orientations that is kept
-/// which most of its area has.
+/// Finds the bodies, and turns their triangles until neighbours agree, if asked to. Of a body's two orientations that
+/// is kept which most of its area has.
 template <class Counts>
 body_report find_bodies(triangle_mesh& mesh, const Counts& counts, bool orient) {
   struct link {

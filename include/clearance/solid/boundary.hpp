@@ -53,8 +53,8 @@ inline std::vector<body_rim> boundaries(std::span<const edge_use> uses, std::spa
   return rims;
 }
 
-/// Closed walks without repeated vertices, which together go each boundary edge `excess` times *against* the surface, so
-/// that a patch over each walk closes it. They exist always: as many sides enter a vertex as leave it.
+/// Closed walks without repeated vertices, which together go each boundary edge `excess` times *against* the surface,
+/// so that a patch over each walk closes it. They exist always: as many sides enter a vertex as leave it.
 inline std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const boundary_edge> edges) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> out;  // from, to
   for (const boundary_edge& e : edges)

@@ -38,8 +38,7 @@ struct box_tree_view {
   /// never above the old. Returns the last, or the first that is no larger than `enough`.
   CLEARANCE_CALLS_ANYTHING
   template <class F>
-  CLEARANCE_HD double nearest(const vec3d& p, double best, F visit,
-                              double enough = -double(infinity)) const {
+  CLEARANCE_HD double nearest(const vec3d& p, double best, F visit, double enough = -double(infinity)) const {
     if (items == 0) return best;
     struct {
       double distance;

@@ -9,9 +9,10 @@
 
 namespace clearance {
 
-/// Does a triangle, with an area or without, touch the cube of half side `half` around `middle`? By separating axes: the
-/// cube's, the triangle's normal, and all nine products of their edges (Akenine-Moeller 2001).
-inline bool box_meets_triangle(const Eigen::Vector3d& middle, double half, const std::array<Eigen::Vector3d, 3>& corners) {
+/// Does a triangle, with an area or without, touch the cube of half side `half` around `middle`? By separating axes:
+/// the cube's, the triangle's normal, and all nine products of their edges (Akenine-Moeller 2001).
+inline bool box_meets_triangle(const Eigen::Vector3d& middle, double half,
+                               const std::array<Eigen::Vector3d, 3>& corners) {
   const Eigen::Vector3d v[3] = {corners[0] - middle, corners[1] - middle, corners[2] - middle};
   for (int k = 0; k < 3; ++k)
     if (std::min({v[0][k], v[1][k], v[2][k]}) > half || std::max({v[0][k], v[1][k], v[2][k]}) < -half) return false;

@@ -73,8 +73,8 @@ inline void append_polygon(triangle_mesh& mesh, std::span<const std::uint32_t> l
 
 /// Triangles whose sides are those of the loop, in its direction, once all sides inside have cancelled: ears cut in the
 /// loop's mean plane, and where there is no ear (the loop crosses itself, or is very long), a fan around the middle.
-/// May append one vertex. The same loop the other way round gets the same triangles, turned: two bodies that meet in a loop
-/// leave nothing between their caps.
+/// May append one vertex. The same loop the other way round gets the same triangles, turned: two bodies that meet in a
+/// loop leave nothing between their caps.
 inline void append_cap(triangle_mesh& mesh, std::span<const std::uint32_t> given) {
   const std::size_t n = given.size(), start = std::size_t(std::min_element(given.begin(), given.end()) - given.begin());
   std::vector<std::uint32_t> loop(n);

@@ -21,15 +21,18 @@ class mesh_closer {
     for (std::size_t k = 0; k + 1 < first.size(); ++k)
       if (first[k] < first[k + 1]) shapes.push_back(close_shape(first[k], first[k + 1]));
     out_.loaded = std::uint32_t(mesh_.triangles.size());
-    out_.closed = options_.cap || std::all_of(shapes.begin(), shapes.end(), [](const auto& s) { return s.rims.empty(); });
+    out_.closed =
+        options_.cap || std::all_of(shapes.begin(), shapes.end(), [](const auto& s) { return s.rims.empty(); });
     for (bool caps : {false, true}) {
       std::uint32_t vertex = 0, body = 0;
       for (std::uint32_t k = 0; k < shapes.size(); ++k) {
         append(shapes[k], k, caps, vertex, body);
-        vertex += std::uint32_t(shapes[k].mesh.vertices.size()), body += std::uint32_t(shapes[k].bodies.one_sided.size());
+        vertex += std::uint32_t(shapes[k].mesh.vertices.size()),
+            body += std::uint32_t(shapes[k].bodies.one_sided.size());
       }
     }
-    for (const shape_surface& s : shapes) out_.surface.vertices.insert(out_.surface.vertices.end(), s.mesh.vertices.begin(), s.mesh.vertices.end());
+    for (const shape_surface& s : shapes)
+      out_.surface.vertices.insert(out_.surface.vertices.end(), s.mesh.vertices.begin(), s.mesh.vertices.end());
     const std::size_t kept = out_.surface.vertices.size() - cap_vertices_;  // a vertex may be in several shapes
     out_.welded = std::uint32_t(mesh_.vertices.size() - std::min(kept, mesh_.vertices.size()));
     measure();
@@ -67,7 +70,8 @@ class mesh_closer {
     return part;
   }
 
-  /// Bodies face outwards for the winding number, whichever way they were loaded. What is so flat that rounding decides is left.
+  /// Bodies face outwards for the winding number, whichever way they were loaded. What is so flat that rounding decides
+  /// is left.
   void turn_out(shape_surface& s) {
     const std::vector<double> volumes = body_volumes(s);
     std::vector<double> areas(volumes.size(), 0);
@@ -117,7 +121,8 @@ class mesh_closer {
     }
   }
 
-  /// Winding numbers are trusted where bodies are clean; elsewhere a flood says what is inside besides, to its cubes' size.
+  /// Winding numbers are trusted where bodies are clean; elsewhere a flood says what is inside besides, to its cubes'
+  /// size.
   void judge(std::uint32_t shapes) {
     std::vector<bool> unclean(shapes, false), capped(shapes, false);
     const second_opinion flooded(out_, shape_, shapes);
@@ -134,11 +139,14 @@ class mesh_closer {
       mark(unclean_, unclean);
     }
     const bool encloses = std::find(out_.encloses.begin(), out_.encloses.end(), true) != out_.encloses.end();
-    out_.inside = !encloses ? inside_by::nothing : std::find(capped_.begin(), capped_.end(), true) == capped_.end() ? inside_by::closed : inside_by::caps;
+    out_.inside = !encloses                                                          ? inside_by::nothing
+                  : std::find(capped_.begin(), capped_.end(), true) == capped_.end() ? inside_by::closed
+                                                                                     : inside_by::caps;
     if (std::find(unclean.begin(), unclean.end(), true) == unclean.end()) return;
     out_.enclosed = flooded.enclosed(unclean);
     if (encloses || !out_.enclosed.bits.empty()) out_.inside = inside_by::flood;
-    // What is thinner than two cubes the flood does not see; and a region's cubes at its walls are not those that are enclosed.
+    // What is thinner than two cubes the flood does not see; and a region's cubes at its walls are not those that are
+    // enclosed.
     out_.tolerance += 2 * std::sqrt(3.0) * out_.enclosed.cube;
   }
 
@@ -147,12 +155,14 @@ class mesh_closer {
       if (out_.counts[i] && bodies[out_.body[i]]) shapes[shape_[i]] = true;
   }
 
-  /// One sheet that lies in a plane encloses nothing, whatever bodies it lies beside: a shape that has no other is clean.
+  /// One sheet that lies in a plane encloses nothing, whatever bodies it lies beside: a shape that has no other is
+  /// clean.
   void forgive_one_flat_sheet(std::uint32_t shapes) {
     std::vector<std::vector<std::uint32_t>> sheets(shapes);
     std::vector<bool> seen(unclean_.size(), false);
     for (std::size_t i = 0; i < out_.body.size(); ++i)
-      if (const std::uint32_t b = out_.body[i]; out_.counts[i] && unclean_[b] && !seen[b]) seen[b] = true, sheets[shape_[i]].push_back(b);
+      if (const std::uint32_t b = out_.body[i]; out_.counts[i] && unclean_[b] && !seen[b])
+        seen[b] = true, sheets[shape_[i]].push_back(b);
     for (const auto& of_shape : sheets)
       if (of_shape.size() == 1 && flat(of_shape[0])) unclean_[of_shape[0]] = false;
   }
@@ -169,7 +179,8 @@ class mesh_closer {
       if (n.norm() > most) most = n.norm(), normal = n.normalized(), origin = v[t[0]];
     });
     each([&](const auto& t) {
-      for (const std::uint32_t c : t) height = std::max(height, std::abs(normal.dot(v[c] - origin))), size = std::max(size, (v[c] - origin).norm());
+      for (const std::uint32_t c : t)
+        height = std::max(height, std::abs(normal.dot(v[c] - origin))), size = std::max(size, (v[c] - origin).norm());
     });
     return height <= 1e-9 * size;
   }
@@ -185,9 +196,9 @@ class mesh_closer {
 
 }  // namespace detail
 
-/// Closes a mesh as robots come with: open, badly oriented, not manifold, of several shells. Each connected body of each shape is
-/// closed by itself, and a point is inside if it is in any. Nothing is dropped; what was found is counted. Throws
-/// std::invalid_argument for what is no mesh at all (see check_mesh).
+/// Closes a mesh as robots come with: open, badly oriented, not manifold, of several shells. Each connected body of
+/// each shape is closed by itself, and a point is inside if it is in any. Nothing is dropped; what was found is
+/// counted. Throws std::invalid_argument for what is no mesh at all (see check_mesh).
 inline closed_mesh close_mesh(const triangle_mesh& mesh, const close_options& options = {}) {
   check_mesh(mesh);
   return detail::mesh_closer(mesh, options).close();

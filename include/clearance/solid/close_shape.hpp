@@ -32,8 +32,8 @@ inline shape_surface open_surface(triangle_mesh mesh, const close_options& optio
   return s;
 }
 
-/// Faces that should meet often miss one another by rounding, or a little more. What is open is welded as far as that closes
-/// it, by 1e-9 of the shape's size, then by more, at most by 2e-4.
+/// Faces that should meet often miss one another by rounding, or a little more. What is open is welded as far as that
+/// closes it, by 1e-9 of the shape's size, then by more, at most by 2e-4.
 inline shape_surface weld_cracks(shape_surface as_loaded, const close_options& options) {
   Eigen::AlignedBox3d box;
   for (const auto& v : as_loaded.mesh.vertices) box.extend(v);
@@ -78,7 +78,8 @@ inline std::vector<double> body_volumes(const shape_surface& s) {
     const auto& t = s.mesh.triangles[i];
     const Eigen::Vector3d*& origin = about[s.bodies.body[i]];
     if (!origin) origin = &s.mesh.vertices[t[0]];
-    const Eigen::Vector3d a = s.mesh.vertices[t[0]] - *origin, b = s.mesh.vertices[t[1]] - *origin, c = s.mesh.vertices[t[2]] - *origin;
+    const Eigen::Vector3d a = s.mesh.vertices[t[0]] - *origin, b = s.mesh.vertices[t[1]] - *origin,
+                          c = s.mesh.vertices[t[2]] - *origin;
     volumes[s.bodies.body[i]] += a.dot(b.cross(c)) / 6;
   }
   return volumes;

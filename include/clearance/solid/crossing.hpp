@@ -50,8 +50,8 @@ CLEARANCE_HD inline int side(const T (&u)[3], const T (&v)[3], double y, double 
   return swapped ? -s : s;
 }
 
-/// What the triangle adds to the winding number at (x, y, z): +1 where the ray towards +x leaves through it, -1 where it
-/// enters, 0 where it misses.
+/// What the triangle adds to the winding number at (x, y, z): +1 where the ray towards +x leaves through it, -1 where
+/// it enters, 0 where it misses.
 template <class T>
 CLEARANCE_HD inline int sign(const crossing_triangle<T>& t, double x, double y, double z) {
   const T &ay = t.v[0][1], &by = t.v[1][1], &cy = t.v[2][1], &az = t.v[0][2], &bz = t.v[1][2], &cz = t.v[2][2];
@@ -63,7 +63,8 @@ CLEARANCE_HD inline int sign(const crossing_triangle<T>& t, double x, double y, 
   if (s == 0 || side(t.v[1], t.v[2], y, z) != s || side(t.v[2], t.v[0], y, z) != s) return 0;
   if (ax > x && bx > x && cx > x) return s;
   // s is also the sign of the normal's x, so the plane is ahead where normal * (p - a) has the other sign.
-  const double uy = by - double(ay), uz = bz - double(az), ux = bx - ax, vy = cy - double(ay), vz = cz - double(az), vx = cx - ax;
+  const double uy = by - double(ay), uz = bz - double(az), ux = bx - ax, vy = cy - double(ay), vz = cz - double(az),
+               vx = cx - ax;
   const double nx = difference_of_products(uy, vz, uz, vy), ny = difference_of_products(uz, vx, ux, vz),
                nz = difference_of_products(ux, vy, uy, vx);
   const double above = fused(nx, x - ax, fused(ny, y - ay, nz * (z - az)));

@@ -15,8 +15,8 @@ struct edge_use {
   std::int32_t sign;
 };
 
-/// All sides of the triangles that count (`counts[i]` is not 0), those of one edge side by side. Sides from a vertex to itself
-/// are left out.
+/// All sides of the triangles that count (`counts[i]` is not 0), those of one edge side by side. Sides from a vertex to
+/// itself are left out.
 template <class Counts>
 std::vector<edge_use> edge_uses(std::span<const std::array<std::uint32_t, 3>> triangles, const Counts& counts) {
   std::vector<edge_use> uses;

@@ -38,7 +38,8 @@ struct enclosure_grid {
   }
 };
 
-/// A grid of at most about `cubes` cubes around a box, with a layer to spare on every side. Rows along x fill whole words.
+/// A grid of at most about `cubes` cubes around a box, with a layer to spare on every side. Rows along x fill whole
+/// words.
 inline enclosure_grid grid_around(const Eigen::AlignedBox3d& box, double cubes) {
   enclosure_grid g;
   const Eigen::Vector3d extent = box.sizes();

@@ -9,11 +9,12 @@
 
 namespace clearance {
 
-/// Floods a grid from its border through all cubes that no triangle touches, from face to face. It needs no orientation, and a
-/// gap that is narrower than a cube lets nothing through. 32 cubes of a row are a word.
+/// Floods a grid from its border through all cubes that no triangle touches, from face to face. It needs no
+/// orientation, and a gap that is narrower than a cube lets nothing through. 32 cubes of a row are a word.
 class flood {
  public:
-  explicit flood(const enclosure_grid& grid) : grid_(grid), words_(grid.size[0] / 32), open_(words_ * grid.size[1] * grid.size[2], ~0u) {}
+  explicit flood(const enclosure_grid& grid)
+      : grid_(grid), words_(grid.size[0] / 32), open_(words_ * grid.size[1] * grid.size[2], ~0u) {}
 
   /// A wall. Goes down from the whole grid in eighths, so that large triangles cost no more than their surface.
   void add(const std::array<Eigen::Vector3d, 3>& corners) {
@@ -55,14 +56,16 @@ class flood {
     for (int k = 0; k < 3; ++k)
       if (first[k] >= grid_.size[k]) return;
     const double half = (side / 2.0 + 1e-6) * grid_.cube;  // rounding must not lose a wall
-    const Eigen::Vector3d middle = grid_.low + grid_.cube * Eigen::Vector3d(first[0] + side / 2.0, first[1] + side / 2.0, first[2] + side / 2.0);
+    const Eigen::Vector3d middle =
+        grid_.low + grid_.cube * Eigen::Vector3d(first[0] + side / 2.0, first[1] + side / 2.0, first[2] + side / 2.0);
     if (!box_meets_triangle(middle, half, corners)) return;
     if (side == 1) {
       open_[(std::size_t(first[2]) * grid_.size[1] + first[1]) * words_ + first[0] / 32] &= ~(1u << first[0] % 32);
       return;
     }
     const std::uint32_t h = side / 2;
-    for (std::uint32_t k = 0; k < 8; ++k) wall(corners, {first[0] + (k & 1) * h, first[1] + (k >> 1 & 1) * h, first[2] + (k >> 2) * h}, h);
+    for (std::uint32_t k = 0; k < 8; ++k)
+      wall(corners, {first[0] + (k & 1) * h, first[1] + (k >> 1 & 1) * h, first[2] + (k >> 2) * h}, h);
   }
 
   /// From the four rows beside it into a row, and along it; does more of it become reached?

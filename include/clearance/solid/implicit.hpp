@@ -13,7 +13,8 @@ namespace clearance {
 template <class F>
 class implicit_solid {
  public:
-  implicit_solid(F signed_distance, const Eigen::AlignedBox3d& bounds) : f_(std::move(signed_distance)), bounds_(bounds) {
+  implicit_solid(F signed_distance, const Eigen::AlignedBox3d& bounds)
+      : f_(std::move(signed_distance)), bounds_(bounds) {
     if (bounds.isEmpty() || !bounds.min().allFinite() || !bounds.max().allFinite())
       throw std::invalid_argument("clearance::implicit_solid: the bounds are empty or not finite");
   }

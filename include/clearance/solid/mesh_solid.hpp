@@ -34,14 +34,16 @@ class mesh_solid {
   /// Moebius strip.
   explicit mesh_solid(closed_mesh mesh) : mesh_solid(std::move(mesh), surface_too{}) {
     if (mesh_.one_sided_area > 0.5 * mesh_.area)
-      throw std::invalid_argument("clearance: the mesh has no inside: its surface has only one side, as a Moebius strip");
+      throw std::invalid_argument(
+          "clearance: the mesh has no inside: its surface has only one side, as a Moebius strip");
     if (!(enclosed_.volume > 1e-9 * bounds_.diagonal().norm() * mesh_.area))
       throw std::invalid_argument("clearance: the mesh has no inside: it is a sheet, and its " +
                                   std::to_string(mesh_.loaded) + " triangles and their caps enclose no volume");
   }
   explicit mesh_solid(const triangle_mesh& mesh) : mesh_solid(close_mesh(mesh)) {}
 
-  /// A mesh that encloses nothing is a solid, too: its surface. No sphere fits into it, but distances and gaps can be asked.
+  /// A mesh that encloses nothing is a solid, too: its surface. No sphere fits into it, but distances and gaps can be
+  /// asked.
   static mesh_solid of_surface(closed_mesh mesh) { return mesh_solid(std::move(mesh), surface_too{}); }
 
  private:
@@ -55,7 +57,8 @@ class mesh_solid {
       bounds_.extend(boxes.back());
     }
     enclosed_ = enclosed_volume(winding_);
-    if (!mesh_.enclosed.bits.empty()) enclosed_.volume = std::max(enclosed_.volume, mesh_.enclosed.volume()), enclosed_.exact = false;
+    if (!mesh_.enclosed.bits.empty())
+      enclosed_.volume = std::max(enclosed_.volume, mesh_.enclosed.volume()), enclosed_.exact = false;
     tree_ = box_tree(boxes);
   }
 
@@ -65,17 +68,19 @@ class mesh_solid {
 
   double distance(const Eigen::Vector3d& p) const { return distance(p, std::numeric_limits<double>::infinity()); }
   /// The distance if it is below `within`, else `within`: quicker when something is known.
-  double distance(const Eigen::Vector3d& p, double within) const {
-    return view().distance(p, within);
-  }
+  double distance(const Eigen::Vector3d& p, double within) const { return view().distance(p, within); }
   bool inside(const Eigen::Vector3d& p) const { return winding_.view().inside(p.x(), p.y(), p.z()); }
 
   mesh_solid_view view() const { return {tree_.view(), triangles_.data(), winding_.view()}; }
   /// A copy of what searches read where `other` runs.
   template <backend Other>
   mesh_solid_copy<Other> on(const Other& other) const {
-    return {other.copy_in(tree_.nodes()), other.copy_in(tree_.order()), other.copy_in(std::span<const exact_triangle>(triangles_)),
-            winding_.on(other), tree_.view().items, tree_.view().root};
+    return {other.copy_in(tree_.nodes()),
+            other.copy_in(tree_.order()),
+            other.copy_in(std::span<const exact_triangle>(triangles_)),
+            winding_.on(other),
+            tree_.view().items,
+            tree_.view().root};
   }
 
   double tolerance() const { return mesh_.tolerance; }
@@ -93,7 +98,8 @@ class mesh_solid {
     std::vector<Eigen::Vector3d> points;
     points.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t at = std::size_t(std::upper_bound(until.begin(), until.end(), sum * ((i + 0.5) / count)) - until.begin());
+      const std::size_t at =
+          std::size_t(std::upper_bound(until.begin(), until.end(), sum * ((i + 0.5) / count)) - until.begin());
       const exact_triangle& t = triangles_[std::min(at, triangles_.size() - 1)];
       double u = std::fmod((i + 1) * 0.7548776662466927, 1.0), v = std::fmod((i + 1) * 0.5698402909980532, 1.0);
       if (u + v > 1) u = 1 - u, v = 1 - v;
@@ -112,7 +118,9 @@ class mesh_solid {
 };
 
 /// Is there anything that inner spheres could fill?
-inline bool has_inside(const closed_mesh& mesh) { return mesh.inside != inside_by::nothing && mesh.one_sided_area <= 0.5 * mesh.area; }
+inline bool has_inside(const closed_mesh& mesh) {
+  return mesh.inside != inside_by::nothing && mesh.one_sided_area <= 0.5 * mesh.area;
+}
 
 static_assert(solid<mesh_solid> && solid_view<mesh_solid_view>);
 

@@ -30,7 +30,9 @@ struct mesh_solid_view {
       return best;
     });
   }
-  CLEARANCE_HD double nearer(std::uint32_t i, const vec3d& p, double best) const { return triangles[i].nearer(p, best); }
+  CLEARANCE_HD double nearer(std::uint32_t i, const vec3d& p, double best) const {
+    return triangles[i].nearer(p, best);
+  }
 };
 
 }  // namespace clearance

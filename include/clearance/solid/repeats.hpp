@@ -42,8 +42,9 @@ class repeats {
       counts_[i] = !corner_twice(triangles_[i]) && known.insert(sorted(triangles_[i])).second;
   }
 
-  /// Two triangles on either side of a diagonal cover the quad; others on three of its corners, along the other diagonal, do
-  /// not count. All other sides must be sides of further triangles: so a tetrahedron, which looks alike, stays.
+  /// Two triangles on either side of a diagonal cover the quad; others on three of its corners, along the other
+  /// diagonal, do not count. All other sides must be sides of further triangles: so a tetrahedron, which looks alike,
+  /// stays.
   void quads() {
     const std::vector<edge_use> uses = edge_uses(triangles_, counts_);
     std::vector<std::uint8_t> free_sides(triangles_.size(), 0);  // with one use or two
@@ -60,7 +61,8 @@ class repeats {
     std::vector<std::uint32_t> own(triangles_.size(), ~0u);
     for_each_edge(uses, [&](std::span<const edge_use> edge) {
       if (edge.size() != 2 || !fits(edge[0].triangle) || !fits(edge[1].triangle)) return;
-      const std::uint32_t a = opposite(edge[0]), b = opposite(edge[1]), first = std::min(edge[0].triangle, edge[1].triangle);
+      const std::uint32_t a = opposite(edge[0]), b = opposite(edge[1]),
+                          first = std::min(edge[0].triangle, edge[1].triangle);
       if (a == b) return;
       for (const edge_use& u : edge) own[u.triangle] = first;
       for (const std::uint32_t c : {edge[0].low, edge[0].high}) {

@@ -9,11 +9,12 @@ namespace clearance {
 
 /// A solid as packing asks it: a view that is copied as bytes to where packing runs.
 ///
-/// Law: `distance(p, within, enough)` is the solid's distance if that is below `within`, else `within`; or, sooner, an upper
-/// bound of it that is no larger than `enough`. `inside(p)` is the solid's.
+/// Law: `distance(p, within, enough)` is the solid's distance if that is below `within`, else `within`; or, sooner, an
+/// upper bound of it that is no larger than `enough`. `inside(p)` is the solid's.
 ///
 /// Optional: `near(p, reach, take)` calls take(i) for the number of each piece of the surface that is closer to p than
-/// `reach`, and `nearer(i, p, best)` is the distance to that piece if it is below `best`, else `best`: climbs are quicker then.
+/// `reach`, and `nearer(i, p, best)` is the distance to that piece if it is below `best`, else `best`: climbs are
+/// quicker then.
 template <class V>
 concept solid_view = std::is_trivially_copyable_v<V> && requires(const V v, vec3d p, double d) {
   { v.distance(p, d, d) } -> std::same_as<double>;
@@ -28,7 +29,9 @@ struct solid_reference {
   /// What is not a number stays so, and no room is found there.
   CLEARANCE_CALLS_ANYTHING
   CLEARANCE_HD double distance(const vec3d& p, double within, double = 0) const {
-    if constexpr (requires { { of->distance(Eigen::Vector3d(), within) } -> std::same_as<double>; }) {
+    if constexpr (requires {
+                    { of->distance(Eigen::Vector3d(), within) } -> std::same_as<double>;
+                  }) {
       return of->distance(p, within);
     } else {
       const double d = of->distance(p);
@@ -60,7 +63,9 @@ class solid_there<host, S> {
  public:
   solid_there(const host&, const S& s) : of_(&s) {}
   auto view() const {
-    if constexpr (requires { { of_->view() } -> solid_view; })
+    if constexpr (requires {
+                    { of_->view() } -> solid_view;
+                  })
       return of_->view();
     else
       return solid_reference<S>{of_};

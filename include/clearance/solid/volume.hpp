@@ -8,12 +8,12 @@ namespace clearance {
 /// A triangle that a ray along +x meets.
 struct ray_hit {
   double x;
-  std::int32_t sign;        ///< +1 where the ray leaves through it, -1 where it enters.
-  std::uint32_t triangle;   ///< Its number in the winding.
+  std::int32_t sign;       ///< +1 where the ray leaves through it, -1 where it enters.
+  std::uint32_t triangle;  ///< Its number in the winding.
 };
 
-/// Calls `visit(hits)` for rays along +x through the middles of a grid of `rays` by `rays` over (y, z): their hits from low to
-/// high x. Returns how much of the (y, z) plane each ray stands for, square metres.
+/// Calls `visit(hits)` for rays along +x through the middles of a grid of `rays` by `rays` over (y, z): their hits from
+/// low to high x. Returns how much of the (y, z) plane each ray stands for, square metres.
 template <class F>
 double for_each_ray(const basic_winding<double>& w, int rays, F visit) {
   const basic_winding_view<double> g = w.view();
@@ -35,24 +35,26 @@ double for_each_ray(const basic_winding<double>& w, int rays, F visit) {
         const double x = v[0][0] + a * (v[1][0] - v[0][0]) + b * (v[2][0] - v[0][0]);
         if (std::isfinite(x)) hits.push_back({x, s, g.lists[k]});
       }
-      std::sort(hits.begin(), hits.end(), [](const auto& p, const auto& q) { return p.x != q.x ? p.x < q.x : p.triangle < q.triangle; });
+      std::sort(hits.begin(), hits.end(),
+                [](const auto& p, const auto& q) { return p.x != q.x ? p.x < q.x : p.triangle < q.triangle; });
       visit(std::span<const ray_hit>(hits));
     }
   return (y / rays) * (z / rays);
 }
 
-/// Touching surfaces, met in the wrong order by rounding, are no overlap: a piece of a ray shorter than this is none. Metres.
+/// Touching surfaces, met in the wrong order by rounding, are no overlap: a piece of a ray shorter than this is none.
+/// Metres.
 inline double least_piece(const basic_winding<double>& w) { return 1e-9 * (w.grid.high[0] - w.grid.low[0]); }
 
 /// What a closed surface encloses.
 struct enclosed {
-  double volume = 0;       ///< Cubic metres where the winding number is not zero.
-  bool exact = true;       ///< From the divergence theorem; otherwise from rays, to about 0.1 %.
-  bool overlaps = false;   ///< Somewhere the winding number is not 0 and 1, or 0 and -1.
+  double volume = 0;      ///< Cubic metres where the winding number is not zero.
+  bool exact = true;      ///< From the divergence theorem; otherwise from rays, to about 0.1 %.
+  bool overlaps = false;  ///< Somewhere the winding number is not 0 and 1, or 0 and -1.
 };
 
-/// Rays see which winding numbers there are. If they are only 0 and 1, the signed volume is the volume; else the rays' lengths
-/// inside are summed.
+/// Rays see which winding numbers there are. If they are only 0 and 1, the signed volume is the volume; else the rays'
+/// lengths inside are summed.
 inline enclosed enclosed_volume(const basic_winding<double>& w) {
   int lowest = 0, highest = 0;
   const auto sum_of_rays = [&](int rays) {
@@ -73,8 +75,10 @@ inline enclosed enclosed_volume(const basic_winding<double>& w) {
     double v[3][3];
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k < 3; ++k) v[j][k] = t.v[j][k] - w.grid.low[k];
-    signed_volume += (v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) - v[0][1] * (v[1][0] * v[2][2] - v[1][2] * v[2][0]) +
-                      v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0])) / 6;
+    signed_volume +=
+        (v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) - v[0][1] * (v[1][0] * v[2][2] - v[1][2] * v[2][0]) +
+         v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0])) /
+        6;
   }
   sum_of_rays(128);
   enclosed e;

@@ -20,7 +20,8 @@ namespace clearance {
 inline void check_mesh(const triangle_mesh& mesh) {
   const auto refuse = [](const std::string& why) { throw std::invalid_argument("clearance: the mesh " + why); };
   if (mesh.triangles.empty()) refuse("has no triangles");
-  if (mesh.vertices.size() > 0xfffffff0u || mesh.triangles.size() > 0x3ffffff0u) refuse("has too many vertices or triangles");
+  if (mesh.vertices.size() > 0xfffffff0u || mesh.triangles.size() > 0x3ffffff0u)
+    refuse("has too many vertices or triangles");
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
     for (int k = 0; k < 3; ++k)
       if (!(std::abs(mesh.vertices[i][k]) <= 1e15))
@@ -30,8 +31,8 @@ inline void check_mesh(const triangle_mesh& mesh) {
     const auto& t = mesh.triangles[i];
     for (const std::uint32_t v : t)
       if (v >= mesh.vertices.size())
-        refuse("has an index out of range: triangle " + std::to_string(i) + " names vertex " + std::to_string(v) + " of " +
-               std::to_string(mesh.vertices.size()));
+        refuse("has an index out of range: triangle " + std::to_string(i) + " names vertex " + std::to_string(v) +
+               " of " + std::to_string(mesh.vertices.size()));
     const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     area = area || (b - a).cross(c - a).squaredNorm() > 0;
   }
@@ -68,8 +69,8 @@ inline triangle_mesh weld(const triangle_mesh& mesh) {
   return welded;
 }
 
-/// Of these vertices those within `reach` metres of an earlier one become that one; returns how many. Each is compared with
-/// the first of its group, so that a row of close ones does not shrink to a point.
+/// Of these vertices those within `reach` metres of an earlier one become that one; returns how many. Each is compared
+/// with the first of its group, so that a row of close ones does not shrink to a point.
 inline std::size_t weld_near(triangle_mesh& mesh, std::span<const std::uint32_t> vertices, double reach) {
   struct cell_hash {
     std::size_t operator()(const std::array<std::int64_t, 3>& cell) const {
@@ -87,7 +88,8 @@ inline std::size_t weld_near(triangle_mesh& mesh, std::span<const std::uint32_t>
     const std::array<std::int64_t, 3> cell{std::llround(at.x()), std::llround(at.y()), std::llround(at.z())};
     const std::uint32_t* found = nullptr;
     for (int k = 0; k < 27 && !found; ++k)
-      if (const auto near = kept.find({cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1}); near != kept.end())
+      if (const auto near = kept.find({cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1});
+          near != kept.end())
         for (const std::uint32_t& other : near->second)
           if ((mesh.vertices[other] - p).norm() <= reach && !found) found = &other;
     if (found)

@@ -58,8 +58,8 @@ class winding_grid {
     std::uint32_t left, right, below, above;
   };
 
-  /// About as many cells as triangles, nearly square ones; flat extents get one row or column. Fewer where large triangles,
-  /// one over another, would fill the lists.
+  /// About as many cells as triangles, nearly square ones; flat extents get one row or column. Fewer where large
+  /// triangles, one over another, would fill the lists.
   void choose_cells() {
     for (double wanted = std::clamp(double(w_.triangles.size()), 1.0, 65536.0); wanted >= 1; wanted /= 4) {
       divide_into(wanted);
@@ -78,7 +78,8 @@ class winding_grid {
     };
     const auto per = [](double count, double extent) {
       const double p = extent > 0 ? count / extent : 0;
-      return T(p <= double(std::numeric_limits<T>::max()) ? p : 0);  // an extent near the smallest number: one cell is used
+      return T(p <= double(std::numeric_limits<T>::max()) ? p
+                                                          : 0);  // an extent near the smallest number: one cell is used
     };
     g_.columns = std::uint32_t(along(y_, z_)), g_.rows = std::uint32_t(along(z_, y_));
     g_.per_y = per(g_.columns, y_), g_.per_z = per(g_.rows, z_);
@@ -136,14 +137,15 @@ class winding_grid {
 
 }  // namespace detail
 
-/// Makes the test for points inside a mesh. Coordinates are rounded to T, which is all that is lost. `bodies`, if given, gets
-/// the body of each of its triangles. Throws std::invalid_argument if the mesh is not closed.
+/// Makes the test for points inside a mesh. Coordinates are rounded to T, which is all that is lost. `bodies`, if
+/// given, gets the body of each of its triangles. Throws std::invalid_argument if the mesh is not closed.
 template <class T = real>
 basic_winding<T> make_winding(const closed_mesh& mesh, std::vector<std::uint32_t>* bodies = nullptr) {
   if (!mesh.closed) throw std::invalid_argument("clearance: an open mesh has no inside; close it with caps");
   basic_winding<T> w;
   basic_winding_view<T>& g = w.grid;
-  for (int k = 0; k < 3; ++k) g.low[k] = std::numeric_limits<T>::infinity(), g.high[k] = -std::numeric_limits<T>::infinity();
+  for (int k = 0; k < 3; ++k)
+    g.low[k] = std::numeric_limits<T>::infinity(), g.high[k] = -std::numeric_limits<T>::infinity();
   for (std::size_t i = 0; i < mesh.surface.triangles.size(); ++i) {
     auto corners = mesh.surface.triangles[i];
     if (!mesh.counts[i] || corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;

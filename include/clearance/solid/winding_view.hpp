@@ -12,11 +12,11 @@ namespace clearance {
 template <class T>
 struct basic_winding_view {
   const crossing_triangle<T>* triangles;
-  const std::uint32_t* begin;  ///< rows * columns + 1 positions in `lists`.
-  const std::uint32_t* lists;  ///< Triangles over each cell, those that reach farthest along +x first.
-  T low[3], high[3];           ///< Bounds of the surface.
-  T per_y, per_z;              ///< Cells a metre.
-  std::uint32_t columns, rows; ///< Along y and z.
+  const std::uint32_t* begin;         ///< rows * columns + 1 positions in `lists`.
+  const std::uint32_t* lists;         ///< Triangles over each cell, those that reach farthest along +x first.
+  T low[3], high[3];                  ///< Bounds of the surface.
+  T per_y, per_z;                     ///< Cells a metre.
+  std::uint32_t columns, rows;        ///< Along y and z.
   const enclosure_head<T>* enclosed;  ///< What is inside as well, although no winding number says so; or null.
 
   /// 0 outside and for points that are not finite.

@@ -37,17 +37,20 @@ struct obb {
 
   CLEARANCE_HD real lower_bound(vec3 q) const {
     const vec3 d = q - center;
-    const vec3 beyond{absolute(dot(axis[0], d)) - half[0], absolute(dot(axis[1], d)) - half[1], absolute(dot(axis[2], d)) - half[2]};
+    const vec3 beyond{absolute(dot(axis[0], d)) - half[0], absolute(dot(axis[1], d)) - half[1],
+                      absolute(dot(axis[2], d)) - half[2]};
     const real deepest = max(max(beyond.x, beyond.y), beyond.z);
     if (deepest < 0) return deepest * (1 + slack);
     // The axes are orthonormal to 1e-7 only; the factor covers that too.
-    return rough_length({max(beyond.x, 0), max(beyond.y, 0), max(beyond.z, 0)}) * (1 - slack) - slack * absolute(deepest);
+    return rough_length({max(beyond.x, 0), max(beyond.y, 0), max(beyond.z, 0)}) * (1 - slack) -
+           slack * absolute(deepest);
   }
 
   /// As from the box outside, whatever the reach inside.
   CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
     const vec3 d = q - center;
-    const vec3 beyond{positive_part(absolute(dot(axis[0], d)) - half[0]), positive_part(absolute(dot(axis[1], d)) - half[1]),
+    const vec3 beyond{positive_part(absolute(dot(axis[0], d)) - half[0]),
+                      positive_part(absolute(dot(axis[1], d)) - half[1]),
                       positive_part(absolute(dot(axis[2], d)) - half[2])};
     return beyond.x * beyond.x + beyond.y * beyond.y + beyond.z * beyond.z <= square_of_reach(reach);
   }

@@ -14,8 +14,8 @@ struct sphere {
   vec3 center;
   real radius;
 
-  /// Moves the centre towards the farthest ball by ever smaller steps (Badoiu & Clarkson 2003), in double. Any centre is
-  /// valid, so the radius that is then measured and rounded up carries the whole proof.
+  /// Moves the centre towards the farthest ball by ever smaller steps (Badoiu & Clarkson 2003), in double. Any centre
+  /// is valid, so the radius that is then measured and rounded up carries the whole proof.
   static sphere fit(std::span<const ball> balls) {
     double c[3] = {0, 0, 0};
     for (const ball& b : balls) {

@@ -32,7 +32,8 @@ TEST_CASE("A real robot's triangles are as far from a real frame as FCL says, li
     for (const double away : {1.5, 3.0}) {
       const Eigen::Isometry3d camera = looking_inward(away, 0.2, 0.6);
       const auto poses = robot.poses(shifted(0, 0, 0), 0.4);
-      const auto [r, minima] = clearance::min_distance_per_part(clearance::host{}, model, poses, clearance::placed{clearance::point_span(some), camera});
+      const auto [r, minima] = clearance::min_distance_per_part(clearance::host{}, model, poses,
+                                                                clearance::placed{clearance::point_span(some), camera});
       int compared = 0;
       for (std::size_t k = 0; k < minima.size(); ++k) {
         if (minima[k].distance < 0.01f) continue;  // FCL knows no inside
@@ -48,7 +49,8 @@ TEST_CASE("A real robot's triangles are as far from a real frame as FCL says, li
         fcl::DistanceResultd result;
         const double truth = fcl::distance(&link, poses[k], &cloud, camera, request, result);
         const double size = model.parts()[k].facts.radius + model.parts()[k].facts.center.z;
-        CHECK(std::abs(minima[k].distance - truth) <= 8 * 0x1p-23 * (2 * away + poses[k].translation().norm() + std::abs(size)) + 1e-9);
+        CHECK(std::abs(minima[k].distance - truth) <=
+              8 * 0x1p-23 * (2 * away + poses[k].translation().norm() + std::abs(size)) + 1e-9);
         ++compared;
       }
       CHECK(compared > 2);
