@@ -21,8 +21,6 @@ using json = nlohmann::ordered_json;
 
 namespace {
 
-json or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 /// What a file of spheres holds. Exit code 0: it is whole.
 int describe(const std::string& file, bool as_json) {
   const auto parts = clearance::io::within_memory(file, [&] { return clearance::io::load_spheres(file); });

@@ -24,7 +24,7 @@ std::vector<io::joint_motion> ways_between(const query_options& asked, const ask
   return ways;
 }
 
-int run(const query_options& asked) {
+int run_plan(const query_options& asked) {
   stopwatch clock;
   progress shown;
   shown.show("reading " + asked.robot);
@@ -75,5 +75,5 @@ int run(const query_options& asked) {
 subcommand add_plan(CLI::App& app) {
   CLI::App* sub =
       app.add_subcommand("plan", "The least distance of many configurations, such as those of a planned path");
-  return [options = add_query_options(*sub, asking::plan)] { return run(options()); };
+  return [options = add_query_options(*sub, asking::plan)] { return run_plan(options()); };
 }

@@ -297,146 +297,193 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   return o;
 }
 
-}  // namespace
+/// The robot, and what it is made of.
+void add_robot_options(CLI::App& app, raw_options& raw) {
+  app.add_flag("--ignore-limits", raw.ignore_limits, "Accept joint positions outside their limits");
+  app.add_option("--geometry", raw.geometry, "visual or collision (default; visual where a link has no collision)");
+  app.add_flag("--strict", raw.strict, "Refuse of the robot's description what would get a note");
+  app.add_option("--package", raw.packages, "name=DIR: where package://name/ is");
+  app.add_option("--mesh-limit", raw.mesh_limits, mesh_limit_says());
+  app.add_option("--base-pose", raw.base,
+                 "x,y,z,qx,qy,qz,qw: world-from-base (m; default: the base is at the world's origin)");
+}
 
-std::function<query_options()> add_query_options(CLI::App& app, asking how) {
+/// Where the robot is.
+void add_joint_options(CLI::App& app, raw_options& raw, asking how) {
   const bool recorded = how == asking::run, planned = how == asking::plan;
-  auto raw = std::make_shared<raw_options>();
-  raw->model = "spheres";
-  const auto one = [&](const std::string& name, std::string& to, const std::string& says) {
-    return app.add_option(name, to, says);
-  };
-  one("--robot", raw->robot, "Robot description, URDF")->required();
   if (recorded) {
-    one("--frames", raw->frames,
-        "Point clouds (.pcd .ply .xyz .txt) or 16-bit depth images (.png): a folder, in the order of their names, or a "
-        "text file with one path per "
-        "line, relative to that file")
+    app.add_option("--frames", raw.frames,
+                   "Point clouds (.pcd .ply .xyz .txt) or 16-bit depth images (.png): a folder, in the order of their "
+                   "names, or a "
+                   "text file with one path per "
+                   "line, relative to that file")
         ->required();
-    one("--trajectory", raw->trajectory,
+    app.add_option(
+        "--trajectory", raw.trajectory,
         "CSV: a line with the names of the joints, then one row per frame, or one row for all (rad, m); not needed if "
         "no joint is free");
-    app.add_flag("--merge", raw->merge,
+    app.add_flag("--merge", raw.merge,
                  "Ask every frame about the clouds of all frames, merged in the world: each frame's cloud is put there "
                  "by --camera-pose, with "
                  "--camera-link by that link's pose in the frame's row of the trajectory");
-    one("--plan", raw->plan,
+    app.add_option(
+        "--plan", raw.plan,
         "CSV as --trajectory: configurations to come, one a row; every frame says how near they are to its points, and "
         "with --check which is the "
         "first that is too near");
-    app.add_option("--joint", raw->joint, "name=value: a joint that has no column in the trajectory (and in the plan)");
+    app.add_option("--joint", raw.joint, "name=value: a joint that has no column in the trajectory (and in the plan)");
   } else if (planned) {
-    one("--configurations", raw->configurations,
-        "CSV: a line with the names of the joints, then one configuration a row (rad, m)")
+    app.add_option("--configurations", raw.configurations,
+                   "CSV: a line with the names of the joints, then one configuration a row (rad, m)")
         ->required();
-    app.add_option("--joint", raw->joint, "name=value: a joint that has no column");
+    app.add_option("--joint", raw.joint, "name=value: a joint that has no column");
   } else {
-    one("--joints", raw->joints, "a,b,...: joint positions (rad, m) in the file's order of movable, non-mimic joints");
-    app.add_option("--joint", raw->joint, "name=value: the position of one joint; others are 0 or their nearest limit");
+    app.add_option("--joints", raw.joints,
+                   "a,b,...: joint positions (rad, m) in the file's order of movable, non-mimic joints");
+    app.add_option("--joint", raw.joint, "name=value: the position of one joint; others are 0 or their nearest limit");
   }
-  app.add_flag("--ignore-limits", raw->ignore_limits, "Accept joint positions outside their limits");
-  one("--geometry", raw->geometry, "visual or collision (default; visual where a link has no collision)");
-  app.add_flag("--strict", raw->strict, "Refuse of the robot's description what would get a note");
-  app.add_option("--package", raw->packages, "name=DIR: where package://name/ is");
-  app.add_option("--mesh-limit", raw->mesh_limits, mesh_limit_says());
-  one("--base-pose", raw->base, "x,y,z,qx,qy,qz,qw: world-from-base (m; default: the base is at the world's origin)");
+}
+
+void add_cloud_options(CLI::App& app, raw_options& raw, asking how) {
+  const bool recorded = how == asking::run, planned = how == asking::plan;
   if (!recorded)
-    app.add_option("--cloud", raw->clouds, "Point cloud (.pcd .ply .xyz) or 16-bit depth image (.png); may be repeated")
+    app.add_option("--cloud", raw.clouds, "Point cloud (.pcd .ply .xyz) or 16-bit depth image (.png); may be repeated")
         ->required();
-  app.add_option("--camera-pose", raw->poses,
+  app.add_option("--camera-pose", raw.poses,
                  "x,y,z,qx,qy,qz,qw: world-from-cloud, or link-from-cloud with --camera-link");
   app.add_option(
-      "--camera-link", raw->links,
+      "--camera-link", raw.links,
       std::string("The link that carries the camera") + (planned ? ", where it is in the first configuration" : ""));
-  app.add_option("--intrinsics", raw->cameras, "fx,fy,cx,cy of a depth image, pixels");
-  app.add_option("--depth-scale", raw->scales, "Metres per unit of a depth image (default 0.001)");
-  app.add_option("--range", raw->ranges,
+  app.add_option("--intrinsics", raw.cameras, "fx,fy,cx,cy of a depth image, pixels");
+  app.add_option("--depth-scale", raw.scales, "Metres per unit of a depth image (default 0.001)");
+  app.add_option("--range", raw.ranges,
                  "near,far: other points do not count (m; along z for images, else from the sensor)");
-  one("--unfold-limit", raw->unfolded,
+  app.add_option(
+      "--unfold-limit", raw.unfolded,
       "MiB that one compressed cloud or image may become, with all that is made of its points or pixels here (default "
       "1024)");
   app.add_flag("--use-viewpoint")->description("Apply the VIEWPOINT of a PCD file");
   app.add_flag("--zero-is-missing")->description("(0,0,0) is no point");
-  one("--model", raw->model, "spheres (default) or triangles");
+}
+
+void add_model_options(CLI::App& app, raw_options& raw, asking how) {
+  const bool recorded = how == asking::run, planned = how == asking::plan;
+  app.add_option("--model", raw.model, "spheres (default) or triangles");
   if (!planned)
-    one("--volume", raw->volume,
+    app.add_option(
+        "--volume", raw.volume,
         "sphere, aabb or obb, for the least distance alone (default: sphere for spheres, obb for triangles)");
-  one("--spheres", raw->spheres, "Inner spheres per link that is packed (default 2048)");
-  one("--packing", raw->packing, "The links' spheres: .ist (from clearance pack), .yaml as for cuRobo, .csv");
-  app.add_flag("--no-cache", raw->no_cache, "Pack anew, and keep nothing");
-  one("--cache", raw->cache,
+  app.add_option("--spheres", raw.spheres, "Inner spheres per link that is packed (default 2048)");
+  app.add_option("--packing", raw.packing, "The links' spheres: .ist (from clearance pack), .yaml as for cuRobo, .csv");
+  app.add_flag("--no-cache", raw.no_cache, "Pack anew, and keep nothing");
+  app.add_option(
+      "--cache", raw.cache,
       "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
-  app.add_option("--exclude-link", raw->excluded, "Leave out this link's geometry");
-  app.add_option("--attach", raw->attached,
+  app.add_option("--exclude-link", raw.excluded, "Leave out this link's geometry");
+  app.add_option("--attach", raw.attached,
                  "LINK=FILE: this link holds something, which counts as a part of the robot: a mesh, or spheres (.ist, "
                  ".yaml, .csv); may be repeated");
-  app.add_option("--attach-pose", raw->attached_poses,
+  app.add_option("--attach-pose", raw.attached_poses,
                  "x,y,z,qx,qy,qz,qw: link-from-thing, of the --attach before it (m; default: the link's origin)");
-  one("--backend", raw->backend, "host or device (default: device where there is one)");
-  one("--check", raw->check,
-      std::string("Margin in m: exit code 2 unless the lower end of the bracket is above it") +
-          (recorded  ? " in every frame, and for every row of --plan"
-           : planned ? " in every configuration"
-                     : ""));
-  const char* const of_clouds =
-      "--camera-pose, --camera-link, --intrinsics, --depth-scale, --range, --use-viewpoint and --zero-is-missing hold\n"
-      "for all clouds if given before the first --cloud, else for the --cloud before them.";
-  if (planned) {
-    one("--d-max", raw->d_max,
-        "Metres: configurations that are farther from every point are only said to be so, which is quicker");
-    app.add_flag("--between", raw->between,
-                 "Judge also the way from each configuration to the next, every joint at constant speed: no point is "
-                 "nearer than its lower end at any time; "
-                 "--check is about the ways, too");
-    app.add_flag("--csv", raw->csv,
-                 "Print CSV; without it, one JSON object per configuration and a last one about all");
-    app.footer(std::string(of_clouds) + "\nThe exit code is 3 without a valid point, also with --check.");
-    return [raw, &app] { return read(app, *raw); };
-  }
-  if (recorded) {
-    app.add_flag("--csv", raw->csv, "Print CSV, one row per frame; without it, one JSON object per frame");
-    one("--svg", raw->svg,
-        "Write a picture to this .svg file once all frames are answered: the distance in every frame, in the band of "
-        "its bracket");
-    app.footer(
-        "Prints one line per frame, a JSON object. latency_us is the time of the query alone, on the host's clock; a "
-        "frame's points\n"
-        "are read before. The exit code is 3 if a frame has no valid point, also with --check.");
-    return [raw, &app] { return read(app, *raw); };
-  }
-  app.add_flag("--json", raw->json, "Print one JSON object");
-  one("--scene", raw->scene, "Write robot, clouds and witness to this .glb file; with --distances in their colours");
-  one("--zones", raw->zones,
+  app.add_option("--backend", raw.backend, "host or device (default: device where there is one)");
+  app.add_option("--check", raw.check,
+                 std::string("Margin in m: exit code 2 unless the lower end of the bracket is above it") +
+                     (recorded  ? " in every frame, and for every row of --plan"
+                      : planned ? " in every configuration"
+                                : ""));
+}
+
+const char* const of_clouds =
+    "--camera-pose, --camera-link, --intrinsics, --depth-scale, --range, --use-viewpoint and --zero-is-missing hold\n"
+    "for all clouds if given before the first --cloud, else for the --cloud before them.";
+
+void add_plan_questions(CLI::App& app, raw_options& raw) {
+  app.add_option("--d-max", raw.d_max,
+                 "Metres: configurations that are farther from every point are only said to be so, which is quicker");
+  app.add_flag("--between", raw.between,
+               "Judge also the way from each configuration to the next, every joint at constant speed: no point is "
+               "nearer than its lower end at any time; "
+               "--check is about the ways, too");
+  app.add_flag("--csv", raw.csv, "Print CSV; without it, one JSON object per configuration and a last one about all");
+  app.footer(std::string(of_clouds) + "\nThe exit code is 3 without a valid point, also with --check.");
+}
+
+void add_run_questions(CLI::App& app, raw_options& raw) {
+  app.add_flag("--csv", raw.csv, "Print CSV, one row per frame; without it, one JSON object per frame");
+  app.add_option(
+      "--svg", raw.svg,
+      "Write a picture to this .svg file once all frames are answered: the distance in every frame, in the band of "
+      "its bracket");
+  app.footer(
+      "Prints one line per frame, a JSON object. latency_us is the time of the query alone, on the host's clock; a "
+      "frame's points\n"
+      "are read before. The exit code is 3 if a frame has no valid point, also with --check.");
+}
+
+void add_query_questions(CLI::App& app, raw_options& raw) {
+  app.add_flag("--json", raw.json, "Print one JSON object");
+  app.add_option("--scene", raw.scene,
+                 "Write robot, clouds and witness to this .glb file; with --distances in their colours");
+  app.add_option(
+      "--zones", raw.zones,
       "a,b,... (m, ascending): how many points may be within these distances of each link, and which; exit code 2 if "
       "there are any in the first");
-  one("--min-points", raw->min_points, "A zone with fewer points counts as empty (default 1)");
-  one("--distances", raw->distances,
+  app.add_option("--min-points", raw.min_points, "A zone with fewer points counts as empty (default 1)");
+  app.add_option(
+      "--distances", raw.distances,
       "Write every valid point with its distance to this .ply file, in world coordinates; red at 0 m, blue at --d-max "
       "(or 1 m) and beyond");
-  app.add_flag("--signed", raw->is_signed,
+  app.add_flag("--signed", raw.is_signed,
                "With --distances and --model triangles: below 0 inside a closed mesh, by how deep; without it 0 there");
-  one("--nearest", raw->nearest,
-      "How many points to list of each link, the nearest first, with what is certain of each");
-  one("--d-max", raw->d_max,
+  app.add_option("--nearest", raw.nearest,
+                 "How many points to list of each link, the nearest first, with what is certain of each");
+  app.add_option(
+      "--d-max", raw.d_max,
       "Metres: points farther than that are written as inf by --distances, and not listed by --nearest (default: "
       "none)");
-  one("--self-filter", raw->self_filter,
+  app.add_option(
+      "--self-filter", raw.self_filter,
       "Metres: hide the points that certainly are within that of the robot, or of what it holds, from all questions, "
       "--check among them; says how many "
       "they are; exit code 3 if none is left");
-  one("--min-support", raw->min_support,
+  app.add_option(
+      "--min-support", raw.min_support,
       "N@RADIUS, such as 3@0.02: say also how far the nearest point is that has N points, itself among them, within "
       "RADIUS m; --check stays about all points");
-  one("--support-limit", raw->support_limit,
+  app.add_option(
+      "--support-limit", raw.support_limit,
       "How many of the nearest points --min-support asks before it gives up (default 4096, at most 1048576)");
-  app.add_flag("--gradient", raw->gradient,
+  app.add_flag("--gradient", raw.gradient,
                "How each part's distance changes with its pose, and with the joints: m per m and m per rad of a twist "
                "at the part's origin");
-  one("--deadline", raw->deadline,
+  app.add_option(
+      "--deadline", raw.deadline,
       "Milliseconds for the least distance: what is known by then is the answer, with how many points are unseen, "
       "which may be anywhere; parts have none");
-  app.add_flag("--shard", raw->shard,
+  app.add_flag("--shard", raw.shard,
                "Under mpirun: each rank asks about its share of every cloud, and rank 0 prints the one answer");
   app.footer(std::string(of_clouds) + '\n' + exit_codes);
+}
+
+}  // namespace
+
+std::function<query_options()> add_query_options(CLI::App& app, asking how) {
+  auto raw = std::make_shared<raw_options>();
+  raw->model = "spheres";
+  app.add_option("--robot", raw->robot, "Robot description, URDF")->required();
+  add_joint_options(app, *raw, how);
+  add_robot_options(app, *raw);
+  add_cloud_options(app, *raw, how);
+  add_model_options(app, *raw, how);
+  switch (how) {
+    case asking::plan:
+      add_plan_questions(app, *raw);
+      break;
+    case asking::run:
+      add_run_questions(app, *raw);
+      break;
+    default:
+      add_query_questions(app, *raw);
+  }
   return [raw, &app] { return read(app, *raw); };
 }

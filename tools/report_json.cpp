@@ -10,8 +10,6 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> pixel(const observation& 
   return std::pair{point % cloud.image()->width, point / cloud.image()->width};
 }
 
-json or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 double microseconds(double seconds) { return std::round(1e9 * seconds) / 1e3; }
 
 json witness(const min_distance_result& r, const observation* cloud, std::uint32_t point,

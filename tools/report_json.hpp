@@ -18,9 +18,6 @@ inline constexpr const char* reasons[clearance::drop_reasons] = {"none",        
 /// The pixel of a point of an image.
 std::optional<std::pair<std::uint64_t, std::uint64_t>> pixel(const observation& cloud, std::uint32_t point);
 
-/// What a number is when there is none: infinity and NaN have no place in JSON.
-json or_null(double value);
-
 /// State, distance, bracket and witness, which is `point` of `cloud` (null if there is none).
 json witness(const clearance::min_distance_result& r, const observation* cloud, std::uint32_t point,
              const std::vector<body>& bodies);

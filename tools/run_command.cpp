@@ -59,12 +59,7 @@ class motion {
   std::vector<std::vector<double>> rows_;
 };
 
-int run(const query_options& asked) {
-  progress shown;
-  shown.show("reading " + asked.robot);
-  io::files_read inputs;
-  std::vector<std::string> notes;
-  const asked_robot robot = load_robot(asked, notes);
+std::vector<cloud_options> frames_of(const query_options& asked) {
   std::vector<cloud_options> frames;
   for (const std::string& file : list_frames(asked.recording.frames)) {
     frames.push_back(asked.recording.camera);
@@ -72,6 +67,25 @@ int run(const query_options& asked) {
     frames.back().check("--frames");
   }
   check_all_clouds(asked.recording.camera, frames);
+  return frames;
+}
+
+/// What would be in the way of writing the picture is known before a frame is answered, or read.
+void check_picture(const std::string& file, const std::vector<cloud_options>& frames, const io::files_read& inputs) {
+  for (const cloud_options& each : frames) note_file(each.file);
+  io::check_output(file, inputs);
+  const auto folder = std::filesystem::path(file).parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder))
+    io::refuse(file, "cannot be written: there is no such folder");
+}
+
+int run_frames(const query_options& asked) {
+  progress shown;
+  shown.show("reading " + asked.robot);
+  io::files_read inputs;
+  std::vector<std::string> notes;
+  const asked_robot robot = load_robot(asked, notes);
+  const std::vector<cloud_options> frames = frames_of(asked);
   const motion moves(asked, robot);
   if (moves.size() != 1 && moves.size() != frames.size())
     throw usage_error("--trajectory", asked.recording.trajectory + " has " + std::to_string(moves.size()) +
@@ -97,13 +111,7 @@ int run(const query_options& asked) {
   else
     moves.carrier(0);  // a wrong --camera-link is known before the robot is packed
 
-  if (!asked.recording.svg.empty()) {  // known before a frame is answered, or read
-    for (const cloud_options& each : frames) note_file(each.file);
-    io::check_output(asked.recording.svg, inputs);
-    const auto folder = std::filesystem::path(asked.recording.svg).parent_path();
-    if (!folder.empty() && !std::filesystem::is_directory(folder))
-      io::refuse(asked.recording.svg, "cannot be written: there is no such folder");
-  }
+  if (!asked.recording.svg.empty()) check_picture(asked.recording.svg, frames, inputs);
   const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
   print(notes, shown);
   const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies});
@@ -151,5 +159,5 @@ int run(const query_options& asked) {
 
 subcommand add_run(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("run", "The least distance in every frame of a recording");
-  return [options = add_query_options(*sub, asking::run)] { return run(options()); };
+  return [options = add_query_options(*sub, asking::run)] { return run_frames(options()); };
 }

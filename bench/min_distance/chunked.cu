@@ -13,6 +13,7 @@
 #include <cstring>
 #include <fstream>
 
+namespace chunked_bench {
 namespace {
 
 using namespace bench;
@@ -195,5 +196,8 @@ BENCHMARK_CAPTURE(mapped, host_first, host{}, false) LARGE;
 BENCHMARK_CAPTURE(mapped, host_next, host{}, true) LARGE;
 
 }  // namespace
+}  // namespace chunked_bench
+
+#undef ONCE
 
 BENCHMARK_MAIN();

@@ -93,4 +93,6 @@ BENCHMARK(each) TIMES(100);
 
 }  // namespace
 
+#undef TIMES
+
 BENCHMARK_MAIN();

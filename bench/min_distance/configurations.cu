@@ -13,6 +13,7 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace configurations_bench {
 namespace {
 
 using namespace bench;
@@ -196,5 +197,8 @@ BENCHMARK(call)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterat
 BENCHMARK(each_part)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(10);
 
 }  // namespace
+}  // namespace configurations_bench
+
+#undef TIMES
 
 BENCHMARK_MAIN();

@@ -6,6 +6,7 @@
 #include <clearance/min_distance_by.cuh>
 #include <clearance/volume/aabb.hpp>
 
+namespace deadline_bench {
 namespace {
 
 using namespace bench;
@@ -69,5 +70,8 @@ BENCHMARK_CAPTURE(on_device, pageable, here)->ArgsProduct({{5000000}, {0, 500, 1
 BENCHMARK(on_host)->ArgsProduct({{307200, 5000000}, {0, 100, 300, 1000}}) ONCE;
 
 }  // namespace
+}  // namespace deadline_bench
+
+#undef ONCE
 
 BENCHMARK_MAIN();

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <optional>
 
+namespace devices_bench {
 namespace {
 
 using namespace bench;
@@ -227,5 +228,8 @@ BENCHMARK_CAPTURE(comes, pinned_copy_alone_two, which::two, from::pinned_copy_al
 BENCHMARK_CAPTURE(comes, first_device_two, which::two, from::first_device)->Arg(307200)->Arg(100000000) ONCE;
 
 }  // namespace
+}  // namespace devices_bench
+
+#undef ONCE
 
 BENCHMARK_MAIN();

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 
+namespace distances_bench {
 namespace {
 
 using namespace bench;
@@ -145,5 +146,8 @@ BENCHMARK_CAPTURE(triangles_image, close, close_cold) TIMES;
 BENCHMARK_CAPTURE(triangles_image, close_warm, close_warm) TIMES;
 
 }  // namespace
+}  // namespace distances_bench
+
+#undef TIMES
 
 BENCHMARK_MAIN();

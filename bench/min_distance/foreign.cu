@@ -8,6 +8,7 @@
 #include <clearance/points/strided_points.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace foreign_bench {
 namespace {
 
 using namespace bench;
@@ -85,5 +86,6 @@ BENCHMARK_CAPTURE(records, of_32_bytes_warm, false) TIMED;
 BENCHMARK_CAPTURE(records, of_32_bytes_cold, true) TIMED;
 
 }  // namespace
+}  // namespace foreign_bench
 
-int main(int argc, char** argv) { return bench::main(argc, argv); }
+int main(int argc, char** argv) { return bench::run_all(argc, argv); }

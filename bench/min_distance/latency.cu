@@ -7,6 +7,7 @@
 #include <clearance/points/depth_image.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace latency_bench {
 namespace {
 
 using namespace bench;
@@ -135,5 +136,8 @@ BENCHMARK_CAPTURE(shell, warm, false)->Arg(5000000)->UseManualTime()->Unit(bench
 BENCHMARK_CAPTURE(shell, cold, true)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(50);
 
 }  // namespace
+}  // namespace latency_bench
+
+#undef ONCE
 
 BENCHMARK_MAIN();

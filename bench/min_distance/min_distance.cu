@@ -11,6 +11,7 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace min_distance_bench {
 namespace {
 
 using namespace bench;
@@ -213,5 +214,6 @@ BENCHMARK_CAPTURE(one_part_of_100000, warm, {}) FRAME;
 BENCHMARK_CAPTURE(one_part_of_100000, cold, {.cold = true}) FRAME;
 
 }  // namespace
+}  // namespace min_distance_bench
 
-int main(int argc, char** argv) { return bench::main(argc, argv); }
+int main(int argc, char** argv) { return bench::run_all(argc, argv); }

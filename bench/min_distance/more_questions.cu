@@ -18,6 +18,7 @@
 #include <clearance/within.cuh>
 #include <clearance/zones.cuh>
 
+namespace more_questions_bench {
 namespace {
 
 using namespace bench;
@@ -212,5 +213,8 @@ const int rows = [] {
 }();
 
 }  // namespace
+}  // namespace more_questions_bench
+
+#undef TIMES
 
 BENCHMARK_MAIN();

@@ -11,6 +11,7 @@
 #include <clearance/within.cuh>
 #include <clearance/zones.cuh>
 
+namespace questions_bench {
 namespace {
 
 using namespace bench;
@@ -157,5 +158,8 @@ BENCHMARK_CAPTURE(own, labels_at_once, false, false) TIMES;
 BENCHMARK_CAPTURE(own, labels_then_minimum_at_once, true, false) TIMES;
 
 }  // namespace
+}  // namespace questions_bench
+
+#undef TIMES
 
 BENCHMARK_MAIN();

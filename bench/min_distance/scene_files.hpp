@@ -42,7 +42,7 @@ inline int write_scene(const std::filesystem::path& folder) {
 }
 
 /// Instead of BENCHMARK_MAIN: `--write-scene FOLDER` writes the scene, and measures nothing.
-inline int main(int argc, char** argv) {
+inline int run_all(int argc, char** argv) {
   if (argc == 3 && std::string_view(argv[1]) == "--write-scene") return write_scene(argv[2]);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;

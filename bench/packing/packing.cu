@@ -9,6 +9,7 @@
 
 #include <cstdio>
 
+namespace packing_on_device {
 namespace {
 
 using namespace packing_bench;
@@ -26,9 +27,7 @@ void measure(const char* name, int times, F f) {
       ->Iterations(times);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   const auto files = mesh_files(argc, argv);
   if (files.empty()) {
@@ -59,4 +58,10 @@ int main(int argc, char** argv) {
               [&, i, count] { return std::vector<packing>{pack(device{}, meshes[i], {.count = count})}; });
     }
   benchmark::RunSpecifiedBenchmarks();
+  return 0;
 }
+
+}  // namespace
+}  // namespace packing_on_device
+
+int main(int count, char** arguments) { return packing_on_device::run(count, arguments); }

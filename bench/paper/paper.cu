@@ -11,6 +11,7 @@
 
 #include <tuple>
 
+namespace paper_bench {
 namespace {
 
 using namespace bench::paper;
@@ -71,9 +72,7 @@ void explore(lab& l, const bench::scene& robot, const scenario& s) {
   along_motion(l, on_host.back(), models.back(), paper_model, quick ? 5 : 41, quick ? 2 : 15);
 }
 
-}  // namespace
-
-int main(int count, char** arguments) try {
+int run(int count, char** arguments) try {
   int devices = 0;
   if (cudaGetDeviceCount(&devices) != cudaSuccess || devices == 0) {
     std::fprintf(stderr, "SKIPPED: no CUDA device\n");
@@ -89,3 +88,8 @@ int main(int count, char** arguments) try {
   std::fprintf(stderr, "%s\n", e.what());
   return 1;
 }
+
+}  // namespace
+}  // namespace paper_bench
+
+int main(int count, char** arguments) { return paper_bench::run(count, arguments); }

@@ -114,4 +114,4 @@ BENCHMARK(peers::ours_cold)->Name("ours_cold again")->Unit(benchmark::kMilliseco
 
 }  // namespace
 
-int main(int argc, char** argv) { return bench::main(argc, argv); }
+int main(int argc, char** argv) { return bench::run_all(argc, argv); }

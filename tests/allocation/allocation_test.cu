@@ -15,6 +15,8 @@
 #include <clearance/within.cuh>
 #include <clearance/zones.cuh>
 
+namespace allocation_test {
+
 namespace {
 
 std::size_t on_device = 0, waits = 0;
@@ -212,3 +214,5 @@ TEST_CASE("One call takes one block of memory in the order of its stream, and wa
   CHECK((on_device == collided.before_on_device + 2 && waits == collided.before_waits));
   gpu.wait();
 }
+
+}  // namespace allocation_test

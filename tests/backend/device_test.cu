@@ -3,6 +3,8 @@
 
 #include <clearance/backend/device.cuh>
 
+namespace device_test {
+
 using namespace testing;
 using clearance::device;
 
@@ -161,3 +163,5 @@ TEST_CASE("A buffer that was moved from is empty, and one that is replaced is gi
   b = std::move(a);
   CHECK(gpu.copy_out(b)[19] == 2);
 }
+
+}  // namespace device_test

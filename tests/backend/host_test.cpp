@@ -9,6 +9,8 @@
 #include <set>
 #include <thread>
 
+namespace host_test {
+
 using namespace testing;
 using clearance::host;
 
@@ -80,3 +82,5 @@ TEST_CASE("Many threads lower one word to the least, and count without losing an
   CHECK(word == expected);
   CHECK(count == sum);
 }
+
+}  // namespace host_test

@@ -9,6 +9,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace build_test {
+
 using namespace testing;
 using clearance::build, clearance::build_options;
 
@@ -146,3 +148,5 @@ TEST_CASE("Builders refuse what is no tree, with the value in the message") {
   const std::vector<inner_sphere> negative = {{{0, 0, 0}, -1e-6f}};
   CHECK(says([&] { build<clearance::sphere>(negative); }, "negative radius"));
 }
+
+}  // namespace build_test

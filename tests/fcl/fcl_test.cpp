@@ -17,6 +17,8 @@
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/distance.h>
 
+namespace fcl_test {
+
 using namespace testing;
 
 namespace {
@@ -145,3 +147,5 @@ TEST_CASE("Every single point of a cloud is as far from a mesh as FCL says") {
     CHECK(std::abs(r.distance - truth) <= tolerance(pose, 3, 1) + 1e-10);
   }
 }
+
+}  // namespace fcl_test

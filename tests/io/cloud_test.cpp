@@ -6,6 +6,8 @@
 
 #include <random>
 
+namespace cloud_test {
+
 using namespace clearance;
 
 namespace {
@@ -193,3 +195,5 @@ TEST_CASE(
   }
   contains(refused(".xyz", "1,2,3,4\n1,2,3,\n"), ":2: a point of 3 words");
 }
+
+}  // namespace cloud_test

@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <random>
 
+namespace depth_test {
+
 using namespace clearance;
 
 namespace {
@@ -218,3 +220,5 @@ TEST_CASE("the PNG and the PCD of one real frame agree in every pixel", "[data]"
     CHECK(worst < 1e-6);
   }
 }
+
+}  // namespace depth_test

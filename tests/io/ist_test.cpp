@@ -12,6 +12,8 @@
 
 #include <cstring>
 
+namespace ist_test {
+
 using namespace clearance;
 
 namespace {
@@ -200,3 +202,5 @@ TEST_CASE("what could not be loaded again is not saved") {
   CHECK_THROWS_AS(io::save_ist(std::vector<io::packed_part>{}, file.path), std::invalid_argument);
   CHECK(io::read_bytes(file.path) == "untouched");
 }
+
+}  // namespace ist_test

@@ -11,6 +11,8 @@
 #include <clearance/part_witnesses.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace jacobian_test {
+
 using namespace testing;
 using namespace clearance::io;
 using clearance::host;
@@ -145,3 +147,5 @@ TEST_CASE("A chain of mimics has the product of their factors, and none that is 
   joints[0].follows->multiplier = 1e200, joints[1].follows->multiplier = 1e200;
   CHECK(says(sentence<std::invalid_argument>([&] { kinematic_tree({"l0", "l1", "l2", "l3"}, joints); }), "not finite"));
 }
+
+}  // namespace jacobian_test

@@ -5,6 +5,8 @@
 
 #include <clearance/io/joint_chain.hpp>
 
+namespace joint_chain_test {
+
 using namespace testing;
 using namespace clearance::io;
 using clearance::joint_chain, clearance::sine_cosine_of;
@@ -148,3 +150,5 @@ TEST_CASE("What is no joint vector is refused, by configuration and joint") {
   CHECK(refusal([&] { joint_chain<>({thick}, {0}, {{"a", {}}}); }).find("number 1, which is none") !=
         std::string::npos);
 }
+
+}  // namespace joint_chain_test

@@ -12,6 +12,8 @@
 
 #include <numbers>
 
+namespace joint_motion_test {
+
 using namespace testing;
 using namespace clearance::io;
 using clearance::host, clearance::min_distance_query, clearance::motion_clearance, clearance::part_travel,
@@ -190,3 +192,5 @@ TEST_CASE("Joint motions refuse what is no configuration, link or base") {
   for (const double t : {0.0, 0.1, 0.7, 1.0})
     CHECK(wide.at(t, std::vector<clearance::part_facts>(1)).poses.size() == 1);
 }
+
+}  // namespace joint_motion_test

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <random>
 
+namespace kinematics_test {
+
 using namespace clearance::io;
 
 namespace {
@@ -164,3 +166,5 @@ TEST_CASE("what is not one tree of rigid joints is refused with the joint's name
   j.lower = 3;
   CHECK(says(tree_refusal({"a", "b"}, {j}), "lower limit above"));
 }
+
+}  // namespace kinematics_test

@@ -14,6 +14,8 @@
 
 #include <sys/resource.h>
 
+namespace mapped_test {
+
 using namespace testing;
 using clearance::chunked, clearance::host;
 
@@ -185,3 +187,5 @@ TEST_CASE("A file that changes its size, and a disk that fails, are told, and th
   broken_disk = 0;
   CHECK(same_result(query(poses, cloud), expected));
 }
+
+}  // namespace mapped_test

@@ -11,6 +11,8 @@
 #include <set>
 #include <sstream>
 
+namespace mesh_damage_test {
+
 using namespace clearance;
 
 namespace {
@@ -404,3 +406,5 @@ TEST_CASE("what a small file unfolds to has limits, which a sentence names and a
   CHECK(says(within([](io::mesh_limits& l) { l.nodes = 2; }), "mesh_limits::nodes"));
   CHECK(says(within([](io::mesh_limits& l) { l.depth = 3; }), "mesh_limits::depth"));
 }
+
+}  // namespace mesh_damage_test

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <set>
 
+namespace mesh_test {
+
 using namespace clearance;
 using io::load_mesh;
 
@@ -325,3 +327,5 @@ TEST_CASE("of the real damaged files the valid ones load and the others never cr
                           "tinyobjloader/test-nan.obj", "tinyobjloader/issue-140-zero-face-idx.obj"})
     CHECK_FALSE(sentence([&] { load_mesh(folder / bad); }).empty());
 }
+
+}  // namespace mesh_test

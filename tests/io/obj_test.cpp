@@ -5,6 +5,8 @@
 
 #include <clearance/io/mesh.hpp>
 
+namespace obj_test {
+
 using namespace clearance;
 using io::load_mesh;
 
@@ -104,3 +106,5 @@ TEST_CASE("a text mesh may begin with a byte order mark, and is the same mesh") 
     CHECK_FALSE(sentence([&] { load_mesh(folder.put(name, mark + mark + text)); }).empty());
   }
 }
+
+}  // namespace obj_test

@@ -9,6 +9,8 @@
 
 #include <thread>
 
+namespace packing_cache_test {
+
 using namespace clearance;
 
 namespace {
@@ -258,3 +260,5 @@ TEST_CASE("a file of spheres is read and written by the end of its name") {
   CHECK(refusal([&] { io::save_spheres(one, "x.stl"); }) ==
         "x.stl: spheres are written to .ist, .csv, .yaml and .yml files");
 }
+
+}  // namespace packing_cache_test

@@ -6,6 +6,8 @@
 
 #include <random>
 
+namespace pcd_test {
+
 using namespace clearance;
 
 namespace {
@@ -218,3 +220,5 @@ TEST_CASE(
       says(refused(file + end), "bytes follow the last record");
   }
 }
+
+}  // namespace pcd_test

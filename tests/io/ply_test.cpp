@@ -9,6 +9,8 @@
 #include <array>
 #include <cstring>
 
+namespace ply_test {
+
 using namespace clearance;
 
 namespace {
@@ -356,3 +358,5 @@ TEST_CASE(
   CHECK_FALSE(refusal([&] { io::read_ply_mesh("Ply" + good.substr(3), "made.ply"); }).empty());
   CHECK_FALSE(refusal([&] { io::read_ply_mesh("ply\nCreated on a day\n" + good.substr(4), "made.ply"); }).empty());
 }
+
+}  // namespace ply_test

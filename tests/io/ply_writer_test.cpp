@@ -8,6 +8,8 @@
 
 #include <cstring>
 
+namespace ply_writer_test {
+
 using namespace clearance;
 
 TEST_CASE("a PLY file that is written has the positions to the last bit, and a record for each point") {
@@ -100,3 +102,5 @@ TEST_CASE("a PLY file in pieces is the same file, and pieces that are not its po
   CHECK_THROWS_AS(io::save_ply_pieces(file.path, 3, [] { return io::ply_piece{}; }), std::invalid_argument);
   CHECK(io::read_bytes(file.path) == empty);  // whole or not at all
 }
+
+}  // namespace ply_writer_test

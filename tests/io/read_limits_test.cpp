@@ -7,6 +7,8 @@
 #include <clearance/io/pcd.hpp>
 #include <clearance/io/png.hpp>
 
+namespace read_limits_test {
+
 using namespace clearance;
 
 namespace {
@@ -74,3 +76,5 @@ TEST_CASE("a pipe is read until it ends or is too much, and a device is not read
   for (const char* device : {"/dev/zero", "/dev/null"})
     CHECK(refusal([&] { io::read_bytes(device); }) == std::string(device) + ": is a device, not a file");
 }
+
+}  // namespace read_limits_test

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <sstream>
 
+namespace robot_damage_test {
+
 using namespace clearance;
 
 namespace {
@@ -377,3 +379,5 @@ TEST_CASE("every single damaged number of the real robots is refused, or was of 
     check_damages(all, whole, file, read);
   }
 }
+
+}  // namespace robot_damage_test

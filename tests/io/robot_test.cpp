@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <numbers>
 
+namespace robot_test {
+
 using namespace clearance;
 using io::load_robot;
 
@@ -379,3 +381,5 @@ TEST_CASE("the UR5e's hand is where its maker's Denavit-Hartenberg table puts it
     CHECK((r.link_pose("wrist_3_link", q).matrix() - hand.matrix()).cwiseAbs().maxCoeff() < 1e-8);
   }
 }
+
+}  // namespace robot_test

@@ -5,6 +5,8 @@
 
 #include <sstream>
 
+namespace robot_words_test {
+
 using namespace clearance;
 
 namespace {
@@ -102,7 +104,7 @@ TEST_CASE(
 TEST_CASE("geometry in an element that URDF does not define is noted as not used") {
   const words_robot read;
   for (const std::string at : {"robot", "link", "collision", "joint"})
-    for (const std::string inside :
+    for (const std::string& inside :
          {"<collision>" + box + "</collision>", box, std::string("<u:mesh filename=\"x.stl\"/>")}) {
       INFO(inside << " in " << at);
       const io::robot made = read.load(with(at, "<foo><bar>" + inside + "</bar></foo>"));
@@ -286,3 +288,5 @@ TEST_CASE("ways that cancel are refused where double loses more of them than a b
   CHECK(says(sentence<std::invalid_argument>([&] { io::carried(far, back, "link \"a\""); }), "link \"a\""));
   CHECK(io::carried(far, Eigen::Isometry3d(Eigen::Translation3d(1, 0, 0)), "x").translation().x() == 1e13 + 1);
 }
+
+}  // namespace robot_words_test

@@ -13,6 +13,8 @@
 #include <map>
 #include <set>
 
+namespace scene_test {
+
 using namespace clearance;
 
 namespace {
@@ -169,3 +171,5 @@ TEST_CASE("a scene that cannot be written is refused") {
   world.segments.push_back({.name = "witness", .from = {0, 0, 0}, .to = {0, 0, 1}});
   CHECK(refusal([&] { io::save_scene(world, "/nonexistent/folder/x.glb"); }).find("/nonexistent/folder/x.glb") == 0);
 }
+
+}  // namespace scene_test

@@ -11,6 +11,8 @@
 
 #include <bit>
 
+namespace spheres_test {
+
 using namespace clearance;
 
 namespace {
@@ -225,3 +227,5 @@ TEST_CASE(
   CHECK(again.spheres.fill == Approx(packed.fill).epsilon(1e-9));
   CHECK(again.part_gap() == Approx(again.spheres.gap));
 }
+
+}  // namespace spheres_test

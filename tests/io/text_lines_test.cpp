@@ -10,6 +10,8 @@
 
 #include <random>
 
+namespace text_lines_test {
+
 using namespace clearance;
 
 namespace {
@@ -176,3 +178,5 @@ TEST_CASE("an ascii PCD coordinate fits its TYPE and SIZE, and no header entry i
           (twice == entries.size()));
   }
 }
+
+}  // namespace text_lines_test

@@ -9,6 +9,8 @@
 
 #include <csignal>
 
+namespace write_file_test {
+
 using namespace clearance;
 
 namespace {
@@ -84,3 +86,5 @@ TEST_CASE("a file that appears while another of its name is written is replaced,
   }
   CHECK(files(folder) == 1);
 }
+
+}  // namespace write_file_test

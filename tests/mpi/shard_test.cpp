@@ -10,6 +10,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace shard_test {
+
 using namespace testing;
 using clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::part_minimum,
     clearance::placed, clearance::point_span, clearance::slice;
@@ -213,3 +215,5 @@ TEST_CASE("A rank that throws ends all with its sentence, and all can ask again"
   }
   CHECK(same_result(query(poses, mine), expected));
 }
+
+}  // namespace shard_test

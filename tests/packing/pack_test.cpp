@@ -4,6 +4,8 @@
 #include <clearance/packing/pack.hpp>
 #include <clearance/solid/implicit.hpp>
 
+namespace pack_test {
+
 using namespace packer_laws;
 
 namespace {
@@ -82,3 +84,5 @@ TEST_CASE("a real link is filled as well as it was, nearly", "[data]") {
   CHECK(p.gap_p95 < 5.06e-3);
   CHECK(p.gap < 7.8e-3);
 }
+
+}  // namespace pack_test

@@ -5,6 +5,8 @@
 
 #include <thread>
 
+namespace pack_test {
+
 using namespace packer_laws;
 
 namespace {
@@ -63,3 +65,5 @@ TEST_CASE("the first of several that is wrong is named, on a GPU too") {
 TEST_CASE("a solid that is no mesh is packed on a GPU if it can be asked there") {
   check_ring(pack(device{}, ring(), {.count = 200}));
 }
+
+}  // namespace pack_test

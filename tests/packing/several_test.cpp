@@ -8,6 +8,8 @@
 #include <ranges>
 #include <thread>
 
+namespace several_test {
+
 using namespace packer_laws;
 
 namespace {
@@ -164,3 +166,5 @@ TEST_CASE("a packing ends although the task that asked for it is cancelled") {
   REQUIRE(several.size() == meshes.size());
   CHECK(same(several[0], alone));
 }
+
+}  // namespace several_test

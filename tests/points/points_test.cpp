@@ -9,6 +9,8 @@
 
 #include <limits>
 
+namespace points_test {
+
 using namespace testing;
 using clearance::depth_image, clearance::drop_reason, clearance::point_filter, clearance::point_span,
     clearance::strided_points;
@@ -301,3 +303,5 @@ TEST_CASE("A table of a pinhole's rays is that pinhole, bit for bit; a bent ray 
   CHECK(b[100].position.x > a[100].position.x);
   CHECK(same(a[101], b[101]));
 }
+
+}  // namespace points_test

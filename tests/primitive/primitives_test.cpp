@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/laws.hpp"
 
+namespace primitives_test {
+
 using namespace testing;
 
 namespace {
@@ -159,3 +161,5 @@ TEST_CASE("The hull of a primitive's balls contains it") {
     v.require(s.balls()[0].center == s.center && s.balls()[0].radius == s.radius, "sphere");
   }
 }
+
+}  // namespace primitives_test

@@ -6,6 +6,8 @@
 #include <clearance/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace frames_test {
+
 using namespace testing;
 
 TEST_CASE("A depth image and the cloud of the same frame agree to 1e-6 m, and in which pixels are invalid", "[data]") {
@@ -61,3 +63,5 @@ TEST_CASE("A frame of an arm's own camera, decoded, has the depths that its sour
   CHECK(nearest == Approx(0.084).margin(5e-4));
   CHECK(farthest == Approx(1.563).margin(5e-4));
 }
+
+}  // namespace frames_test

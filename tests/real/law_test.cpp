@@ -18,6 +18,8 @@
 #include <filesystem>
 #include <numbers>
 
+namespace law_test {
+
 using namespace testing;
 using Eigen::Vector3d;
 
@@ -160,3 +162,5 @@ TEST_CASE("The bracket holds and the signed distance is never above the spheres'
   CHECK(all.solids > 40 / one_of);
   CHECK(all.in_gaps > all.points / 50);
 }
+
+}  // namespace law_test

@@ -8,6 +8,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace robots_test {
+
 using namespace testing;
 using clearance::host, clearance::io::robot_geometry, clearance::min_distance_per_part, clearance::placed,
     clearance::state;
@@ -143,3 +145,5 @@ TEST_CASE("A real robot before every 997th pixel of a real frame is brute force,
                     expected, v, frame.name);
     }
 }
+
+}  // namespace robots_test

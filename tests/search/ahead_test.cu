@@ -10,6 +10,8 @@
 
 #include <cstring>
 
+namespace ahead_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::placed, clearance::point_span;
 
@@ -105,3 +107,5 @@ TEST_CASE("Points that are read ahead are the host's, from every kind of source"
   records(float(), 32, "records of floats");
   records(double(), 24, "records of doubles");
 }
+
+}  // namespace ahead_test

@@ -11,6 +11,8 @@
 #include <chrono>
 #include <thread>
 
+namespace async_test {
+
 using namespace testing;
 using clearance::device, clearance::min_distance, clearance::min_distance_async, clearance::min_distance_result,
     clearance::point_span;
@@ -252,3 +254,5 @@ TEST_CASE("Clouds of different kinds share one search on the device too") {
                   s.name + ", plain");
   }
 }
+
+}  // namespace async_test

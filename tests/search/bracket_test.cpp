@@ -7,6 +7,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace bracket_test {
+
 using namespace testing;
 using clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::state;
 
@@ -195,3 +197,5 @@ TEST_CASE("Points inside triangle parts are brute force too, witness and ties in
     v.require(deep || r.state != state::collision || expected.best.distance == 0, "a collision without a point inside");
   }
 }
+
+}  // namespace bracket_test

@@ -8,6 +8,8 @@
 
 #include <cstring>
 
+namespace chunked_test {
+
 using namespace testing;
 using clearance::chunked, clearance::host, clearance::min_distance, clearance::point_span, clearance::read_records;
 
@@ -178,3 +180,5 @@ TEST_CASE("More points than numbers are refused, and so are poses that are none"
     CHECK(same_result(query(arm_poses, in_chunks), min_distance(host{}, model, arm_poses, cloud)));
   }
 }
+
+}  // namespace chunked_test

@@ -8,6 +8,8 @@
 
 #include <cstring>
 
+namespace chunked_test {
+
 using namespace testing;
 using clearance::chunked, clearance::device, clearance::host, clearance::min_distance, clearance::point_span;
 
@@ -68,3 +70,5 @@ TEST_CASE("Rooms that memory has run out for are there when less is needed") {
   ring.need(1000, 1000);
   for (std::size_t k = 0; k < clearance::staging_ring::rooms; ++k) CHECK(ring.fill(k) != nullptr);
 }
+
+}  // namespace chunked_test

@@ -9,6 +9,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace collect_test {
+
 using namespace testing;
 using clearance::host, clearance::placed, clearance::point_span;
 
@@ -83,3 +85,5 @@ TEST_CASE("A point inside a solid is a pair of distance 0 without a primitive") 
     CHECK((farthest < 0 || found.words[0] > 100));
   }
 }
+
+}  // namespace collect_test

@@ -9,6 +9,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace collect_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::placed, clearance::point_span;
 
@@ -82,3 +84,5 @@ TEST_CASE("Crowds, points inside solids, and more parts than a kernel takes give
   same_pairs(make_model<clearance::sphere>(s, {}, clearance::wrapped{}), s.poses, point_span(some), 0.2f, v,
              "200 parts");
 }
+
+}  // namespace collect_test

@@ -8,6 +8,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace collision_test {
+
 using namespace testing;
 using clearance::host, clearance::in_collision, clearance::placed, clearance::point_span, clearance::state;
 
@@ -150,3 +152,5 @@ TEST_CASE(
   }
   CHECK((states[int(state::free)] > 0 && states[int(state::collision)] > 0 && states[int(state::no_data)] == 1));
 }
+
+}  // namespace collision_test

@@ -8,6 +8,8 @@
 #include <clearance/make_model.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace collision_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::in_collision, clearance::placed, clearance::point_span,
     clearance::state;
@@ -80,3 +82,5 @@ TEST_CASE("A prepared question of collision says on a device in every frame what
   }
   CHECK((states[int(state::free)] > 0 && states[int(state::collision)] > 0 && states[int(state::no_data)] > 0));
 }
+
+}  // namespace collision_test

@@ -5,6 +5,8 @@
 
 #include <clearance/compacted.hpp>
 
+namespace compacted_test {
+
 using namespace testing;
 
 TEST_CASE("What is left of a cloud are its valid points, in their order") {
@@ -23,3 +25,5 @@ TEST_CASE("A cloud of more points than a call numbers is refused") {
   CHECK_THROWS_WITH(clearance::compacted_async(clearance::host{}, endless, nullptr, nullptr, nullptr),
                     "clearance: 2147483648 points are too many for one call; it takes 2^31 - 1");
 }
+
+}  // namespace compacted_test

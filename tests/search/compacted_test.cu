@@ -6,6 +6,8 @@
 
 #include <clearance/compacted.cuh>
 
+namespace compacted_test {
+
 using namespace testing;
 using clearance::device;
 
@@ -54,3 +56,5 @@ TEST_CASE("A graph leaves out what is invalid when it runs") {
     CHECK(gpu.copy_out(numbers.data(), 5000 - lost).back() == 4999);
   }
 }
+
+}  // namespace compacted_test

@@ -9,6 +9,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace devices_test {
+
 using namespace testing;
 using clearance::device, clearance::devices, clearance::host, clearance::min_distance, clearance::placed,
     clearance::point_span, clearance::sharded;
@@ -450,3 +452,5 @@ TEST_CASE("What cannot be is refused with a sentence, and leaves nothing behind"
   }
   CHECK((first.held == 0 && second.held == 0));
 }
+
+}  // namespace devices_test

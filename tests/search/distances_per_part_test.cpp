@@ -6,6 +6,8 @@
 #include <clearance/make_model.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace distances_per_part_test {
+
 using namespace testing;
 using clearance::host, clearance::distances_per_part;
 
@@ -62,3 +64,5 @@ TEST_CASE("Prepared, every part's distances are in every frame what one call say
     CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
   }
 }
+
+}  // namespace distances_per_part_test

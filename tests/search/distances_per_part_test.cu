@@ -8,6 +8,8 @@
 #include <clearance/make_model.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace distances_per_part_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::distances_per_part;
 
@@ -58,3 +60,5 @@ TEST_CASE("Prepared, every part's distances are on a device in every frame the h
         [&](const std::string& what) { look(0.3f, what); });
   }
 }
+
+}  // namespace distances_per_part_test

@@ -10,6 +10,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace distances_query_test {
+
 using namespace testing;
 using clearance::device, clearance::distances, clearance::host, clearance::placed, clearance::point_span;
 
@@ -135,3 +137,5 @@ TEST_CASE("A picture's pixels are taken in tiles, and each distance is at its ow
     }
   }
 }
+
+}  // namespace distances_query_test

@@ -9,6 +9,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace distances_test {
+
 using namespace testing;
 using clearance::distances, clearance::host, clearance::placed, clearance::plain;
 
@@ -181,3 +183,5 @@ TEST_CASE("What cannot be asked is refused, and nothing is nowhere") {
   CHECK(none.distance.empty());
   CHECK(none.counts.seen == 0);
 }
+
+}  // namespace distances_test

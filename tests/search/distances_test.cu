@@ -9,6 +9,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace distances_test {
+
 using namespace testing;
 using clearance::device, clearance::distances, clearance::host, clearance::placed, clearance::point_span;
 
@@ -86,3 +88,5 @@ TEST_CASE("Walls, crowds, neighbours and strangers: every point's distance on a 
                  distances(host{}, many, s.poses, point_span(some), {d_max, true}), v,
                  "200 parts within " + std::to_string(d_max));
 }
+
+}  // namespace distances_test

@@ -8,6 +8,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace edge_test {
+
 using namespace testing;
 using clearance::host, clearance::min_distance, clearance::min_distance_query, clearance::placed, clearance::point_span;
 
@@ -165,3 +167,5 @@ TEST_CASE("Ten million points: the one that is near is found wherever it is", "[
   CHECK((same_bits(r.distance, same.distance) && r.point == same.point && r.primitive == same.primitive &&
          r.valid == same.valid));
 }
+
+}  // namespace edge_test

@@ -9,6 +9,8 @@
 
 #include <optional>
 
+namespace edge_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::min_distance, clearance::placed, clearance::point_span;
 
@@ -164,3 +166,5 @@ TEST_CASE("A hundred million points: the one that is near is found wherever it i
          r.dropped[int(clearance::drop_reason::not_finite)] == n));
   CHECK((minima[0].point == clearance::none && minima[2].point == clearance::none));
 }
+
+}  // namespace edge_test

@@ -15,6 +15,8 @@
 #include <clearance/within.cuh>
 #include <clearance/zones.cuh>
 
+namespace enqueue_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::placed, clearance::point_span;
 
@@ -231,3 +233,5 @@ TEST_CASE("Questions that want memory for a call are enqueued without waiting, a
     look("launch " + std::to_string(launch) + " of a graph");
   }
 }
+
+}  // namespace enqueue_test

@@ -5,6 +5,8 @@
 #include <clearance/in_collision.hpp>
 #include <clearance/min_distance_query.hpp>
 
+namespace far_test {
+
 using namespace testing;
 using clearance::host, clearance::placed;
 
@@ -112,3 +114,5 @@ TEST_CASE("What a source's positions have lost is no more than it says") {
   CHECK(clearance::rounding_of(clearance::point_span{}).relative == 0);
   CHECK(clearance::rounding_of(clearance::strided_points<float>{}).relative == 0);
 }
+
+}  // namespace far_test

@@ -7,6 +7,8 @@
 
 #include <clearance/min_distance_query.cuh>
 
+namespace far_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::placed;
 
@@ -67,3 +69,5 @@ TEST_CASE("On a device the bracket contains the distance at poses as far away as
   each_far_pose<ball_body>(60, ask_device{v});
   each_far_pose<box_body>(60, ask_device{v});
 }
+
+}  // namespace far_test

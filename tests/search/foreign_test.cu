@@ -14,6 +14,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace foreign_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::min_distance, clearance::placed, clearance::point_span;
 
@@ -305,3 +307,5 @@ TEST_CASE("Parts of unequal tolerance are one robot, in groups too") {
     ask(on_host, on_host.on(gpu), poses, point_span(points), v, "tolerance " + std::to_string(tolerance));
   }
 }
+
+}  // namespace foreign_test

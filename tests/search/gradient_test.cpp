@@ -10,6 +10,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace gradient_test {
+
 using namespace testing;
 using clearance::gradient, clearance::gradient_state, clearance::host, clearance::min_distance_per_part,
     clearance::part_minimum, clearance::part_witness, clearance::part_witnesses, clearance::smooth_minimum_of;
@@ -254,3 +256,5 @@ TEST_CASE("The smooth minimum is never above the least, near it, and its weights
   far[1].distance = -clearance::infinity;
   CHECK_THROWS_AS(smooth_minimum_of(far, 0.1), std::invalid_argument);
 }
+
+}  // namespace gradient_test

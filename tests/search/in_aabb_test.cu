@@ -3,6 +3,8 @@
 
 #include <clearance/volume/aabb.hpp>
 
+namespace in_aabb_test {
+
 using namespace testing;
 using clearance::aabb;
 
@@ -27,3 +29,5 @@ TEST_CASE("Inner spheres in axis-aligned boxes, stack, from a 16-bit image: the 
 TEST_CASE("Triangles in axis-aligned boxes, near first, from a float image: the device is brute force, bit for bit") {
   check_on_device<triangle, aabb, clearance::near_first>(pick_metres{});
 }
+
+}  // namespace in_aabb_test

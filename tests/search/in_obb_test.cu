@@ -3,6 +3,8 @@
 
 #include <clearance/volume/obb.hpp>
 
+namespace in_obb_test {
+
 using namespace testing;
 using clearance::obb;
 
@@ -25,3 +27,5 @@ TEST_CASE("Triangles in oriented boxes, near first, from a 16-bit image: the dev
 TEST_CASE("Inner spheres in oriented boxes, recursive, from a float image: the device is brute force, bit for bit") {
   check_on_device<inner_sphere, obb, clearance::recursive>(pick_metres{});
 }
+
+}  // namespace in_obb_test

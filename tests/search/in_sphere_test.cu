@@ -3,6 +3,8 @@
 
 #include <clearance/volume/sphere.hpp>
 
+namespace in_sphere_test {
+
 using namespace testing;
 using clearance::sphere;
 
@@ -25,3 +27,5 @@ TEST_CASE("Triangles in spheres, recursive, from a 16-bit image: the device is b
 TEST_CASE("Inner spheres in spheres, stack, from a float image: the device is brute force, bit for bit") {
   check_on_device<inner_sphere, sphere, clearance::stack>(pick_metres{});
 }
+
+}  // namespace in_sphere_test

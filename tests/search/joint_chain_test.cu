@@ -10,6 +10,8 @@
 #include <clearance/min_distances.cuh>
 #include <clearance/volume/sphere.hpp>
 
+namespace joint_chain_test {
+
 using namespace testing;
 using clearance::device, clearance::host;
 
@@ -94,3 +96,5 @@ TEST_CASE("A joint vector on a device that is not allowed is refused, and never 
   CHECK_THROWS_WITH(query(two.on(gpu), std::vector<double>{0}, points),
                     "clearance: there are 1 parts, but a joint chain of 2");
 }
+
+}  // namespace joint_chain_test

@@ -8,6 +8,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace merge_test {
+
 using namespace testing;
 using clearance::host, clearance::merge, clearance::min_distance, clearance::min_distance_result,
     clearance::part_minimum, clearance::placed, clearance::point_span, clearance::renumbered, clearance::slice;
@@ -125,3 +127,5 @@ TEST_CASE("Some point certainly inside is a collision of all, and no valid point
   for (const auto& r : {merge(ask(apart), lost), merge(lost, ask(apart)), merge(lost, ask(none))})
     CHECK((r.state == clearance::state::possible && r.lower == 0));
 }
+
+}  // namespace merge_test

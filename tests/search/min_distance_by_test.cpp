@@ -12,6 +12,8 @@
 
 #include <limits>
 
+namespace min_distance_by_test {
+
 using namespace testing;
 using namespace std::chrono_literals;
 using clearance::host, clearance::min_distance, clearance::min_distance_by, clearance::min_distance_query,
@@ -156,3 +158,5 @@ TEST_CASE("Asked per part, an answer with time for all is min_distance_per_part'
   }
   CHECK(higher > 0);
 }
+
+}  // namespace min_distance_by_test

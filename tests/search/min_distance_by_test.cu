@@ -8,6 +8,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace min_distance_by_test {
+
 using namespace testing;
 using namespace std::chrono_literals;
 using clearance::device, clearance::host, clearance::min_distance, clearance::min_distance_by,
@@ -72,3 +74,5 @@ TEST_CASE("A device has no time, or deadlines that are none") {
   CHECK_THROWS_AS(min_distance_by(gpu, model, poses, points, -1s), std::invalid_argument);
   CHECK_THROWS_AS(min_distance_by(gpu, model, std::vector(2, poses[0]), points, 0s), std::invalid_argument);
 }
+
+}  // namespace min_distance_by_test

@@ -15,6 +15,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace min_distances_test {
+
 using namespace testing;
 using clearance::host, clearance::infinity, clearance::min_distance, clearance::min_distances, clearance::placed,
     clearance::point_span, clearance::state;
@@ -453,3 +455,5 @@ TEST_CASE("Of very many points in one place, or nearly, the lowest is found, as 
   check_crowds(clearance::make_model<clearance::obb>(closed.meshes), v, "solids");
   check_crowds(clearance::make_model<clearance::sphere>(closed.meshes), v, "solids in balls");
 }
+
+}  // namespace min_distances_test

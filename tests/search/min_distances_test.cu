@@ -12,6 +12,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace min_distances_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::infinity, clearance::min_distances, clearance::placed,
     clearance::point_span, clearance::state;
@@ -223,3 +225,5 @@ TEST_CASE("A robot without parts has no configurations, on a device") {
       min_distances(device{}, nothing, configurations(2, Eigen::Isometry3d::Identity()), std::vector<vec3>{{1, 2, 3}}),
       std::invalid_argument);
 }
+
+}  // namespace min_distances_test

@@ -10,6 +10,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace min_support_test {
+
 using namespace testing;
 using clearance::host, clearance::min_distance_supported, clearance::point_span;
 
@@ -168,3 +170,5 @@ TEST_CASE(
   points = {{0.5f, 0, 0}};
   CHECK((ask(1).state == clearance::state::collision && ask(1).point == 0));
 }
+
+}  // namespace min_support_test

@@ -8,6 +8,8 @@
 #include <clearance/min_support.cuh>
 #include <clearance/volume/sphere.hpp>
 
+namespace min_support_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::min_distance_supported, clearance::placed;
 
@@ -51,3 +53,5 @@ TEST_CASE("Prepared, the nearest confirmed point is on a device in every frame t
     }
   }
 }
+
+}  // namespace min_support_test

@@ -11,6 +11,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace minimum_test {
+
 using namespace testing;
 using clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::placed,
     clearance::point_span;
@@ -350,3 +352,5 @@ TEST_CASE("Several robots are asked in one call, each with its own result") {
   CHECK_THROWS_AS(clearance::min_distance_per_robot(host{}, std::vector(1, model.view()), poses, cloud),
                   std::invalid_argument);
 }
+
+}  // namespace minimum_test

@@ -9,6 +9,8 @@
 
 #include <numbers>
 
+namespace motion_test {
+
 using namespace testing;
 using clearance::host, clearance::min_distance_query, clearance::motion_clearance, clearance::part_facts,
     clearance::point_span, clearance::state, clearance::straight_motion;
@@ -285,3 +287,5 @@ TEST_CASE("What is no motion, and what cannot be asked, is refused") {
   wrong[0](0, 0) = clearance::not_a_number;
   refused(clearance::timed_motion{[&](double) { return wrong; }, {1.0}}, {});
 }
+
+}  // namespace motion_test

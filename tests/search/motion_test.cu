@@ -9,6 +9,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace motion_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::placed, clearance::point_span;
 
@@ -49,3 +51,5 @@ TEST_CASE("Motions and witnesses on a device are the host's: spheres") {
 TEST_CASE("Motions and witnesses on a device are the host's: triangles") {
   like_the_host<clearance::sphere, triangle>();
 }
+
+}  // namespace motion_test

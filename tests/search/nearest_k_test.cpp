@@ -7,6 +7,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace nearest_k_test {
+
 using namespace testing;
 using clearance::host, clearance::nearest_k, clearance::point_span;
 
@@ -113,3 +115,5 @@ TEST_CASE("Of a robot of many parts before a frame of many points the nearest ar
       require_same(nearest_k(host{}, model, s.poses, two, k, {d_max}), brute_nearest(s, two, k, d_max), v,
                    std::to_string(k) + " within " + std::to_string(d_max));
 }
+
+}  // namespace nearest_k_test

@@ -9,6 +9,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace nearest_k_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::nearest_k, clearance::placed, clearance::point_span;
 
@@ -67,3 +69,5 @@ TEST_CASE("Prepared, the nearest are on a device in every frame the host's") {
     }
   }
 }
+
+}  // namespace nearest_k_test

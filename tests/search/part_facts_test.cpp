@@ -12,6 +12,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace part_facts_test {
+
 using namespace clearance;
 
 namespace {
@@ -91,3 +93,5 @@ TEST_CASE("facts that are none leave nothing certain, wherever they come from") 
     CHECK_FALSE(minimum::certain_distance(1.5f, all.slop, all.error) > 0);
   }
 }
+
+}  // namespace part_facts_test

@@ -7,6 +7,8 @@
 #include <clearance/min_distance_query.cuh>
 #include <clearance/part_witnesses.cuh>
 
+namespace part_witnesses_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::part_minimum, clearance::part_witness;
 
@@ -74,3 +76,5 @@ TEST_CASE("Minima of other clouds have no witness on a device") {
   query.enqueue(f.s.poses, std::vector<clearance::placed<clearance::point_span>>{}, others.data(), witnesses.data());
   for (const part_witness& w : gpu.copy_out(witnesses)) CHECK(w.part == clearance::none);
 }
+
+}  // namespace part_witnesses_test

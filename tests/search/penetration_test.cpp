@@ -12,6 +12,8 @@
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace penetration_test {
+
 using namespace testing;
 using Eigen::Vector3d;
 
@@ -81,3 +83,5 @@ TEST_CASE("At the centre of a sphere that touches the surface the penetration is
   CHECK(-ask(p, {c}) == Approx(exact).margin(2e-6));
   CHECK(-ask(p, {c}) <= exact);
 }
+
+}  // namespace penetration_test

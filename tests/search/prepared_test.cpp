@@ -10,9 +10,6 @@
 #include <cstdlib>
 #include <new>
 
-using namespace testing;
-using clearance::host, clearance::min_distance, clearance::min_distance_query, clearance::placed, clearance::point_span;
-
 namespace {
 thread_local std::size_t allocations = 0;
 }
@@ -28,6 +25,11 @@ thread_local std::size_t allocations = 0;
 }
 [[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
+namespace prepared_test {
+
+using namespace testing;
+using clearance::host, clearance::min_distance, clearance::min_distance_query, clearance::placed, clearance::point_span;
 
 namespace {
 
@@ -209,3 +211,5 @@ TEST_CASE(
   require_equal(query(s.poses, points), brute_force(brute_parts(s), s.poses, {brute_cloud(point_span(points))}), v,
                 "after errors");
 }
+
+}  // namespace prepared_test

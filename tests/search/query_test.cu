@@ -9,6 +9,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace query_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::min_distance;
 
@@ -302,3 +304,5 @@ TEST_CASE("A query in a stream of its own leaves the caller's device alone, and 
   REQUIRE(same_result(query(poses, clearance::point_span(cloud)),
                       min_distance(host{}, on_host, poses, clearance::point_span(cloud))));
 }
+
+}  // namespace query_test

@@ -8,6 +8,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace self_filter_test {
+
 using namespace testing;
 using clearance::host, clearance::min_distance, clearance::min_distance_filtered, clearance::placed,
     clearance::point_label, clearance::point_span, clearance::self_filter;
@@ -174,3 +176,5 @@ TEST_CASE("A robot that holds something is as if it had always been of more part
          a.primitive == b.primitive));
   CHECK(attach(host{}, both, tool).size() == 4);
 }
+
+}  // namespace self_filter_test

@@ -10,6 +10,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace self_filter_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::min_distance_filtered, clearance::placed, clearance::point_label,
     clearance::point_span, clearance::self_filter;
@@ -141,3 +143,5 @@ TEST_CASE(
     s.poses[std::size_t(frame)] = d.pose(1);
   }
 }
+
+}  // namespace self_filter_test

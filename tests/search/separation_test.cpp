@@ -4,6 +4,8 @@
 
 #include <clearance/separation.hpp>
 
+namespace separation_test {
+
 using clearance::approach_speed, clearance::protective_separation, clearance::separation_terms;
 using Eigen::Vector3d;
 
@@ -88,3 +90,5 @@ TEST_CASE("The protective separation is the sum of its terms, and every term is 
     }
   }
 }
+
+}  // namespace separation_test

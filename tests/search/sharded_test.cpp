@@ -7,6 +7,8 @@
 #include <clearance/points/sharded.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace sharded_test {
+
 using namespace testing;
 using clearance::first_of_piece, clearance::host, clearance::piece_of, clearance::sharded, clearance::slice;
 
@@ -128,3 +130,5 @@ TEST_CASE("Pieces of any size answer as one cloud; none, and too many, are refus
   CHECK_NOTHROW(clearance::check_pieces(three, 3));
   CHECK_NOTHROW(clearance::check_pieces(clearance::point_span(), 2));
 }
+
+}  // namespace sharded_test

@@ -7,6 +7,8 @@
 #include <clearance/signed_distances.hpp>
 #include <clearance/volume/aabb.hpp>
 
+namespace signed_distances_test {
+
 using namespace testing;
 using clearance::host, clearance::placed, clearance::point_span, clearance::signed_distances;
 
@@ -66,3 +68,5 @@ TEST_CASE("The signed distance to a box is the one known by hand, on its surface
   CHECK_THROWS_AS(signed_distances(host{}, model, poses, points, {.d_max = clearance::not_a_number}),
                   std::invalid_argument);
 }
+
+}  // namespace signed_distances_test

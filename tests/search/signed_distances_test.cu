@@ -7,6 +7,8 @@
 #include <clearance/signed_distances.cuh>
 #include <clearance/volume/aabb.hpp>
 
+namespace signed_distances_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::placed, clearance::point_span, clearance::signed_distances;
 
@@ -30,3 +32,5 @@ TEST_CASE("Signed distances on a device are those of all triangles, and the host
     }
   }
 }
+
+}  // namespace signed_distances_test

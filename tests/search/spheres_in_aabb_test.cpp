@@ -3,7 +3,11 @@
 
 #include <clearance/volume/aabb.hpp>
 
+namespace spheres_in_aabb_test {
+
 TEST_CASE(
     "Inner spheres in axis-aligned boxes: every width, fit, traversal and point source is brute force, bit for bit") {
   testing::check_product<clearance::aabb, clearance::inner_sphere>();
 }
+
+}  // namespace spheres_in_aabb_test

@@ -3,6 +3,10 @@
 
 #include <clearance/volume/sphere.hpp>
 
+namespace spheres_in_sphere_test {
+
 TEST_CASE("Inner spheres in spheres: every width, fit, traversal and point source is brute force, bit for bit") {
   testing::check_product<clearance::sphere, clearance::inner_sphere>();
 }
+
+}  // namespace spheres_in_sphere_test

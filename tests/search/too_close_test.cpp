@@ -15,6 +15,8 @@
 #include <clearance/volume/sphere.hpp>
 #include <clearance/zones.hpp>
 
+namespace too_close_test {
+
 using namespace testing;
 using clearance::drop_reason, clearance::host, clearance::min_distance, clearance::state;
 
@@ -92,3 +94,5 @@ TEST_CASE("One camera that is covered leaves nothing free for all") {
          b.dropped[int(drop_reason::too_close)] == covered.size()));
   CHECK((merge(a, b).state == state::possible && merge(b, a).lower == 0));
 }
+
+}  // namespace too_close_test

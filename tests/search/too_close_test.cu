@@ -7,6 +7,8 @@
 #include <clearance/make_model.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace too_close_test {
+
 using namespace testing;
 using clearance::device, clearance::drop_reason, clearance::host, clearance::min_distance, clearance::state;
 
@@ -27,3 +29,5 @@ TEST_CASE("On a device what is too close is counted, and leaves nothing free") {
           (near == 0 ? state::free : state::possible));
   }
 }
+
+}  // namespace too_close_test

@@ -7,6 +7,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace within_test {
+
 using namespace testing;
 using clearance::host, clearance::placed, clearance::point_span, clearance::within;
 
@@ -86,3 +88,5 @@ TEST_CASE("A prepared list says in every frame what one call says, and goes on a
   }
   CHECK(listed > 1 << 16);
 }
+
+}  // namespace within_test

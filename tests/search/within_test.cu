@@ -8,6 +8,8 @@
 #include <clearance/volume/sphere.hpp>
 #include <clearance/within.cuh>
 
+namespace within_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::placed, clearance::point_span, clearance::within;
 
@@ -70,3 +72,5 @@ TEST_CASE("A prepared list says on a device in every frame what the host says, a
         [&](const std::string& what) { look({0.1f}, what); });
   }
 }
+
+}  // namespace within_test

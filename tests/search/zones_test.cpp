@@ -7,6 +7,8 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace zones_test {
+
 using namespace testing;
 using clearance::host, clearance::placed, clearance::point_span, clearance::zones;
 
@@ -121,3 +123,5 @@ TEST_CASE(
     CHECK_THROWS_AS(query(std::span(f.s.poses).first(4), f.here(), options), std::invalid_argument);
   }
 }
+
+}  // namespace zones_test

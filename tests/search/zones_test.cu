@@ -9,6 +9,8 @@
 #include <clearance/volume/sphere.hpp>
 #include <clearance/zones.cuh>
 
+namespace zones_test {
+
 using namespace testing;
 using clearance::device, clearance::host, clearance::placed, clearance::point_span, clearance::zones;
 
@@ -87,3 +89,5 @@ TEST_CASE("A prepared question of zones says on a device in every frame what the
         [&](const std::string& what) { look(wide, what); });
   }
 }
+
+}  // namespace zones_test

@@ -6,6 +6,8 @@
 
 #include <random>
 
+namespace close_mesh_test {
+
 using namespace clearance;
 
 namespace {
@@ -155,3 +157,5 @@ TEST_CASE("what is no mesh is refused with a reason") {
   for (auto& v : bad.vertices) v.y() = v.z() = v.x();
   CHECK(reason(bad).find("degenerate") != std::string::npos);
 }
+
+}  // namespace close_mesh_test

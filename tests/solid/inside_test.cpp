@@ -15,6 +15,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+namespace inside_test {
+
 using namespace testing;
 
 namespace {
@@ -142,3 +144,5 @@ TEST_CASE("Shapes of one link that make a room between them leave it free") {
   CHECK_FALSE(w.view().inside(vec3{.5f, .5f, .5f}));
   CHECK(w.view().inside(vec3{.05f, .5f, .5f}));
 }
+
+}  // namespace inside_test

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <random>
 
+namespace mesh_solid_test {
+
 using namespace clearance;
 using Eigen::Vector3d;
 
@@ -149,3 +151,5 @@ TEST_CASE("mesh solids of real robots are exact", "[data]") {
     CHECK(worst < 1e-12);
   }
 }
+
+}  // namespace mesh_solid_test

@@ -6,6 +6,8 @@
 
 #include <random>
 
+namespace winding_test {
+
 using namespace clearance;
 
 namespace {
@@ -138,3 +140,5 @@ TEST_CASE("an open mesh whose caps were declined has no winding number") {
   CHECK_THROWS_AS(make_winding(close_mesh(mesh, {.cap = false})), std::invalid_argument);
   CHECK(make_winding(close_mesh(mesh)).view().inside(vec3{.5f, .5f, .5f}));
 }
+
+}  // namespace winding_test

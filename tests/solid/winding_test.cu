@@ -7,6 +7,8 @@
 
 #include <random>
 
+namespace winding_test {
+
 using namespace clearance;
 
 namespace {
@@ -92,3 +94,5 @@ TEST_CASE("What is inside damaged solids is the same on host and device, by floo
   CHECK(inside > 10000);
   CHECK(flooded > 0);
 }
+
+}  // namespace winding_test

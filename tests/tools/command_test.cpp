@@ -4,6 +4,8 @@
 #include "tools/run_command.hpp"
 #include "tools/small_png.hpp"
 
+namespace command_test {
+
 namespace {
 
 /// A box of 0.2 m on a table, a second one on a slide above it (z of its centre is 0.5 + the joint's value), and a
@@ -412,3 +414,5 @@ TEST_CASE("clearance info says what it is and what it runs on") {
     refuses("pack " + s.urdf.path + " --spheres 5 --backend device", "--backend: device is not possible");
   }
 }
+
+}  // namespace command_test

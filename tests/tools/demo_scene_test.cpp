@@ -4,6 +4,8 @@
 
 #include <map>
 
+namespace demo_scene_test {
+
 TEST_CASE("the demonstration's arm is seven closed parts of about 12,000 triangles, all behind its camera") {
   const demo_scene scene = make_demo_scene(1);
   REQUIRE(scene.parts.size() == 7);
@@ -60,3 +62,5 @@ TEST_CASE("the demonstration's depth image is the same for the same seed, noisy,
   CHECK(least > 0.05);
   CHECK(least < 0.20);
 }
+
+}  // namespace demo_scene_test

@@ -2,6 +2,8 @@
 // Points that are far away, by every file that holds doubles, alone and merged.
 #include "tools/run_command.hpp"
 
+namespace far_test {
+
 namespace {
 
 /// A box of 0.2 x 0.3 x 0.4 m at (0.25, 0.25, 0) from `at`, before many points far away and one inside it or 0.35 m
@@ -68,3 +70,5 @@ TEST_CASE("placeholders a thousand kilometres away change no answer, in any file
         check(nlohmann::json::parse(merged.out.substr(0, merged.out.find('\n'))), inside);
       }
 }
+
+}  // namespace far_test

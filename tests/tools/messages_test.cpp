@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <cstring>
 
+namespace messages_test {
+
 using namespace clearance;
 
 namespace {
@@ -255,3 +257,5 @@ TEST_CASE("where memory ends, the sentence names the file that was read") {
     std::filesystem::remove(link);
   }
 }
+
+}  // namespace messages_test

@@ -5,6 +5,8 @@
 
 #include <sstream>
 
+namespace options_test {
+
 namespace {
 
 struct listed_option {
@@ -159,3 +161,5 @@ TEST_CASE(
             "--threads: \"" + bad + "\" is not a whole number from 1 to 1024");
   CHECK(run_command("info --threads 1 " + cloud.path).code == 1);
 }
+
+}  // namespace options_test

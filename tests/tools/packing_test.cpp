@@ -6,6 +6,8 @@
 
 #include <clearance/io/spheres_file.hpp>
 
+namespace packing_test {
+
 using namespace clearance;
 
 namespace {
@@ -294,3 +296,5 @@ TEST_CASE("real robots answer from their files as they do when they are packed",
     for (const auto& part : inside.at("parts")) CHECK(part.at("certified") == true);
   }
 }
+
+}  // namespace packing_test

@@ -6,6 +6,8 @@
 
 #include <sstream>
 
+namespace plan_test {
+
 namespace {
 
 /// A box of 0.2 m, a second one on a slide above it, and a camera on the second.
@@ -342,3 +344,5 @@ TEST_CASE("a plan of more poses than are in memory at once has the same answers"
   }
   CHECK(answer(all[block]) != answer(all[block + 1]));
 }
+
+}  // namespace plan_test

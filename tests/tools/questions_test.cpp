@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstring>
 
+namespace questions_test {
+
 namespace {
 
 /// A box of 0.2 m at the origin, and a second one 0.5 m above it.
@@ -810,3 +812,5 @@ TEST_CASE(
                     " --unfold-limit 1 --distances " + file.path)
             .code == 0);
 }
+
+}  // namespace questions_test

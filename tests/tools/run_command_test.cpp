@@ -10,6 +10,8 @@
 
 #include <sstream>
 
+namespace run_command_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -501,3 +503,5 @@ TEST_CASE("a picture is written when all is answered, whole or not at all, and n
   CHECK(run_command(still + " --svg " + svg).code == 0);
   CHECK(left().starts_with("<?xml"));
 }
+
+}  // namespace run_command_test

@@ -7,6 +7,8 @@
 
 #include <sys/stat.h>
 
+namespace written_files_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -188,3 +190,5 @@ TEST_CASE("an answer that cannot be printed is exit code 1, whatever prints it")
   CHECK(w.read("out.glb").starts_with("glTF"));
   CHECK(w.read("out.glb").find("\"distance\"") == std::string::npos);
 }
+
+}  // namespace written_files_test

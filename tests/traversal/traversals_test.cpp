@@ -14,6 +14,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace traversals_test {
+
 using namespace testing;
 
 namespace {
@@ -223,3 +225,5 @@ TEST_CASE("Near first tests fewer primitives than stored order") {
   CHECK(nearest_first < ordered);
   CHECK(nearest_first < 100 * 100);
 }
+
+}  // namespace traversals_test

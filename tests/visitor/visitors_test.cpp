@@ -4,6 +4,8 @@
 #include <clearance/visitor/any_within.hpp>
 #include <clearance/visitor/nearest.hpp>
 
+namespace visitors_test {
+
 using namespace testing;
 using clearance::any_within, clearance::nearest;
 
@@ -45,3 +47,5 @@ TEST_CASE("Any-within counts its margin, and then wants nothing more") {
   CHECK(q.result());
   CHECK(q.reach() == -infinity);
 }
+
+}  // namespace visitors_test

@@ -6,6 +6,8 @@
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+namespace volumes_test {
+
 using namespace testing;
 
 TEST_CASE("A sphere never promises more distance than there is") { check_volume_laws<clearance::sphere>(); }
@@ -87,3 +89,5 @@ TEST_CASE("A bound of a point that is not a number is no bound to go by") {
   const vec3 nowhere{clearance::not_a_number, 0, 0};
   CHECK_FALSE(clearance::sphere::fit(balls).lower_bound(nowhere) <= infinity);
 }
+
+}  // namespace volumes_test

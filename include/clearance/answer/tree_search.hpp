@@ -162,6 +162,7 @@ struct tree_search {
             part.facts.radius / real(1u << (p.depth < 20 ? p.depth * 3 / 2 : 30));  // surfaces of eight children each
       }
       p.bound = max(p.bound, bound);
+      // The larger of the two is opened; which one that is changes the work, and no answer.
       p.by_points = 10 * b.radius > 7 * size || part.tree.is_leaf(p.node);
     }
     return p.bound <= reach(p.part);

@@ -84,15 +84,6 @@ CLEARANCE_HD inline void add_one(unsigned long long* word) {
 #endif
 }
 
-/// Sets bits of a word that others set, too.
-CLEARANCE_HD inline void set_bits(std::uint32_t* word, std::uint32_t bits) {
-#if defined(__CUDA_ARCH__)
-  atomicOr(word, bits);
-#else
-  std::atomic_ref<std::uint32_t>(*word).fetch_or(bits, std::memory_order_relaxed);
-#endif
-}
-
 /// As `lower_to` and `take_number`, of words of 32 bits.
 CLEARANCE_HD inline void lower_word(std::uint32_t* word, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)

@@ -109,73 +109,97 @@ inline std::vector<Eigen::Vector3d> dae_positions(const xml_place& mesh, const x
   return made;
 }
 
-/// Adds the faces of one list of primitives.
-inline void dae_faces(const xml_place& list, const std::string& vertices, polygon_mesh& mesh) {
-  const std::string& kind = list.element.name;
-  list.only({"name", "count", "material"}, {"input", "p", "vcount", "extra"});
-  std::uint64_t stride = 1, where = 0;
+/// Where a list's indices of vertices are: every `stride`-th, from `first` on.
+struct dae_indices {
+  std::uint64_t stride = 1, first = 0;
+};
+
+inline dae_indices dae_layout(const xml_place& list, const std::string& vertices) {
+  dae_indices made;
   int found = 0;
   for (const xml_element* input : dae_children(list.element, "input")) {
     const auto at = list.in(*input);
     at.only({"semantic", "source", "offset", "set"}, {});
     const std::uint64_t offset = dae_count(at, "offset");
     if (offset > 100) at.refuse("has an offset above 100");
-    stride = std::max(stride, offset + 1);
+    made.stride = std::max(made.stride, offset + 1);
     if (at.attribute("semantic") != "VERTEX") continue;
     if (at.attribute("source") != "#" + vertices) at.refuse("names other vertices than its mesh has");
-    where = offset;
+    made.first = offset;
     ++found;
   }
   if (found != 1) list.refuse("has " + std::to_string(found) + " inputs for vertices, not one");
+  return made;
+}
+
+/// The vertices that a list <p> names.
+inline std::vector<std::uint32_t> dae_corners(const xml_place& at, const dae_indices& layout, std::size_t vertices) {
+  const auto all = dae_numbers<std::int64_t>(at);
+  if (all.size() % layout.stride)
+    at.refuse("has " + std::to_string(all.size()) + " indices, in groups of " + std::to_string(layout.stride));
+  std::vector<std::uint32_t> corners;
+  for (std::size_t i = layout.first; i < all.size(); i += layout.stride) {
+    if (all[i] < 0 || std::uint64_t(all[i]) >= vertices)
+      at.refuse("has the vertex " + std::to_string(all[i]) + ", and the mesh has " + std::to_string(vertices));
+    corners.push_back(std::uint32_t(all[i]));
+  }
+  return corners;
+}
+
+/// Adds the triangles of a strip, or of a fan.
+inline void dae_strip(const xml_place& at, bool fan, const std::vector<std::uint32_t>& corners, polygon_mesh& mesh) {
+  if (corners.size() < 3) at.refuse("has fewer than three corners");
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    if (fan)
+      mesh.corners.insert(mesh.corners.end(), {corners[0], corners[i - 1], corners[i]});
+    else
+      mesh.corners.insert(mesh.corners.end(), {corners[i - 2 + i % 2], corners[i - 1 - i % 2], corners[i]});
+    mesh.ends.push_back(mesh.corners.size());
+  }
+}
+
+/// Adds faces of these sizes, which all corners belong to.
+inline void dae_polygons(const xml_place& at, const std::vector<std::uint64_t>& sizes,
+                         const std::vector<std::uint32_t>& corners, polygon_mesh& mesh) {
+  std::uint64_t taken = 0;
+  for (const std::uint64_t size : sizes) {
+    if (size < 3) at.refuse("belongs to a face of fewer than three corners");
+    if (size > corners.size() - taken) at.refuse("has fewer corners than its faces need");
+    const auto first = corners.begin() + std::ptrdiff_t(taken);
+    mesh.corners.insert(mesh.corners.end(), first, first + std::ptrdiff_t(size));
+    mesh.ends.push_back(mesh.corners.size());
+    taken += size;
+  }
+  if (taken != corners.size()) at.refuse("has more corners than its faces need");
+}
+
+/// Adds the faces of one list of primitives.
+inline void dae_faces(const xml_place& list, const std::string& vertices, polygon_mesh& mesh) {
+  const std::string& kind = list.element.name;
+  list.only({"name", "count", "material"}, {"input", "p", "vcount", "extra"});
+  const dae_indices layout = dae_layout(list, vertices);
   const std::uint64_t count = dae_count(list, "count");
   const auto lists = dae_children(list.element, "p");
   const bool one = kind == "triangles" || kind == "polylist";
   if (lists.size() != (one ? 1 : count) && !(one && lists.empty() && count == 0))
     list.refuse("has the count " + std::to_string(count) + " and " + std::to_string(lists.size()) + " lists <p>");
-  std::vector<std::uint64_t> sizes;  // corners of each face of a polylist
+  std::vector<std::uint64_t> sizes;  // corners of each face
   if (const xml_element* counts = list.child("vcount"); kind == "polylist") {
     if (!counts && count > 0) list.refuse("has no <vcount>");
     if (counts) sizes = dae_numbers<std::uint64_t>(list.in(*counts), &count);
   } else if (counts) {
     list.in(*counts).refuse("is not known in <" + kind + ">");
   }
-  const auto face = [&](std::initializer_list<std::uint32_t> corners) {
-    mesh.corners.insert(mesh.corners.end(), corners);
-    mesh.ends.push_back(mesh.corners.size());
-  };
   for (const xml_element* each : lists) {
     const auto at = list.in(*each);
-    const auto all = dae_numbers<std::int64_t>(at);
-    if (all.size() % stride)
-      at.refuse("has " + std::to_string(all.size()) + " indices, in groups of " + std::to_string(stride));
-    std::vector<std::uint32_t> corners;
-    for (std::size_t i = where; i < all.size(); i += stride) {
-      if (all[i] < 0 || std::uint64_t(all[i]) >= mesh.vertices.size())
-        at.refuse("has the vertex " + std::to_string(all[i]) + ", and the mesh has " +
-                  std::to_string(mesh.vertices.size()));
-      corners.push_back(std::uint32_t(all[i]));
+    const auto corners = dae_corners(at, layout, mesh.vertices.size());
+    if (kind == "tristrips" || kind == "trifans") {
+      dae_strip(at, kind == "trifans", corners, mesh);
+      continue;
     }
     if (kind == "triangles") sizes.assign(count, 3);
     if (kind == "polygons") sizes.assign(1, corners.size());
-    if (kind == "tristrips" || kind == "trifans") {
-      if (corners.size() < 3) at.refuse("has fewer than three corners");
-      for (std::size_t i = 2; i < corners.size(); ++i)
-        if (kind == "trifans")
-          face({corners[0], corners[i - 1], corners[i]});
-        else
-          face({corners[i - 2 + i % 2], corners[i - 1 - i % 2], corners[i]});
-      continue;
-    }
-    std::uint64_t taken = 0;
-    for (const std::uint64_t size : sizes) {
-      if (size < 3) at.refuse("belongs to a face of fewer than three corners");
-      if (size > corners.size() - taken) at.refuse("has fewer corners than its faces need");
-      mesh.corners.insert(mesh.corners.end(), corners.begin() + std::ptrdiff_t(taken),
-                          corners.begin() + std::ptrdiff_t(taken + size));
-      mesh.ends.push_back(mesh.corners.size());
-      taken += size;
-    }
-    if (taken != corners.size()) at.refuse("has more corners than its faces need");
+    dae_polygons(at, sizes, corners, mesh);
   }
 }
 

@@ -30,7 +30,7 @@ struct ply_piece {
 
 /// What stands before the records of `count` points with such columns. Throws std::invalid_argument if a column has a
 /// name that is no word.
-inline std::string ply_header(std::size_t count, std::span<const ply_column> columns, const std::string& comment = {}) {
+inline std::string ply_header_text(std::size_t count, std::span<const ply_column> columns, const std::string& comment = {}) {
   constexpr const char* kinds[] = {"float", "uchar", "int", "uint"};
   std::string out = "ply\nformat binary_little_endian 1.0\n";
   if (!comment.empty()) out += "comment " + printable(comment) + '\n';
@@ -77,7 +77,7 @@ inline std::string ply_records(std::span<const Eigen::Vector3d> points, std::spa
 /// A PLY file, binary and little-endian. Throws std::invalid_argument as the two above.
 inline std::string ply_bytes(std::span<const Eigen::Vector3d> points, std::span<const ply_column> columns,
                              const std::string& comment = {}) {
-  return ply_header(points.size(), columns, comment) + ply_records(points, columns);
+  return ply_header_text(points.size(), columns, comment) + ply_records(points, columns);
 }
 
 /// Writes it, whole or not at all. Throws std::runtime_error naming the file.
@@ -100,7 +100,7 @@ void save_ply_pieces(const std::string& file, std::size_t count, Next next, cons
       throw std::invalid_argument("clearance: a piece of " + std::to_string(piece.points.size()) + " points where " +
                                   std::to_string(count - done) + " are missing");
     done += piece.points.size();
-    const std::string before = std::exchange(begun, true) ? std::string() : ply_header(count, piece.columns, comment);
+    const std::string before = std::exchange(begun, true) ? std::string() : ply_header_text(count, piece.columns, comment);
     return before + ply_records(piece.points, piece.columns);
   });
 }

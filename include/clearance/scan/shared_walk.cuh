@@ -63,7 +63,7 @@ struct shared_walk {
       if (lane() == 0) given = fresh(task().shared) != none, over = fresh(memory().idle) == all_warps;
       if (__any_sync(all_lanes, given)) break;
       if (__any_sync(all_lanes, over)) return false;
-      __nanosleep(300);
+      __nanosleep(300);  // warps that wait should not take the working ones' turns; how long changes no answer
     }
     __threadfence_block();
     return true;

@@ -10,6 +10,8 @@
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/distance.h>
 
+namespace meshes_test {
+
 using namespace testing;
 
 TEST_CASE("A real robot's triangles are as far from a real frame as FCL says, link by link", "[data]") {
@@ -57,3 +59,5 @@ TEST_CASE("A real robot's triangles are as far from a real frame as FCL says, li
     }
   }
 }
+
+}  // namespace meshes_test
