@@ -13,7 +13,9 @@ sys.path.insert(0, str(root / "scripts"))
 import recorded  # noqa: E402
 
 page = (root / "docs/performance.md").read_text()
-asked = sorted(set(re.findall(r'number\("bench_latency\.txt", "([^"]+)"(?:, "([^"]+)")?\)', page)))
+asked = set(re.findall(r'<!-- = latency\("([^"]+)"(?:, "([^"]+)")?(?:, form="[^"]+")?\)', page))
+asked |= set(re.findall(r'<!-- = goal_latency\("([^"]+)", \d+(?:, "([^"]+)")?(?:, form="[^"]+")?\)', page))
+asked = sorted(asked | set(re.findall(r'of\.number\("bench_latency\.txt", "([^"]+)"()\)', (root / "scripts/figures.py").read_text())))
 assert len(asked) > 5, "docs/performance.md asks for no latencies"
 rows = sorted({row for row, _ in asked})
 with tempfile.TemporaryDirectory() as name:
