@@ -126,12 +126,6 @@ def peer(of, row, which=0, form=".0f"):
 
 
 @figure
-def peer_over_ours(of, row, which=0):
-    """A peer of peers.txt over our cold frame of triangles on one CPU thread."""
-    return format(of.number("peers.txt", row, which) / of.number("min_distance.txt", "triangles<aabb, cold>/threads:1"), ".0f")
-
-
-@figure
 def warp_us(of, row):
     """Microseconds of a way to ask NVIDIA Warp on the GPU."""
     return format(of.number("peers-warp.txt", row), ".0f")
@@ -249,6 +243,7 @@ def split_distances(of, primitives, rule):
 
 @figure
 def devices_us(of, row, form=",.0f"):
+    """Microseconds of a row of bench_devices.txt."""
     return format(of.number("bench_devices.txt", row), form)
 
 
@@ -378,6 +373,7 @@ def chunked_goal(of, over, under, limit, form):
 
 @figure
 def chunked_percent(of, over, under):
+    """A row as percent of another."""
     return format(100 * _chunked(of, over) / _chunked(of, under), ".0f")
 
 
