@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What docs/performance.md reads from bench_latency.txt is what scripts/bench-table writes, without a hand between."""
+"""What docs/performance.md and docs/gpu-runs/goals.md read from bench_latency.txt is what scripts/bench-table writes, without a hand between."""
 import json
 import pathlib
 import re
@@ -12,9 +12,11 @@ root = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(root / "scripts"))
 import recorded  # noqa: E402
 
-page = (root / "docs/performance.md").read_text()
-asked = sorted(set(re.findall(r'number\("bench_latency\.txt", "([^"]+)"(?:, "([^"]+)")?\)', page)))
-assert len(asked) > 5, "docs/performance.md asks for no latencies"
+page = "".join((root / "docs" / name).read_text() for name in ("performance.md", "gpu-runs/goals.md"))
+asked = set(re.findall(r'<!-- = latency\("([^"]+)"(?:, "([^"]+)")?(?:, form="[^"]+")?\)', page))
+asked |= set(re.findall(r'<!-- = goal_latency\("([^"]+)", \d+(?:, "([^"]+)")?(?:, form="[^"]+")?\)', page))
+asked = sorted(asked | set(re.findall(r'of\.number\("bench_latency\.txt", "([^"]+)"()\)', (root / "scripts/figures.py").read_text())))
+assert len(asked) > 5, "the pages ask for no latencies"
 rows = sorted({row for row, _ in asked})
 with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)

@@ -13,12 +13,12 @@
 // [answer]
 struct crowding {
   static constexpr clearance::real limits[3] = {0.05f, 0.1f, 0.2f};
-  unsigned long long* counts;  ///< Three a part, in memory that the backend writes.
+  unsigned long long* counts;  ///< Three per part, in memory that the backend writes.
 
-  /// Farther than this nothing matters.
+  /// Farther pairs do not matter.
   CLEARANCE_HD clearance::real reach(std::uint32_t) const { return 0.2f; }
 
-  /// Every point that is as near as that to some part comes here once a part, from any thread.
+  /// Every point this near to some part comes here once per part, from any thread.
   CLEARANCE_HD void take(const clearance::pair_distance& pair) const {
     for (int zone = 0; zone < 3; ++zone)
       if (pair.distance < (zone == 0 ? 0.05f : zone == 1 ? 0.1f : 0.2f))

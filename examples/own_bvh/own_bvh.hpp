@@ -50,7 +50,7 @@ static_assert(clearance::explain_hierarchy<their_view>());
 // [view]
 
 // [ask]
-/// One part of one's own: its view, and a ball around it (`facts`).
+/// One part of your own: its view, and a ball around it (`facts`).
 template <class Backend, clearance::hierarchy Tree>
 clearance::min_distance_result ask(const Backend& on, const Tree& tree, const clearance::part_facts& facts,
                                    std::span<const clearance::vec3> cloud) {

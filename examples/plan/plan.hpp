@@ -32,7 +32,7 @@ int example(const Backend& on) {
   clearance::min_distances_query ask(on, arm);
   std::size_t stops = 0;
   for (const auto& frame : {wall, room}) {
-    const auto found = ask(trajectory, frame, {.d_max = 0.2f});  // of what is farther away only that is known
+    const auto found = ask(trajectory, frame, {.d_max = 0.2f});  // farther away: only that fact is reported
     stops = found.first_below(0.05);
     if (stops < found.of.size())
       std::printf("waypoint %zu comes %.3f m near to point %u, with part %u\n", stops, double(found.of[stops].distance),
@@ -44,7 +44,7 @@ int example(const Backend& on) {
   }
 
   // [in_collisions]
-  clearance::in_collisions_query touches(on, arm);  // a state a configuration, and no more
+  clearance::in_collisions_query touches(on, arm);  // one state per configuration
   const auto& states = touches(trajectory, wall, 0.05);
   const std::size_t not_free = states.first_not_free();
   if (not_free < states.of.size())
@@ -61,10 +61,10 @@ int example(const Backend& on) {
   if (!(at_73[1].distance <= at_73[0].distance && at_73[1].part == 1)) return 1;
 
   // [joints]
-  clearance::chain_link shoulder, slide;  // io::joint_chain_of makes such links of a robot description's
+  clearance::chain_link shoulder, slide;  // io::joint_chain_of makes them from a robot description
   slide.origin.m[0][3] = 0.3, slide.value = 0, slide.factor = 1, slide.slides = true;
   const auto chain = clearance::joint_chain<>({shoulder, slide}, {0, 1}, {{"reach", {0, 1}}}).on(on);
-  std::vector<double> q;  // two trajectories, one number a waypoint
+  std::vector<double> q;  // two trajectories, one number per waypoint
   for (int waypoint = 0; waypoint < 200; ++waypoint)
     q.push_back(waypoint < 100 ? 0.01 * waypoint : 0.001 * (waypoint - 100));
   const auto of_joints = ask(chain, q, wall, {.d_max = 0.2f});

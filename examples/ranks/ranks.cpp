@@ -43,7 +43,7 @@ int main(int count, char** arguments) {
     const clearance::mpi::shard all{MPI_COMM_WORLD, clearance::host{1}};  // or device{}, devices{0, 1}
     clearance::min_distance_query ask(all, arm);
     for (const double angle : {1.5, 1.0, 0.5, 0.0}) {
-      const clearance::min_distance_result r = ask(poses_at(angle), mine);  // on every rank, which all get the same
+      const clearance::min_distance_result r = ask(poses_at(angle), mine);  // on every rank; all get the same answer
       // [ask]
       if (rank == 0)
         std::printf("%.1f rad: %.3f m, certainly more than %.3f m, to point %u of %llu on %d ranks\n", angle,

@@ -50,7 +50,7 @@ int example(const Backend& on) {
     const double time_before_collision = 2;                  // seconds that have to remain
     const auto [least, minima] = clearance::min_distance_per_part(on, arm, poses, person);
     double speed = least.lower > 0 ? 1 : 0,
-           fastest = 0;  // of what is commanded: nothing, if nothing is known; and how fast a gap closes
+           fastest = 0;  // the share of the commanded speed, 0 if nothing is known; and how fast a gap closes
     for (const auto& near : clearance::part_witnesses(on, arm, poses, person, minima)) {
       if (near.part == clearance::none) continue;
       const auto closing =

@@ -11,8 +11,8 @@
 
 namespace clearance::minimum {
 
-/// On a device: chunks go there through a ring, and a kernel searches one while the next is copied. What is on the
-/// device already is read where it is.
+/// On a device: chunks go through a ring, and a kernel searches one while the next is copied. A cloud on the device is
+/// read where it is.
 template <class PartView>
 class chunked_search<device, PartView> {
  public:

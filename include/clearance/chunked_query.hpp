@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far is a robot from a cloud that is read in chunks? On the host; chunked_query.cuh has a device, too.
+// How far is a robot from a cloud that is read in chunks? Runs on the host; include chunked_query.cuh for a device.
 
 #include <clearance/answer/chunked.hpp>
 #include <clearance/answer/host_search.hpp>
@@ -11,9 +11,9 @@ namespace clearance {
 
 namespace minimum {
 
-/// Asks about ranges of a chunked cloud on a backend: `(cloud, ranges, poses, pose, result, minima, seen)`, points
-/// numbered as in the cloud; `minima`: one a part, or empty; what is seen of each piece is written to `seen`, if that
-/// is not null.
+/// Asks about ranges of a chunked cloud on a backend: `(cloud, ranges, poses, pose, result, minima, seen)`. Points are
+/// numbered as in the cloud. `minima` has one per part, or is empty. If `seen` is not null, it gets what was seen of
+/// each piece.
 template <class On, class PartView>
 class chunked_search {
   static_assert(
@@ -21,8 +21,8 @@ class chunked_search {
       "a device has a ring of its own: include <clearance/chunked_query.cuh>, not the .hpp");
 };
 
-/// On the CPU: while some is searched the next is loaded. Ranges of what is in one place are searched as one, all at
-/// once or a chunk of points at a time: to begin costs the host tens of microseconds.
+/// On the CPU: one chunk is searched while the next is loaded. Ranges of a cloud in one place are searched as one, all
+/// at once or a chunk of points at a time, because each search costs the host tens of microseconds to begin.
 template <class PartView>
 class chunked_search<host, PartView> {
  public:
@@ -106,9 +106,9 @@ class chunked_search<host, PartView> {
 
 }  // namespace minimum
 
-/// The question about a `chunked` cloud: min_distance's, with min_distance's answer about all of it in memory, to the
-/// bit. The robot's memory must stay. One object is for one thread. On a device its memory is three chunks, and as much
-/// that is pinned where the cloud is not.
+/// How far is a robot from a `chunked` cloud? The answer is that of min_distance about the whole cloud in memory, to
+/// the bit. The robot must outlive the object; use it from one thread. On a device it takes memory for three chunks,
+/// and as much pinned memory if the cloud is not pinned.
 template <class On, class PartView>
 class chunked_query {
  public:
@@ -116,13 +116,14 @@ class chunked_query {
   template <robot Robot>
   chunked_query(const On& on, const Robot& robot) : facts_(view_of(robot).facts), search_(on, view_of(robot)) {}
 
-  /// As min_distance; `pose` is world-from-cloud. Throws what `load` throws; the same object can be asked again then.
+  /// As min_distance; `pose` is world-from-cloud. Throws what `load` throws; afterwards you can ask the same object
+  /// again.
   template <loaded_cloud C>
   min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud,
                                  const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
     return ask(poses, cloud, pose, {});
   }
-  /// As min_distance_per_part; `minima`, one a part, are written.
+  /// As min_distance_per_part; writes `minima`, one per part.
   template <loaded_cloud C>
   min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud,
                                const Eigen::Isometry3d& pose, std::span<part_minimum> minima) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Everything that a plain C++ compiler takes, but for io/, which needs libraries of its own. For the impatient: a
-// program that includes only what it uses compiles faster.
+// All headers that a plain C++ compiler takes, except io/, which needs more libraries. A program that includes only the
+// headers it uses compiles faster.
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/bvh/flat_list.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Questions of one's own: every pair (point, part) that is near enough goes to an answer. On the host; collect.cuh has
-// a device.
+// Your own questions: every pair (point, part) that is near enough goes to an answer. Runs on the host; include
+// collect.cuh for a device.
 
 #include <clearance/answer/pairwise.hpp>
 #include <clearance/answer/search_on.hpp>
@@ -12,7 +12,7 @@ namespace clearance {
 
 namespace pairwise {
 
-/// Any backend that has no scan of its own: a loop over points.
+/// For a backend without a scan of its own: a loop over points.
 template <class On>
 struct pairs_on {
   static_assert(
@@ -47,8 +47,8 @@ struct pairs_on {
 }  // namespace pairwise
 
 /// Gives `answer` every pair of a point and a part that is within its reach. `poses` and `clouds` as for min_distance.
-/// Returns what points there were, once all is done. Throws std::invalid_argument if the number of poses is wrong or
-/// one is not rigid.
+/// Blocks, and returns the counts of points. Throws std::invalid_argument if the number of poses is wrong or one is not
+/// rigid.
 template <class On, robot Robot, class Clouds, class Answer>
 point_counts collect(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                      const Answer& answer) {
@@ -60,7 +60,7 @@ point_counts collect(const On& on, const Robot& robot, std::span<const Eigen::Is
   return on.copy_out(counts.data(), 1)[0];
 }
 
-/// Enqueues it; clouds, and the memory of `answer` and `counts`, must stay until it is done.
+/// Enqueues it; clouds, and the memory of `answer` and `counts`, must stay valid until it is done.
 template <class On, robot Robot, class Clouds, class Answer>
 void collect_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                    const Answer& answer, point_counts* counts) {

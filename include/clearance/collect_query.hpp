@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Prepared questions about pairs of a point and a part. On the host; collect_query.cuh has a device.
+// Prepared questions about pairs of a point and a part. Runs on the host; include collect_query.cuh for a device.
 
 #include <clearance/answer/asked_once.hpp>
 #include <clearance/answer/bracket.hpp>
@@ -12,8 +12,8 @@ namespace clearance {
 
 namespace pairwise {
 
-/// What each of them is made of: a robot that is ready to be asked about, and memory that is kept, there and on the
-/// host.
+/// What every prepared question about pairs has: a robot, ready to be asked about, and memory that is kept, on the
+/// backend and on the host.
 template <class On, class PartView>
 struct pair_question {
   On on;
@@ -26,19 +26,19 @@ struct pair_question {
   pair_question(const On& on, const model_view<PartView>& model, Memory... from)
       : on(on), model(model), memory(on, from...), pairs{on, model, from...} {}
 
-  /// Enqueues it: clouds have to be readable where it runs.
+  /// Enqueues it; clouds must be readable where it runs.
   template <class Clouds, answer Answer>
   void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer, point_counts* counts) {
     pairs.enqueue(poses, clouds, answer, counts, minimum::as_it_is{});
   }
-  /// The same, waited for.
+  /// The same; blocks until it is done.
   template <class Clouds, answer Answer>
   point_counts count(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer) {
     point_counts* const counts = memory.template room<point_counts>(1).data();
     ask(poses, clouds, answer, counts);
     return on.copy_out(counts, 1)[0];
   }
-  /// What is certain of distances, before anything is asked.
+  /// What is certain of distances, before a question is asked.
   template <class Clouds>
   distance_certainty certain(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
     return certainty_of(ahead.look(model.facts, poses, clouds));
@@ -47,16 +47,16 @@ struct pair_question {
 
 }  // namespace pairwise
 
-/// `collect`, prepared: made once for a robot, asked every frame with new poses, points and answers. One object is for
-/// one thread and one stream; the robot must stay.
+/// `collect`, prepared: make it once for a robot, and ask it in every frame with new poses, points and answers. Use one
+/// object from one thread and one stream; the robot must outlive it.
 template <class On, class PartView>
 class collect_query {
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  /// `memory` is for a device only: a std::pmr::memory_resource* that hands out device memory.
   template <robot Robot, class... Memory>
   collect_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
 
-  /// As `collect`. Points that a device cannot read are copied into buffers that are kept.
+  /// As `collect`. Points that a device cannot read are copied into buffers that it keeps.
   template <class Clouds, class Answer>
   point_counts operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer) {
     static_assert(explain_answer<Answer>() && explain_clouds<Clouds>());
@@ -64,8 +64,8 @@ class collect_query {
     return question_.count(poses, question_.memory.readable(clouds), answer);
   }
 
-  /// As `collect_async`. On a device one kernel a cloud, and nothing is allocated or waited for. A graph that captures
-  /// this keeps the poses of now.
+  /// As `collect_async`. On a device it is one kernel per cloud, allocates nothing and waits for nothing. A graph that
+  /// captures this keeps the current poses.
   template <class Clouds, class Answer>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
                point_counts* counts) {

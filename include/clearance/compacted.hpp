@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The valid points of a cloud, and nothing else. On the host; compacted.cuh has a device.
+// The valid points of a cloud, and nothing else. Runs on the host; include compacted.cuh for a device.
 
 #include <clearance/answer/search_on.hpp>
 
@@ -33,7 +33,7 @@ struct compact_body {
   }
 };
 
-/// By where it runs. One thread does it as fast as memory does.
+/// On a backend without a scan of its own. One thread is as fast as memory.
 template <class On>
 struct compacts_on {
   static_assert(
@@ -48,8 +48,8 @@ struct compacts_on {
 
 }  // namespace detail
 
-/// Enqueues it, into memory that `on` can write, with room for all points of the source, which `on` must be able to
-/// read. Throws std::invalid_argument if there are 2^31 points or more.
+/// Enqueues it. `on` must be able to write the output, which needs room for all points of the source, and to read the
+/// source. Throws std::invalid_argument if there are 2^31 points or more.
 template <class On, point_source S>
 void compacted_async(const On& on, const S& source, vec3* points, std::uint32_t* numbers, std::uint32_t* count) {
   if (source.size() >= std::size_t(1) << 31)
@@ -58,9 +58,9 @@ void compacted_async(const On& on, const S& source, vec3* points, std::uint32_t*
   detail::compacts_on<On>::enqueue(on, source, points, numbers, count);
 }
 
-/// For what leaves the library, such as `masked(cloud, labels)` without the robot. To ask about it here, ask about the
-/// cloud itself, or masked_clouds: a source knows how far off its own points can be, and which were too close to be
-/// measured; positions do not.
+/// Use it for points that leave the library, such as `masked(cloud, labels)` without the robot. For a question here ask
+/// about the cloud itself, or about masked_clouds: a source knows how far off its points can be, and which were too
+/// close to be measured; positions do not.
 template <class On, point_source S>
 compacted_points compacted(const On& on, const S& source) {
   auto points = on.template make_scratch<vec3>(source.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far is every point of the clouds from a robot? On the host; distances.cuh has a device.
+// How far is every point of the clouds from a robot? Runs on the host; include distances.cuh for a device.
 
 #include <clearance/answer/host_points.hpp>
 #include <clearance/answer/search_on.hpp>
@@ -18,7 +18,7 @@ struct point_distances {
   std::vector<real> distance;  ///< Metres: to sphere parts signed, to triangle parts 0 inside; `+inf` beyond d_max, NaN
                                ///< where there is no point.
   std::vector<std::uint32_t> part,
-      primitive;  ///< Where asked for: of equally near ones the lowest; ~0u: none (or, for a primitive: inside).
+      primitive;  ///< If `which` is set; of equally near ones the lowest. ~0u: none (for a primitive also: inside).
   point_counts counts;
   distance_certainty certain;
 };
@@ -32,7 +32,7 @@ inline void check(const distances_options& options) {
 template <class On>
 struct points_on;
 
-/// A prepared question where there is nothing to prepare.
+/// The prepared question of a backend that has nothing to prepare.
 template <class On, class PartView>
 struct unprepared {
   On on;
@@ -46,7 +46,7 @@ struct unprepared {
   void forget() const {}
 };
 
-/// Any backend that has no scan of its own: a loop over points.
+/// For a backend without a scan of its own: a loop over points.
 template <class On>
 struct points_on {
   static_assert(
@@ -81,7 +81,8 @@ struct points_on<host> {
   using kept = unprepared<host, PartView>;
 };
 
-/// Waits for what `enqueue(out, counts, here)` enqueues: `here(source, cloud)` is what the backend can read of a cloud.
+/// Waits for what `enqueue(out, counts, here)` enqueues; `here(source, cloud)` gives the cloud as the backend can read
+/// it.
 template <class On, class Clouds, class Enqueue>
 point_distances wait_for(const On& on, const Clouds& clouds, const distances_options& options, const Enqueue& enqueue) {
   static_assert(explain_clouds<Clouds>());
@@ -104,7 +105,7 @@ point_distances wait_for(const On& on, const Clouds& clouds, const distances_opt
 
 }  // namespace pointwise
 
-/// Every point's distance to the nearest part (peers call d_max also max_dist, or activation distance). `poses` and
+/// Every point's distance to the nearest part (elsewhere d_max is called max_dist, or activation distance). `poses` and
 /// `clouds` as for min_distance. Throws std::invalid_argument if the number of poses is wrong, one is not rigid, or
 /// d_max is NaN.
 template <class On, robot Robot, class Clouds>
@@ -116,7 +117,7 @@ point_distances distances(const On& on, const Robot& robot, std::span<const Eige
       });
 }
 
-/// Enqueues it; clouds, and the memory of `out` and `counts`, must stay until it is done.
+/// Enqueues it; clouds, and the memory of `out` and `counts`, must stay valid until it is done.
 template <class On, robot Robot, class Clouds>
 distance_certainty distances_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                                    const Clouds& clouds, const distances_out& out, point_counts* counts,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far is every point from every part? On the host; distances_per_part.cuh has a device.
+// How far is every point from every part? Runs on the host; include distances_per_part.cuh for a device.
 
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/written.hpp>
@@ -20,17 +20,17 @@ struct part_distances {
   std::span<const real> of(std::size_t part) const { return std::span(distance).subspan(part * points, points); }
 };
 
-/// The prepared question: made once for a robot, asked every frame with new poses and points. One object is for one
-/// thread and one stream; the robot must stay.
+/// The prepared question: make it once for a robot, and ask it in every frame with new poses and points. Use one object
+/// from one thread and one stream; the robot must outlive it.
 template <class On, class PartView>
 class distances_per_part_query {
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  /// `memory` is for a device only: a std::pmr::memory_resource* that hands out device memory.
   template <robot Robot, class... Memory>
   distances_per_part_query(const On& on, const Robot& robot, Memory... memory)
       : question_(on, view_of(robot), memory...) {}
 
-  /// As `distances_per_part`. Points that a device cannot read are copied into buffers that are kept.
+  /// As `distances_per_part`. Points that a device cannot read are copied into buffers that it keeps.
   template <class Clouds>
   part_distances operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real d_max = infinity) {
     static_assert(explain_clouds<Clouds>());
@@ -47,8 +47,8 @@ class distances_per_part_query {
     return all;
   }
 
-  /// As `distances_per_part_async`. On a device nothing is waited for, and nothing allocated but by more clouds than
-  /// ever before. A graph that captures this keeps the poses of now.
+  /// As `distances_per_part_async`. On a device it waits for nothing, and allocates only for more clouds than ever
+  /// before. A graph that captures this keeps the current poses.
   template <class Clouds>
   distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, real* distance,
                              point_counts* counts, real d_max = infinity) {
@@ -99,7 +99,7 @@ part_distances distances_per_part(const On& on, const Robot& robot, std::span<co
 }
 
 /// Enqueues it: part k's distances to `distance[k * points]` and on, where `points` is the number of points of all
-/// clouds. Clouds, and the memory of `distance` and `counts`, must stay until it is done.
+/// clouds. Clouds, and the memory of `distance` and `counts`, must stay valid until it is done.
 template <class On, robot Robot, class Clouds>
 distance_certainty distances_per_part_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                                             const Clouds& clouds, real* distance, point_counts* counts,

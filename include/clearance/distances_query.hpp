@@ -5,14 +5,14 @@
 
 namespace clearance {
 
-/// A prepared question: made once for a robot, asked every frame with new poses and points, it says what `distances`
-/// says. On a device it remembers which primitive was the nearest to each point (of its number), which only ever makes
-/// the next frame faster; elsewhere there is nothing to prepare. One object is for one thread and one stream; the robot
-/// must stay.
+/// The prepared question: make it once for a robot, and ask it in every frame with new poses and points. It answers as
+/// `distances` does. On a device it remembers the primitive nearest to each point (by its number), which only makes the
+/// next frame faster; other backends have nothing to prepare. Use one object from one thread and one stream; the robot
+/// must outlive it.
 template <class On, class PartView>
 class distances_query {
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  /// `memory` is for a device only: a std::pmr::memory_resource* that hands out device memory.
   template <robot Robot, class... Memory>
   distances_query(const On& on, const Robot& robot, Memory... memory)
       : on_(on), points_{on, view_of(robot), memory...} {}
@@ -27,8 +27,8 @@ class distances_query {
                                });
   }
 
-  /// As `distances_async`. On a device nothing is allocated and nothing waited for, but by a frame of more points than
-  /// any before. A graph that captures this keeps the poses of now.
+  /// As `distances_async`. On a device it waits for nothing, and allocates only for a frame of more points than any
+  /// before. A graph that captures this keeps the current poses.
   template <class Clouds>
   distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
                              point_counts* counts, real d_max = infinity) {
@@ -37,7 +37,7 @@ class distances_query {
     return points_.enqueue(poses, clouds, out, d_max, counts, minimum::as_it_is{});
   }
 
-  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() { points_.forget(); }
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How a distance changes as its part moves: from the witness, without another query. io/jacobian.hpp goes on to joints.
+// How a distance changes as its part moves, from the witness, without another query. io/jacobian.hpp continues to
+// joints.
 
 #include <clearance/result.hpp>
 
@@ -22,23 +23,23 @@ inline const char* to_string(gradient_state s) {
   return names[int(s)];
 }
 
-/// The gradient of a distance with respect to the twist of its part, in world axes; plain data, that a kernel may
-/// write. NaN unless `state` is known. With respect to the point it is the witness's normal.
+/// The gradient of a distance with respect to the twist of its part, in world axes; plain data that a kernel may write.
+/// NaN unless `state` is known. With respect to the point the gradient is the witness's normal.
 struct pose_gradient {
   gradient_state state = gradient_state::no_data;
   vec3 linear = {not_a_number, not_a_number,
-                 not_a_number};  ///< By the velocity of the part where it is at `about`: metres a metre,
-  vec3 angular = {not_a_number, not_a_number, not_a_number};  ///< and by its angular velocity: metres a radian.
+                 not_a_number};  ///< By the velocity of the part at `about`, in metres per metre,
+  vec3 angular = {not_a_number, not_a_number, not_a_number};  ///< and by its angular velocity, in metres per radian.
   position about = {0, 0, 0};
 
   CLEARANCE_HD explicit operator bool() const { return state == gradient_state::known; }
-  /// How fast the distance grows, in metres a second, if the part moves with `velocity` at `about` (m/s) and turns
+  /// How fast the distance grows, in metres per second, if the part moves with `velocity` at `about` (m/s) and turns
   /// (rad/s).
   CLEARANCE_HD real along(vec3 velocity, vec3 turning) const { return dot(linear, velocity) + dot(angular, turning); }
 };
 
-/// Of a least distance: a min_distance_result or a part_witness. Where several pairs are equally near it is
-/// that of the witness. `about` in world coordinates: the part's origin, say.
+/// The gradient of a least distance: of a min_distance_result or a part_witness. If several pairs are equally near, it
+/// is that of the witness. `about` is in world coordinates, for example the part's origin.
 template <class Witness>
   requires requires(const Witness& w) { w.distance, w.part, w.nearest, w.normal; }
 CLEARANCE_HD pose_gradient gradient(const Witness& w, position about) {
@@ -65,11 +66,11 @@ pose_gradient gradient(const Witness& w, const Eigen::Vector3d& about) {
 /// at most `temperature log(parts)` below it. Its gradient is the sum of the parts' gradients times `weights`.
 struct smooth_minimum {
   double value = infinity;      ///< Metres; infinite if no part has a point.
-  std::vector<double> weights;  ///< One a part, together 1; all 0 if the value is infinite.
+  std::vector<double> weights;  ///< One per part, with the sum 1; all 0 if the value is infinite.
 };
 
-/// Of every part's minimum; `temperature` in metres. Throws std::invalid_argument if that is not above 0 and finite, or
-/// a distance is NaN or below everything.
+/// Takes every part's minimum; `temperature` is in metres. Throws std::invalid_argument if that is not above 0 and
+/// finite, or if a distance is NaN or -infinity.
 inline smooth_minimum smooth_minimum_of(std::span<const part_minimum> minima, double temperature) {
   if (!(temperature > 0 && temperature < double(infinity)))
     throw std::invalid_argument("clearance: a temperature is " + std::to_string(temperature) +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Is any point closer than a margin? On the host; in_collision.cuh has a device.
+// Is any point closer than a margin? Runs on the host; include in_collision.cuh for a device.
 
 #include <clearance/answer/first_within.hpp>
 #include <clearance/answer/margins.hpp>
@@ -10,20 +10,20 @@
 
 namespace clearance {
 
-/// Whether a point is within a margin (peers: security margin, safety distance), and which: the same one on every run
-/// and backend.
+/// Whether a point is within a margin (elsewhere: security margin, safety distance), and which point: the same on every
+/// run and backend.
 struct collision_result {
-  /// collision: certainly one is; possible: that cannot be excluded; free: certainly none, and nothing was too close to
-  /// be measured; no_data: there was no valid point, or no part.
+  /// collision: certainly a point is. possible: a point may be. free: certainly none is, and nothing was too close to
+  /// be measured. no_data: there was no valid point, or no part.
   clearance::state state = clearance::state::no_data;
   std::uint32_t cloud = none, point = none,
-                part = none;  ///< The lowest certain one (by cloud, point, part); else the lowest possible one.
+                part = none;  ///< The lowest certain pair (by cloud, point, part), or else the lowest possible one.
   point_counts counts;
 };
 
 namespace detail {
 
-/// From what a scan keeps to what is told of it; `result` has the counts.
+/// Makes the result of what a scan keeps; `result` has the counts already.
 struct tell_collision {
   const unsigned long long* word;
   const std::uint32_t* first;
@@ -46,16 +46,16 @@ struct tell_collision {
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and margins. One object is
-/// for one thread and one stream; the robot must stay.
+/// The prepared question: make it once for a robot, and ask it in every frame with new poses, points and margins. Use
+/// one object from one thread and one stream; the robot must outlive it.
 template <class On, class PartView>
 class in_collision_query {
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  /// `memory` is for a device only: a std::pmr::memory_resource* that hands out device memory.
   template <robot Robot, class... Memory>
   in_collision_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
 
-  /// As `in_collision`. Points that a device cannot read are copied into buffers that are kept.
+  /// As `in_collision`. Points that a device cannot read are copied into buffers that it keeps.
   template <class Clouds>
   collision_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                               std::span<const double> margins) {
@@ -71,8 +71,8 @@ class in_collision_query {
     return (*this)(poses, clouds, std::span<const double>(&margin, 1));
   }
 
-  /// As `in_collision_async`. On a device nothing is waited for, and nothing allocated but by more clouds than ever
-  /// before. A graph that captures this keeps the poses and margins of now.
+  /// As `in_collision_async`. On a device it waits for nothing, and allocates only for more clouds than ever before. A
+  /// graph that captures this keeps the current poses and margins.
   template <class Clouds>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::span<const double> margins,
                collision_result* result) {
@@ -114,9 +114,9 @@ template <class On, robot Robot, class... Memory>
 in_collision_query(const On&, const Robot&, Memory...)
     -> in_collision_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// Is any point closer than `margins`, in metres: one for all parts, or one a part? `poses` and `clouds` as for
-/// min_distance. Throws std::invalid_argument as that does, if there are other than one or as many margins, or one is
-/// NaN.
+/// Is any point closer than `margins`, in metres: one for all parts, or one per part? `poses` and `clouds` as for
+/// min_distance. Throws std::invalid_argument as that does, if there are neither one nor as many margins as parts, or
+/// one is NaN.
 template <class On, robot Robot, class Clouds>
 collision_result in_collision(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                               const Clouds& clouds, std::span<const double> margins) {
@@ -130,7 +130,7 @@ collision_result in_collision(const On& on, const Robot& robot, std::span<const 
   return in_collision(on, robot, poses, clouds, std::span<const double>(&margin, 1));
 }
 
-/// Enqueues it; `result`, in memory that `on` writes, and clouds must stay until it is done.
+/// Enqueues it; `result`, in memory that `on` writes, and clouds must stay valid until it is done.
 template <class On, robot Robot, class Clouds>
 void in_collision_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                         const Clouds& clouds, std::span<const double> margins, collision_result* result) {

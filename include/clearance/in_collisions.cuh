@@ -8,7 +8,7 @@
 
 namespace clearance {
 
-/// On a device. Memory for its own use comes from `memory`, a resource that hands out device memory, if one is given.
+/// On a device. It takes its memory from `memory`, a resource that hands out device memory, if you give one.
 template <class PartView>
 class in_collisions_query<device, PartView> : public minimum::placed_batch<PartView, minimum::margin_question> {
   using placed = minimum::placed_batch<PartView, minimum::margin_question>;
@@ -19,15 +19,15 @@ class in_collisions_query<device, PartView> : public minimum::placed_batch<PartV
   in_collisions_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr)
       : placed(on, view_of(robot), memory), margins_(std::max<std::size_t>(search_.parts(), 1), on.id, memory) {}
 
-  /// As in_collisions. What is returned stays until the next call. Points in host memory are copied into buffers that
-  /// are kept.
+  /// As in_collisions. The result stays valid until the next call. Points in host memory are copied into buffers that
+  /// it keeps.
   template <class Clouds>
   const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                          std::span<const double> margins) {
     placed::place(poses);
     return (*this)(clouds, margins);
   }
-  /// The same of joint vectors, one after another, whose poses the device computes.
+  /// The same for joint vectors, one after another; the device computes their poses.
   template <class Clouds>
   const in_collisions_result& operator()(const joint_chain<device>& chain, std::span<const double> q,
                                          const Clouds& clouds, double margin = 0) {
@@ -40,7 +40,7 @@ class in_collisions_query<device, PartView> : public minimum::placed_batch<PartV
     return (*this)(poses, clouds, std::span<const double>(&margin, 1));
   }
 
-  /// The configurations that were placed, against a new frame.
+  /// Asks about the placed configurations, against a new frame.
   template <class Clouds>
   const in_collisions_result& operator()(const Clouds& clouds, std::span<const double> margins) {
     placed::named([&] {
@@ -54,10 +54,10 @@ class in_collisions_query<device, PartView> : public minimum::placed_batch<PartV
   const in_collisions_result& operator()(const Clouds& clouds, double margin = 0) {
     return (*this)(clouds, std::span<const double>(&margin, 1));
   }
-  /// Enqueues it: what is returned is memory of the device, one state a configuration, for what follows in its stream.
-  /// Clouds must be readable there. If a pose is not rigid, which cannot be thrown there, the state is `possible`. A
-  /// graph that captures this keeps the margins of now, and is void once more configurations are placed, or a larger
-  /// cloud is asked.
+  /// Enqueues it, and returns device memory with one state per configuration, for the next work in its stream. Clouds
+  /// must be readable there. A pose that is not rigid makes the state `possible`, because a device cannot throw. A
+  /// graph that captures this keeps the current margins, and is void after more configurations are placed, or a larger
+  /// cloud is asked about.
   template <class Clouds>
   const state* enqueue(const Clouds& clouds, std::span<const double> margins) {
     ask(clouds, margins, minimum::as_it_is{});

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Which of many configurations of one robot are nearer than a margin to anything that its sensors see? On the host;
-// in_collisions.cuh has a device, too.
+// Which of many configurations of one robot are nearer than a margin to anything that its sensors see? Runs on the
+// host; include in_collisions.cuh for a device.
 
 #include <clearance/in_collision.hpp>
 #include <clearance/min_distances.hpp>
 
 namespace clearance {
 
-/// One state a configuration: in_collision's of its poses. That tells no witness, because which one is found first is
-/// chance; min_distances does.
+/// One state per configuration: that of in_collision for its poses. There is no witness, because it is chance which one
+/// is found first; min_distances gives one.
 struct in_collisions_result {
   std::vector<state> of;
-  point_counts counts;  ///< Nothing, if there was no configuration.
+  point_counts counts;  ///< All 0 if there was no configuration.
 
-  /// The first configuration that is not certain to be farther away than its margins; or of.size().
+  /// The first configuration that is not certainly farther away than its margins, or of.size().
   std::size_t first_not_free() const { return first_of(of); }
 
-  /// Where the configurations were several trajectories, [batch, horizon]: trajectory `i`'s, and the first of each,
-  /// counted from its own beginning. Throws std::invalid_argument if they are no whole trajectories of `horizon`
-  /// configurations, or there is none of number i.
+  /// If the configurations are several trajectories, [batch, horizon]: the states of trajectory `i`, and the first of
+  /// each trajectory, counted from its beginning. Throws std::invalid_argument if they are not whole trajectories of
+  /// `horizon` configurations, or if there is no trajectory i.
   std::span<const state> trajectory(std::size_t i, std::size_t horizon) const {
     return detail::trajectory_of(std::span(of), i, horizon);
   }
@@ -33,8 +33,8 @@ struct in_collisions_result {
   }
 };
 
-/// The prepared question, asked for frame after frame: it keeps its memory. One object is for one thread and one
-/// stream. A device's is in in_collisions.cuh. A backend of one's own asks for each configuration by itself.
+/// The prepared question, asked in every frame: it keeps its memory. Use one object from one thread and one stream.
+/// Include in_collisions.cuh for a device. A backend of your own asks about each configuration by itself.
 template <class On, class PartView>
 class in_collisions_query {
   static_assert(
@@ -45,7 +45,7 @@ class in_collisions_query {
   template <robot Robot>
   in_collisions_query(const On& on, const Robot& robot) : on_(on), model_(view_of(robot)) {}
 
-  /// As in_collisions. What is returned stays until the next call.
+  /// As in_collisions. The result stays valid until the next call.
   template <class Clouds>
   const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                          std::span<const double> margins) {
@@ -74,21 +74,21 @@ class in_collisions_query {
   in_collisions_result result_;
 };
 
-/// On the CPU. The robot's memory must stay.
+/// On the CPU. The robot must outlive it.
 template <class PartView>
 class in_collisions_query<host, PartView> {
  public:
   template <robot Robot>
   in_collisions_query(const host& on, const Robot& robot) : search_(on, view_of(robot)) {}
 
-  /// The same of joint vectors, one after another. Throws std::invalid_argument as joint_chain::count, too.
+  /// The same for joint vectors, one after another. Throws std::invalid_argument as joint_chain::count, too.
   template <class Clouds>
   const in_collisions_result& operator()(const joint_chain<host>& chain, std::span<const double> q,
                                          const Clouds& clouds, double margin = 0) {
     detail::check_chain(search_.parts(), chain.parts());
     return (*this)(chain.poses(q), clouds, margin);
   }
-  /// As in_collisions. What is returned stays until the next call.
+  /// As in_collisions. The result stays valid until the next call.
   template <class Clouds>
   const in_collisions_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                          std::span<const double> margins) {
@@ -114,9 +114,9 @@ template <class On, robot Robot>
 in_collisions_query(const On&, const Robot&)
     -> in_collisions_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// Is any point closer to a configuration than `margins`, in metres: one for all parts, or one a part? `poses` as for
-/// min_distances. Throws std::invalid_argument as that does, if there are other than one or as many margins, or one is
-/// NaN.
+/// Is any point closer to a configuration than `margins`, in metres: one for all parts, or one per part? `poses` as for
+/// min_distances. Throws std::invalid_argument as that does, if there are neither one nor as many margins as parts,
+/// or one is NaN.
 template <class On, robot Robot, class Clouds>
 in_collisions_result in_collisions(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                                    const Clouds& clouds, std::span<const double> margins) {

@@ -15,7 +15,7 @@ namespace clearance {
 struct part_options {
   build_options build = {};
   double tolerance = 0;   ///< Metres by which the solid may differ from the true surface, either way (tessellation).
-  bool certified = true;  ///< False: the solid is not known (an open mesh without caps), so no lower bound is claimed.
+  bool certified = true;  ///< False: the solid is unknown (an open mesh without caps), so there is no lower bound.
 };
 
 /// Inner spheres: signed distances, and the packing's gap and tolerance in the bracket.
@@ -47,15 +47,15 @@ auto make_part(const closed_mesh& mesh, const part_options& options = {}, Fit fi
   return part<bvh<V, triangle>, winding<>>{std::move(surface.tree), std::move(interior), surface.facts};
 }
 
-/// Primitives of any kind, which are all there is of the solid.
+/// Primitives of any kind; they are the whole solid.
 template <class V, primitive P, class Fit = wrapped>
 auto make_part(const std::vector<P>& primitives, const part_options& options = {}, Fit fit = {}) {
   return make_part(build<V>(primitives, options.build, fit), options.certified ? 0 : infinity, options.tolerance);
 }
 
-/// A robot: of each body, in the order given, its part. Bodies are packings, closed meshes, or vectors of primitives;
-/// `V` is the volume of their trees; `options` are the same for all, or `options(k)` those of body k. Throws
-/// std::invalid_argument if there is no body, or one has nothing in it.
+/// A robot with one part for each body, in the given order. Bodies are packings, closed meshes, or vectors of
+/// primitives; `V` is the volume of their trees; `options` are the same for all, or `options(k)` gives those of body k.
+/// Throws std::invalid_argument if there is no body, or an empty one.
 template <class V, std::ranges::forward_range Bodies, class Options = part_options>
 auto make_model(const Bodies& bodies, const Options& options = {}) {
   const auto of = [&](std::size_t k) -> part_options {

@@ -8,7 +8,7 @@
 
 namespace clearance::minimum {
 
-/// On a device the kernel of a scan, with memory for one call in the order of its stream.
+/// On a device: the kernel of a scan, with memory for one call from its stream.
 template <>
 struct search_on<device> {
   static const device& backend_of(const device& on) { return on; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far is a robot from everything that its sensors see? On the host; min_distance.cuh has a device, too.
+// How far is a robot from everything that its sensors see? Runs on the host; include min_distance.cuh for a device.
 
 #include <clearance/answer/search_on.hpp>
 
@@ -13,7 +13,7 @@ namespace detail {
 template <class On>
 using backend_of = std::remove_cvref_t<decltype(minimum::search_on<On>::backend_of(std::declval<const On&>()))>;
 
-/// One frame, waited for.
+/// One frame; blocks until the answer is there.
 template <bool PerPart, class On, class View, class Clouds>
 min_distance_result least_distance(const On& on, const View& robot, std::span<const Eigen::Isometry3d> poses,
                                    const Clouds& clouds, std::vector<part_minimum>* minima = nullptr) {
@@ -30,8 +30,8 @@ min_distance_result least_distance(const On& on, const View& robot, std::span<co
 
 }  // namespace detail
 
-/// The least distance over all parts and all points, with its bracket and witness. `poses` are world-from-part, one a
-/// part; `clouds` a point source, a `placed` one, a range or a tuple of those, or a source and its pose; memory that
+/// The least distance over all parts and all points, with its bracket and witness. `poses` are world-from-part, one per
+/// part; `clouds` is a point source, a `placed` one, a range or a tuple of those, or a source and its pose. Memory that
 /// `on` cannot read is copied. Throws std::invalid_argument if the number of poses is wrong or one is not rigid.
 template <class On, robot Robot, class... Clouds>
 min_distance_result min_distance(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
@@ -50,7 +50,7 @@ min_distance_result min_distance(const On& on, const part<Tree, Interior>& body,
   return detail::least_distance<false>(on, view_of(one), std::span(&pose, 1), as_clouds(clouds...));
 }
 
-/// With the minimum of every part beside the robot's: one bound a part instead of one for all, and a tighter `lower`.
+/// Also gives the minimum of every part. Each part has its own bound, and `lower` is tighter.
 template <class On, robot Robot, class... Clouds>
 std::pair<min_distance_result, std::vector<part_minimum>> min_distance_per_part(
     const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds&... clouds) {
@@ -59,9 +59,9 @@ std::pair<min_distance_result, std::vector<part_minimum>> min_distance_per_part(
   return all;
 }
 
-/// Each of several robots against the same clouds, which are copied once if `on` cannot read them; nothing waits in
-/// between. `robots` is a range of models or their views, `poses` one of their parts' poses. Throws
-/// std::invalid_argument as min_distance, and if the two ranges are not of one size.
+/// Asks about several robots and the same clouds, which are copied once if `on` cannot read them; it does not wait in
+/// between. `robots` is a range of models or views, `poses` a range of their parts' poses. Throws std::invalid_argument
+/// as min_distance, and if the ranges differ in size.
 template <class On, std::ranges::forward_range Robots, std::ranges::forward_range Poses, class Clouds>
 std::vector<min_distance_result> min_distance_per_robot(const On& on, const Robots& robots, const Poses& poses,
                                                         const Clouds& clouds) {
@@ -82,15 +82,15 @@ std::vector<min_distance_result> min_distance_per_robot(const On& on, const Robo
   return there.copy_out(results.data(), count);
 }
 
-/// Enqueues it: `result` is memory that `on` can write, and is written in the order of its stream, so that what follows
-/// there may read it. Clouds must be readable where it runs.
+/// Enqueues it. `on` must be able to write `result`; the next work in its stream may read it. Clouds must be readable
+/// where it runs.
 template <class On, robot Robot, class Clouds>
 void min_distance_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                         const Clouds& clouds, min_distance_result* result) {
   static_assert(explain_clouds<Clouds>());
   minimum::search_on<On>::template once<false>(on, view_of(robot), poses, clouds, result, nullptr, minimum::as_it_is{});
 }
-/// With the minimum of every part, one a part.
+/// The same with every part's minimum, one per part.
 template <class On, robot Robot, class Clouds>
 void min_distance_per_part_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                                  const Clouds& clouds, min_distance_result* result, part_minimum* minima) {

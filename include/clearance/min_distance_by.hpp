@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far is a robot from what could be looked at before a deadline, and how much was it? On the host;
-// min_distance_by.cuh has a device.
+// How far is a robot from the points that were looked at before a deadline, and how many were they? Runs on the host;
+// include min_distance_by.cuh for a device.
 
 #include <clearance/answer/of_pieces.hpp>
 #include <clearance/frame/mapped_clouds.hpp>
@@ -14,21 +14,21 @@
 
 namespace clearance {
 
-/// The least distance to those points that there was time for. `lower` and `state` are about all points: while some are
-/// unseen, `lower` is 0, and nothing is `free`. `seen` points were looked at, and `unseen` were not.
+/// The least distance to the points that there was time for. `lower` and `state` are about all points: while some are
+/// unseen, `lower` is 0 and nothing is `free`. `seen` points were looked at, `unseen` were not.
 struct min_distance_so_far : min_distance_result {
   std::uint64_t unseen = 0;
 };
 
 struct deadline_options {
-  std::size_t piece = 0;  ///< Points between two looks at the clock; 0: what suits the backend.
+  std::size_t piece = 0;  ///< Points between two looks at the clock; 0: a number that suits the backend.
   bool per_part =
-      false;  ///< Every part's minimum is looked for, which takes longer: `lower` is then min_distance_per_part's.
+      false;  ///< Look for every part's minimum, which takes longer; `lower` is then that of min_distance_per_part.
 };
 
 namespace minimum {
 
-/// How often a backend looks at the clock, and with which prepared question.
+/// How often a backend looks at the clock, and the prepared question that it uses.
 template <class On>
 struct timed_on {
   static_assert(
@@ -48,7 +48,8 @@ struct timed_on<host> {
   }
 };
 
-/// Says before each piece whether there is time for one that takes as long as the last; before the first, for any.
+/// Says before each piece whether there is time for one as long as the last; before the first, whether there is any
+/// time.
 class stopwatch {
  public:
   /// Throws std::invalid_argument if the deadline is negative or NaN.
@@ -69,14 +70,14 @@ class stopwatch {
   double deadline_, asked_ = -1;
 };
 
-/// The piece that comes as number i of n, a power of two: each is as far as can be from all before it.
+/// The i-th piece to ask of n, a power of two: each is as far as possible from all before it.
 inline std::size_t spread(std::size_t i, std::size_t n) {
   std::size_t k = 0;
   for (std::size_t bit = 1; bit < n; bit *= 2) k = 2 * k + (i / bit & 1);
   return k;
 }
 
-/// Of any source slices `begin` to `end - 1` of `n`.
+/// Slices `begin` to `end - 1` of `n` of any source.
 struct some_slices {
   std::size_t begin, end, n;
 
@@ -88,8 +89,8 @@ struct some_slices {
 
 }  // namespace minimum
 
-/// As min_distance_by, as long as `go_on()`, which is asked before each piece: an own clock, or an order to stop.
-/// `query` is a prepared min_distance_query, and knows nothing of the last frame afterwards.
+/// As min_distance_by, as long as `go_on()` is true. It is asked before each piece: a clock of your own, or an order to
+/// stop. `query` is a prepared min_distance_query; it forgets the last frame.
 template <class On, class PartView, class Clouds, class GoOn>
 min_distance_so_far min_distance_while(min_distance_query<On, PartView>& query,
                                        std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, GoOn go_on,
@@ -134,7 +135,7 @@ min_distance_so_far min_distance_while(min_distance_query<On, PartView>& query,
   return so_far;
 }
 
-/// As the next, of a prepared min_distance_query, which saves a device the preparation.
+/// As the next function, with a prepared min_distance_query, which saves preparation on a device.
 template <class On, class PartView, class Clouds>
 min_distance_so_far min_distance_by(min_distance_query<On, PartView>& query, std::span<const Eigen::Isometry3d> poses,
                                     const Clouds& clouds, std::chrono::duration<double> deadline,
@@ -142,9 +143,9 @@ min_distance_so_far min_distance_by(min_distance_query<On, PartView>& query, std
   return min_distance_while(query, poses, clouds, minimum::stopwatch(deadline), options);
 }
 
-/// The least distance, or as much of it as is known `deadline` after the call: pieces of all clouds are asked one after
-/// another, spread over the clouds. If there is time for all, it is min_distance's answer, to the bit (`per_part`:
-/// min_distance_per_part's); if for none (0), nothing is known. Arguments as for min_distance. Throws
+/// The least distance, or what is known of it when `deadline` has passed since the call. Pieces are asked one after
+/// another, spread over the clouds. If there is time for all, the answer is that of min_distance, to the bit
+/// (`per_part`: of min_distance_per_part); if for none (0), nothing is known. Arguments as for min_distance. Throws
 /// std::invalid_argument as that does, and if the deadline is negative or NaN.
 template <class On, robot Robot, class Clouds>
 min_distance_so_far min_distance_by(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,

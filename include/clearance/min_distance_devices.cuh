@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far is a robot from everything that its sensors see? On several devices at once: each is asked about a piece of
-// every cloud.
+// How far is a robot from everything that its sensors see? Runs on several devices at once: each is asked about a piece
+// of every cloud.
 
 #include <clearance/answer/of_pieces.hpp>
 #include <clearance/backend/devices.cuh>
@@ -15,15 +15,15 @@
 
 namespace clearance {
 
-/// The prepared question on several devices: a prepared question on each, about its piece of every cloud, and one
-/// answer of all. It equals that of one device to the bit. The robot is on each device (`model.on(devices)`). Clouds in
-/// host memory (and in another device's) are copied in slices, each device its own; `shard`ed clouds are read where
-/// they are. Pinned memory is copied to all devices at once.
+/// The prepared question on several devices: one on each, about its piece of every cloud, and one answer from all,
+/// which is that of one device, to the bit. The robot is on each device (`model.on(devices)`). Clouds in host memory
+/// (and in another device's) are copied in slices, one to each device; `shard`ed clouds are read where they are. Pinned
+/// memory is copied to all devices at once.
 template <class PartView>
 class min_distance_query<devices, PartView> {
  public:
-  /// `memory` for its own use: none, or for each device a resource that hands out memory of it; `pinned` one that hands
-  /// out pinned memory. Throws std::invalid_argument if the robot is not on these devices, and as on one device.
+  /// `memory`: nothing, or for each device a resource that hands out its memory; `pinned`: a resource that hands out
+  /// pinned memory. Throws std::invalid_argument if the robot is not on these devices, and as on one device.
   template <robot Robot>
   min_distance_query(const devices& on, const Robot& robot, std::span<std::pmr::memory_resource* const> memory = {},
                      std::pmr::memory_resource* pinned = nullptr)
@@ -35,18 +35,18 @@ class min_distance_query<devices, PartView> {
       each_.emplace_back(on.each()[k], view.each[k], memory.empty() ? nullptr : memory[k], pinned);
   }
 
-  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() {
     for (auto& query : each_) query.forget();
   }
 
-  /// One frame, waited for. Throws std::invalid_argument as min_distance, and if a cloud is in more or fewer shards
-  /// than there are devices.
+  /// One frame; blocks until the answer is there. Throws std::invalid_argument as min_distance, and if a cloud is in
+  /// more or fewer shards than there are devices.
   template <class... Clouds>
   min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds&... clouds) {
     return ask<false>(poses, as_clouds(clouds...));
   }
-  /// As min_distance_per_part; `minima`, one a part, are written.
+  /// As min_distance_per_part; writes `minima`, one per part.
   template <class Clouds>
   min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                std::span<part_minimum> minima) {
@@ -108,7 +108,7 @@ class min_distance_query<devices, PartView> {
 
   devices on_;
   std::deque<min_distance_query<device, PartView>> each_;
-  std::vector<std::uint32_t> first_;  ///< Of every cloud and piece: the number of its first point.
+  std::vector<std::uint32_t> first_;  ///< The number of the first point, for every cloud and piece.
 };
 
 template <robot Robot>
@@ -117,7 +117,7 @@ min_distance_query(const devices&, const Robot&, std::span<std::pmr::memory_reso
 
 namespace minimum {
 
-/// A prepared question for one call. What it answers is in host memory.
+/// A prepared question for one call. Its answer is in host memory.
 template <>
 struct search_on<devices> {
   static host backend_of(const devices&) { return {}; }

@@ -8,9 +8,9 @@
 
 namespace clearance {
 
-/// The prepared question on a device: one kernel a cloud, no allocation and no synchronisation after the first call.
-/// The answer equals min_distance's to the bit. Memory for its own use comes from `memory`, a resource that hands out
-/// device memory, if one is given; and from `pinned`, which hands out pinned memory.
+/// The prepared question on a device: one kernel per cloud, no allocation and no synchronisation after the first call.
+/// The answer is that of min_distance, to the bit. It takes its memory from `memory`, a resource that hands out device
+/// memory, if you give one, and from `pinned`, which hands out pinned memory.
 template <class PartView>
 class min_distance_query<device, PartView> {
  public:
@@ -28,16 +28,15 @@ class min_distance_query<device, PartView> {
     answer_.data()->done = 0;
   }
 
-  /// Of the next frame alone nothing needs to be found that is farther than `within` metres. Without a pair that is
-  /// not, its answer has no witness, and the state `no_data`, whatever points there were. `per_part` is not for such a
-  /// frame.
+  /// For the next frame only: pairs farther than `within` metres need not be found. If no pair is nearer, the answer
+  /// has no witness and the state `no_data`, whatever points there were. Do not use `per_part` for such a frame.
   void bound_by(real within) { search_.bound_by(within); }
 
-  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() { search_.forget(); }
 
-  /// Enqueues one frame. `clouds` as for min_distance, readable on the device until it is done; `result` in device or
-  /// pinned memory. A graph that captures this keeps the poses of now.
+  /// Enqueues one frame. `clouds` as for min_distance must be readable on the device until it is done; `result` is in
+  /// device or pinned memory. A graph that captures this keeps the current poses.
   template <class Clouds>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result) {
     search_.template enqueue<false>(poses, clouds, result, nullptr, minimum::as_it_is{});
@@ -48,9 +47,9 @@ class min_distance_query<device, PartView> {
     search_.template enqueue<true>(poses, clouds, result, minima, minimum::as_it_is{});
   }
 
-  /// Enqueues one frame with poses in device or pinned memory, read when the frame runs: one a part, and the cloud's
-  /// (null: the world's). A graph that captures this sees what is there at each launch. If a pose is not rigid, which
-  /// cannot be thrown there, the state is `possible` and the distance NaN.
+  /// Enqueues one frame with poses in device or pinned memory: one per part, and the cloud's (null: the world's). The
+  /// frame reads them when it runs, so a graph that captures this sees the memory of each launch. A pose that is not
+  /// rigid makes the state `possible` and the distance NaN, because a device cannot throw.
   template <point_source S>
   void enqueue(const world_transform* poses, const S& source, const world_transform* cloud_pose,
                min_distance_result* result) {
@@ -62,12 +61,13 @@ class min_distance_query<device, PartView> {
     search_.template enqueue<true>(poses, source, cloud_pose, result, minima);
   }
 
-  /// One frame, waited for. Points in host memory, pinned ones too, are copied into buffers that are kept.
+  /// One frame; blocks until the answer is there. Points in host memory, pinned ones too, are copied into buffers that
+  /// it keeps.
   template <class... Clouds>
   min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds&... clouds) {
     return ask<false>(poses, as_clouds(clouds...));
   }
-  /// As min_distance_per_part; `minima`, one a part, are written.
+  /// As min_distance_per_part; writes `minima`, one per part.
   template <class Clouds>
   min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                std::span<part_minimum> minima) {
@@ -91,7 +91,7 @@ class min_distance_query<device, PartView> {
     begin<PerPart>(poses, clouds, [](const auto& source) { return source; });
     return answered();
   }
-  /// Enqueues a frame of what `piece(source)` takes of each cloud.
+  /// Enqueues a frame of the piece `piece(source)` of each cloud.
   template <bool PerPart, class Clouds, class Piece>
   void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Piece& piece) {
     ++frame_number_;

@@ -5,9 +5,9 @@
 
 namespace clearance {
 
-/// A prepared question: made once for a robot, asked every frame with new poses and points. It keeps its memory and
-/// remembers where the last minima were, which only ever makes it faster. One object is for one thread and one stream.
-/// A device's is in min_distance_query.cuh.
+/// A prepared question: make it once for a robot, and ask it in every frame with new poses and points. It keeps its
+/// memory and remembers where the last minima were, which only makes it faster. Use one object from one thread and one
+/// stream. Include min_distance_query.cuh for a device.
 template <class On, class PartView>
 class min_distance_query {
   static_assert(
@@ -15,7 +15,7 @@ class min_distance_query {
       "a device has a scan of its own: include <clearance/min_distance_query.cuh>, not the .hpp");
 };
 
-/// On the CPU, with any tree. After the first frames of a size, a call allocates nothing. The robot's memory must stay.
+/// On the CPU, with any tree. After the first frames of a size a call allocates nothing. The robot must outlive it.
 template <class PartView>
 class min_distance_query<host, PartView> {
  public:
@@ -29,7 +29,7 @@ class min_distance_query<host, PartView> {
     search_(poses, as_clouds(clouds...), &result);
     return result;
   }
-  /// As min_distance_per_part; `minima`, one a part, are written.
+  /// As min_distance_per_part; writes `minima`, one per part.
   template <class Clouds>
   min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                std::span<part_minimum> minima) {
@@ -39,12 +39,11 @@ class min_distance_query<host, PartView> {
     return result;
   }
 
-  /// Of the next frame alone nothing needs to be found that is farther than `within` metres. Without a pair that is
-  /// not, its answer has no witness, and the state `no_data`, whatever points there were. `per_part` is not for such a
-  /// frame.
+  /// For the next frame only: pairs farther than `within` metres need not be found. If no pair is nearer, the answer
+  /// has no witness and the state `no_data`, whatever points there were. Do not use `per_part` for such a frame.
   void bound_by(real within) { search_.bound_by(within); }
 
-  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() { search_.forget(); }
 
  private:

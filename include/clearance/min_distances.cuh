@@ -8,7 +8,7 @@
 
 namespace clearance {
 
-/// On a device. Memory for its own use comes from `memory`, a resource that hands out device memory, if one is given.
+/// On a device. It takes its memory from `memory`, a resource that hands out device memory, if you give one.
 template <class PartView>
 class min_distances_query<device, PartView> : public minimum::placed_batch<PartView, minimum::least_question> {
   using placed = minimum::placed_batch<PartView, minimum::least_question>;
@@ -19,15 +19,15 @@ class min_distances_query<device, PartView> : public minimum::placed_batch<PartV
   min_distances_query(const device& on, const Robot& robot, std::pmr::memory_resource* memory = nullptr)
       : placed(on, view_of(robot), memory) {}
 
-  /// As min_distances. What is returned stays until the next call. Points in host memory are copied into buffers that
-  /// are kept.
+  /// As min_distances. The result stays valid until the next call. Points in host memory are copied into buffers that
+  /// it keeps.
   template <class Clouds>
   const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                          const min_distances_options& options = {}) {
     placed::place(poses);
     return (*this)(clouds, options);
   }
-  /// The same of joint vectors, one after another, whose poses the device computes.
+  /// The same for joint vectors, one after another; the device computes their poses.
   template <class Clouds>
   const min_distances_result& operator()(const joint_chain<device>& chain, std::span<const double> q,
                                          const Clouds& clouds, const min_distances_options& options = {}) {
@@ -35,7 +35,7 @@ class min_distances_query<device, PartView> : public minimum::placed_batch<PartV
     return (*this)(clouds, options);
   }
 
-  /// The configurations that were placed, against a new frame.
+  /// Asks about the placed configurations, against a new frame.
   template <class Clouds>
   const min_distances_result& operator()(const Clouds& clouds, const min_distances_options& options = {}) {
     placed::named([&] {
@@ -44,17 +44,17 @@ class min_distances_query<device, PartView> : public minimum::placed_batch<PartV
     });
     return result_;
   }
-  /// Enqueues it: what is returned is memory of the device, one result a configuration, for what follows in its stream.
-  /// Clouds must be readable there. If a pose is not rigid, which cannot be thrown there, the state is `possible` and
-  /// the distance NaN. A graph that captures this is void once more configurations are placed, or a larger cloud is
-  /// asked.
+  /// Enqueues it, and returns device memory with one result per configuration, for the next work in its stream. Clouds
+  /// must be readable there. A pose that is not rigid makes the state `possible` and the distance NaN, because a device
+  /// cannot throw. A graph that captures this is void after more configurations are placed, or a larger cloud is asked
+  /// about.
   template <class Clouds>
   const min_distance_result* enqueue(const Clouds& clouds, const min_distances_options& options = {}) {
     ask(clouds, options, minimum::as_it_is{});
     return search_.results();
   }
 
-  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() { search_.forget(); }
 
  private:

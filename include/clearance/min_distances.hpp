@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 // How far are many configurations of one robot, such as the waypoints of a trajectory, from everything that its sensors
-// see? On the host; min_distances.cuh has a device, too.
+// see? Runs on the host; include min_distances.cuh for a device.
 
 #include <clearance/answer/configurations.hpp>
 #include <clearance/answer/host_batch.hpp>
@@ -12,28 +12,29 @@
 namespace clearance {
 
 struct min_distances_options {
-  real d_max = infinity;  ///< Metres. Of a configuration that is farther away only that is known; it costs much less.
+  real d_max = infinity;  ///< Metres. For a configuration farther away only that fact is reported, much faster.
 };
 
-/// One result a configuration: min_distance's of its poses, to the bit, if that is at most d_max. Else the distance is
-/// infinite, at no point of no part, and `lower` what is certain: d_max less gap, tolerance and rounding.
+/// One result per configuration: that of min_distance for its poses, to the bit, if it is at most d_max. Otherwise the
+/// distance is infinite, there is no witness, and `lower` is what is certain: d_max less gap, tolerance and rounding.
 struct min_distances_result {
   std::vector<min_distance_result> of;
 
-  /// The first configuration that is not certain to be farther away than `margin`, in metres; or of.size(). Without a
-  /// valid point none is certain. Throws std::invalid_argument if the margin is negative or NaN: `lower` is 0 in a
-  /// collision, too.
+  /// The first configuration that is not certainly farther away than `margin` metres, or of.size(). Without a valid
+  /// point it is the first. Throws std::invalid_argument if the margin is negative or NaN: `lower` is 0 in a collision,
+  /// too.
   std::size_t first_below(double margin) const {
     check(margin);
     return first_of(of, margin);
   }
 
-  /// Where the configurations were several trajectories, [batch, horizon]: trajectory `i`'s. Throws
-  /// std::invalid_argument if they are no whole trajectories of `horizon` configurations, or there is none of number i.
+  /// If the configurations are several trajectories, [batch, horizon]: the results of trajectory `i`. Throws
+  /// std::invalid_argument if they are not whole trajectories of `horizon` configurations, or if there is no trajectory
+  /// i.
   std::span<const min_distance_result> trajectory(std::size_t i, std::size_t horizon) const {
     return detail::trajectory_of(std::span(of), i, horizon);
   }
-  /// And `first_below` of each, counted from its own beginning.
+  /// `first_below` of each trajectory, counted from its beginning.
   std::vector<std::size_t> first_below(double margin, std::size_t horizon) const {
     check(margin);
     return detail::first_of_each(std::span(of), horizon, [&](auto its) { return first_of(its, margin); });
@@ -60,9 +61,9 @@ inline void check(const min_distances_options& options) {
 
 }  // namespace detail
 
-/// The prepared question, asked for frame after frame: it keeps its memory, and remembers where each configuration's
-/// last minimum was, which only ever makes it faster. One object is for one thread and one stream. A device's is in
-/// min_distances.cuh. A backend of one's own asks for each configuration by itself.
+/// The prepared question, asked in every frame. It keeps its memory, and remembers where each configuration's last
+/// minimum was, which only makes it faster. Use one object from one thread and one stream. Include min_distances.cuh
+/// for a device. A backend of your own asks about each configuration by itself.
 template <class On, class PartView>
 class min_distances_query {
   static_assert(
@@ -108,21 +109,21 @@ class min_distances_query {
   min_distances_result result_;
 };
 
-/// On the CPU. The robot's memory must stay.
+/// On the CPU. The robot must outlive it.
 template <class PartView>
 class min_distances_query<host, PartView> {
  public:
   template <robot Robot>
   min_distances_query(const host& on, const Robot& robot) : search_(on, view_of(robot)) {}
 
-  /// The same of joint vectors, one after another. Throws std::invalid_argument as joint_chain::count, too.
+  /// The same for joint vectors, one after another. Throws std::invalid_argument as joint_chain::count, too.
   template <class Clouds>
   const min_distances_result& operator()(const joint_chain<host>& chain, std::span<const double> q,
                                          const Clouds& clouds, const min_distances_options& options = {}) {
     detail::check_chain(search_.parts(), chain.parts());
     return (*this)(chain.poses(q), clouds, options);
   }
-  /// As min_distances. What is returned stays until the next call.
+  /// As min_distances. The result stays valid until the next call.
   template <class Clouds>
   const min_distances_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                          const min_distances_options& options = {}) {
@@ -133,7 +134,7 @@ class min_distances_query<host, PartView> {
     return result_;
   }
 
-  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() { search_.forget(); }
 
  private:
@@ -145,8 +146,8 @@ template <class On, robot Robot>
 min_distances_query(const On&, const Robot&)
     -> min_distances_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// The least distance of each configuration. `poses` are world-from-part, one a part of the first configuration, then
-/// those of the next; `clouds` as for min_distance. Throws std::invalid_argument as that does, and if poses are no
+/// The least distance of each configuration. `poses` are world-from-part: one per part of the first configuration, then
+/// those of the next. `clouds` as for min_distance. Throws std::invalid_argument as that does, and if the poses are not
 /// whole configurations, or d_max is NaN.
 template <class On, robot Robot, class Clouds>
 min_distances_result min_distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far is each part of many configurations of one robot from everything that its sensors see? On the host;
-// min_distances_per_part.cuh has a device.
+// How far is each part of many configurations of one robot from everything that its sensors see? Runs on the host;
+// include min_distances_per_part.cuh for a device.
 
 #include <clearance/answer/kept_memory.hpp>
 #include <clearance/min_distances.hpp>
@@ -10,7 +10,8 @@
 
 namespace clearance {
 
-/// min_distance's result of each part alone, as min_distances gives it; those of configuration c are of(c), one a part.
+/// The result of min_distance for each part alone, as min_distances gives it. of(c) are those of configuration c, one
+/// per part.
 struct min_distances_per_part_result {
   std::vector<min_distance_result> all;
   std::size_t parts = 0;
@@ -19,15 +20,15 @@ struct min_distances_per_part_result {
   std::span<const min_distance_result> of(std::size_t c) const { return std::span(all).subspan(c * parts, parts); }
 };
 
-/// The prepared question, as min_distances_query. Each part is a robot of its own here, with a structure over the
-/// clouds and memory of its own: a frame costs as much as min_distances for each of them.
+/// The prepared question, as min_distances_query. Each part is asked about as its own robot, with its own memory and
+/// structure over the clouds: a frame costs as much as min_distances for each part.
 template <class On, class PartView>
 class min_distances_per_part_query {
   using query = min_distances_query<On, PartView>;
 
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory. Throws
-  /// std::invalid_argument as min_distances_query. The robot must stay.
+  /// `memory` is for a device only: a std::pmr::memory_resource* that hands out device memory. Throws
+  /// std::invalid_argument as min_distances_query. The robot must outlive it.
   template <robot Robot, class... Memory>
   min_distances_per_part_query(const On& on, const Robot& robot, Memory... memory)
       : clouds_(on, memory...), model_(view_of(robot)) {
@@ -37,7 +38,7 @@ class min_distances_per_part_query {
                          memory...);
   }
 
-  /// As min_distances_per_part. What is returned stays until the next call. Points that a device cannot read are copied
+  /// As min_distances_per_part. The result stays valid until the next call. Points that a device cannot read are copied
   /// once for all parts.
   template <class Clouds>
   const min_distances_per_part_result& operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
@@ -61,7 +62,7 @@ class min_distances_per_part_query {
     return result_;
   }
 
-  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() {
     for (auto& q : each_) q.forget();
   }
@@ -77,7 +78,7 @@ template <class On, robot Robot, class... Memory>
 min_distances_per_part_query(const On&, const Robot&, Memory...)
     -> min_distances_per_part_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// The least distance of each part of each configuration. `poses`, `clouds`, `options` and what is thrown as of
+/// The least distance of each part of each configuration. `poses`, `clouds`, `options` and exceptions as for
 /// min_distances.
 template <class On, robot Robot, class Clouds>
 min_distances_per_part_result min_distances_per_part(const On& on, const Robot& robot,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The least distance that several points confirm: one alone may be dust, rain, or a mixed pixel. On the host;
-// min_support.cuh has a device.
+// The least distance that several points confirm: one alone may be dust, rain, or a mixed pixel. Runs on the host;
+// include min_support.cuh for a device.
 
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/support.hpp>
@@ -12,28 +12,28 @@
 namespace clearance {
 
 struct support_options {
-  std::uint32_t min_points = 3;  ///< So many points, itself among them, within
-  double radius = 0.02;          ///< metres of a point confirm it.
-  std::size_t most = 4096;       ///< So many of the nearest points are asked, each once, then it is given up.
+  std::uint32_t min_points = 3;  ///< A point is confirmed by this many points, itself among them,
+  double radius = 0.02;          ///< within this many metres.
+  std::size_t most = 4096;       ///< The search ends after this many of the nearest points, each asked once.
 };
 
-/// The nearest point that others confirm, and what is nearer, but alone.
+/// The nearest point that others confirm, and the nearer points that are alone.
 struct supported_distance {
-  /// As min_distance's, if the confirmed points that were asked were all; possible: none is confirmed; no_data: there
-  /// is no valid point.
+  /// That of min_distance about the confirmed points that were asked. possible: none is confirmed. no_data: there is no
+  /// valid point.
   clearance::state state = clearance::state::no_data;
   real distance = not_a_number;  ///< Metres. Infinite: no point is confirmed; NaN: none of the `most` nearest is.
-  real lower = 0;                ///< All confirmed points are certainly at least so far away; 0 if none is.
+  real lower = 0;                ///< All confirmed points are certainly at least this far away; 0 if there is none.
   std::uint32_t cloud = none, point = none, part = none, primitive = none;
-  std::uint64_t isolated = 0;  ///< Points that come before it and are not confirmed,
+  std::uint64_t isolated = 0;  ///< The number of nearer points that are not confirmed,
   pair_distance nearest_isolated = {none, none, none, none, infinity};  ///< and the first of them.
   point_counts counts;
 };
 
 namespace detail {
 
-/// The nearest points of a robot with their parts: by distance, cloud, point, as far as lists of each part's nearest
-/// tell, which is as many as each list has; and whether that is all of them.
+/// The nearest points of a robot with their parts, by distance, cloud and point, as far as the lists of each part's
+/// nearest points reach, and whether these are all.
 inline std::pair<std::vector<pair_distance>, bool> nearest_points(const nearest_k_result& of_parts) {
   const auto before = [](const pair_distance& a, const pair_distance& b) {
     return std::tie(a.distance, a.cloud, a.point, a.part) < std::tie(b.distance, b.cloud, b.point, b.part);
@@ -53,7 +53,7 @@ inline std::pair<std::vector<pair_distance>, bool> nearest_points(const nearest_
   return {std::move(pairs), last == nullptr};
 }
 
-/// The numbers of points through all clouds of the frame that was looked at last.
+/// Numbers the points through all clouds of the last frame.
 template <class Question>
 std::vector<std::uint32_t> numbers_of(const Question& question, std::span<const pair_distance> points) {
   std::vector<std::uint32_t> numbers;
@@ -61,7 +61,7 @@ std::vector<std::uint32_t> numbers_of(const Question& question, std::span<const 
   return numbers;
 }
 
-/// Which of some points have enough others around them. Clouds have to be readable where the question runs.
+/// Which of some points have enough others around them. Clouds must be readable where the question runs.
 template <class Question, class Clouds>
 std::vector<std::uint32_t> count_around(Question& question, std::span<const Eigen::Isometry3d> poses,
                                         const Clouds& clouds, std::span<const pair_distance> points,
@@ -141,7 +141,7 @@ inline void check(const support_options& options) {
                                 " nearest points cannot be asked; it must be 1 to 2^20");
 }
 
-/// State and lower end of what was found, as those of min_distance; `inside`: a confirmed point is for certain.
+/// State and lower end, as of min_distance; `inside`: a confirmed point certainly is.
 inline void bracket(supported_distance& r, const distance_certainty& certain, real tolerance, bool inside) {
   min_distance_result bracketed;
   bracketed.distance = r.distance, bracketed.part = r.part;
@@ -152,7 +152,7 @@ inline void bracket(supported_distance& r, const distance_certainty& certain, re
   r.state = bracketed.state, r.lower = bracketed.lower;
 }
 
-/// Clouds have to be readable where the question runs.
+/// Clouds must be readable where the question runs.
 template <class Question, class Clouds>
 supported_distance least_supported(Question& question, known_nearest& known, std::span<const Eigen::Isometry3d> poses,
                                    const Clouds& clouds, const support_options& options) {
@@ -200,18 +200,19 @@ supported_distance least_supported(Question& question, known_nearest& known, std
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and options. It remembers how
-/// near the nearest were, which only ever makes it faster. It cannot be enqueued: how many points have to be asked is
-/// known when some have been. One object is for one thread and one stream; the robot must stay.
+/// The prepared question: make it once for a robot, and ask it in every frame with new poses, points and options. It
+/// remembers how near the nearest points were, which only makes it faster. It cannot be enqueued, because it depends on
+/// the first answers how many points must be asked. Use one object from one thread and one stream; the robot must
+/// outlive it.
 template <class On, class PartView>
 class min_distance_supported_query {
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  /// `memory` is for a device only: a std::pmr::memory_resource* that hands out device memory.
   template <robot Robot, class... Memory>
   min_distance_supported_query(const On& on, const Robot& robot, Memory... memory)
       : question_(on, view_of(robot), memory...) {}
 
-  /// As `min_distance_supported`. Points that a device cannot read are copied into buffers that are kept.
+  /// As `min_distance_supported`. Points that a device cannot read are copied into buffers that it keeps.
   template <class Clouds>
   supported_distance operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                 const support_options& options = {}) {
@@ -219,7 +220,7 @@ class min_distance_supported_query {
     return detail::least_supported(question_, known_, poses, question_.memory.readable(clouds), options);
   }
 
-  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() { known_ = {}; }
 
  private:

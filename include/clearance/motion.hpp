@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How a robot moves for a time from 0 to 1, and how far its parts can get in a while.
+// How a robot moves over a time from 0 to 1, and how far its parts can move in a part of that time.
 
 #include <clearance/frame/frame.hpp>
 
@@ -10,43 +10,42 @@ namespace clearance {
 
 /// How far points of a part can move within a time `h` of a moment, before or after it.
 struct part_travel {
-  double speed = 0;        ///< No point is faster at the moment itself: metres for the whole motion's time.
-  double growth = 0;       ///< Nor, a time h away from it, than speed + growth h,
+  double speed = 0;        ///< No point is faster at that moment, in metres per the motion's whole time;
+  double growth = 0;       ///< nor, a time h away, than speed + growth h;
   double most = infinity;  ///< nor ever than this.
-  double rounding = 0;     ///< Metres by which the pose of the moment may be off from the motion that is meant.
+  double rounding = 0;     ///< Metres by which the pose of that moment may differ from the intended motion.
 
-  /// Metres, rounded up; 0 for a part that stands still, even if it is endlessly large.
+  /// Metres, rounded up; 0 for a part that stands still, even if it is infinitely large.
   double within(double h) const {
     const double fastest = std::min(most, speed + (growth > 0 ? h * growth : 0));
     return (rounding + (fastest > 0 ? h * fastest : 0)) * (1 + 0x1p-40);
   }
 };
 
-/// A robot at one time of its motion: world-from-part, and what that says of the times around it; one a part.
+/// A robot at one time of its motion: world-from-part, and how far each part moves around that time; one per part.
 struct moment {
   std::vector<Eigen::Isometry3d> poses;
   std::vector<part_travel> travels;
 };
 
-/// Law: no point of a part's solid, which is in the ball of its facts and not more than gap and tolerance out of it, is
-/// at any time in
-///      0 .. 1 within h of t farther from where the moment t has it than `travels[k].within(h)`.
+/// Law: at no time in 0 .. 1 within h of t is a point of a part's solid farther than `travels[k].within(h)` from where
+/// the moment t has it. The solid is in the ball of the part's facts, or at most gap and tolerance outside it.
 template <class M>
 concept motion = requires(const M m, double t, std::span<const part_facts> parts) {
   { m.at(t, parts) } -> std::same_as<moment>;
 };
 
-/// Around all of a part's solid; without a certificate around its primitives.
+/// A ball around a part's solid; without a certificate, around its primitives.
 inline double solid_radius(const part_facts& f) {
   return double(f.radius) + double(f.tolerance) + (f.gap < infinity ? double(f.gap) : 0);
 }
 inline Eigen::Vector3d center_of(const part_facts& f) { return {f.center.x, f.center.y, f.center.z}; }
 
-/// Every part from one pose to another: its origin along a straight line at constant speed, its orientation about an
-/// axis that is fixed in the part, by at most half a turn, at constant angular velocity.
+/// Moves every part from one pose to another: its origin along a straight line at constant speed, its orientation about
+/// an axis that is fixed in the part, by at most half a turn, at constant angular velocity.
 class straight_motion {
  public:
-  /// World-from-part. Throws std::invalid_argument if there are not as many of both, or one is not rigid.
+  /// World-from-part. Throws std::invalid_argument if the numbers of both differ, or a pose is not rigid.
   straight_motion(std::span<const Eigen::Isometry3d> from, std::span<const Eigen::Isometry3d> to) {
     if (from.size() != to.size())
       throw std::invalid_argument("clearance: a motion begins with " + std::to_string(from.size()) +
@@ -58,7 +57,7 @@ class straight_motion {
     }
   }
 
-  /// Throws std::invalid_argument if there are not as many parts.
+  /// Throws std::invalid_argument if the number of parts is another.
   moment at(double t, std::span<const part_facts> parts) const {
     if (parts.size() != ways_.size())
       throw std::invalid_argument("clearance: there are " + std::to_string(parts.size()) + " parts, but a motion of " +
@@ -93,8 +92,8 @@ class straight_motion {
 };
 static_assert(motion<straight_motion>);
 
-/// A motion of one's own: `poses(t)`, world-from-part, and for each part how fast any of its points ever is, in metres
-/// for the time from 0 to 1. That these are high enough is the caller's promise.
+/// A motion of your own: `poses(t)`, world-from-part, and for each part the highest speed of any of its points, in
+/// metres per the time from 0 to 1. You promise that the speeds are high enough.
 template <class Poses>
   requires std::convertible_to<std::invoke_result_t<const Poses&, double>, std::vector<Eigen::Isometry3d>>
 struct timed_motion {

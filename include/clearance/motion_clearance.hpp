@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How close does a robot come to the points while it moves? On the host; motion_clearance.cuh has a device.
+// How close does a robot come to the points while it moves? Runs on the host; include motion_clearance.cuh for a
+// device.
 
 #include <clearance/answer/margins.hpp>
 #include <clearance/min_distance_query.hpp>
@@ -11,44 +12,44 @@
 namespace clearance {
 
 struct motion_clearance_options {
-  double tolerance = 0.01;  ///< Metres: how much `lower` may be below the least that is certain at a time that was
-                            ///< asked; infinite: no more than the state has to be decided.
-  double margin = 0;        ///< Metres: what the state is about.
-  std::size_t most_queries = 1000;  ///< What has not been decided by then is left open, on the safe side.
+  double tolerance = 0.01;  ///< Metres: how far `lower` may be below the least certain distance at an asked time.
+                            ///< Infinite: only the state has to be decided.
+  double margin = 0;        ///< Metres: `state` compares with it.
+  std::size_t most_queries = 1000;  ///< After so many questions the rest stays open, on the safe side.
 };
 
-/// The clearance over a motion. What lies between the times that were asked is in `lower`; times go from 0 to 1.
+/// The clearance over a motion. `lower` also covers the times between those that were asked. Times go from 0 to 1.
 struct motion_clearance_result {
-  /// free: lower > margin; collision: at `time` some point is certainly not farther than margin; possible: neither;
+  /// free: lower > margin. collision: at `time` some point is certainly not farther than margin. possible: neither.
   /// no_data: no valid point.
   clearance::state state = clearance::state::no_data;
-  real lower = 0;               ///< At no time is a point nearer; 0 if that is not certain. Metres.
-  real upper = infinity;        ///< At `time` some point is as near as this, certainly.
-  double time = not_a_number;   ///< Of those that were asked that with the least upper,
-  min_distance_result nearest;  ///< and what min_distance_per_part says of it.
+  real lower = 0;               ///< Metres: at no time is a point nearer. 0 if that is not certain.
+  real upper = infinity;        ///< Metres: at `time` some point certainly is this near.
+  double time = not_a_number;   ///< The asked time with the least upper,
+  min_distance_result nearest;  ///< and the answer of min_distance_per_part at that time.
   double from = 0, to = 1;      ///< The piece of the motion that keeps `lower` down,
   std::uint32_t part = none;    ///< and the part that does.
   std::size_t queries = 0;
-  bool settled = false;  ///< `lower` is as good as `tolerance` asks, or as it can be; if not, the queries were used up.
+  bool settled = false;  ///< `lower` is as good as `tolerance` asks, or as it can be. False: the queries were used up.
 };
 
 namespace detail {
 
-/// A time that was asked: what is certain of each part, and how it moves around that time.
+/// An asked time: what is certain of each part, and how it moves around that time.
 struct asked_time {
   double time;
   std::vector<double> lower;
   std::vector<part_travel> travels;
 };
 
-/// All times within `half` of one that was asked.
+/// All times within `half` of an asked one.
 struct motion_piece {
   double lower;
   std::uint32_t part;
   double time, half;
   std::size_t asked;
 
-  /// Which of two is to be looked at later.
+  /// Which of two pieces to look at later.
   friend bool operator<(const motion_piece& a, const motion_piece& b) {
     return a.lower != b.lower ? a.lower > b.lower : a.time > b.time;
   }
@@ -146,7 +147,7 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
 
 }  // namespace detail
 
-/// By a prepared query of the caller's for the same robot, which keeps its memory.
+/// The same with your prepared query for the same robot, which keeps its memory.
 template <class On, class PartView, robot Robot, motion Motion, class Clouds>
 motion_clearance_result motion_clearance(min_distance_query<On, PartView>& query, const Robot& robot,
                                          const Motion& motion, const Clouds& clouds,
@@ -158,10 +159,10 @@ motion_clearance_result motion_clearance(min_distance_query<On, PartView>& query
   return detail::over_motion(ask, view_of(robot).facts, motion, clouds, options);
 }
 
-/// A lower bound of the clearance over a motion, which is never above it: every part's least distance is asked for at
-/// times that are chosen where the bound is lowest, and between them a part can get nearer only by as much as it moves.
-/// `clouds` as for min_distance; they are asked many times, so those for a device should be there. Throws
-/// std::invalid_argument as min_distance and the motion do, and if a tolerance or a margin is negative or not a number.
+/// A lower bound of the clearance over a motion, never above it. Every part's least distance is asked at times where
+/// the bound is lowest; between them a part can come nearer only by as much as it moves. `clouds` as for min_distance;
+/// they are asked many times, so clouds for a device should be there. Throws std::invalid_argument as min_distance and
+/// the motion do, and if a tolerance or a margin is negative or not a number.
 template <class On, robot Robot, motion Motion, class Clouds>
 motion_clearance_result motion_clearance(const On& on, const Robot& robot, const Motion& motion, const Clouds& clouds,
                                          const motion_clearance_options& options = {}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The k nearest points of each part. On the host; nearest_k.cuh has a device.
+// The k nearest points of each part. Runs on the host; include nearest_k.cuh for a device.
 
 #include <clearance/answer/nearest_bins.hpp>
 #include <clearance/answer/nearest_sample.hpp>
@@ -14,8 +14,8 @@ struct nearest_k_options {
   real d_max = infinity;  ///< Metres; farther points do not count.
 };
 
-/// Those of part k come from k * per_part on, the nearest first, then by cloud and point; where there are fewer, the
-/// others are at no point, and infinitely far.
+/// The pairs of part k begin at k * per_part, the nearest first, then by cloud and point. If there are fewer, the rest
+/// is at no point, and infinitely far.
 struct nearest_k_result {
   std::size_t per_part = 0;
   std::vector<pair_distance> pairs;
@@ -29,21 +29,22 @@ struct nearest_k_result {
 
 namespace detail {
 
-inline constexpr std::size_t most_listed = std::size_t(1) << 20;  ///< Of a part.
+inline constexpr std::size_t most_listed = std::size_t(1) << 20;  ///< For one part.
 
-/// What the last frame tells of the next: how near the k nearest may still be. It is only ever a bound to begin with;
-/// where fewer points are so near, all is asked again.
+/// What the last frame says about the next: how near the k nearest may still be. It is only a first bound; if fewer
+/// points are so near, everything is asked again.
 struct known_nearest {
   std::size_t k = 0;
-  std::vector<real> last, radii;  ///< One a part: how near the last of k was, and a bound for the next frame's.
+  std::vector<real> last, radii;  ///< One per part: how near the last of k was, and a bound for the next frame.
 
-  /// For no more than k.
+  /// Bounds for at most k points.
   std::vector<real> first_bounds(real d_max) const {
     std::vector<real> first = radii;
     for (real& bound : first) bound = std::min(d_max, bound);
     return first;
   }
-  /// The next frame's may be farther by twice as much as they have moved, and 5 mm; at first by a tenth, and 2 cm.
+  /// In the next frame they may be farther by twice as much as they have moved, and 5 mm; at first by a tenth
+  /// and 2 cm.
   void learn(const nearest_k_result& found) {
     std::vector<real> now, next;
     for (std::size_t p = 0; p * found.per_part < found.pairs.size(); ++p) {
@@ -55,7 +56,7 @@ struct known_nearest {
   }
 };
 
-/// Bounds that hold, to begin with, where nothing is known of a frame before.
+/// First bounds, if no frame before is known.
 template <class Question, class Clouds>
 std::vector<real> bounds_of_nearest(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                     std::size_t k, real d_max) {
@@ -65,9 +66,9 @@ std::vector<real> bounds_of_nearest(Question& question, std::span<const Eigen::I
   return bounds;
 }
 
-/// How near the k nearest points of each part are: computed distances of k points are at most that, or there are not so
-/// many within d_max. Not many more than k are, but for equal distances. `first` are bounds to begin with; where they
-/// are too low and `again` allows it, all is asked once more.
+/// How near the k nearest points of each part are: k points have at most that computed distance, or there are fewer
+/// within d_max. Except for equal distances, not many more points do. `first` are the first bounds; if they are too low
+/// and `again` allows it, everything is asked once more.
 template <class Question, class Clouds>
 std::vector<real> radii_of_nearest(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                    std::uint32_t k, real d_max, const std::vector<real>& first, bool again) {
@@ -112,7 +113,7 @@ std::vector<real> radii_of_nearest(Question& question, std::span<const Eigen::Is
   return radii;
 }
 
-/// Clouds have to be readable where the question runs.
+/// Clouds must be readable where the question runs.
 template <class Question, class Clouds>
 nearest_k_result list_nearest(Question& question, known_nearest& known, std::span<const Eigen::Isometry3d> poses,
                               const Clouds& clouds, std::size_t k, real d_max) {
@@ -140,17 +141,18 @@ nearest_k_result list_nearest(Question& question, known_nearest& known, std::spa
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and k. It remembers how near
-/// the nearest were, which only ever makes it faster. It cannot be enqueued: what one pass counts decides on the host
-/// whether there is another, and how much is listed. One object is for one thread and one stream; the robot must stay.
+/// The prepared question: make it once for a robot, and ask it in every frame with new poses, points and k. It
+/// remembers how near the nearest points were, which only makes it faster. It cannot be enqueued: the host decides by
+/// the counts of one pass whether there is another, and how much is listed. Use one object from one thread and one
+/// stream; the robot must outlive it.
 template <class On, class PartView>
 class nearest_k_query {
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  /// `memory` is for a device only: a std::pmr::memory_resource* that hands out device memory.
   template <robot Robot, class... Memory>
   nearest_k_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
 
-  /// As `nearest_k`. Points that a device cannot read are copied into buffers that are kept.
+  /// As `nearest_k`. Points that a device cannot read are copied into buffers that it keeps.
   template <class Clouds>
   nearest_k_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
                               const nearest_k_options& options = {}) {
@@ -158,7 +160,7 @@ class nearest_k_query {
     return detail::list_nearest(question_, known_, poses, question_.memory.readable(clouds), k, options.d_max);
   }
 
-  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() { known_ = {}; }
 
  private:
@@ -169,9 +171,9 @@ template <class On, robot Robot, class... Memory>
 nearest_k_query(const On&, const Robot&, Memory...)
     -> nearest_k_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// The k nearest points of each part (peers: kNN, top k): by computed distance, then cloud and point; a point may be in
-/// the lists of several parts. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as min_distance,
-/// and if k is 0 or above 2^20, or d_max is NaN.
+/// The k nearest points of each part (elsewhere: kNN, top k): by computed distance, then cloud and point; a point may
+/// be in the lists of several parts. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as
+/// min_distance, and if k is 0 or above 2^20, or d_max is NaN.
 template <class On, robot Robot, class Clouds>
 nearest_k_result nearest_k(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                            const Clouds& clouds, std::size_t k, const nearest_k_options& options = {}) {

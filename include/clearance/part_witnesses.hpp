@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Where every part's least distance is, after min_distance_per_part. On the host; part_witnesses.cuh has a device.
+// Where every part's least distance is, after min_distance_per_part. Runs on the host; include part_witnesses.cuh for a
+// device.
 
 #include <clearance/answer/asked_once.hpp>
 #include <clearance/answer/few_values.hpp>
@@ -12,10 +13,10 @@ namespace clearance {
 
 namespace minimum {
 
-/// Of so many parts the places go with the launch.
+/// The places of up to so many parts go with the launch.
 inline constexpr std::uint32_t few = 12;
 
-/// A thread a part, of one cloud.
+/// One thread per part, for one cloud.
 template <class PartView, point_source Source>
 struct witness_body {
   const PartView* parts;
@@ -44,12 +45,12 @@ struct witness_body {
 
 }  // namespace minimum
 
-/// The prepared question: made once for a robot, asked after every frame's minima. One object is for one thread and one
-/// stream; the robot must stay.
+/// The prepared question: make it once for a robot, and ask it after every frame's minima. Use one object from one
+/// thread and one stream; the robot must outlive it.
 template <class On, class PartView>
 class part_witnesses_query {
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory. Throws
+  /// `memory` is for a device only: a std::pmr::memory_resource* that hands out device memory. Throws
   /// std::invalid_argument if a tree is too deep for `near_first` on a device.
   template <robot Robot, class... Memory>
   part_witnesses_query(const On& on, const Robot& robot, Memory... memory)
@@ -57,7 +58,7 @@ class part_witnesses_query {
     if constexpr (requires { typename On::own_scan; }) minimum::check_stack<near_first>(model_.depth, model_.width);
   }
 
-  /// As `part_witnesses`. Points that a device cannot read are copied into buffers that are kept.
+  /// As `part_witnesses`. Points that a device cannot read are copied into buffers that it keeps.
   template <class Clouds>
   std::vector<part_witness> operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                        std::span<const part_minimum> minima) {
@@ -73,10 +74,9 @@ class part_witnesses_query {
     return all;
   }
 
-  /// Enqueues it: `minima` and `witnesses`, one a part, and the clouds are in memory that `on` reads and writes. A
-  /// minimum that is none of these poses and clouds has no witness either. On a device one kernel a cloud; nothing is
-  /// waited for, and nothing allocated but by more parts or clouds than ever. A graph that captures this keeps the
-  /// poses of now.
+  /// Enqueues it. `minima` and `witnesses`, one per part, and the clouds are in memory that `on` reads and writes. A
+  /// minimum of other poses or clouds has no witness. On a device it is one kernel per cloud, waits for nothing, and
+  /// allocates only for more parts or clouds than ever before. A graph that captures this keeps the current poses.
   template <class Clouds>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima,
                part_witness* witnesses) {
@@ -107,8 +107,8 @@ template <class On, robot Robot, class... Memory>
 part_witnesses_query(const On&, const Robot&, Memory...)
     -> part_witnesses_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// The witnesses of minima that min_distance_per_part gave for the same robot, poses and clouds, one a part; a minimum
-/// at no point has none. One walk a part; clouds that `on` cannot read are copied once more. Throws
+/// The witnesses of minima that min_distance_per_part gave for the same robot, poses and clouds, one per part; a
+/// minimum at no point has none. It takes one walk per part; clouds that `on` cannot read are copied once more. Throws
 /// std::invalid_argument as min_distance, or if the minima are not those of this robot, these poses and these clouds,
 /// or a tree is too deep for `near_first` on a device.
 template <backend On, robot Robot, class Clouds>

@@ -18,7 +18,7 @@ namespace clearance {
 enum class drop_reason : std::uint8_t { none, not_finite, missing, saturated, out_of_range, masked, too_close };
 inline constexpr int drop_reasons = 7;
 
-/// What a point source says about one index: a position in its own frame, or why there is none.
+/// The answer of a point source for one index: a position in its own frame, or why there is none.
 struct sample {
   vec3 position;
   drop_reason dropped = drop_reason::none;
@@ -26,7 +26,7 @@ struct sample {
   CLEARANCE_HD constexpr bool valid() const { return dropped == drop_reason::none; }
 };
 
-/// Where points come from: a view that is read in place, and never written to memory just to be read again.
+/// Where points come from: a view that is read in place, without a copy.
 ///
 /// Law: `s[i]` is pure; a valid sample has a finite position; positions are metres in the source's own frame.
 template <class S>
@@ -35,11 +35,10 @@ concept point_source = std::is_trivially_copyable_v<S> && requires(const S s, st
   { s[i] } -> std::same_as<sample>;
 };
 
-/// A source that a kernel reads four neighbours ahead: it has the next four on their way while it looks at these.
+/// A source that a kernel reads ahead: it fetches the next four neighbours while it looks at these.
 ///
 /// Law: where `fetches()`, for i % 4 == 0 and i + 3 < size(), `look(fetch(seek(i)), i, at)` sets `at` to the positions
-/// of s[i] to
-///      s[i + 3] (if valid) and returns their drop reasons, the first in the lowest byte.
+/// of s[i] to s[i + 3] (if valid) and returns their drop reasons, the first in the lowest byte.
 /// Law: `skip(seek(i), n)` is `seek(i + n)`, for n % 4 == 0; it may lie behind the end, and is then not fetched.
 template <class S>
 concept fetched_source = point_source<S> && requires(const S s, std::size_t i, const typename S::cursor& c,
@@ -53,20 +52,20 @@ concept fetched_source = point_source<S> && requires(const S s, std::size_t i, c
 
 /// A source whose points are an image's, row by row: neighbours above one another are neighbours too.
 ///
-/// Law: `columns()` is how many are in a row.
+/// Law: `columns()` is the number of points in a row.
 template <class S>
 concept image_source = point_source<S> && requires(const S s) {
   { s.columns() } -> std::same_as<std::uint32_t>;
 };
 
-/// A source that tells when it filters nothing: every point whose coordinates are finite counts, and every position can
+/// A source that says when it filters nothing: then every point with finite coordinates counts, and every position can
 /// be read.
 template <class S>
 concept unfiltered_source = point_source<S> && requires(const S s) {
   { s.unfiltered() } -> std::same_as<bool>;
 };
 
-/// A box around points; empty (lower > upper) if there is none.
+/// A box around points; empty (lower > upper) if there are none.
 struct extent {
   vec3 lower = {infinity, infinity, infinity}, upper = {-infinity, -infinity, -infinity};
 
@@ -76,11 +75,10 @@ struct extent {
   }
 };
 
-/// A source that says where 128 neighbours are without taking them apart, which a host asks first.
+/// A source that says where 128 neighbours are, without taking them apart. A host asks this first.
 ///
-/// Law: if `survey(begin, box, dropped)` is true, `box` holds all valid positions of s[begin] to s[begin + 127], and to
-/// `dropped`
-///      was added how many of them are not valid, by reason; if it is false, nothing was added.
+/// Law: if `survey(begin, box, dropped)` is true, `box` holds all valid positions of s[begin] to s[begin + 127], and
+/// `dropped` was increased by the number of invalid ones, by reason; if it is false, nothing was added.
 inline constexpr std::size_t surveyed_points = 128;
 template <class S>
 concept surveyed_source =
@@ -89,14 +87,13 @@ concept surveyed_source =
     };
 
 /// How far from its point a position may be: at most `absolute + relative * (its distance from the source's (0,0,0))`,
-/// in metres. What was lost before a source was made, or is lost when it is read; the bracket of every distance carries
-/// it.
+/// in metres. It covers what was lost before the source was made, and what is lost when it is read. The bracket of
+/// every distance carries it.
 struct position_error {
   double absolute = 0, relative = 0;
 };
 
-/// A source with the optional member `position_error rounding() const`, called on the host, says so; any other is
-/// exact.
+/// From the optional member `position_error rounding() const`, called on the host; a source without it is exact.
 template <point_source S>
 position_error rounding_of(const S& source) {
   if constexpr (requires {

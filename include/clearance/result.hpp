@@ -9,7 +9,7 @@ namespace clearance {
 /// What a bracket means for a robot that is about to move.
 enum class state : std::uint8_t {
   free,       ///< lower > 0: no valid point touches the robot.
-  possible,   ///< The bracket contains 0, and nothing more is certain.
+  possible,   ///< The bracket contains 0; nothing else is certain.
   collision,  ///< Some point is certainly inside.
   no_data,    ///< There was no valid point: nothing is known.
 };
@@ -21,14 +21,14 @@ inline const char* to_string(state s) {
 
 inline constexpr std::uint32_t none = ~0u;
 
-/// The least distance of one part. Without a valid point within its bound: infinitely far, at no point.
+/// The least distance of one part. Without a valid point within its bound it is infinite, at no point.
 struct part_minimum {
   real distance = infinity;
   std::uint32_t cloud = none, point = none, primitive = none;
 };
 
-/// The pair that attains a part's least distance, in world coordinates, as in a min_distance_result. Without one:
-/// numbers `none`, infinitely far.
+/// The pair that attains a part's least distance, in world coordinates, as in a min_distance_result. Without a pair the
+/// numbers are `none` and the distance is infinite.
 struct part_witness {
   real distance = infinity;
   std::uint32_t part = none, cloud = none, point = none, primitive = none;
@@ -36,13 +36,13 @@ struct part_witness {
   vec3 normal = {0, 0, 0};
 };
 
-/// How many points a scan has seen, how many of them count, and why the others do not.
+/// How many points a scan has seen, how many of them are valid, and why the others are not.
 struct point_counts {
   std::uint64_t seen = 0, valid = 0;
   std::uint64_t dropped[drop_reasons] = {};  ///< Counts by drop_reason; [none] stays 0.
 };
 
-/// The clearance of a robot, its bracket and its witness; plain data, that a kernel may write or read.
+/// The clearance of a robot, its bracket and its witness; plain data that a kernel may write or read.
 ///
 /// `lower <= distance to the solid <= upper` (0 inside it), float errors included. With `no_data` the distance is NaN,
 /// lower 0 and upper infinite, so that `if (r.lower < margin) stop()` stops.
@@ -53,7 +53,7 @@ struct min_distance_result {
   std::uint32_t cloud = none;      ///< Which cloud of the call,
   std::uint32_t point = none;      ///< which of its points (index as in the input),
   std::uint32_t part = none;       ///< which part,
-  std::uint32_t primitive = none;  ///< which of its primitives attain it; ties: the lowest numbers.
+  std::uint32_t primitive = none;  ///< which of its primitives attains it; of equally near ones the lowest.
   position at = {0, 0, 0};         ///< The point, in world coordinates,
   position nearest = {0, 0, 0};    ///< the nearest point of the primitive,
   vec3 normal = {0, 0, 0};         ///< and the unit vector from robot to point; (0,0,0) if there is none.

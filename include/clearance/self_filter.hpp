@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Which points are the robot itself, and how far is the rest? On the host; self_filter.cuh has a device.
+// Which points are the robot itself, and how far is the rest? Runs on the host; include self_filter.cuh for a device.
 
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/own_points.hpp>
@@ -13,25 +13,25 @@
 namespace clearance {
 
 struct self_filter_options {
-  /// Metres around a part that are the robot's: one for all parts, or one a part. It has to cover what a point of the
-  /// robot's own surface can be off: noise, calibration, and the gap of the part's spheres.
+  /// Metres around a part that belong to the robot: one number for all parts, or one per part. It has to cover the
+  /// error of points on the robot's surface: noise, calibration, and the gap of the part's spheres.
   std::vector<double> padding = {0.01};
 };
 
-/// Whose each point is. A point is the robot's if it certainly is within the padding of a part's solid. If gap,
-/// tolerance or rounding leave that open it is `uncertain`, and not hidden: what is hidden wrongly may be an obstacle,
-/// what is kept wrongly stops a robot. Without a certificate all that is not the robot's is uncertain.
+/// Whose each point is. A point is the robot's if it is certainly within the padding of a part's solid. If gap,
+/// tolerance or rounding leave that open, it is `uncertain` and not hidden: a point hidden wrongly may be an obstacle,
+/// a point kept wrongly stops a robot. Without a certificate every other point is uncertain.
 struct self_filter_result {
-  std::vector<point_label> labels;   ///< One a point of all clouds, in their order.
-  std::vector<std::size_t> offsets;  ///< Those of cloud c are offsets[c] to offsets[c + 1] - 1.
+  std::vector<point_label> labels;   ///< One per point of all clouds, in their order.
+  std::vector<std::size_t> offsets;  ///< The labels of cloud c are offsets[c] to offsets[c + 1] - 1.
   std::vector<std::uint32_t> rest;   ///< The numbers of all valid points that are not hidden, ascending.
   self_filter_counts counts;
 };
 
-/// The same, and the least distance over all points that are not hidden (which is all that its state is about).
+/// The same, and the least distance over all points that are not hidden; its state is about them alone.
 struct filtered_distance {
   self_filter_result filter;
-  min_distance_result rest;  ///< What is hidden is dropped as `masked`.
+  min_distance_result rest;  ///< Hidden points are dropped as `masked`.
 };
 
 namespace detail {
@@ -43,8 +43,8 @@ std::size_t count_points(const Clouds& clouds) {
   return points;
 }
 
-/// How near points must be to each part to be perhaps the robot's, and then to be so certainly. True if all others are
-/// uncertain: then nobody need ask of which.
+/// How near points must be to each part to be perhaps the robot's, and certainly. True if all others are uncertain, so
+/// that nobody need ask which.
 inline bool set_paddings(std::span<const double> padding, std::span<const part_facts> facts,
                          const frames::float_error& error, std::vector<real>& reaches) {
   const std::size_t given = padding.size(), parts = facts.size();
@@ -85,16 +85,16 @@ self_filter_result labelled(const On& on, const Clouds& clouds, const point_labe
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and paddings. One object is
-/// for one thread and one stream; the robot must stay.
+/// The prepared question: make it once for a robot, and ask it in every frame with new poses, points and paddings. Use
+/// one object from one thread and one stream; the robot must outlive it.
 template <class On, class PartView>
 class self_filter_query {
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  /// `memory` is for a device only: a std::pmr::memory_resource* that hands out device memory.
   template <robot Robot, class... Memory>
   self_filter_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
 
-  /// As `self_filter`. Points that a device cannot read are copied into buffers that are kept.
+  /// As `self_filter`. Points that a device cannot read are copied into buffers that it keeps.
   template <class Clouds>
   self_filter_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                 const self_filter_options& options = {}) {
@@ -107,8 +107,8 @@ class self_filter_query {
     return detail::labelled(question_.on, clouds, labels, counts);
   }
 
-  /// As `self_filter_async`. On a device one kernel a cloud; nothing is waited for, and nothing allocated but by more
-  /// clouds than ever before. A graph that captures this keeps the poses and paddings of now.
+  /// As `self_filter_async`. On a device it is one kernel per cloud, waits for nothing, and allocates only for more
+  /// clouds than ever before. A graph that captures this keeps the current poses and paddings.
   template <class Clouds>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const self_filter_options& options,
                point_label* labels, self_filter_counts* counts) {
@@ -149,15 +149,15 @@ self_filter_query(const On&, const Robot&, Memory...)
     -> self_filter_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
 /// Which points are the robot itself? `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that
-/// does, and if there are other than one or as many paddings, or one is negative or not finite.
+/// does, and if there are neither one nor as many paddings as parts, or one is negative or not finite.
 template <class On, robot Robot, class Clouds>
 self_filter_result self_filter(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                                const Clouds& clouds, const self_filter_options& options = {}) {
   return pairwise::asked_once<self_filter_query>(on, robot, [&](auto& query) { return query(poses, clouds, options); });
 }
 
-/// Enqueues self_filter, into memory that `on` can write; clouds must be readable where it runs, and stay until it is
-/// done. What follows in the same stream may ask about `masked_clouds(clouds, labels)`.
+/// Enqueues self_filter, into memory that `on` can write. Clouds must be readable where it runs, and stay until it is
+/// done. The next work in the stream may ask about `masked_clouds(clouds, labels)`.
 template <class On, robot Robot, class Clouds>
 void self_filter_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                        const self_filter_options& options, point_label* labels, self_filter_counts* counts) {
@@ -165,8 +165,8 @@ void self_filter_async(const On& on, const Robot& robot, std::span<const Eigen::
                                           [&](auto& query) { query.enqueue(poses, clouds, options, labels, counts); });
 }
 
-/// And how far is a robot from the rest? `own` is what is filtered out, such as an arm that a camera sees; `robot` may
-/// be another one. Clouds that `on` cannot read are copied once.
+/// Also says how far a robot is from the rest. `own` is filtered out, such as an arm that a camera sees; `robot` may be
+/// another one. Clouds that `on` cannot read are copied once.
 template <class On, robot Robot, robot Own, class Clouds>
 filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                                         const Own& own, std::span<const Eigen::Isometry3d> own_poses,
@@ -184,7 +184,7 @@ filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::s
                                                minimum::as_it_is{});
   return {detail::labelled(there, clouds, labels.data(), counts.data()), there.copy_out(result.data(), 1)[0]};
 }
-/// The same robot is filtered out and asked about.
+/// Filters out the robot that is asked about.
 template <class On, robot Robot, class Clouds>
 filtered_distance min_distance_filtered(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                                         const Clouds& clouds, const self_filter_options& options = {}) {

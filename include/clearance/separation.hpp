@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How fast a gap closes, and how wide ISO/TS 15066 wants it. Arithmetic, and no safety function.
+// How fast a gap closes, and how wide ISO/TS 15066 wants it to be. This is arithmetic, not a safety function.
 
 #include <clearance/gradient.hpp>
 
@@ -10,10 +10,10 @@
 
 namespace clearance {
 
-/// How fast a least distance shrinks, in metres a second: negative if the pair moves apart. Of a min_distance_result or
-/// part_witness whose part has `velocity` where it is at `about`, and turns by `turning` (rad/s), in world axes;
-/// `point_velocity` is the point's, if known. Nothing where the distance has no gradient. Other pairs may close faster.
-/// Throws std::invalid_argument if a number is not finite.
+/// How fast the least distance of a min_distance_result or part_witness shrinks, in metres per second; negative if the
+/// pair moves apart. Its part has `velocity` at `about` and turns by `turning` (rad/s), in world axes; `point_velocity`
+/// is the point's, if known. No value where the distance has no gradient. Other pairs may close faster. Throws
+/// std::invalid_argument if a number is not finite.
 template <class Witness>
 std::optional<double> approach_speed(const Witness& w, const Eigen::Vector3d& velocity, const Eigen::Vector3d& turning,
                                      const Eigen::Vector3d& about,
@@ -25,22 +25,22 @@ std::optional<double> approach_speed(const Witness& w, const Eigen::Vector3d& ve
   return normal.dot(velocity + turning.cross(nearest - about) - point_velocity);
 }
 
-/// What the protective separation distance of ISO/TS 15066 (speed and separation monitoring) is made of. None has a
-/// default: each is yours to measure or to take from the standard, and one that is not said is refused.
+/// The terms of the protective separation distance of ISO/TS 15066 (speed and separation monitoring). No term has a
+/// default: measure each or take it from the standard. A missing term is refused.
 struct separation_terms {
   double human_speed = not_a_number;        ///< v_h, towards the robot, m/s.
   double robot_speed = not_a_number;        ///< v_r, towards the human, m/s; 0 if it moves away.
   double reaction_time = not_a_number;      ///< T_r, from the exposure of a frame to the beginning of the stop, s.
   double stopping_time = not_a_number;      ///< T_s, from there to standstill, s,
-  double stopping_distance = not_a_number;  ///< S_s, and how far the robot goes in it, m.
+  double stopping_distance = not_a_number;  ///< S_s, how far the robot moves in that time, m.
   double intrusion = not_a_number;          ///< C, how far a body may reach before it is seen, m.
   double human_uncertainty = not_a_number;  ///< Z_d, of where the sensors see it, m.
   double robot_uncertainty = not_a_number;  ///< Z_r, of where the robot is, m.
 };
 
 /// S_p = S_h + S_r + S_s + C + Z_d + Z_r in metres, with S_h = v_h (T_r + T_s) and S_r = v_r T_r, speeds being
-/// constant. To be compared with a result's `lower`. It is the standard's formula and nothing more: no certified safety
-/// function, no substitute for a risk assessment, and as good as the numbers given. Throws std::invalid_argument if one
+/// constant. Compare it with a result's `lower`. It is the standard's formula and nothing more: no certified safety
+/// function, no substitute for a risk assessment, and only as good as your numbers. Throws std::invalid_argument if one
 /// is negative, NaN or infinite.
 inline double protective_separation(const separation_terms& s) {
   const std::pair<const char*, double> all[] = {{"human_speed", s.human_speed},

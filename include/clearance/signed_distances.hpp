@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far is every point from closed meshes, and how deep in them? On the host; signed_distances.cuh has a device.
+// How far is every point from closed meshes, and how deep in them? Runs on the host; include signed_distances.cuh for a
+// device.
 
 #include <clearance/answer/witness.hpp>
 #include <clearance/distances.hpp>
@@ -10,7 +11,7 @@ namespace clearance {
 
 namespace pointwise {
 
-/// After `distances`: of a point that is 0 away, how deep it is.
+/// After `distances`: how deep a point is that is 0 away.
 template <class PartView, point_source Source>
 struct deepen_body {
   const PartView* parts;
@@ -65,10 +66,10 @@ distance_certainty enqueue_signed(const On& on, const Robot& robot, std::span<co
 
 }  // namespace pointwise
 
-/// Every point's distance to the surface of parts that are closed meshes, negative inside: the least of all parts, so
-/// of a point in several how deep it is in the one where it is deepest. As `distances` otherwise; `primitive` is the
-/// nearest triangle, inside too, and what is inside is within any d_max. Throws std::invalid_argument as that does, and
-/// if d_max is negative.
+/// Every point's distance to the surface of parts that are closed meshes, negative inside. It is the least of all
+/// parts, so a point in several is as deep as in the one where it is deepest. Otherwise as `distances`; `primitive` is
+/// the nearest triangle, inside too, and points inside are within any d_max. Throws std::invalid_argument as that does,
+/// and if d_max is negative.
 template <class On, robot Robot, class Clouds>
 point_distances signed_distances(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                                  const Clouds& clouds, const distances_options& options = {}) {
@@ -78,7 +79,7 @@ point_distances signed_distances(const On& on, const Robot& robot, std::span<con
       });
 }
 
-/// Enqueues it; clouds, and the memory of `out` and `counts`, must stay until it is done.
+/// Enqueues it; clouds, and the memory of `out` and `counts`, must stay valid until it is done.
 template <class On, robot Robot, class Clouds>
 distance_certainty signed_distances_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                                           const Clouds& clouds, const distances_out& out, point_counts* counts,

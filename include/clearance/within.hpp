@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Which points are within a distance of each part? On the host; within.cuh has a device.
+// Which points are within a distance of each part? Runs on the host; include within.cuh for a device.
 
 #include <clearance/answer/listed.hpp>
 #include <clearance/collect_query.hpp>
@@ -9,7 +9,7 @@
 
 namespace clearance {
 
-/// Points near parts: those of part k are pairs offsets[k] to offsets[k + 1] - 1, the nearest first, then by cloud and
+/// Points near parts. The pairs of part k are offsets[k] to offsets[k + 1] - 1, the nearest first, then by cloud and
 /// point.
 struct within_result {
   std::vector<std::size_t> offsets;
@@ -20,7 +20,7 @@ struct within_result {
 
 namespace detail {
 
-/// Of each part, from one radius or one a part.
+/// One radius for each part, from one or one per part.
 inline void set_radii(std::span<const real> radius, std::size_t parts, std::vector<real>& radii) {
   if (radius.size() != 1 && radius.size() != parts)
     throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " +
@@ -33,7 +33,7 @@ inline void set_radii(std::span<const real> radius, std::size_t parts, std::vect
   }
 }
 
-/// All pairs within `radii`, one a part, in order. Clouds have to be readable where the question runs.
+/// All pairs within `radii`, one per part, in order. Clouds must be readable where the question runs.
 template <class Question, class Clouds>
 within_result list_within(Question& question, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                           const std::vector<real>& radii) {
@@ -65,16 +65,16 @@ within_result list_within(Question& question, std::span<const Eigen::Isometry3d>
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and radii. One object is for
-/// one thread and one stream; the robot must stay.
+/// The prepared question: make it once for a robot, and ask it in every frame with new poses, points and radii. Use one
+/// object from one thread and one stream; the robot must outlive it.
 template <class On, class PartView>
 class within_query {
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  /// `memory` is for a device only: a std::pmr::memory_resource* that hands out device memory.
   template <robot Robot, class... Memory>
   within_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
 
-  /// As `within`. Points that a device cannot read are copied into buffers that are kept.
+  /// As `within`. Points that a device cannot read are copied into buffers that it keeps.
   template <class Clouds>
   within_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                            std::span<const real> radius) {
@@ -88,9 +88,9 @@ class within_query {
     return (*this)(poses, clouds, std::span<const real>(&radius, 1));
   }
 
-  /// Enqueues it, with memory of the caller's: up to `capacity` pairs in any order; `count` becomes how many there are:
-  /// if that is more, some were cut. Clouds, and all that is written, must stay until it is done. On a device nothing
-  /// is allocated or waited for. A graph that captures this keeps the poses and radii of now.
+  /// Enqueues it, with your memory: up to `capacity` pairs in any order; `count` becomes how many there are; if that is
+  /// more, some were cut. Clouds, and all that is written, must stay valid until it is done. On a device it allocates
+  /// nothing and waits for nothing. A graph that captures this keeps the current poses and radii.
   template <class Clouds>
   distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                              std::span<const real> radius, pair_distance* pairs, std::size_t capacity,
@@ -120,9 +120,9 @@ template <class On, robot Robot, class... Memory>
 within_query(const On&, const Robot&, Memory...)
     -> within_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// All pairs of a point and a part whose computed distance is at most `radius` metres: one for all parts, or one a
-/// part. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that does, and if there are other
-/// than one or as many radii, or one is NaN.
+/// All pairs of a point and a part whose computed distance is at most `radius` metres: one for all parts, or one per
+/// part. `poses` and `clouds` as for min_distance. Throws std::invalid_argument as that does, and if there are neither
+/// one nor as many radii as parts, or one is NaN.
 template <class On, robot Robot, class Clouds>
 within_result within(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                      std::span<const real> radius) {
@@ -135,9 +135,9 @@ within_result within(const On& on, const Robot& robot, std::span<const Eigen::Is
   return within(on, robot, poses, clouds, std::span<const real>(&radius, 1));
 }
 
-/// Enqueues it, with memory of the caller's: up to `capacity` pairs in any order; `count` (0 beforehand) becomes how
-/// many there are: if that is more, some were cut. `reaches`, one a part, and all else in memory that `on` can read and
-/// write until it is done.
+/// Enqueues it, with your memory: up to `capacity` pairs in any order; `count` (0 beforehand) becomes how many there
+/// are; if that is more, some were cut. `reaches`, one per part, and all else in memory that `on` can read and write
+/// until it is done.
 template <class On, robot Robot, class Clouds>
 void within_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                   const real* reaches, pair_distance* pairs, std::size_t capacity, unsigned long long* count,

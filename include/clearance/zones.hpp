@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Which parts have points in zones around them: stop, slow down, warn. On the host; zones.cuh has a device.
+// Which parts have points in zones around them: stop, slow down, warn. Runs on the host; include zones.cuh for a
+// device.
 
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/zones.hpp>
@@ -8,31 +9,31 @@
 
 namespace clearance {
 
-/// One zone of one part. A point counts if it may be nearer than the zone's threshold: what arithmetic, gaps and
-/// tolerances leave open is on the safe side.
+/// One zone of one part. A point counts if it may be nearer than the zone's threshold: arithmetic, gaps and tolerances
+/// are on the safe side.
 struct zone {
   std::uint64_t points = 0;
   real nearest = infinity;  ///< The least distance of its points, as computed. Metres.
   std::uint32_t nearest_cloud = none,
-                nearest_point = none;                    ///< The point that has it; of equally near ones the lowest.
+                nearest_point = none;  ///< The point at that distance; of equally near ones the lowest.
   std::uint32_t first_cloud = none, first_point = none;  ///< The lowest of its points.
 };
 
 struct zones_options {
-  std::vector<double> thresholds;  ///< Metres, in ascending order: those of every part's zones,
-  bool each_part = false;          ///< or, if this is set, of each part in turn, the same number of all.
-  std::size_t min_points = 1;      ///< With fewer a zone counts as empty (`innermost`); they are reported all the same.
+  std::vector<double> thresholds;  ///< Metres, in ascending order: the same for every part,
+  bool each_part = false;          ///< or, if this is set, those of each part in turn, equally many.
+  std::size_t min_points = 1;      ///< A zone with fewer counts as empty (`innermost`); its points are still reported.
 };
 
 struct zones_result {
   std::size_t per_part = 0, min_points = 1;
-  std::vector<zone> zones;  ///< Those of a part, the innermost first, then those of the next.
+  std::vector<zone> zones;  ///< The zones of a part, the innermost first, then those of the next part.
   point_counts counts;
 
   const zone& of(std::size_t part, std::size_t z) const { return zones[part * per_part + z]; }
-  /// The innermost zone of all parts with enough points: 0 is the nearest threshold, `per_part` says that all are
-  /// empty. Nothing is known of a frame without a valid point, of no part, or with something too close to be measured:
-  /// then it is 0.
+  /// The innermost zone of all parts with enough points: 0 is the nearest threshold, `per_part` means that all are
+  /// empty. It is 0 for a frame without a valid point, without a part, or with something too close to be measured,
+  /// because nothing is known then.
   std::size_t innermost() const {
     if (counts.valid == 0 || zones.empty() || counts.dropped[int(drop_reason::too_close)] != 0) return 0;
     std::size_t least = per_part;
@@ -44,7 +45,7 @@ struct zones_result {
 
 namespace detail {
 
-/// From what a scan keeps of a zone to what is told of it.
+/// Makes a zone's result of what a scan keeps.
 struct tell_zone {
   pairwise::count_in_zones counted;
   std::uint32_t clouds;
@@ -65,7 +66,7 @@ struct tell_zone {
   }
 };
 
-/// A part's reaches: its thresholds, and what may be nearer than it is computed to be.
+/// A part's reaches: its thresholds, and how much nearer than computed a point may be.
 inline void add_reaches(std::span<const double> thresholds, const part_facts& facts, const frames::float_error& error,
                         std::vector<real>& reaches) {
   for (std::size_t z = 0; z < thresholds.size(); ++z) {
@@ -78,16 +79,16 @@ inline void add_reaches(std::span<const double> thresholds, const part_facts& fa
 
 }  // namespace detail
 
-/// The prepared question: made once for a robot, asked every frame with new poses, points and thresholds. One object is
-/// for one thread and one stream; the robot must stay.
+/// The prepared question: make it once for a robot, and ask it in every frame with new poses, points and thresholds.
+/// Use one object from one thread and one stream; the robot must outlive it.
 template <class On, class PartView>
 class zones_query {
  public:
-  /// `memory`, a device's alone: a std::pmr::memory_resource* that hands out device memory.
+  /// `memory` is for a device only: a std::pmr::memory_resource* that hands out device memory.
   template <robot Robot, class... Memory>
   zones_query(const On& on, const Robot& robot, Memory... memory) : question_(on, view_of(robot), memory...) {}
 
-  /// As `zones`. Points that a device cannot read are copied into buffers that are kept.
+  /// As `zones`. Points that a device cannot read are copied into buffers that it keeps.
   template <class Clouds>
   zones_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                           const zones_options& options) {
@@ -104,8 +105,8 @@ class zones_query {
     return all;
   }
 
-  /// As `zones_async`. On a device nothing is waited for, and nothing allocated but by more zones or clouds than ever
-  /// before. A graph that captures this keeps the poses and thresholds of now.
+  /// As `zones_async`. On a device it waits for nothing, and allocates only for more zones or clouds than ever before.
+  /// A graph that captures this keeps the current poses and thresholds.
   template <class Clouds>
   std::size_t enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const zones_options& options,
                       zone* zones, point_counts* counts) {
@@ -151,8 +152,8 @@ template <class On, robot Robot, class... Memory>
 zones_query(const On&, const Robot&, Memory...)
     -> zones_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
 
-/// Enqueues it: `zones`, as zones_result has them, and `counts`, in memory that `on` writes; clouds must stay until it
-/// is done. How many zones each part has.
+/// Enqueues it. `zones`, ordered as in zones_result, and `counts` are in memory that `on` writes; clouds must stay
+/// valid until it is done. Returns how many zones each part has.
 template <class On, robot Robot, class Clouds>
 std::size_t zones_async(const On& on, const Robot& robot, std::span<const Eigen::Isometry3d> poses,
                         const Clouds& clouds, const zones_options& options, zone* zones, point_counts* counts) {
@@ -160,7 +161,7 @@ std::size_t zones_async(const On& on, const Robot& robot, std::span<const Eigen:
       on, robot, [&](auto& query) { return query.enqueue(poses, clouds, options, zones, counts); });
 }
 
-/// The points in zones around every part, in one pass. `poses` and `clouds` as for min_distance. Throws
+/// Counts the points in zones around every part, in one pass. `poses` and `clouds` as for min_distance. Throws
 /// std::invalid_argument as that does, and if thresholds are negative, not in order, none, or not the same number for
 /// each part, or min_points is 0.
 template <class On, robot Robot, class Clouds>

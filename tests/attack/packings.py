@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Strict readers of spheres in files: each gives {part: [(x, y, z, r), ...]}, the only part of a CSV file named "";
-and the writer of .ist files, by docs/packing-files.md."""
+and the writer of .ist files, by docs/packing.md."""
 
 import math
 import re

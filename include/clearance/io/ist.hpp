@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The .ist file: packings with everything that is known of them. docs/packing-files.md has its bytes.
+// The .ist file: packings with everything that is known of them. Bytes: docs/packing.md#the-ist-format-version-1.
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/packed_part.hpp>
