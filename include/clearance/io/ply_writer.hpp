@@ -30,7 +30,8 @@ struct ply_piece {
 
 /// What stands before the records of `count` points with such columns. Throws std::invalid_argument if a column has a
 /// name that is no word.
-inline std::string ply_header_text(std::size_t count, std::span<const ply_column> columns, const std::string& comment = {}) {
+inline std::string ply_header_text(std::size_t count, std::span<const ply_column> columns,
+                                   const std::string& comment = {}) {
   constexpr const char* kinds[] = {"float", "uchar", "int", "uint"};
   std::string out = "ply\nformat binary_little_endian 1.0\n";
   if (!comment.empty()) out += "comment " + printable(comment) + '\n';
@@ -100,7 +101,8 @@ void save_ply_pieces(const std::string& file, std::size_t count, Next next, cons
       throw std::invalid_argument("clearance: a piece of " + std::to_string(piece.points.size()) + " points where " +
                                   std::to_string(count - done) + " are missing");
     done += piece.points.size();
-    const std::string before = std::exchange(begun, true) ? std::string() : ply_header_text(count, piece.columns, comment);
+    const std::string before =
+        std::exchange(begun, true) ? std::string() : ply_header_text(count, piece.columns, comment);
     return before + ply_records(piece.points, piece.columns);
   });
 }
