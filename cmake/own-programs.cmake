@@ -116,8 +116,8 @@ function(clearance_together units name)
       continue()
     endif()
     math(EXPR pieces "(${count} + ${CLEARANCE_TOGETHER} - 1) / ${CLEARANCE_TOGETHER}")
-    if(pieces EQUAL 1 AND count GREATER 3)  # one for each of two cores
-      set(pieces 2)
+    if(count GREATER 3)  # an even number: often there are two cores
+      math(EXPR pieces "(${pieces} + 1) / 2 * 2")
     endif()
     set(number 0)
     foreach(piece RANGE 1 ${pieces})

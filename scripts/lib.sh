@@ -94,3 +94,7 @@ configure() {
 }
 
 jobs=${CLEARANCE_JOBS:-$(nproc 2>/dev/null || echo 2)}
+
+# What one build folder has compiled need not be compiled in another: ccache knows paths from here on, not from the root.
+CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root}
+export CCACHE_BASEDIR
