@@ -11,7 +11,7 @@ namespace clearance::minimum {
 
 /// What all parts of a configuration have in common, in one cloud.
 struct configuration_facts : frames::frame_facts {
-  bool rigid = true;  ///< Are all poses?
+  bool rigid = true;  ///< Are all poses rigid?
 
   configuration_facts() = default;
   CLEARANCE_HD configuration_facts(const world_transform& cloud, vec3 origin, const position_error& off)

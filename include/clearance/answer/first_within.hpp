@@ -11,7 +11,7 @@ namespace clearance::pairwise {
 struct first_within {
   unsigned long long* word;  ///< One bit: not certain; then the point's number through all clouds; then the part.
   const real *may_be, *is;   ///< One of each per part.
-  const std::uint32_t* first_point;  ///< Of each cloud.
+  const std::uint32_t* first_point;  ///< Per cloud.
 
   static constexpr unsigned long long nothing = ~0ull, uncertain = 1ull << 63;
 

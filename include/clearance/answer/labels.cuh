@@ -45,7 +45,7 @@ struct labels_of {
     }
   }
 
-  /// Hands in this block's counts, after the kernel of the last group of parts.
+  /// Hands in this block's counts, in the kernel of the last group of parts.
   static __device__ void hand_in(const arguments& a) {
     if (!a.answer.last_group) return;
     count(a);

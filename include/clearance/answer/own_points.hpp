@@ -35,7 +35,7 @@ struct own_points {
   point_label* labels;  ///< Initially `whose_alone`: what a point is if no part is near it.
   self_filter_counts* counts;
   paddings near;
-  few_values<std::uint32_t, few_clouds> first_point;  ///< Of each cloud.
+  few_values<std::uint32_t, few_clouds> first_point;  ///< Per cloud.
   bool all_uncertain;  ///< Every valid point that is not certainly the robot's is uncertain.
 
   CLEARANCE_HD real reach(std::uint32_t part) const { return near.may_be(part); }

@@ -8,7 +8,7 @@ namespace clearance::pairwise {
 /// An answer: writes each pair's distance in its place, part after part. Places of pairs beyond `d_max` are left alone.
 struct written {
   real* distance;
-  const std::uint32_t* first_point;  ///< Of each cloud.
+  const std::uint32_t* first_point;  ///< Per cloud.
   std::size_t points;                ///< Of all clouds.
   real d_max;
 

@@ -23,7 +23,7 @@ struct count_in_zones {
 
   zone_words* words;                 ///< `zones` per part, `total` per copy.
   const real* reaches;               ///< `zones` per part: how near a point must be to be counted.
-  const std::uint32_t* first_point;  ///< Of each cloud.
+  const std::uint32_t* first_point;  ///< Per cloud.
   std::uint32_t zones, total;
 
   CLEARANCE_HD real reach(std::uint32_t part) const {

@@ -11,8 +11,8 @@ namespace clearance::frames {
 /// A part as seen from a cloud.
 struct placement {
   rigid_transform part_from_cloud;  ///< The exact path: one fixed sequence of operations.
-  ball around;                      ///< The part's ball in the cloud's frame, its radius enlarged by every error.
-  real error;                       ///< The largest error of a distance to this part, at distance 0.
+  ball around;  ///< The part's ball in the cloud's frame, its radius enlarged by arithmetic's errors.
+  real error;   ///< The largest error of a distance to this part, at distance 0.
   world_transform world_from_part;
 };
 

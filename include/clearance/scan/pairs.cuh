@@ -147,7 +147,7 @@ struct pair_search : tree_steps<Answer> {
                     at_once - 1 + at_once * (most_children + 1) < stack_capacity);
       std::uint32_t taken = top < at_once ? top : at_once;
       if (top > room - at_once * growth) taken = top + 2 * growth <= room ? 2 : 1;
-      __syncwarp();  // all that has been pushed is there
+      __syncwarp();  // all pushes are visible
       if constexpr (any_size)
         if (s.head.overflow != nullptr) {
           taken = 1;
@@ -206,7 +206,7 @@ struct pair_search : tree_steps<Answer> {
     std::uint32_t at = memory::given_capacity;
     if (lane == 0 && fresh(s.given) + some <= memory::given_capacity) at = atomicAdd(&s.given, some);
     at = __shfl_sync(all_lanes, at, 0);
-    __syncwarp();  // all that has been pushed is there
+    __syncwarp();  // all pushes are visible
 #pragma unroll 1
     for (std::uint32_t k = lane; k < some && at + k < memory::given_capacity; k += 32)
       s.given_nodes[at + k] = stack[at_once + k];
