@@ -71,8 +71,7 @@ topology arrange(std::span<split_item> items, const build_options& options, cons
 
 /// Builds a tree of volumes V over a contiguous range of primitives on the host, top down; deterministic. A stack of 64
 /// entries suffices for it (`stack_need`). Throws std::invalid_argument if there is no primitive, one is not finite or
-/// has a negative radius, or an option is wrong. Returns a bvh<V, P>; `auto` lets a V that is no volume fail with its
-/// message.
+/// has a negative radius, or an option is wrong. Returns a bvh<V, P>; `auto` gives a bad V its message.
 template <class V, std::ranges::contiguous_range R, class Fit = wrapped, class Split = surface_area_split,
           primitive P = std::ranges::range_value_t<R>>
 auto build(const R& input, build_options options = {}, Fit fit = {}, Split split = {}) {
