@@ -7,8 +7,7 @@
 
 namespace clearance::pairwise {
 
-/// One call: what `ask(query)` answers of a `Query` that is made for it, whose memory is given back in the order of its
-/// work.
+/// Makes a `Query` for one call and returns `ask(query)`. The query's memory is given back in the order of its work.
 template <template <class, class> class Query, class On, robot Robot, class Ask>
 auto asked_once(const On& on, const Robot& robot, const Ask& ask) {
   return detail::one_call<On>::of(on, [&](auto... memory) {

@@ -9,8 +9,8 @@
 
 namespace clearance::minimum {
 
-/// The witness of each configuration's minimum, if it is a point of this cloud; after the last cloud all of its result.
-/// A warp a configuration, whose lanes look for the part, and together for the primitive.
+/// Writes the witness of each configuration's minimum, if it is a point of this cloud; after the last cloud, the whole
+/// result. One warp per configuration: each lane tests one part, and all lanes look for the primitive together.
 template <class PartView, class Question, class Source>
 __global__ void __launch_bounds__(128)
     finish_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
@@ -45,7 +45,7 @@ __global__ void __launch_bounds__(128)
   a.last[c] = {r.cloud, r.point};
 }
 
-/// What margins leave of each, after the last cloud.
+/// Writes the state of each configuration after the last cloud, for a question by margins.
 template <class PartView, class Question>
 __global__ void __launch_bounds__(128)
     tell_configurations(const __grid_constant__ batch_arguments<PartView, Question> a) {

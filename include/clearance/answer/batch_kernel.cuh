@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Many configurations down a tree over a cloud's points, on a device.
+// The search of many configurations in a tree over a cloud's points, on a device.
 
 #include <clearance/answer/batch_arguments.hpp>
 #include <clearance/scan/threads.cuh>
@@ -9,24 +9,24 @@
 
 namespace clearance::minimum {
 
-/// What a block of so many threads keeps: pairs that are still to be opened, the nearest on top, and those that a round
-/// has made.
+/// Shared memory of a block: the pairs that are still to be opened, the nearest on top, and the pairs that a round has
+/// made.
 template <class Pair, class Order>
 struct batch_room {
-  static constexpr std::uint32_t lanes = 8;  ///< That open a pair together, a child each.
+  static constexpr std::uint32_t lanes = 8;  ///< So many lanes open a pair together, one child per lane.
 
-  Order* orders;  ///< Of what was made.
+  Order* orders;  ///< Of the pairs in `made`.
   Pair *stack, *made;
 
-  /// Pairs are opened by ones before it is full, down to the last level.
+  /// Room kept free on the stack: within it, pairs are opened one at a time, down to the last level.
   static constexpr std::uint32_t reserve = 128;
   CLEARANCE_HD static constexpr std::uint32_t least_depth(std::uint32_t threads) { return 512 + threads; }
-  /// A pair of more children than lanes leaves, besides those, itself.
+  /// A pair that has more children than lanes is itself made again, in addition to the children.
   CLEARANCE_HD static constexpr std::uint32_t most(std::uint32_t threads) { return threads + threads / lanes; }
   static constexpr std::size_t bytes(std::uint32_t threads, std::uint32_t depth) {
     return most(threads) * (sizeof(distance_key) + sizeof(Pair)) + depth * sizeof(Pair);
   }
-  /// How deep a stack may be where a block has so many bytes.
+  /// How deep the stack may be if a block has `all` bytes.
   static constexpr std::uint32_t depth(std::uint32_t threads, std::size_t all) {
     const std::size_t others = bytes(threads, 0), least = least_depth(threads);
     return std::uint32_t(all < others + least * sizeof(Pair) ? least : (all - others) / sizeof(Pair));
@@ -37,9 +37,8 @@ struct batch_room {
         made(stack + depth) {}
 };
 
-/// One configuration's search by a block. In every round it opens the nearest pairs of its stack, each by eight lanes,
-/// and puts what they made back in order: many at once, because what is found first decides how much the others are
-/// worth.
+/// One configuration's search by a block. In every round it opens the nearest pairs of its stack, eight lanes per pair,
+/// and puts the new pairs back in order. The order matters, because an early find prunes the others.
 template <class Search>
 struct block_search {
   using pair = typename Search::pair;
@@ -47,10 +46,10 @@ struct block_search {
   using pieces_type = batch_pieces<pair>;
   static constexpr std::uint32_t lanes = room_type::lanes;
 
-  /// What all of its threads share.
+  /// Words that all of its threads share.
   struct words {
-    std::uint32_t made[2];  ///< Of this round, and of the next.
-    std::uint32_t first;    ///< Piece that the stack is left in.
+    std::uint32_t made[2];  ///< Number of pairs made in this round and in the next.
+    std::uint32_t first;    ///< The first piece that the stack is left in.
   };
 
   const Search& search;
@@ -60,7 +59,7 @@ struct block_search {
   std::uint32_t count = 0, round = 0, next = 0;
   const std::uint32_t t = threadIdx.x, threads = blockDim.x;
 
-  /// All that there is to begin with, or what others have left.
+  /// Starts from the beginning, or with pairs that another block has left.
   __device__ void start() {
     if (t == 0) shared.made[0] = shared.made[1] = 0;
     __syncthreads();
@@ -71,7 +70,7 @@ struct block_search {
     start();
   }
 
-  /// Returns true once nothing is left; false after so many rounds.
+  /// Returns true when nothing is left, and false after `rounds` rounds.
   __device__ bool go_on(std::uint32_t rounds) {
     for (const std::uint32_t starts = search.starts(); next < starts || count > 0;) {
       if (count == 0) {
@@ -97,8 +96,8 @@ struct block_search {
     return true;
   }
 
-  /// Leaves the stack to others, dealt out so that each piece has some of the nearest. False if there is no room for
-  /// that.
+  /// Leaves the stack to other blocks, dealt out so that each piece gets some of the nearest pairs. Returns false if
+  /// there is no room.
   __device__ bool leave_to(const pieces_type& others, std::uint32_t configuration) {
     const std::uint32_t pieces = (count - 1) / pieces_type::most + 1;
     if (t == 0) shared.first = atomicAdd(others.used, pieces);
@@ -120,7 +119,7 @@ struct block_search {
     room.made[at] = p, room.orders[at] = search.order(p);
   }
 
-  /// Every lane a child.
+  /// One child per lane.
   __device__ void open(const pair top) {
     if (search.settled(top)) return;
     const std::uint32_t lane = t % lanes, size = search.children(top);
@@ -128,7 +127,7 @@ struct block_search {
     if (top.from + lane < size && search.child(top, top.from + lane, p)) make(p);
     if (lane == 0 && top.from + lanes < size) p = top, p.from += lanes, make(p);
   }
-  /// No room for what is below it: all its points at once.
+  /// For a pair whose children have no room on the stack: visits all its points at once.
   __device__ void visit_all(const pair& p) const {
     using tree_type = std::remove_cvref_t<decltype(search.tree)>;
     std::uint64_t begin = p.at, end = p.at + 1;
@@ -139,7 +138,7 @@ struct block_search {
       search.visit(points[begin], p.part);
   }
 
-  /// Instead of the stack's last `taken` pairs what was made of them, the nearest on top.
+  /// Replaces the stack's last `taken` pairs by the pairs that were made of them, the nearest on top.
   __device__ void put_back(std::uint32_t taken) {
     __syncthreads();
     const std::uint32_t n = shared.made[round % 2];
@@ -156,8 +155,8 @@ struct block_search {
   }
 };
 
-/// A block is a configuration, whose parts share its bound. What takes it very long it leaves to others, once all had
-/// their turn: the slowest of many takes twenty times as long as most.
+/// One block per configuration, whose parts share its bound. A block leaves very long work to the next launch, after
+/// all configurations had their turn: the slowest of many takes twenty times as long as most.
 template <class Arguments, class Tree>
 __global__ void __launch_bounds__(256, 4)
     batch_kernel(const __grid_constant__ Arguments a, const __grid_constant__ Tree tree) {
@@ -183,7 +182,7 @@ __global__ void __launch_bounds__(256, 4)
       block.start(a.given.pieces[i]);
     } else {
       if constexpr (!question::by_margin)
-        for (std::uint32_t j = t; j < 3 * a.part_count; j += blockDim.x)  // where it, and its neighbours, were nearest
+        for (std::uint32_t j = t; j < 3 * a.part_count; j += blockDim.x)  // its own last minimum and its neighbours'
           if (const std::uint32_t from = c + j / a.part_count - 1; from < a.configurations)
             if (const auto seed = a.seeds[from]; seed.number != none) search.visit(seed, j % a.part_count);
       block.start();

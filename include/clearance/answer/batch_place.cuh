@@ -6,7 +6,7 @@
 
 namespace clearance::minimum {
 
-/// What a host does with poses before a search, a warp a configuration; and where its search begins.
+/// Does what a host does with poses before a search, and finds where each search begins. One warp per configuration.
 template <class PartView, class Question, class Source>
 __global__ void __launch_bounds__(128)
     place_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
@@ -42,7 +42,7 @@ __global__ void __launch_bounds__(128)
   __syncwarp();
   for (std::uint32_t k = 0; k < a.part_count; ++k) facts.add(a.parts[k].facts, places[k].error);
   facts.rigid = rigid;
-  if (a.now.cloud != 0 || a.foreseen) facts.error.widen(a.facts[c].error);  // a bracket is over all clouds
+  if (a.now.cloud != 0 || a.foreseen) facts.error.widen(a.facts[c].error);  // a bracket covers all clouds
   if constexpr (Question::by_margin)
     for (std::uint32_t k = lane; k < a.part_count; k += 32)
       a.near[std::size_t(c) * a.part_count + k] = a.question.near(k, a.parts[k].facts, facts.error);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What can be asked of many configurations down a tree over points: an answer of `scan_body` for each, and what it
-// begins with.
+// Questions about many configurations that search a tree over points. Each names an answer for `scan_body` and its
+// initial value.
 
 #include <clearance/answer/margins.hpp>
 #include <clearance/answer/shared_bounds.hpp>
@@ -10,7 +10,7 @@
 
 namespace clearance::minimum {
 
-/// Its least distance, as far as `d_max`, and the witness.
+/// The least distance up to `d_max`, and its witness.
 struct least_question {
   using answer_type = shared_bounds;
   using memory_type = totals;
@@ -22,14 +22,14 @@ struct least_question {
   bool limited() const { return d_max < infinity; }
   CLEARANCE_HD totals start(bool rigid = true) const { return {make_key(rigid ? d_max : -infinity, none)}; }
   CLEARANCE_HD static answer_type answer(totals* all, const margin_reach*) { return {all, nullptr}; }
-  /// What another has found as well.
+  /// Adds what another block has found.
   CLEARANCE_HD static void add(totals* all, const totals& found) {
     lower_to(&all->best, found.best);
     if (found.certain != 0) add_to(&all->certain, 1);
   }
 };
 
-/// Is anything nearer than margins, one for all parts or one a part?
+/// Is anything nearer than the margins? One margin for all parts, or one per part.
 struct margin_question {
   using answer_type = within_margins;
   using memory_type = margin_word;
@@ -47,7 +47,7 @@ struct margin_question {
     const double margin = margins[count == 1 ? 0 : k];
     return {pairwise::may_be_within(margin, facts, error), pairwise::is_within(margin, facts, error)};
   }
-  /// What in_collision says of that.
+  /// The state that in_collision reports for `word`.
   CLEARANCE_HD static state told(const margin_word& word, std::uint64_t valid, bool too_close) {
     if (valid == 0) return state::no_data;
     return word.found == margin_word::certain                 ? state::collision

@@ -7,18 +7,17 @@
 
 namespace clearance::minimum {
 
-/// Down one tree by a warp, for a witness: eight lanes open a node, and what a leaf has is dealt out among them. Each
-/// lane has a visitor of its own; afterwards only the one with the nearest primitive, of equally near ones the lowest,
-/// has any.
+/// A warp walks one tree for a witness: eight lanes open a node, and a leaf's primitives are dealt out among them. Each
+/// lane has its own visitor. Afterwards only the one with the nearest primitive, of equals the lowest, has any.
 template <hierarchy H>
 struct walk_by_warp {
   using node_type = typename H::node_type;
   static constexpr std::uint32_t lanes = 8, nodes = 4;
-  /// Once so many are pending, nodes are opened one after another; so what check_stack has allowed on top of what four
-  /// make is the most.
+  /// With more than `many` nodes pending, nodes are opened one after another. So the most that can be pending is
+  /// `many`, plus what four nodes make, plus the 64 entries that check_stack allows.
   static constexpr std::uint32_t many = 32, most = many + nodes * lanes + 64;
 
-  node_type* pending;  ///< Of this warp, `most`.
+  node_type* pending;  ///< This warp's memory, for `most` nodes.
 
   CLEARANCE_CALLS_ANYTHING
   template <primitive P>
@@ -28,7 +27,7 @@ struct walk_by_warp {
     const std::uint32_t lane = threadIdx.x % 32, at_once = tree.width() <= lanes ? nodes : 1;
     real reach = best.reach();
     if (!(reach < infinity))
-      reach = scan::descend(scan::plain_steps<H>{tree}, q);  // inside a solid: something is so near
+      reach = scan::descend(scan::plain_steps<H>{tree}, q);  // inside a solid: a leaf gives a bound
     if (!(traits::lower_bound(tree.volume(tree.root()), q) <= reach)) return;
     if (lane == 0) pending[0] = tree.root();
     __syncwarp();

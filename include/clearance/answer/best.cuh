@@ -7,7 +7,7 @@
 
 namespace clearance::minimum {
 
-/// The least of a warp's records, to all its lanes.
+/// Returns the least of a warp's records to all its lanes.
 template <class Record>
 __device__ Record least_of_warp(const Record& r) {
   using scan::all_lanes;
@@ -47,8 +47,8 @@ __device__ void keep_best(typename Answer::block& s, const typename Answer::reco
   }
 }
 
-/// All lanes of a warp call it. For one minimum the warp agrees first; where each part has one, the lanes that share a
-/// part do, and then the block by an atomic minimum: so few come to the lock.
+/// All lanes of a warp call it. For one minimum the warp agrees on its best first. With one minimum per part, the lanes
+/// that share a part agree, and then the block by an atomic minimum. So few lanes reach the lock.
 template <class Answer>
 __device__ void best_of_warp(typename Answer::block& s, const typename Answer::record& r,
                              const typename Answer::primitive_type& primitive) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What a search that stopped at a distance leaves certain.
+// What is certain after a search that stopped at a distance.
 
 #include <clearance/answer/bracket.hpp>
 
 namespace clearance::minimum {
 
-/// To a concluded result without a minimum: there were points, and none of them within `d_max`.
+/// Completes a concluded result without a minimum: if there were points, none of them is within `d_max`.
 CLEARANCE_HD inline void beyond(min_distance_result& r, real d_max, double slop, const frames::float_error& error) {
   if (r.part != none || r.valid == 0 || !(d_max < infinity)) return;
   const double lower = certain_distance(d_max, slop, error);
@@ -15,7 +15,7 @@ CLEARANCE_HD inline void beyond(min_distance_result& r, real d_max, double slop,
   r.state = r.lower > 0 ? state::free : state::possible;
   allow_for_too_close(r);
 }
-/// To a whole result, as if its search had stopped there.
+/// Changes a whole result as if its search had stopped at `d_max`.
 CLEARANCE_HD inline void cut(min_distance_result& r, real d_max, double slop, const frames::float_error& error) {
   if (r.part == none || r.distance <= d_max) return;
   min_distance_result none_within;

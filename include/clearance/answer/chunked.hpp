@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A cloud that is read in chunks, and what was seen of it when it was read.
+// A cloud that is read in chunks, and what its first reading has shown.
 
 #include <clearance/answer/bracket.hpp>
 #include <clearance/frame/clouds.hpp>
@@ -14,15 +14,15 @@ struct point_range {
   std::size_t begin, end;
 };
 
-/// Owns a cloud that is read in chunks, and boxes around its points as the first question saw them: the next one reads
-/// what can matter. Is the cloud another one now, `forget()`. One question at a time.
+/// Owns a cloud that is read in chunks, and boxes around its points from the first question. Later questions read only
+/// the chunks that can matter. If the cloud changes, call `forget()`. Ask one question at a time.
 template <loaded_cloud C>
 class chunked {
  public:
   static constexpr std::size_t usual_chunk = std::size_t(1) << 22;
 
-  /// `chunk`: points at a time, rounded up to what a box is around (4096). Throws std::invalid_argument if there are
-  /// more points than answers have numbers for.
+  /// `chunk`: points at a time, rounded up to whole pieces of 4096, the points of one box. Throws std::invalid_argument
+  /// if there are more points than answers have numbers for.
   explicit chunked(C cloud, std::size_t chunk = usual_chunk)
       : cloud_(std::move(cloud)),
         size_(cloud_.size()),
@@ -34,10 +34,10 @@ class chunked {
   }
 
   const C& cloud() const { return cloud_; }
-  /// As it was at first: a file that grows is another cloud.
+  /// The size at construction: a file that grows is another cloud.
   std::size_t size() const { return size_; }
   std::size_t chunk() const { return chunk_; }
-  /// What was seen, in order; empty before all of it was.
+  /// What was seen, in order. Empty until the whole cloud was read.
   const std::vector<scan::boxed_piece>& pieces() const { return pieces_; }
   void forget() { pieces_.clear(); }
   void keep(std::vector<scan::boxed_piece> seen) { pieces_ = std::move(seen); }
@@ -48,7 +48,7 @@ class chunked {
     for (std::size_t at = 0; at < size(); at += chunk_) ranges.push_back({at, std::min(size(), at + chunk_)});
     return ranges;
   }
-  /// Where `matters(box)` is true of what was seen. Short gaps are read: they take less time than another chunk.
+  /// The ranges whose boxes satisfy `matters(box)`. Short gaps are read, too: that is faster than another chunk.
   template <class Matters>
   std::vector<point_range> where(const Matters& matters) const {
     constexpr std::size_t short_gap = 16 * scan::piece_points;
@@ -77,7 +77,7 @@ chunked(S, std::size_t = 0) -> chunked<in_memory<S>>;
 
 namespace minimum {
 
-/// The clouds of a call that are loaded when their turn comes: `load(k)` gives the k-th, placed.
+/// The clouds of a call, each loaded when its turn comes: `load(k)` returns the k-th, placed.
 template <class Load>
 class as_they_come {
  public:
@@ -101,8 +101,8 @@ class as_they_come {
   const Load* load_;
 };
 
-/// `load` of a range. Throws std::runtime_error if it gives another number of points: what is known of pieces has room
-/// for no others.
+/// `load` of a range. Throws std::runtime_error if it loads another number of points, because the known pieces have no
+/// room for others.
 template <loaded_cloud C>
 loaded_source<C> load_range(const C& cloud, const point_range& range, std::byte* room) {
   const loaded_source<C> source = cloud.load(range.begin, range.end, room);
@@ -112,7 +112,7 @@ loaded_source<C> load_range(const C& cloud, const point_range& range, std::byte*
   return source;
 }
 
-/// Gives what was found in range k as its point i the number that it has in the cloud, `number(k, i)`.
+/// Renumbers what was found: point i of range k becomes point `number(k, i)` of the cloud.
 template <class Number>
 void number_as_in_cloud(min_distance_result& result, std::span<part_minimum> minima, const Number& number) {
   const auto put = [&](auto& r) {
@@ -122,11 +122,11 @@ void number_as_in_cloud(min_distance_result& result, std::span<part_minimum> min
   for (part_minimum& m : minima) put(m);
 }
 
-/// What a question about a chunked cloud does, on any backend. `search(ranges, result, pieces)` asks about some of it,
-/// writes to `minima`, if these are not empty, and to `pieces`, if that is not null, what it sees.
+/// Asks a question about a chunked cloud, on any backend. `search(ranges, result, pieces)` searches some ranges; it
+/// also writes to `minima` if these are not empty, and what it sees to `pieces` if that is not null.
 ///
-/// What was seen decides in two steps: of the boxes that are nearest to the parts a first answer, which bounds the last
-/// one; then what is in boxes that are within that bound.
+/// After the first question there are two steps. The boxes nearest to the parts give a first answer, which is a bound.
+/// Then the boxes within that bound are searched.
 template <class C, class Search>
 min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> facts,
                                 std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose,
@@ -139,7 +139,7 @@ min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> f
     cloud.keep(std::move(seen));
     return result;
   }
-  // What arithmetic and poses cost is in the balls; what a source has lost does not matter here.
+  // The balls include the errors of arithmetic and poses. What a source has lost does not matter here.
   const frames::cloud_frame frame(facts, poses, pose);
   const auto box_of = [&](const extent& e) { return extent{e.lower - frame.origin, e.upper - frame.origin}; };
   std::vector<std::size_t> nearest(facts.size(), pieces);
@@ -149,7 +149,7 @@ min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> f
       for (std::size_t part = 0; part < facts.size(); ++part)
         if (const double its = scan::away(frame.places[part].around, box_of(cloud.pieces()[k].box)); its < least[part])
           least[part] = its, nearest[part] = k;
-  if (minima.empty()) {  // the robot's nearest says enough
+  if (minima.empty()) {  // the robot's nearest box is enough
     const auto best = std::size_t(std::ranges::min_element(least) - least.begin());
     nearest = {nearest[best]};
   }

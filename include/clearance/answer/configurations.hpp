@@ -11,7 +11,7 @@
 
 namespace clearance::detail {
 
-/// How many configurations that are. Throws std::invalid_argument if some are not whole.
+/// The number of configurations. Throws std::invalid_argument if the last one is not whole.
 inline std::size_t count_configurations(std::size_t parts, std::size_t poses) {
   if (parts == 0 ? poses != 0 : poses % parts != 0)
     throw std::invalid_argument("clearance: " + std::to_string(poses) + " poses are no whole configurations of " +
@@ -35,20 +35,20 @@ std::span<const T> trajectory_of(std::span<const T> all, std::size_t i, std::siz
                                 std::to_string(count));
   return all.subspan(i * horizon, horizon);
 }
-/// The first configuration of each that `found(trajectory)` finds.
+/// For each trajectory the configuration that `found(trajectory)` returns.
 template <class T, class Find>
 std::vector<std::size_t> first_of_each(std::span<const T> all, std::size_t horizon, const Find& found) {
   std::vector<std::size_t> first(count_trajectories(all.size(), horizon));
   for (std::size_t i = 0; i < first.size(); ++i) first[i] = found(trajectory_of(all, i, horizon));
   return first;
 }
-/// Throws std::invalid_argument if a chain is of another robot.
+/// Throws std::invalid_argument if a chain belongs to another robot.
 inline void check_chain(std::size_t parts, std::size_t of_chain) {
   if (parts != of_chain)
     throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but a joint chain of " +
                                 std::to_string(of_chain));
 }
-/// Calls `f`; of what it throws because a pose is not rigid the sentence says which configuration's.
+/// Calls `f`. If it throws because a pose is not rigid, the message names the configuration.
 template <class F>
 void named(std::size_t parts, std::span<const Eigen::Isometry3d> poses, const F& f) {
   try {

@@ -18,8 +18,8 @@
 
 namespace clearance::minimum {
 
-/// A question about many configurations on a device, frame after frame: a tree over each cloud, and a block a
-/// configuration down it. Nothing is waited for, and once there was a frame of a size nothing is allocated.
+/// A question about many configurations on a device, frame after frame: a tree over each cloud, and one block per
+/// configuration that searches it. It never waits. It allocates only for frames larger than any before.
 template <class PartView, class Question>
 class device_batch {
  public:
@@ -45,7 +45,7 @@ class device_batch {
     processors_ = ask_device(cudaDevAttrMultiProcessorCount);
     of_processor_ = std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerMultiprocessor));
     of_block_ =
-        std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerBlockOptin)) - 1024;  // less what the kernel has besides
+        std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerBlockOptin)) - 1024;  // less the kernel's static memory
   }
   device_batch(const device_batch&) = delete;
 
@@ -53,7 +53,7 @@ class device_batch {
   std::uint32_t size() const { return configurations_; }
   const result_type* results() const { return results_.data(); }
 
-  /// Results, what points there were, and whether all poses were rigid; waits. Of nothing there is nothing to say.
+  /// Copies results and point counts, and returns whether all poses were rigid. Waits. Without results it returns true.
   bool copy_out(std::span<result_type> to, point_counts* points = nullptr) const {
     if (to.empty()) return true;
     const device_guard guard(on_.id);
@@ -68,7 +68,7 @@ class device_batch {
     return found.lost == 0;
   }
 
-  /// Enqueues a copy of poses, those of a configuration after another, for all frames to come.
+  /// Enqueues a copy of the poses, one configuration after another, for all frames to come.
   void place(std::span<const Eigen::Isometry3d> poses) {
     staged_.clear();
     for (const Eigen::Isometry3d& pose : poses) staged_.emplace_back(pose);
@@ -79,12 +79,12 @@ class device_batch {
                  "cudaMemcpyAsync");
     });
   }
-  /// The same of poses that `fill(there)` enqueues.
+  /// The same for poses that `fill(there)` enqueues.
   template <class Fill>
   void place(std::uint32_t count, const Fill& fill) {
     const std::size_t n = count * facts_.size();
     const std::uint32_t before =
-        std::exchange(configurations_, 0);  // so that nothing is asked of poses that were not placed
+        std::exchange(configurations_, 0);  // so that poses that were not placed are never asked about
     grow(poses_, n), grow(places_, n), grow(bounds_, n);
     grow(of_all_, count), grow(all_, count), grow(results_, count);
     if constexpr (!Question::by_margin) grow(left_, pieces_of(count, 8)), grow(left_again_, pieces_of(count, 2));
@@ -98,13 +98,12 @@ class device_batch {
     if (count != before) forget();
   }
 
-  /// Enqueues a frame. `here(source, cloud)` is what the device can read of a cloud.
+  /// Enqueues a frame. `here(source, cloud)` returns a source that the device can read.
   template <class Clouds, class Here>
   void enqueue(const Clouds& clouds, const Question& question, const Here& here) {
     if (configurations_ == 0) return;
     clear(counts_.data(), 0, 1);
-    const bool foreseen =
-        Question::by_margin && count_clouds(clouds) > 1;  // margins are for what is certain about all clouds
+    const bool foreseen = Question::by_margin && count_clouds(clouds) > 1;  // margins need the errors of all clouds
     if (foreseen)
       frames::for_each_turn(frame_, facts_, anywhere_, clouds, [&](const auto& given, const frames::turn& now) {
         place_in(on_, point_span{}, told(given, now, question, false));
@@ -122,7 +121,7 @@ class device_batch {
 
   void forget() {
     if constexpr (!Question::by_margin)
-      if (configurations_ != 0) clear(last_.data(), 0xff, configurations_);  // no cloud's
+      if (configurations_ != 0) clear(last_.data(), 0xff, configurations_);  // the number of no cloud
   }
 
  private:
@@ -130,17 +129,17 @@ class device_batch {
   using tree_type = cloud_tree::device_tree::view_type;
   using room = batch_room<typename arguments::pair_type, pair_order<PartView>>;
   using piece = typename batch_pieces<typename arguments::pair_type>::piece;
-  /// After so many rounds of 128 threads a block leaves what is left. Where points may be inside, stacks are longer,
-  /// and earlier too many.
+  /// After so many rounds of 128 threads a block leaves its stack to others. Where points may be inside a solid, stacks
+  /// are longer, and leaving earlier would make too many pieces.
   static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128,
                             next_rounds = first_rounds > 128 ? 48 : 24;
-  static constexpr unsigned resident_threads = 1024;  ///< Of a processor, that the kernel's registers leave room for.
+  static constexpr unsigned resident_threads = 1024;  ///< Per processor, as the kernel's registers allow.
   struct counts {
     scan::drop_counts dropped;
     std::uint32_t lost = 0;
   };
 
-  /// Room for so many pieces that blocks leave; where that is not enough they go on by themselves.
+  /// Room for the pieces that blocks leave. Where it is not enough, blocks go on by themselves.
   static std::size_t pieces_of(std::size_t configurations, std::size_t each) {
     return std::min(each * configurations, std::size_t(1) << 18) + 1024;
   }
@@ -181,14 +180,15 @@ class device_batch {
       else
         place_in(beside, source, a);
     });
-    // As many threads as a device has room for: of few configurations each gets more; and where most of them end at
-    // once, or a look takes long, all do. And stacks as deep as room is left for: the fewer pairs a round may take, the
-    // more rounds.
+    // As many threads as the device has room for: with few configurations each gets more threads, and so do all where
+    // most end at once or a look takes long. Stacks are as deep as the remaining room: a round that may take fewer
+    // pairs needs more rounds.
     const bool uneven = a.question.limited() || scan::has_interior<PartView>;
     unsigned threads =
         uneven ? 256 : std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 256u);
     static_assert(room::bytes(32, room::least_depth(32)) <= 48 * 1024, "a handle of a node must be smaller");
-    while (room::bytes(threads, room::least_depth(threads)) > 48 * 1024) threads /= 2;  // as much as a block always has
+    while (room::bytes(threads, room::least_depth(threads)) > 48 * 1024)
+      threads /= 2;  // the shared memory that a block always has
     arguments with_stack = a;
     with_stack.depth = room::depth(threads, std::min(of_block_, of_processor_ / (resident_threads / threads) - 2048));
     {
@@ -202,8 +202,8 @@ class device_batch {
                  with_stack, tree);
     };
     if (a.question.limited() || configurations_ <= at_once) return search(configurations_, none);
-    // Of many the slowest takes twenty times as long as most, and most of that may come from one pair: so what is left
-    // is dealt out twice.
+    // The slowest of many configurations takes twenty times as long as most, and most of that may come from one pair.
+    // So the rest is dealt out twice.
     search(configurations_, first_rounds);
     with_stack.given = with_stack.left;
     with_stack.left = {left_again_.data(), left_used_.data() + 1, std::uint32_t(left_again_.size())};
@@ -240,8 +240,7 @@ class device_batch {
   std::uint32_t configurations_ = 0;
   std::uint64_t seen_ = 0;
   std::vector<world_transform> staged_;
-  std::vector<Eigen::Isometry3d>
-      anywhere_;  ///< Poses, so that clouds are placed on the host: what is made of them is not used.
+  std::vector<Eigen::Isometry3d> anywhere_;  ///< Poses to place clouds on the host. The part places are not used.
   frames::cloud_frame frame_;
   std::vector<std::unique_ptr<cloud_tree::device_tree>> trees_;
   device_buffer<world_transform> poses_;

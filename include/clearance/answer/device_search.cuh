@@ -8,8 +8,7 @@
 
 namespace clearance::minimum {
 
-/// Groups of parts, which were looked at by kernels of their own, become one robot again. Each has seen the same
-/// points.
+/// Merges the results of groups of parts into the robot's. Each group had its own kernel and has seen the same points.
 template <bool HasInterior>
 __global__ void merge_groups(const min_distance_result* of_group, std::uint32_t groups, min_distance_result* result,
                              std::uint32_t* done, std::uint32_t number) {
@@ -25,8 +24,8 @@ __global__ void merge_groups(const min_distance_result* of_group, std::uint32_t 
   *static_cast<volatile std::uint32_t*>(done) = number;
 }
 
-/// The least distance on a device, frame after frame, one kernel a cloud: nothing is allocated and nothing waited for.
-/// Where the last minima were is a first bound of the next frame, which changes how long it takes, and nothing else.
+/// The least distance on a device, frame after frame, with one kernel per cloud. It allocates nothing and never waits.
+/// The last minima give the next frame a first bound, which changes only how long it takes.
 template <class PartView>
 class device_search {
  public:
@@ -48,8 +47,7 @@ class device_search {
   /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
   void forget() { launch_.forget(), forget_bounds(); }
 
-  /// Of the next frame alone, which must not be `PerPart`, nothing needs to be found that is farther than `within`.
-  /// Enqueued.
+  /// The next frame alone, which must not be `PerPart`, need not find anything farther than `within`. Enqueued.
   void bound_by(real within) {
     const std::uint32_t bound = ordered(within);
     for (std::uint32_t group = 0; group < launch_.groups(); ++group)
@@ -58,8 +56,8 @@ class device_search {
 
   std::size_t parts() const { return facts_.size(); }
 
-  /// Enqueues one frame; `minima`, one a part, are asked for by `PerPart`. `here(source, cloud)` is what the device can
-  /// read of a cloud; at the end `number` is written to `done`, if that is not null.
+  /// Enqueues one frame. With `PerPart` it also writes `minima`, one per part. `here(source, cloud)` returns a source
+  /// that the device can read. At the end it writes `number` to `done`, unless that is null.
   template <bool PerPart, class Clouds, class Here>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
                part_minimum* minima, const Here& here, std::uint32_t* done = nullptr, std::uint32_t number = 0) {
@@ -77,7 +75,8 @@ class device_search {
     }
   }
 
-  /// Enqueues one frame with poses in device or pinned memory: one a part, and the cloud's (null: the world's).
+  /// Enqueues one frame with poses in device or pinned memory: one per part, and the cloud's (null: the cloud is in
+  /// world coordinates).
   template <bool PerPart, point_source S>
   void enqueue(const world_transform* poses, const S& source, const world_transform* cloud_pose,
                min_distance_result* result, part_minimum* minima) {

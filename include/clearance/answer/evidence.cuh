@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What the answer says of a record: its witness, and what is certain.
+// From a record to the answer: its witness, and what is certain.
 
 #include <clearance/answer/best.cuh>
 #include <clearance/answer/bracket.hpp>
@@ -9,7 +9,7 @@
 
 namespace clearance::minimum {
 
-/// What a record is about.
+/// The point and the primitive of a record.
 template <class Answer>
 struct evidence {
   using part_type = typename Answer::part_type;
@@ -28,14 +28,15 @@ struct evidence {
     if (r.id != none) primitive = steps::primitive(r.part, r.place);
     p = source[key_index(r.key) - a.first].position;
   }
-  /// Of a record of this cloud.
+  /// From a witness whose point is in this cloud.
   template <class Source>
   __device__ evidence(const arguments& a, const Source& source, const typename Answer::witness_type& w)
       : r(w.r), p(source[key_index(w.r.key) - a.first].position), primitive(w.primitive) {}
 
   __device__ vec3 in_part() const { return steps::place(r.part).part_from_cloud(p - steps::here().origin); }
 
-  /// Of a point inside a solid the closest primitive, which nobody has looked for yet; is it under the surface?
+  /// For a point inside a solid, finds the closest primitive, which the scan has not looked for. Returns true if the
+  /// point is below the surface.
   __device__ bool complete() {
     if constexpr (scan::has_interior<part_type>)
       if (r.id == none) {
@@ -54,7 +55,7 @@ struct evidence {
     return contact_of(primitive, in_part(), inside, a.pose(r.part));
   }
 
-  /// All of it to the result.
+  /// Writes the witness to the result.
   __device__ void write(const arguments& a) {
     const bool inside = complete();
     min_distance_result& out = *a.answer.result;
@@ -65,7 +66,7 @@ struct evidence {
   }
 };
 
-/// The minimum `best` and what is certain of it, if nothing is inside for `certain`; once all clouds are done.
+/// The minimum `best` with its bracket, after all clouds. `certain`: some point is certainly inside.
 template <class Answer>
 __device__ min_distance_result bracket_of(const scan::scan_arguments<Answer>& a, const typename Answer::record& best,
                                           bool certain) {
@@ -86,7 +87,7 @@ __device__ min_distance_result bracket_of(const scan::scan_arguments<Answer>& a,
   return r;
 }
 
-/// What all blocks have counted, read at once: each would be a way to memory of its own.
+/// What all blocks have counted. One thread reads all words together, because each read is a round trip to memory.
 struct counted {
   unsigned long long dropped[drop_reasons];
   bool certain;  ///< Some point is certainly inside.
@@ -99,14 +100,14 @@ struct counted {
   }
 };
 
-/// Bracket and counts to the result; and a blank witness if there is no minimum.
+/// Writes bracket and counts to the result, and a blank witness if there is no minimum.
 template <class Answer>
 __device__ void write_bracket(const scan::scan_arguments<Answer>& a, min_distance_result r, const counted& all) {
   min_distance_result& out = *a.answer.result;
   if (r.part == none) out = r;
   scan::count(r, all.dropped, std::uint64_t(a.first) + a.points);
   allow_for_too_close(r);
-  // Nothing is known where a pose on the device is none: this stops a robot.
+  // If a pose on the device is not rigid, nothing is known. This state stops a robot.
   if (!scan::memory_of_block<Answer>().rigid) r.state = clearance::state::possible;
   out.state = r.state, out.distance = r.distance, out.lower = r.lower, out.upper = r.upper, out.seen = r.seen,
   out.valid = r.valid;

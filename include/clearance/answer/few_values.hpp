@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What an answer is told of each part: a few values go with it, more are in memory.
+// Values per part for an answer: a few travel inside it, more lie in memory.
 
 #include <clearance/concepts.hpp>
 
@@ -10,7 +10,7 @@
 
 namespace clearance::pairwise {
 
-/// A view of values: the first `Few` in itself, if there are no more, so that nothing has to be copied before a kernel
+/// A view of values. Up to `Few` values lie in the view itself, so that nothing has to be copied before a kernel
 /// starts.
 template <class T, std::uint32_t Few>
 struct few_values {
@@ -20,7 +20,7 @@ struct few_values {
   CLEARANCE_HD T operator[](std::uint32_t i) const { return there == nullptr ? here[i] : there[i]; }
 };
 
-/// Of so few `values`, or of a copy in the next room of a question's `memory`.
+/// A view of at most `Few` values, or of a copy in the next room of a question's `memory`.
 template <std::uint32_t Few, class T, class Memory>
 few_values<T, Few> few_or_kept(const std::vector<T>& values, Memory& memory) {
   few_values<T, Few> view;

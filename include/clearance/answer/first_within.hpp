@@ -6,13 +6,12 @@
 
 namespace clearance::pairwise {
 
-/// An answer: the first pair within margins, certain ones before others. Whatever comes after a certain one is not
+/// An answer: the first pair within margins, certain pairs before uncertain ones. Pairs after a certain one are not
 /// looked at.
 struct first_within {
-  unsigned long long*
-      word;  ///< One bit for what is not certain, then the point's number through all clouds, then the part.
-  const real *may_be, *is;           ///< One of each a part.
-  const std::uint32_t* first_point;  ///< Of each cloud.
+  unsigned long long* word;  ///< One bit: not certain; then the point's number through all clouds; then the part.
+  const real *may_be, *is;   ///< One of each per part.
+  const std::uint32_t* first_point;  ///< Per cloud.
 
   static constexpr unsigned long long nothing = ~0ull, uncertain = 1ull << 63;
 
@@ -24,7 +23,7 @@ struct first_within {
     return found <= is[part] ? -infinity : is[part];
   }
   CLEARANCE_HD bool settled(std::uint32_t cloud, std::uint32_t point, std::uint32_t part) const {
-    return load_relaxed(word) < key(cloud, point, part);  // what is not certain is greater than any key
+    return load_relaxed(word) < key(cloud, point, part);  // an uncertain pair is greater than any key
   }
   CLEARANCE_HD bool ended(std::uint32_t cloud, std::uint32_t point) const { return settled(cloud, point, 0); }
   CLEARANCE_HD void take(const pair_distance& pair) const {

@@ -12,8 +12,8 @@
 namespace clearance::minimum {
 
 /// A question about many configurations on the CPU, frame after frame: a tree over each cloud, and each configuration
-/// down all of them. Memory is kept, and where a configuration's last minimum was: its next search begins there, or
-/// where that of the configuration before it ended, which changes how long it takes, and nothing else.
+/// searches all of them. It keeps memory and each configuration's last minimum. The next search begins there, and where
+/// the previous configuration's ended. That changes only how long it takes.
 template <class PartView, class Question>
 class host_batch {
  public:
@@ -22,8 +22,8 @@ class host_batch {
 
   using result_type = typename Question::result_type;
 
-  /// `poses` are rigid, those of a configuration after another; `results` are as many as configurations. What points
-  /// there were.
+  /// `poses` are rigid, one configuration after another; there is one result per configuration. Returns the point
+  /// counts.
   template <class Clouds>
   point_counts operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Question& question,
                           std::span<result_type> results) {
@@ -72,7 +72,7 @@ class host_batch {
     const auto parts = std::uint32_t(model_.size());
     typename Question::memory_type all = question.start();
     result = {};
-    frames::float_error before;  // a margin is for what is certain about all clouds
+    frames::float_error before;  // margins need the errors of all clouds
     if (Question::by_margin && trees_.size() > 1) {
       frames::for_each_turn(own.frame, model_.facts, poses, clouds, [](const auto&, const frames::turn&) {});
       before = own.frame.error;

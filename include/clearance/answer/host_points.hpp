@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Every point's own distance on the host.
+// Each point's own distance on the host.
 
 #include <clearance/answer/pointwise.hpp>
 #include <clearance/backend/host.hpp>
@@ -17,15 +17,15 @@
 
 namespace clearance::pointwise {
 
-/// A range of points, by one thread. Neighbours walk together if they are much closer to one another than to the robot;
-/// each starts with what was nearest to one before as a bound.
+/// A range of points, done by one thread. Neighbours walk together if they are much closer to one another than to the
+/// robot. Each starts with the primitive nearest to an earlier point as a bound.
 template <class PartView, point_source Source>
 struct host_points {
   using hierarchy_type = typename PartView::hierarchy_type;
 
   const PartView* parts;
   std::span<const frames::placement> places;
-  std::uint64_t stack;  ///< What a walk needs.
+  std::uint64_t stack;  ///< Entries that a walk needs.
   Source source;
   vec3 origin;
   std::uint32_t first;  ///< Number of this cloud's first point among all clouds' points.
@@ -58,9 +58,9 @@ struct host_points {
   };
   struct memory {
     std::vector<near_first::entry_of<hierarchy_type>> pending;
-    std::vector<std::pair<real, std::uint32_t>> near;  ///< Parts within reach of a tile, the nearest first.
-    seed last, next;           ///< What was nearest to a point of the last packet, and of this one.
-    real distance = infinity;  ///< Of the last point.
+    std::vector<std::pair<real, std::uint32_t>> near;  ///< Parts within reach of a tile, nearest first.
+    seed last, next;           ///< The primitive nearest to a point of the last packet, and of this one.
+    real distance = infinity;  ///< The last point's.
   };
 
   static bool is_point(vec3 p) { return p.x == p.x; }
@@ -131,7 +131,7 @@ struct host_points {
   }
 };
 
-/// All clouds of a frame.
+/// All clouds of a frame. Returns how certain the distances are.
 template <class PartView, class Clouds>
 distance_certainty on_host(const host& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
                            const Clouds& clouds, const distances_out& out, real d_max, point_counts* counts) {

@@ -9,15 +9,15 @@
 
 namespace clearance::minimum {
 
-/// The least distance on the CPU, frame after frame: memory and threads are kept, and where the last minima were is a
-/// first bound of the next frame, which changes how long it takes, and nothing else.
+/// The least distance on the CPU, frame after frame. It keeps memory and threads. The last minima give the next frame a
+/// first bound, which changes only how long it takes.
 template <class PartView>
 class host_search {
  public:
   host_search(const host& on, const model_view<PartView>& model)
       : workers_(on), model_(model), walk_{stack_need(model.depth, model.width)} {}
 
-  /// One frame; `minima`, one a part, or null. The clouds share one bound, and are numbered in their order.
+  /// One frame; `minima`: one per part, or null. The clouds share one bound, and are numbered in their order.
   template <class Clouds>
   void operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
                   part_minimum* minima = nullptr) {
@@ -41,7 +41,7 @@ class host_search {
   /// Drops what is known of the last frame. The next one takes longer; its answer is the same.
   void forget() { last_.clear(); }
 
-  /// Of the next frame alone, which must not ask for minima, nothing needs to be found that is farther than `within`.
+  /// The next frame alone, which must not ask for minima, need not find anything farther than `within`.
   void bound_by(real within) { within_ = within; }
 
   std::size_t parts() const { return model_.size(); }
@@ -77,7 +77,7 @@ class host_search {
     for (std::uint32_t k = 0; k <= parts; ++k) resolve(k);
   }
 
-  /// Where the last frame's minimum was, and near it: some other pixel may see the place now.
+  /// Tests the point of a last minimum and its neighbours: another pixel may see that place now.
   template <class Body>
   static void recall(const Body& body, std::size_t point) {
     for (const std::ptrdiff_t step : {0, -1, 1, -4, 4, -16, 16, -64, 64}) {

@@ -6,12 +6,12 @@
 
 namespace clearance::minimum {
 
-/// Copies of clouds in host memory, pinned ones too, in buffers that are kept from frame to frame.
+/// Copies clouds from host memory, pinned memory included, into buffers that are kept from frame to frame.
 class kept_copies {
  public:
   explicit kept_copies(const device& on, std::pmr::memory_resource* memory = nullptr) : on_(on), memory_(memory) {}
 
-  /// The source itself if its memory is the device's, else one over a copy; in the order of the stream.
+  /// The source itself if its memory is the device's, else a source over a copy, made in stream order.
   template <point_source S>
   S operator()(const S& source, std::uint32_t cloud) {
     if constexpr (requires { source.at(source.bytes().data()); }) {

@@ -8,7 +8,7 @@
 
 namespace clearance::pairwise {
 
-/// A device's: from a resource that hands out device memory, if there is one.
+/// On a device: from `memory`, a resource that hands out device memory, unless that is null.
 template <>
 class memory_on<device> {
  public:

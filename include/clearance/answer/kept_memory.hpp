@@ -12,12 +12,12 @@
 
 namespace clearance::pairwise {
 
-/// Memory is counted in these, so that it is aligned for anything.
+/// The unit in which memory is counted, so that it is aligned for anything.
 struct alignas(16) memory_unit {
   std::byte bytes[16];
 };
 
-/// Where the memory is from, and how clouds are read, by where a question runs. Any backend that is not a device:
+/// Where memory comes from and how clouds are read, by where a question runs. This is for any backend but a device.
 template <class On>
 class memory_on {
   static_assert(
@@ -31,7 +31,7 @@ class memory_on {
 
   piece take(std::size_t units) const { return on_.template make_scratch<memory_unit>(units); }
 
-  /// The same clouds, in copies if `On` cannot read them where they are. Copies stay until the next ones.
+  /// The same clouds, in copies if `On` cannot read them where they are. Copies stay until the next call.
   template <class Clouds>
   decltype(auto) readable(const Clouds& clouds) {
     if constexpr (std::is_same_v<On, host>) {
@@ -58,18 +58,18 @@ class memory_on {
   minimum::cloud_copies<On> copies_;
 };
 
-/// Rooms for what a question keeps of one frame. Those of the next frame are in the same places, one after another,
-/// unless they are larger than ever: only then is memory taken.
+/// Rooms for what a question keeps for one frame. The next frame uses the same rooms in the same order. Memory is taken
+/// only if a room must be larger than ever.
 template <class On>
 class kept_memory : public memory_on<On> {
  public:
   template <class... Memory>
   explicit kept_memory(const On& on, Memory... memory) : memory_on<On>(on, memory...), on_(on) {}
 
-  /// All rooms are free again. What was enqueued before uses them before what comes.
+  /// Frees all rooms. Work that was enqueued before uses them before later work does.
   void begin() { used_ = 0; }
 
-  /// The next room: of n, or more.
+  /// The next room, for n values or more.
   template <class T>
   std::span<T> room(std::size_t n) {
     static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= alignof(memory_unit));
@@ -77,7 +77,7 @@ class kept_memory : public memory_on<On> {
     return {reinterpret_cast<T*>(piece.data()), piece.size() * sizeof(memory_unit) / sizeof(T)};
   }
 
-  /// The next room, with copies of all `data` one after another; nothing is waited for.
+  /// The next room, with copies of all `data` one after another. It does not wait.
   template <std::ranges::contiguous_range... Data>
   std::tuple<std::ranges::range_value_t<Data>*...> put(const Data&... data) {
     staging_.resize((units<std::ranges::range_value_t<Data>>(data.size()) + ...));

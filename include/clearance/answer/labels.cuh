@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A label for every point, as the blocks of a device write and count them.
+// Labels of all points, as the blocks of a device write and count them.
 
 #include <clearance/concepts.hpp>
 #include <clearance/points/masked.hpp>
@@ -8,7 +8,7 @@
 
 namespace clearance::pairwise {
 
-/// An answer that is told of every point, too: it has labels, a byte each, and counts those that are `own` and
+/// An answer that also meets every point: it has labels, one byte each, and counts those that are `own` and
 /// `uncertain`.
 template <class A>
 concept labelling_answer = answer<A> && requires(const A a, const pair_distance pair, std::uint32_t n) {
@@ -16,7 +16,7 @@ concept labelling_answer = answer<A> && requires(const A a, const pair_distance 
   a.is_late(pair), a.counts->own, a.counts->uncertain;
 };
 
-/// What a block has counted of its labels.
+/// A block's counts of its labels.
 struct alignas(8) label_counts {
   std::uint32_t own, uncertain;
 };
@@ -26,9 +26,9 @@ template <class Pairs>
 struct labels_of {
   using arguments = scan::scan_arguments<Pairs>;
 
-  /// Four of a thread's points, before their pairs, and why they do not count.
+  /// Labels four of a thread's points before their pairs come. `reasons`: why points do not count, one byte each.
   static __device__ void meet(const typename Pairs::block& s, unsigned reasons, std::uint32_t first) {
-    if (s.head.answer.first_part != 0) return;  // another kernel has been told
+    if (s.head.answer.first_part != 0) return;  // another kernel has labelled them
     const auto& answer = s.head.answer.answer;
     auto* const label = answer.label_of(s.head.cloud, first);
     const auto alone = answer.whose_alone(true), no_point = answer.whose_alone(false);
@@ -45,14 +45,14 @@ struct labels_of {
     }
   }
 
-  /// How many this block has given, once all parts have been looked at.
+  /// Hands in this block's counts, in the kernel of the last group of parts.
   static __device__ void hand_in(const arguments& a) {
     if (!a.answer.last_group) return;
     count(a);
     if (const auto& s = scan::memory_of_block<Pairs>().answer; threadIdx.x == 0)
       a.answer.labelled[blockIdx.x] = {s.own, s.uncertain};
   }
-  /// By the last block: all blocks' counts to those of the answer.
+  /// Called by the last block: adds all blocks' counts to the answer's.
   static __device__ void conclude(const arguments& a) {
     if (!a.answer.last_group || threadIdx.x >= 32) return;
     label_counts all{0, 0};
@@ -70,16 +70,16 @@ struct labels_of {
     return reinterpret_cast<std::uintptr_t>(label) % scan::quad == 0;
   }
 
-  /// The labels of this block's points, to its own counts.
+  /// Adds the labels of this block's points to its own counts.
   static __device__ void count(const arguments& a) {
     auto& s = scan::memory_of_block<Pairs>();
     const scan::cards<Pairs> all(a.rounds);
     std::uint32_t own = 0, uncertain = 0;
-    __syncthreads();  // all have been given
+    __syncthreads();  // all labels have been written
     for (std::uint32_t r = 0; r < a.rounds; ++r) {
       const std::uint32_t first = all.index(r);
       const point_label* const label = first < a.points ? s.head.answer.answer.label_of(a.cloud, first) : nullptr;
-      std::uint32_t four = 0;  // labels, of which those that are 0 do not count here
+      std::uint32_t four = 0;  // labels; a label of 0 does not count here
       static_assert(point_label::rest == point_label{});
       if (label != nullptr && a.points - first >= scan::quad && is_aligned(label))
         four = *reinterpret_cast<const std::uint32_t*>(label);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The least distance as the blocks of a device find it: all parts share a bound, or each has its own.
+// The least distance as the blocks of a device find it. All parts share a bound, or each has its own.
 
 #include <clearance/answer/best.cuh>
 #include <clearance/answer/one_minimum.cuh>
@@ -10,7 +10,7 @@
 
 namespace clearance::minimum {
 
-/// `PerPart`: one bound a part, and every part's minimum; else one bound for all, the paper's Algorithm 3.
+/// `PerPart`: one bound per part, and every part's minimum. Otherwise one bound for all, the paper's Algorithm 3.
 template <class PartView, bool PerPart>
 struct least {
   using part_type = PartView;
@@ -24,28 +24,27 @@ struct least {
   using seeds = last_frame<least>;
   static constexpr bool bound_per_part = PerPart, goes_ahead = false;
   static constexpr std::uint32_t slots = PerPart ? scan::most_parts : 1;
-  /// 73 nodes (three levels) of each of eight sphere trees; as much as leaves room for two blocks on a processor of an
-  /// H200.
+  /// 73 nodes (three levels) of each of eight sphere trees. It leaves room for two blocks on a processor of an H200.
   static constexpr std::size_t top_bytes = PerPart ? 10000 : 14016;
 
   struct arguments {
     state_type* state;
     witness_type* witnesses;
-    record* records;           ///< Room for one a part and block, where each part has a bound;
-    witness_type* candidates;  ///< else for one a block.
+    record* records;           ///< Room for one per part and block, if each part has a bound;
+    witness_type* candidates;  ///< else room for one per block.
     min_distance_result* result;
-    part_minimum* minima;  ///< One a part, or null.
+    part_minimum* minima;  ///< One per part, or null.
   };
 
   struct memory {
-    std::uint32_t bound[slots];  ///< ordered(): least of what this block and, at times, all blocks know.
+    std::uint32_t bound[slots];  ///< ordered(): the least that this block knows, and at times the least of all blocks.
     std::uint32_t seed_of_warp[scan::warps];
     record best[slots];
-    primitive_type nearest;     ///< Of `best`, where all parts share a bound.
-    distance_key least[slots];  ///< The keys of `best`, or soon to be.
+    primitive_type nearest;     ///< The primitive of `best`, if all parts share a bound.
+    distance_key least[slots];  ///< The keys of `best`, or those it is about to get.
     std::uint32_t kept;         ///< Witnesses for the next frame.
     unsigned lock[slots];
-    distance_key drafted;  ///< What `answer` is about.
+    distance_key drafted;  ///< The key that `answer` was drafted for.
     draft answer;
 
     __device__ void clear(std::uint32_t thread) {
@@ -62,7 +61,7 @@ struct least {
     return PerPart ? reach(s, part) : from_ordered(bound);
   }
   static __device__ real reach_of_pair(const block& s, std::uint32_t part, std::uint32_t) { return reach(s, part); }
-  /// All parts' bound, if they share one.
+  /// The bound of all parts, if they share one.
   static __device__ std::uint32_t common_bound(const block& s) { return scan::fresh(s.answer.bound[0]); }
 
   static __device__ void lower(block& s, std::uint32_t part, real distance) {
@@ -70,8 +69,8 @@ struct least {
     if (u < atomicMin(&s.answer.bound[slot(part)], u)) atomicMin(&s.head.answer.state->bound[slot(part)], u);
   }
 
-  /// Nothing is left to learn; but not for the same point: another part may have been first there, and the lowest
-  /// counts.
+  /// True if nothing is left to learn. It stays false for the point of the minimum itself: another part may have been
+  /// first there, and the lowest part counts.
   static __device__ bool settled(const block& s, std::uint32_t part, std::uint32_t point) {
     return scan::fresh(s.answer.least[slot(part)]) < make_key(0, point) &&
            load_relaxed(&s.head.answer.state->certain) != 0;
@@ -87,13 +86,13 @@ struct least {
   static __device__ bool wants_certain(const block&) { return true; }
   static __device__ void take_certain(block& s) { atomicAdd(&s.head.answer.state->certain, 1ull); }
 
-  /// All lanes of a warp, each with a record, or none.
+  /// Called by all lanes of a warp, each with a record or none.
   static __device__ void take(block& s, const record& r, const primitive_type& primitive, std::uint32_t) {
     best_of_warp<least>(s, r, primitive);
   }
   static __device__ void drained(block&, std::uint32_t) {}
 
-  /// What other blocks know, asked for some rounds before it is looked at: nobody waits for it.
+  /// The bounds of other blocks. They are requested some rounds before they are read, so that nothing waits for memory.
   class news {
    public:
     explicit __device__ news(const block& s) : bounds_(PerPart ? s.head.parts : 1) { ask(s); }
@@ -117,13 +116,13 @@ struct least {
   static __device__ void hand_in(const scan::scan_arguments<least>& a, const Source& source) {
     end::hand_in(a, source);
   }
-  /// By the last block.
+  /// Called by the last block.
   template <class Source>
   static __device__ void conclude(const scan::scan_arguments<least>& a, const Source& source) {
     end::answer(a, source);
     if (a.last && threadIdx.x < scan::most_parts) a.answer.state->bound[threadIdx.x] = no_bound;
   }
-  /// By one thread, after that.
+  /// Called by one thread, after `conclude`.
   static __device__ void reset(const scan::scan_arguments<least>& a) {
     state_type& state = *a.answer.state;
     const std::uint32_t kept = scan::memory_of_block<least>().answer.kept;

@@ -6,12 +6,12 @@
 
 namespace clearance::pairwise {
 
-/// An answer: a list of pairs, in the order in which they come.
+/// An answer: a list of pairs in the order in which they are found.
 struct listed {
   pair_distance* pairs;
-  unsigned long long* count;  ///< Of all pairs; those beyond `capacity` are counted, and not kept.
+  unsigned long long* count;  ///< Counts all pairs; those beyond `capacity` are not kept.
   unsigned long long capacity;
-  const real* reaches;  ///< One a part.
+  const real* reaches;  ///< One per part.
 
   CLEARANCE_HD real reach(std::uint32_t part) const { return reaches[part]; }
   CLEARANCE_HD void take(const pair_distance& pair) const {

@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// From a margin in metres to how near a point must be computed to be.
+// From a margin in metres to limits on computed distances.
 
 #include <clearance/frame/clouds.hpp>
 
 namespace clearance::pairwise {
 
-/// A point may be nearer than `margin` if its computed distance is at most this: gap, tolerance and rounding on the
-/// safe side.
+/// A point may be within `margin` if its computed distance is at most this. All errors are on the safe side.
 CLEARANCE_HD inline real may_be_within(double margin, const part_facts& facts, const frames::float_error& error) {
   const double most = margin + frames::slop(facts) + error.here;
   return rounded_up(most / (most < 0 ? 1 + error.per_metre : 1 - error.per_metre));
 }
-/// And is certainly, if at most this.
+/// A point is certainly within `margin` if its computed distance is at most this.
 CLEARANCE_HD inline real is_within(double margin, const part_facts& facts, const frames::float_error& error) {
   const double left = margin - double(facts.tolerance) - error.here;
   return rounded_down(left / (left < 0 ? 1 - error.per_metre : 1 + error.per_metre));
 }
 
-/// Throws std::invalid_argument if there is neither one margin nor one a part, or one is NaN.
+/// Throws std::invalid_argument if there is neither one margin nor one per part, or if one is NaN.
 inline void check_margins(std::span<const double> margins, std::size_t parts) {
   if (margins.size() != 1 && margins.size() != parts)
     throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " +
@@ -28,13 +27,13 @@ inline void check_margins(std::span<const double> margins, std::size_t parts) {
       throw std::invalid_argument("clearance: the margin of part " + std::to_string(k) + " is not a number");
 }
 
-/// What is known of a frame before anything is asked. Kept, it allocates only for more parts or clouds than ever.
+/// What is known of a frame before a question is asked. Reused, it allocates only for more parts or clouds.
 struct frame_ahead {
   frames::cloud_frame frame;
   std::vector<std::uint32_t> first;  ///< The number of each cloud's first point.
-  std::vector<real> reaches;         ///< How near points of each part matter, as a question has it.
+  std::vector<real> reaches;         ///< How near a point must be to each part to matter, as the question says.
 
-  /// What all clouds have in common.
+  /// The facts of all clouds together.
   template <class Clouds>
   const frames::frame_facts& look(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses,
                                   const Clouds& clouds) {
@@ -45,7 +44,7 @@ struct frame_ahead {
   }
 };
 
-/// The cloud and point of a number through all clouds.
+/// The cloud and the point that a number through all clouds names.
 struct cloud_point {
   std::uint32_t cloud, point;
 };

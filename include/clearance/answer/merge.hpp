@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Two answers become one.
+// Merges two answers into one.
 
 #include <clearance/answer/bracket.hpp>
 
@@ -10,7 +10,7 @@ namespace clearance {
 
 namespace minimum {
 
-/// Is a's witness the better? By distance, cloud, point, part, primitive.
+/// Is a's witness the better one? Compares distance, cloud, point, part, primitive.
 CLEARANCE_HD inline bool nearer(const min_distance_result& a, const min_distance_result& b) {
   if (a.part == none || b.part == none) return b.part == none && a.part != none;
   if (a.distance != b.distance) return a.distance < b.distance;
@@ -23,7 +23,7 @@ CLEARANCE_HD inline bool nearer(const min_distance_result& a, const min_distance
 /// Witness and bracket of both; the counts are a's.
 CLEARANCE_HD inline min_distance_result merged(const min_distance_result& a, const min_distance_result& b) {
   const bool lost = (a.part == none && a.state == state::possible) ||
-                    (b.part == none && b.state == state::possible);  // a pose was none
+                    (b.part == none && b.state == state::possible);  // a pose was not rigid
   min_distance_result r = nearer(b, a) ? b : a;
   r.seen = a.seen, r.valid = a.valid;
   for (int k = 0; k < drop_reasons; ++k) r.dropped[k] = a.dropped[k];
@@ -39,9 +39,9 @@ CLEARANCE_HD inline min_distance_result merged(const min_distance_result& a, con
 
 }  // namespace minimum
 
-/// Of the same robot in the same poses against different points: clouds, or pieces of one, whose answers carry the
-/// numbers that they have together (`renumbered`). Witness and counts are those of one call; so is the bracket, if the
-/// pieces are of one cloud, and otherwise it may be narrower.
+/// Merges answers about the same robot in the same poses and different points: clouds, or pieces of one, with the
+/// numbers of the whole (`renumbered`). Witness and counts are those of one call. So is the bracket for pieces of one
+/// cloud; otherwise it may be narrower.
 CLEARANCE_HD inline min_distance_result merge(const min_distance_result& a, const min_distance_result& b) {
   min_distance_result r = minimum::merged(a, b);
   r.seen += b.seen, r.valid += b.valid;
@@ -56,8 +56,8 @@ CLEARANCE_HD inline part_minimum merge(const part_minimum& a, const part_minimum
   return a.point <= b.point ? a : b;
 }
 
-/// An answer about a cloud of a call, or a piece of it, in the numbers of the whole: it was cloud `cloud`, and the
-/// piece began at point `first`.
+/// Gives an answer about one cloud, or a piece of it, the numbers of the whole: it was cloud `cloud`, and the piece
+/// began at point `first`.
 template <class Answer>
 CLEARANCE_HD Answer renumbered(Answer r, std::uint32_t cloud, std::uint32_t first = 0) {
   if (r.cloud != none) r.cloud += cloud, r.point += first;

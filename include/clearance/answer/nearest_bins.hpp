@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How near the k nearest points of each part are, as an answer that gets pairs: counts of distances in bins.
+// How near each part's k nearest points are: an answer that counts the distances of pairs in bins.
 
 #include <clearance/concepts.hpp>
 #include <clearance/ground/ordered.hpp>
@@ -9,24 +9,25 @@
 
 namespace clearance::pairwise {
 
-/// What a pass knows of one part. Distances are their `ordered` words, so that bins are fine where distances are small.
+/// What a pass knows of one part. Distances are `ordered` words, so that bins are fine at small distances.
 struct nearest_window {
-  std::uint32_t low = 0;       ///< The first bin begins here; what is less was counted before.
-  std::uint32_t wanted = 0;    ///< So many are still to be found, from there on; 0: nothing is asked of this part.
-  std::uint32_t bound = 0;     ///< No farther one matters: falls while points are counted.
+  std::uint32_t low = 0;       ///< The first bin begins here; smaller distances were counted before.
+  std::uint32_t wanted = 0;    ///< So many are still to be found from `low` on; 0: nothing is asked about this part.
+  std::uint32_t bound = 0;     ///< Farther points do not matter. It falls while points are counted.
   std::uint32_t taken = 0;     ///< Points in bins,
   std::uint32_t lowest = ~0u;  ///< and the first bin that has one.
 };
 
-/// An answer. Enough points at most as far as a bin's end are a bound: what is farther is none of the nearest.
+/// An answer. Once enough points lie no farther than a bin's end, that end is a bound: farther points are none of the
+/// nearest.
 struct nearest_bins {
   static constexpr std::uint32_t bins = 2048;
   static constexpr int passes = 3,
                        first_shift =
-                           22;  ///< Two bins from a length to its double; then 2^11 in each, and one a number.
+                           22;  ///< Two bins from a length to its double; then 2^11 in each; then one per number.
   static constexpr int shift_of(int pass) { return first_shift - 11 * pass; }
 
-  std::uint32_t* counts;  ///< `bins` a part.
+  std::uint32_t* counts;  ///< `bins` per part.
   nearest_window* windows;
   int shift;
 
@@ -51,7 +52,7 @@ struct nearest_bins {
   }
 
  private:
-  /// Counts that others are adding to are at most too small, and the bound then too large.
+  /// Other threads may be adding to the counts. A count is at worst too small, and the bound too large.
   CLEARANCE_HD void sharpen(nearest_window& w, const std::uint32_t* its) const {
     const std::uint32_t last = (load_relaxed(&w.bound) - w.low) >> shift;
     std::uint32_t sum = 0;
@@ -66,7 +67,7 @@ struct zero_words {
   CLEARANCE_HD void operator()(std::size_t i) const { words[i] = 0; }
 };
 
-/// The bin in which the wanted one is, and how many are in those before it; `bins` if there are not so many.
+/// The bin of the wanted point (the number of bins if there are fewer points), and how many points lie before it.
 struct wanted_bin {
   std::uint32_t bin = 0, before = 0, its = 0;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How near the k nearest points of each part are at most, before all points are asked: from those that are likely to be
-// near.
+// An upper bound on the distances of each part's k nearest points, from points that are likely to be near. It is found
+// before all points are asked.
 
 #include <clearance/backend/host.hpp>
 #include <clearance/frame/clouds.hpp>
@@ -16,12 +16,12 @@
 
 namespace clearance::pairwise {
 
-/// The k least of the distances that it is given.
+/// Keeps the k least distances.
 class least_distances {
  public:
   least_distances(std::size_t k, real bound) : k_(k), bound_(bound) {}
 
-  /// What is farther is none of them.
+  /// A farther distance is not one of them.
   real bound() const { return heap_.size() < k_ ? bound_ : heap_.front(); }
   void add(real distance) {
     if (!(distance <= bound())) return;
@@ -35,8 +35,8 @@ class least_distances {
   std::vector<real> heap_;
 };
 
-/// On a host that is worth it: with a bound nearly all walks end at a root. A device has asked all points by the time
-/// this would take.
+/// This pays on a host: with a bound nearly all walks end at a root. A device asks all points in the time that this
+/// would take.
 template <class On>
 struct nearest_sample {
   template <class PartView, class Clouds>
@@ -46,7 +46,7 @@ struct nearest_sample {
 
 template <>
 struct nearest_sample<host> {
-  /// Lowers `bounds`, one a part, to where k points are for certain, if so many are found.
+  /// Lowers `bounds`, one per part, to a distance within which k points certainly are, if k are found.
   template <class PartView, class Clouds>
   static void lower(const host& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
                     const Clouds& clouds, std::size_t k, std::vector<real>& bounds) {
@@ -81,7 +81,7 @@ struct nearest_sample<host> {
     return scan::box_of(t);
   }
 
-  /// Tiles by how near they are to the part's ball, until none can be nearer, or enough points were asked.
+  /// Asks tiles, the nearest to the part's ball first, until none can be nearer or enough points were asked.
   template <point_source S, class PartView>
   static void ask(const S& source, const frames::cloud_frame& frame, const std::vector<extent>& boxes,
                   const model_view<PartView>& model, std::uint32_t part, std::size_t most, least_distances& found) {
@@ -116,7 +116,7 @@ struct nearest_sample<host> {
       }
     }
   }
-  /// Of no points infinity.
+  /// Infinite if the box is empty.
   static real length_to(const extent& box, vec3 p) {
     const auto beyond = [](real low, real high, real x) { return max(max(low - x, x - high), 0); };
     if (!(box.lower.x <= box.upper.x)) return infinity;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The end of a frame where all parts share a bound. While a block is counted, three of its warps draft the answer from
-// its own best, in case that it is the last block and has the best of all, as the slowest block often is and does.
+// The end of a frame if all parts share a bound. While a block is counted, three of its warps draft the answer from its
+// own best. It is used if the block is the last one and has the best of all, as the slowest often does.
 
 #include <clearance/answer/evidence.cuh>
 
 namespace clearance::minimum {
 
-/// The answer from `best`, by three warps: where the point is, what is nearest to it, and the bracket.
+/// Drafts the answer from `best`, by three warps: where the point is, what is nearest to it, and the bracket.
 template <class Answer, class Source>
 __forceinline__ __device__ void draft_answer(const scan::scan_arguments<Answer>& a, const Source& source) {
   auto& block = scan::memory_of_block<Answer>();
@@ -36,7 +36,7 @@ __forceinline__ __device__ void draft_answer(const scan::scan_arguments<Answer>&
 
 template <class Answer>
 struct one_minimum {
-  /// The block's best to where the last block finds it; by the first four warps.
+  /// Hands the block's best to the last block. Done by the first four warps.
   template <class Source>
   static __device__ void hand_in(const scan::scan_arguments<Answer>& a, const Source& source) {
     auto& block = scan::memory_of_block<Answer>();
@@ -44,7 +44,7 @@ struct one_minimum {
     const std::uint32_t t = threadIdx.x;
     if (t >= 128) return;
     const bool known =
-        s.best[0].key != no_key && s.best[0].id != none && block.rigid;  // is more than a point inside a solid
+        s.best[0].key != no_key && s.best[0].id != none && block.rigid;  // more than a point inside a solid
     if (t == 0) {
       const auto best = s.best[0];
       s.drafted = known ? best.key : no_key;
@@ -56,7 +56,7 @@ struct one_minimum {
     __syncwarp();
   }
 
-  /// By the last block: the answer, and what is kept for the next frame.
+  /// Called by the last block: writes the answer, and what is kept for the next frame.
   template <class Source>
   static __device__ void answer(const scan::scan_arguments<Answer>& a, const Source& source) {
     auto& block = scan::memory_of_block<Answer>();

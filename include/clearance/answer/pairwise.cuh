@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Answers that want every pair, once, as the blocks of a device give them.
+// Gives every pair to an answer once, by the blocks of a device.
 
 #include <clearance/answer/labels.cuh>
 #include <clearance/answer/pairwise.hpp>
@@ -19,27 +19,27 @@ struct pairs_of {
   using scan_type = std::conditional_t<ending_answer<Answer>, scan::by_pairs, scan::by_many_pairs>;
   using block = scan::pair_memory<pairs_of>;
   static constexpr bool bound_per_part = true;
-  /// So many pairs walk at once, and do not go down to a leaf first: of an answer that ends, few are as near as that.
+  /// So few pairs walk at once without going down to a leaf first. Few pairs of an answer that ends are that near.
   static constexpr std::uint32_t few = ending_answer<Answer> ? 8 * scan::warps : 0;
   static constexpr bool coarse = coarse_answer<Answer>, labels = labelling_answer<Answer>, goes_ahead = true;
-  /// Leaves room for two blocks on a processor of an H200; and up to 20 parts for as much cache as points that are read
-  /// ahead need there.
+  /// Leaves room for two blocks on a processor of an H200 and, up to 20 parts, for the cache that reading points ahead
+  /// needs there.
   static constexpr std::size_t top_bytes = 6400;
 
   struct arguments {
     Answer answer;
     std::uint32_t first_part;  ///< Number of the kernel's first part.
     point_counts* counts;      ///< Or null.
-    label_counts* labelled;    ///< Room for one a block, if there are labels.
+    label_counts* labelled;    ///< Room for one per block, if there are labels.
     bool last_group;           ///< Of parts.
   };
   struct memory {
-    distance_key best[scan::pair_capacity];  ///< Of each pair that is being looked at: its distance and primitive.
-    std::uint32_t least[coarse ? scan::most_parts
-                               : 1];          ///< Of each part, `ordered`: the least distance that this block knows of.
-    std::uint32_t own, uncertain;             ///< Labels.
-    std::uint32_t open_count;                 ///< Pairs that are not known yet,
-    std::uint16_t open[scan::pair_capacity];  ///< and which.
+    distance_key best[scan::pair_capacity];  ///< Distance and primitive of each pair that is being looked at.
+    std::uint32_t
+        least[coarse ? scan::most_parts : 1];  ///< Per part, `ordered`: the least distance that this block knows.
+    std::uint32_t own, uncertain;              ///< Labels.
+    std::uint32_t open_count;                  ///< How many pairs are not known yet,
+    std::uint16_t open[scan::pair_capacity];   ///< and which.
 
     __device__ void clear(std::uint32_t thread) {
       if (thread == 0) own = uncertain = open_count = 0;
@@ -64,8 +64,8 @@ struct pairs_of {
   static __device__ std::uint32_t common_bound(const block&) { return 0; }
 
   static __device__ bool settled(const block&, std::uint32_t, std::uint32_t) { return false; }
-  /// Nothing that is left of the part matters to the pair; `x` is its point in the cloud's frame. In a solid it is 0
-  /// away.
+  /// True if nothing more of the part matters to the pair. `x` is its point in the cloud's frame. Inside a solid the
+  /// distance is 0.
   static __device__ bool skips(const block& s, std::uint32_t part, std::uint32_t point, std::uint32_t pair, vec3 x) {
     if constexpr (settling_answer<Answer>)
       if (s.head.answer.answer.settled(s.head.cloud, point - s.head.first, s.head.answer.first_part + part))
@@ -75,8 +75,8 @@ struct pairs_of {
     return !frames::may_reach(scan::frame_parts<pairs_of>::place(part).root.around,
                               scan::has_interior<PartView> ? max(reach, 0) : reach, x);
   }
-  /// Whoever calls it has the pair for itself. A leaf that it went ahead to may be 0 away, too: that is not what is
-  /// told then.
+  /// The caller has the pair for itself. A primitive that was reached ahead may also be at distance 0; it is not
+  /// reported then.
   static __device__ void take_inside(block& s, std::uint32_t part, std::uint32_t, std::uint32_t pair) {
     if (!(reach_of_part(s, part, 0) >= 0)) return;
     s.answer.best[pair] = make_key(0, none);
@@ -87,7 +87,7 @@ struct pairs_of {
   static __device__ void take(block& s, const record& r, const primitive_type&, std::uint32_t pair) {
     if (r.key != no_key) hear(s, r.part, pair, make_key(key_distance(r.key), r.id));
   }
-  /// A primitive of a pair.
+  /// Takes a primitive of a pair.
   static __device__ void hear(block& s, std::uint32_t part, std::uint32_t pair, distance_key found) {
     atomicMin(&s.answer.best[pair], found);
     if constexpr (coarse)
@@ -99,7 +99,7 @@ struct pairs_of {
   }
   static __device__ std::uint32_t open_pairs(const block& s) { return s.answer.open_count; }
   static __device__ std::uint32_t open_pair(const block& s, std::uint32_t i) { return s.answer.open[i]; }
-  /// All threads, when the block has nothing left to walk.
+  /// Called by all threads when the block has nothing left to walk.
   static __device__ void drained(block& s, std::uint32_t count) {
     if (threadIdx.x == 0) s.answer.open_count = 0;
     if constexpr (labels) {
@@ -140,7 +140,7 @@ struct pairs_of {
   static __device__ void reset(const scan::scan_arguments<pairs_of>&) {}
 
  private:
-  /// Gives the answer those pairs that `now` chooses.
+  /// Gives the answer the pairs that `now` chooses.
   template <class Now>
   static __device__ void take_all(block& s, std::uint32_t count, const Now& now) {
     for (std::uint32_t i = threadIdx.x; i < count; i += scan::block_threads) {
@@ -155,7 +155,7 @@ struct pairs_of {
   }
 };
 
-/// Every pair on a device, frame after frame, one kernel a cloud: nothing is allocated and nothing waited for.
+/// Every pair on a device, frame after frame, with one kernel per cloud. It allocates nothing and never waits.
 template <class PartView>
 class device_pairs {
  public:
@@ -164,7 +164,8 @@ class device_pairs {
         launch_(on, model, memory),
         labelled_(launch_.most_blocks(), on.id, memory) {}
 
-  /// `counts` in memory that the device can write. `here(source, cloud)` is what the device can read of a cloud.
+  /// `counts` lies in memory that the device can write. `here(source, cloud)` returns a source that the device can
+  /// read.
   template <class Clouds, answer Answer, class Here>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
                point_counts* counts, const Here& here) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Answers that want every pair, once.
+// Gives every pair to an answer once.
 
 #include <clearance/ground/ordered.hpp>
 #include <clearance/result.hpp>
@@ -8,14 +8,14 @@
 
 namespace clearance::pairwise {
 
-/// A visitor for an answer that need not know the nearest.
+/// A visitor for an answer that does not need the nearest primitive.
 template <coarse_answer Answer>
 struct near_enough {
   using result_type = nearest::result_type;
 
   const Answer* answer;
   std::uint32_t part;
-  std::uint32_t* least;  ///< The least distance of any pair of the part that is known of, `ordered`.
+  std::uint32_t* least;  ///< The least known distance of any pair of the part, `ordered`.
   nearest found;
   real within = found.within;
 
@@ -30,12 +30,12 @@ struct near_enough {
   CLEARANCE_HD result_type result() const { return found.result(); }
 };
 
-/// As an answer of `scan_body`.
+/// An answer for `scan_body`.
 template <answer Answer>
 struct each_pair {
   Answer answer;
   std::uint32_t cloud, first;
-  std::uint32_t* least;  ///< Of each part, for an answer that asks for it.
+  std::uint32_t* least;  ///< Per part, for an answer that asks for it.
 
   CLEARANCE_HD real reach(std::uint32_t k) const { return answer.reach(k); }
   CLEARANCE_HD real reach_of_pair(std::uint32_t index, std::uint32_t k) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The end of a frame where every part has a bound, and a minimum.
+// The end of a frame if every part has a bound and a minimum.
 
 #include <clearance/answer/evidence.cuh>
 
@@ -17,7 +17,7 @@ struct part_minima {
     __syncthreads();
   }
 
-  /// By the last block, a thread each for what does not depend on one another.
+  /// Called by the last block. Independent steps have a thread each.
   template <class Source>
   static __device__ void answer(const scan::scan_arguments<Answer>& a, const Source& source) {
     auto& s = scan::memory_of_block<Answer>().answer;
@@ -49,8 +49,8 @@ struct part_minima {
   using evidence_type = evidence<Answer>;
   static __device__ bool rigid() { return scan::memory_of_block<Answer>().rigid; }
 
-  /// Every part's best, of all blocks' records and of earlier clouds', to s.best; the best of those to all threads; and
-  /// what is behind one, if it is this thread's (the first lanes of warp w have parts w, w + 16, ...).
+  /// Puts every part's best, over all blocks and earlier clouds, into s.best, and gives the best of all to all threads.
+  /// Returns the evidence of this thread's part, if it has one (the first lanes of warp w have parts w, w + 16, ...).
   template <class Source>
   static __device__ evidence_type merge(const scan::scan_arguments<Answer>& a, const Source& source, record& best) {
     auto& s = scan::memory_of_block<Answer>().answer;

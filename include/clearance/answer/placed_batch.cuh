@@ -8,19 +8,19 @@
 
 namespace clearance::minimum {
 
-/// A question about many configurations on a device, and where those come from: for the prepared questions to inherit.
+/// A question about many configurations on a device, and their poses. The prepared questions inherit from it.
 template <class PartView, class Question>
 class placed_batch {
  public:
-  /// Keeps poses, on the device too, for frames to come: a trajectory that is watched is copied once. Enqueued; throws
-  /// std::invalid_argument if they are no whole configurations.
+  /// Keeps poses, also on the device, for later frames: a watched trajectory is copied once. Enqueued. Throws
+  /// std::invalid_argument if the last configuration is not whole.
   void place(std::span<const Eigen::Isometry3d> poses) {
     asked_ = detail::count_configurations(search_.parts(), poses.size());
     search_.place(poses);
     poses_.assign(poses.begin(), poses.end());
   }
   /// Keeps the poses of joint vectors, one after another, which the device computes. Throws std::invalid_argument as
-  /// joint_chain::count, and if the chain is of another robot. Not for a graph: it copies from the host's memory.
+  /// joint_chain::count, and if the chain belongs to another robot. Not for a graph: it copies from host memory.
   void place(const joint_chain<device>& chain, std::span<const double> q) {
     const std::size_t count = chain.count(q);
     if (there_.size() < q.size()) there_ = device_buffer<double>(q.size(), on_.id, memory_);
@@ -32,7 +32,7 @@ class placed_batch {
     }
     place(chain, there_.data(), count);
   }
-  /// The same of joint vectors in the device's memory. One that is not finite or beyond its limits makes poses that are
+  /// The same for joint vectors in device memory. A vector that is not finite or beyond its limits makes poses that are
   /// not rigid.
   void place(const joint_chain<device>& chain, const double* q, std::size_t configurations) {
     detail::check_chain(search_.parts(), chain.parts());
@@ -47,11 +47,11 @@ class placed_batch {
   placed_batch(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory)
       : on_(on), memory_(memory), search_(on, model, memory), copies_(on, memory), there_(0, on.id, memory) {}
 
-  /// Throws std::logic_error if what was placed last could not be.
+  /// Throws std::logic_error if the last configurations could not be placed.
   void check_placed() const {
     if (search_.size() != asked_) throw std::logic_error("clearance: the last configurations could not be placed");
   }
-  /// Results to `to`, once they are there. Throws std::invalid_argument if a pose is not rigid.
+  /// Waits, and copies the results to `to`. Throws std::invalid_argument if a pose is not rigid.
   void copy_out(std::vector<typename Question::result_type>& to, point_counts* counts = nullptr) const {
     to.resize(search_.size());
     if (search_.copy_out(to, counts)) return;
@@ -71,7 +71,7 @@ class placed_batch {
   kept_copies copies_;
 
  private:
-  std::vector<Eigen::Isometry3d> poses_;  ///< Of the host, for sentences.
+  std::vector<Eigen::Isometry3d> poses_;  ///< Host copies, for error messages.
   std::size_t asked_ = 0;
   std::vector<double> q_;  ///< Joint vectors on their way,
   device_buffer<double> there_;

@@ -9,7 +9,8 @@
 
 namespace clearance::minimum {
 
-/// Refuses a tree that is too deep for the stack of a traversal; it would have to drop nodes.
+/// Refuses a tree that is too deep for a traversal's stack, which would have to drop nodes. Throws
+/// std::invalid_argument.
 template <class Traversal>
 void check_stack(std::uint32_t depth, std::uint32_t width) {
   if constexpr (bounded_traversal<Traversal>)
@@ -20,7 +21,7 @@ void check_stack(std::uint32_t depth, std::uint32_t width) {
           std::to_string(Traversal::capacity) + "; give it a larger capacity or use the recursive one");
 }
 
-/// One pair of a point and a part for a bound that something attains, of a point `p` less the frame's origin.
+/// Lowers the bound by the distance of one real pair. `p` is a point less the frame's origin.
 template <class Body>
 CLEARANCE_HD void seed(const Body& body, vec3 p, std::uint32_t index, std::uint32_t k) {
   const auto& tree = body.parts[k].tree;
@@ -29,9 +30,8 @@ CLEARANCE_HD void seed(const Body& body, vec3 p, std::uint32_t index, std::uint3
   if (d < infinity) body.answer.lower(index, k, d);
 }
 
-/// A few points spread over the cloud, each taken greedily to one leaf, before all others: any real pair is a valid
-/// bound, and a good one saves the rest most of the work. Without it, thousands of threads would start from infinity at
-/// once.
+/// Before all others, a few points spread over the cloud each go greedily down to one leaf. Any real pair is a valid
+/// bound, and a good bound saves most of the work. Without it, thousands of threads would start from infinity at once.
 template <class Body>
 struct seed_body {
   static constexpr std::size_t samples = 2048;
@@ -56,7 +56,7 @@ struct seed_body {
   }
 };
 
-/// The least distance by a loop over points with any traversal, on any backend. Nothing is kept from frame to frame.
+/// The least distance by a loop over points with any traversal, on any backend. It keeps nothing from frame to frame.
 template <backend B, class PartView, class Traversal>
 class plain_search {
  public:
@@ -66,9 +66,9 @@ class plain_search {
     if constexpr (recursing_traversal<Traversal>) stack_bytes_ = Traversal::device_stack(model.depth);
   }
 
-  /// Enqueues one frame and waits for nothing: `result` (and `minima`, one a part, or null) are in memory that the
-  /// backend can write, and are there once it has come so far. Clouds must live until then. `here(source, cloud)` is
-  /// what the backend can read of a cloud.
+  /// Enqueues one frame and does not wait. `result` and `minima` (one per part, or null) lie in memory that the backend
+  /// can write, and are valid once its work is done. Clouds must live until then. `here(source, cloud)` returns a
+  /// source that the backend can read.
   template <class Clouds, class Here>
   void operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
                   part_minimum* minima, const Here& here) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Every point's own distance on a device; from frame to frame it may remember which primitive was the nearest.
+// Each point's own distance on a device. It may remember the nearest primitives from frame to frame.
 
 #include <clearance/answer/pointwise.hpp>
 #include <clearance/scan/launch.cuh>
@@ -10,7 +10,7 @@
 
 namespace clearance::pointwise {
 
-/// What was nearest to a point: the number of the part, or ~0u, and where the primitive is in its tree.
+/// The nearest primitive of a point: the part's number, or ~0u, and the primitive's place in its tree.
 template <class PartView>
 struct remembered {
   std::uint32_t part;
@@ -25,26 +25,25 @@ struct points_of {
   using scan_type = scan::by_packets;
   using block = scan::packet_memory<points_of>;
   static constexpr bool bound_per_part = true, goes_ahead = false;
-  static constexpr std::size_t top_bytes = 0;  ///< Packets read every node for 32 points: it is at hand anyway.
+  static constexpr std::size_t top_bytes = 0;  ///< 32 points share each read of a node, so no copy is needed.
 
   struct arguments {
     distances_out out;
     real d_max;
-    std::uint32_t
-        first_part;        ///< Number of the kernel's first part; if it is not 0, other kernels have written before.
-    point_counts* counts;  ///< Or null.
-    remembered<PartView>* last;  ///< Of each point the nearest in the last frame, then in this; or null.
+    std::uint32_t first_part;    ///< The kernel's first part. If it is not 0, other kernels have written before.
+    point_counts* counts;        ///< Or null.
+    remembered<PartView>* last;  ///< Per point, the nearest in the last frame, then in this one; or null.
   };
   struct memory {
     __device__ void clear(std::uint32_t) {}
   };
 
-  /// Of one lane's point.
+  /// The visitor of one lane's point.
   struct visitor_type {
     real limit;
     std::uint32_t before;
     found best;
-    place_type at;  ///< Of `best`, if its part is one of this kernel's and it is a primitive.
+    place_type at;  ///< Place of `best`, if it is a primitive of one of this kernel's parts.
 
     __device__ real reach(std::uint32_t) const { return min(limit, best.distance); }
     __device__ void offer(std::uint32_t k, const place_type& place, std::uint32_t id, real distance) {
@@ -65,14 +64,15 @@ struct points_of {
 
   static __device__ real reach_of_part(const block& s, std::uint32_t, std::uint32_t) { return s.head.answer.d_max; }
 
-  /// Is no point too far from everything?
+  /// True if no point is too far away to matter.
   static bool all_near(const arguments& a) { return a.d_max == infinity; }
 
   static __device__ visitor_type visitor(const block& s, std::uint32_t index, bool counts) {
     const arguments& a = s.head.answer;
     return {a.d_max, a.first_part, a.first_part != 0 && counts ? read(a.out, index) : found{}, {}};
   }
-  /// What was nearest last, evaluated anew; as a bound alone, because the walk finds it again, and what is as near.
+  /// Evaluates the last nearest primitive anew. It gives only a bound, because the walk finds that primitive and
+  /// equally near ones again.
   static __device__ void remind(const block& s, std::uint32_t index, vec3 x, visitor_type& v) {
     const arguments& a = s.head.answer;
     if (a.last == nullptr) return;
@@ -103,8 +103,8 @@ struct points_of {
   static __device__ void reset(const scan::scan_arguments<points_of>&) {}
 };
 
-/// Every point's distance on a device, frame after frame, one kernel a cloud: nothing is allocated and nothing waited
-/// for. If it remembers the last frame, a frame of more points than any before takes memory for that.
+/// Each point's distance on a device, frame after frame, with one kernel per cloud. It allocates nothing and never
+/// waits. If it remembers the last frame, a frame with more points than any before allocates memory for that.
 template <class PartView>
 class device_points {
  public:
@@ -116,8 +116,8 @@ class device_points {
         facts_(model.facts.begin(), model.facts.end()),
         launch_(on, model, memory) {}
 
-  /// What is certain of the distances, which are there once the stream has come so far. `here(source, cloud)` is what
-  /// the device can read of a cloud.
+  /// Enqueues a frame and returns how certain its distances are. `here(source, cloud)` is a source that the device can
+  /// read.
   template <class Clouds, class Here>
   distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
                              real d_max, point_counts* counts, const Here& here) {

@@ -1,28 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Every point's own distance: nothing is shared, and every point has a bound of its own.
+// Each point's own distance: points share nothing, and each has its own bound.
 
 #include <clearance/answer/bracket.hpp>
 #include <clearance/visitor/nearest.hpp>
 
 namespace clearance {
 
-/// Where every point's distance goes, in memory that the backend writes: one of each a point of all clouds, in their
-/// order.
+/// Where distances go, in memory that the backend can write: one entry per point of all clouds, in order.
 struct distances_out {
   real* distance;                      ///< Metres; infinite beyond `d_max`, NaN where there is no point.
   std::uint32_t* part = nullptr;       ///< The nearest part, or ~0u; or null.
-  std::uint32_t* primitive = nullptr;  ///< Its nearest primitive; ~0u if the point is inside the part's solid. Or null.
+  std::uint32_t* primitive = nullptr;  ///< Its nearest primitive, ~0u if the point is inside the part's solid; or null.
 };
 
 namespace pointwise {
 
-/// What is nearest to a point: the least distance, of equal ones the lowest part, and of its the lowest primitive.
+/// What is nearest to a point: the least distance; of equal ones the lowest part, and of that the lowest primitive.
 struct found {
   real distance = infinity;
   std::uint32_t part = none, primitive = none;
 
-  /// Was that nearer?
+  /// Keeps the nearer one; returns true if that is `other`.
   CLEARANCE_HD bool offer(const found& other) {
     const bool nearer =
         other.distance < distance ||
@@ -42,7 +41,7 @@ CLEARANCE_HD inline found read(const distances_out& out, std::size_t i) {
           out.primitive != nullptr ? out.primitive[i] : none};
 }
 
-/// As an answer of `scan_body`, after `clear_body`; a point's parts come in order.
+/// An answer for `scan_body`, after `clear_body`. A point's parts come in order.
 struct each_point {
   distances_out out;
   real d_max;
@@ -61,7 +60,7 @@ struct each_point {
   }
 };
 
-/// Nothing is near any point yet.
+/// Initial state: nothing is near any point yet.
 template <point_source Source>
 struct clear_body {
   Source source;

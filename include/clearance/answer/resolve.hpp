@@ -9,8 +9,8 @@
 
 namespace clearance::minimum {
 
-/// Recomputes the witness of a key, in fixed order, if its point is one of this cloud's. Index `part_count` is the
-/// robot's, the ones below are the parts' own.
+/// Recomputes the witness of a key, in fixed order, if its point is in this cloud. Index `part_count` is the robot's
+/// minimum; lower indices are the parts' own.
 template <class PartView, point_source Source, class Traversal>
 struct resolve_body {
   const PartView* parts;
@@ -32,7 +32,7 @@ struct resolve_body {
     return stack_bytes;
   }
 
-  /// Can the key be of part `k`? If not, nothing needs to be looked for in it.
+  /// Can the key belong to part `k`? If not, the part need not be searched.
   CLEARANCE_HD bool may_be_of(std::uint32_t k) const {
     const distance_key key = bounds.all->best;
     return mine(key) &&
@@ -80,7 +80,7 @@ struct resolve_body {
   }
 };
 
-/// One thread, after the last cloud: counts, bracket and state.
+/// Writes counts, bracket and state after the last cloud, with one thread.
 template <class PartView>
 struct conclude_body {
   const PartView* parts;
@@ -88,7 +88,7 @@ struct conclude_body {
   const scan::drop_counts* counts;
   shared_bounds bounds;
   frames::float_error error;  ///< The largest of the call.
-  double largest_slop;        ///< Of all parts: all that is known of a part without a minimum of its own.
+  double largest_slop;        ///< Over all parts, because a part without its own minimum has nothing tighter.
   std::uint64_t seen;
   min_distance_result* result;
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Which search answers for a least distance, by where it runs.
+// Which search finds a least distance, by where it runs.
 
 #include <clearance/answer/host_search.hpp>
 
 namespace clearance {
 
-/// A backend with a traversal of one's choice: the loop over points, as in the paper, for whom traversals are the
-/// question. Goes where a backend goes.
+/// A backend with a traversal of your choice: the loop over points, as in the paper, for those who study traversals.
+/// Pass it in place of a backend.
 template <backend B, class Traversal>
 struct plain {
   B on;
@@ -18,7 +18,7 @@ plain(B, Traversal) -> plain<B, Traversal>;
 
 namespace minimum {
 
-/// Every source as it is.
+/// Takes every source as it is.
 struct as_it_is {
   template <point_source S>
   const S& operator()(const S& source, std::uint32_t) const {
@@ -26,11 +26,11 @@ struct as_it_is {
   }
 };
 
-/// Copies of clouds that a backend cannot read where they are, by their numbers.
+/// Copies of clouds that a backend cannot read where they are, with the clouds' numbers.
 template <backend B>
 using cloud_copies = std::vector<std::pair<std::uint32_t, typename B::template buffer<std::byte>>>;
 
-/// The source itself if the backend can read its memory, else one over a copy that `copies` keeps.
+/// The source itself if the backend can read its memory, else a source over a copy that `copies` keeps.
 template <backend B>
 struct readable_on {
   const B& on;
@@ -49,7 +49,7 @@ struct readable_on {
   }
 };
 
-/// A backend of one's own takes the plain loop.
+/// A backend of your own uses the plain loop.
 template <class On>
 struct search_on {
   static_assert(
@@ -57,7 +57,7 @@ struct search_on {
       "a device has a scan of its own: include <clearance/min_distance.cuh>, not the .hpp");
 
   static const On& backend_of(const On& on) { return on; }
-  /// One frame, enqueued; with `PerPart` every part's minimum too.
+  /// Enqueues one frame; with `PerPart` also every part's minimum.
   template <bool PerPart, class PartView, class Clouds, class Here>
   static void once(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
                    const Clouds& clouds, min_distance_result* result, part_minimum* minima, const Here& here) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A bound before the first test. Any real pair of a point and a primitive is a valid one, so nothing can be lost.
+// A bound before the first test. Any real pair of a point and a primitive gives a valid one, so nothing can be lost.
 
 #include <clearance/answer/record.hpp>
 #include <clearance/scan/reader.cuh>
@@ -11,18 +11,18 @@ namespace clearance::minimum {
 using scan::all_lanes, scan::fresh, scan::least_of, scan::lower_of, scan::memory_of_block, scan::block_threads,
     scan::warps;
 
-/// Last frame's minima and their neighbours, looked at anew: sixteen threads a minimum, or four where each part has
-/// one. Nothing of it needs shared memory to be ready.
+/// Evaluates last frame's minima and their neighbours anew: sixteen threads per minimum, or four if each part has one.
+/// None of it needs shared memory to be ready.
 template <class Answer>
 class last_frame {
  public:
-  /// Reads what there is; nothing waits for it yet.
+  /// Starts to read the last minima; nothing waits for them yet.
   explicit __device__ last_frame(const scan::scan_arguments<Answer>& a)
       : w_(a.answer.witnesses[slot()]), witnesses_(a.answer.state->witnesses) {
     if (a.first != 0 && slot() < (per_part ? a.parts : 1)) known_ = fresh(a.answer.state->bound[slot()]);
   }
 
-  /// Reads the points that those are about, once it is known which.
+  /// Reads the points of those minima and their neighbours.
   template <class Source>
   __device__ void look(const scan::scan_arguments<Answer>& a, const Source& source) {
     const std::uint32_t n = threadIdx.x % each, point = key_index(w_.r.key) - a.first + n - (n == 0 ? 0 : each / 2);
@@ -31,7 +31,7 @@ class last_frame {
     if (live && point < a.points) p_ = source[point];
   }
 
-  /// To the bounds of this block's warps, or of the parts.
+  /// Writes the bounds of this block's warps, or of the parts.
   __device__ void seed(const scan::scan_arguments<Answer>& a) const {
     auto& s = memory_of_block<Answer>().answer;
     const std::uint32_t n = threadIdx.x % each;
@@ -49,8 +49,8 @@ class last_frame {
     }
   }
 
-  /// The bound of all parts, to all threads, after `seed` and a barrier; where each part has its own: `no_bound` if one
-  /// has none.
+  /// Returns the bound of all parts to all threads, after `seed` and a barrier. If each part has its own bound:
+  /// `no_bound` if one part has none, else 0.
   static __device__ std::uint32_t found(std::uint32_t parts) {
     auto& s = memory_of_block<Answer>().answer;
     const std::uint32_t lane = threadIdx.x & 31;
@@ -74,9 +74,9 @@ class last_frame {
   sample p_{{}, drop_reason::not_finite};
 };
 
-/// No last frame: eight lanes take the most promising of their points down the tree (each eight lanes another part,
-/// where every part needs a bound), and all blocks wait a little for one another. Nothing depends on that wait but
-/// speed, so it gives up rather than hang.
+/// Without a last frame, eight lanes take the most promising of their points down a tree (if every part needs a bound,
+/// each eight lanes take another part). Then all blocks wait a little for one another. Only speed depends on that wait,
+/// so it gives up rather than hang.
 template <class Answer>
 __noinline__ __device__ void seed_cold(scan::quad_points p) {
   using parts = scan::frame_parts<Answer>;
@@ -85,11 +85,11 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
   const scan::eight_lanes team;
 #pragma unroll
   for (int j = 0; j < quad; ++j)
-    if ((p.reasons >> 8 * j & 0xff) != 0) p.at[j].x = not_a_number;  // is no nearest point
+    if ((p.reasons >> 8 * j & 0xff) != 0) p.at[j].x = not_a_number;  // can never be the nearest
   auto& s = parts::here().answer;
   const auto& a = parts::here().head;
-  // By power: the square of the distance to a ball's centre less the square of its radius. No root, and good enough.
-  // One point a thread and all parts, or all four and a few parts: a handful of tests.
+  // Compares powers: the squared distance to a ball's centre less its squared radius. This needs no root and is good
+  // enough. A thread tests one point against all parts, or all four against few parts: a handful of tests.
   real least_power = infinity;
   std::uint32_t k_least = 0;
   vec3 x = p.at[0];
@@ -123,7 +123,7 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
   if (threadIdx.x == 0) {
     scan::count_in(a.answer.state->seeded);
     constexpr long long patience =
-        20000;  // cycles, about 10 us; whoever does not wait longer has a looser bound, no other answer
+        20000;  // cycles, about 10 us; a block that gives up has a looser bound and the same answer
     const long long start = clock64();
     while (fresh(a.answer.state->seeded) < gridDim.x && clock64() - start < patience) {
     }

@@ -6,13 +6,13 @@
 
 namespace clearance::minimum {
 
-/// Shared by all points of all clouds of a call.
+/// What all points of all clouds of a call share.
 struct totals {
   distance_key best = no_key;
-  unsigned long long certain = 0;  ///< Not 0: some point is inside a part by more than rounding.
+  unsigned long long certain = 0;  ///< Not 0 if some point is inside a part by more than rounding.
 };
 
-/// The visitor of the shared minimum (the paper's Algorithm 3): its reach is the best that anybody has found.
+/// The visitor of the shared minimum (the paper's Algorithm 3). Its reach is the best that any point has found.
 struct shared_nearest {
   using result_type = real;
 
@@ -27,10 +27,10 @@ struct shared_nearest {
 };
 static_assert(visitor<shared_nearest>);
 
-/// The least distance as an answer of `scan_body`: one bound for all parts, or one a part.
+/// The least distance as an answer of `scan_body`: one bound for all parts, or one per part.
 struct shared_bounds {
   totals* all;
-  distance_key* part_best;  ///< One bound a part, or null: all parts share `all->best`.
+  distance_key* part_best;  ///< One bound per part, or null: all parts share `all->best`.
 
   CLEARANCE_HD distance_key* bound_of(std::uint32_t k) const {
     return part_best != nullptr ? part_best + k : &all->best;
@@ -42,14 +42,14 @@ struct shared_bounds {
     if (const distance_key key = make_key(distance, index); key < load_relaxed(bound)) lower_to(bound, key);
   }
 
-  /// 0 is the least that a part with an interior can have: once a lower point has it for certain, nothing is left to
-  /// learn.
+  /// A part with an interior has no distance below 0. Once a lower point has 0, and some point is certainly inside,
+  /// nothing is left to learn.
   CLEARANCE_HD bool settled(std::uint32_t index, std::uint32_t k) const {
     return load_relaxed(bound_of(k)) <= make_key(0, index) && load_relaxed(&all->certain) != 0;
   }
-  /// Where nothing can be nearer than 0 and something is, lower numbers matter before distances.
+  /// With an interior, once the bound is 0, lower point numbers matter before distances.
   CLEARANCE_HD bool lowest_first(std::uint32_t k) const { return reach(k) <= 0; }
-  /// True: it is still to be learned whether a point is certainly inside.
+  /// Returns true if it is still unknown whether some point is certainly inside.
   CLEARANCE_HD bool take_inside(std::uint32_t index, std::uint32_t k) const {
     lower_to(bound_of(k), make_key(0, index));
     return load_relaxed(&all->certain) == 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How many points are around a few candidates.
+// Counts the points around a few candidates.
 
 #include <clearance/backend/host.hpp>
 #include <clearance/frame/frame.hpp>
@@ -15,7 +15,7 @@
 
 namespace clearance::pairwise {
 
-/// A candidate's place in the world, by its number through all clouds; of those that are in this one.
+/// Computes where candidates are in the world, from their numbers through all clouds, if they are in this cloud.
 template <point_source Source>
 struct place_candidates {
   Source source;
@@ -30,8 +30,8 @@ struct place_candidates {
   }
 };
 
-/// Balls in a cloud's frame around a place in the world, whatever rounding does: what is within `radius` is in the
-/// ball, and what is within `all_within` of its middle (nothing, if that is negative) is within `radius`.
+/// A ball in a cloud's frame around a place in the world, safe against rounding. Points within `radius` of the place
+/// are in the ball. Points within `all_within` of its middle are within `radius`; if that is negative, no point is.
 struct place_around {
   ball near;
   double all_within;
@@ -43,16 +43,16 @@ inline place_around around(position at, double radius, const world_transform& wo
   return {{{real(c.x), real(c.y), real(c.z)}, rounded_up(radius + off)}, radius - off};
 }
 
-/// One more of a cloud's points: is it within `radius` of candidates? In world coordinates, in double; itself counts,
-/// too. Candidates that have enough are not asked again.
+/// Counts one of a cloud's points for each candidate within the radius, in world coordinates and double. A candidate
+/// counts itself. Candidates that have enough are not tested again.
 template <point_source Source>
 struct count_support {
   Source source;
   world_transform world_from_cloud;
   ball all;                ///< Around all balls.
-  const ball* near;        ///< One a candidate.
-  const position* at;      ///< Likewise,
-  std::uint32_t* support;  ///< and so are their counts: at least `enough`, if there are so many.
+  const ball* near;        ///< One per candidate.
+  const position* at;      ///< One per candidate.
+  std::uint32_t* support;  ///< One count per candidate: at least `enough`, if so many points are near.
   std::uint32_t candidates, enough;
   double square;  ///< Of the radius.
 
@@ -76,11 +76,11 @@ struct count_support {
   }
 };
 
-/// The same on a host, of neighbours at once: mostly a candidate's ball has all of them in it, or none.
+/// The same on a host, for many neighbours at once: mostly a candidate's ball contains all of them or none.
 template <point_source Source>
 struct count_support_of_pieces {
   count_support<Source> each;
-  const double* all_within;  ///< One a candidate.
+  const double* all_within;  ///< One per candidate.
 
   void operator()(indices range) const {
     with_vectors([&] {
@@ -133,7 +133,7 @@ struct find_inside {
   vec3 origin;
   std::uint32_t first;
   const std::uint32_t* number;
-  std::uint32_t* inside;  ///< One a candidate: becomes 1.
+  std::uint32_t* inside;  ///< One per candidate; becomes 1 if it is certainly inside.
   any_depth walk;
 
   CLEARANCE_HD void operator()(std::size_t c) const {

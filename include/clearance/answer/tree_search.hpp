@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// One configuration by branch and bound down two trees at once: that over the points, and a part's own.
+// One configuration by branch and bound in two trees at once: the tree over the points, and a part's own.
 
 #include <clearance/answer/batch_question.hpp>
 #include <clearance/cloud_tree/tree_view.hpp>
@@ -9,14 +9,14 @@
 
 namespace clearance::minimum {
 
-/// What a part's distance to a ball of points can be, from its distance to the ball's middle: no point is nearer or
-/// farther by more than the radius, and what is computed less than exactly, at both ends.
+/// Bounds on a part's distance to the points in a ball, from its distance to the ball's middle: that distance less or
+/// plus the radius, with rounding at both ends.
 struct ball_bounds {
   real most;  ///< What arithmetic can cost at distance 0.
 
   ball_bounds() = default;
-  /// Twice what it takes: either end is off by at most `unit_error` of twice the part's extent, that distance, and the
-  /// radius.
+  /// Twice what is needed: either end is off by at most `unit_error` times twice the part's extent, that distance, and
+  /// the radius.
   CLEARANCE_HD ball_bounds(const part_facts& facts, const rigid_transform& part_from_cloud) {
     const double extent = double(length(facts.center)) + facts.radius + length(part_from_cloud.translation);
     most = rounded_up(4 * frames::arithmetic_error(extent));
@@ -31,20 +31,20 @@ struct ball_bounds {
   CLEARANCE_HD real upper(real distance, real radius) const { return distance + radius + off(distance, radius); }
 };
 
-/// What pairs are ordered by: where a part knows its inside, lower numbers may have to go first.
+/// The order of pairs. If a part has an interior, lower numbers may have to go first.
 template <class PartView>
 using pair_order = std::conditional_t<scan::has_interior<PartView>, distance_key, std::uint32_t>;
 
-/// What is below a node of the tree over the points, or one of its points, and what is below a node of a part's tree.
+/// A node of the tree over the points, or one of its points, together with a node of a part's tree.
 template <class Node>
 struct node_pair {
-  real bound;  ///< No two of them are nearer.
+  real bound;  ///< No point and primitive below them are nearer.
   std::uint32_t at, part;
-  std::uint32_t from;  ///< The children of `node` before this one are done with.
+  std::uint32_t from;  ///< The children before this one are done.
   Node node;
   std::uint8_t level;  ///< 0: a point; else one more than the level of the points' node.
-  std::uint8_t depth;  ///< Of `node`, as far as it is counted.
-  bool by_points;      ///< It is the points' node that is to be opened.
+  std::uint8_t depth;  ///< Depth of `node`; the count stops at 255.
+  bool by_points;      ///< The points' node is to be opened.
   bool whole;          ///< Points may be inside the part's solid: `node` stays the root.
 };
 
@@ -61,12 +61,12 @@ struct tree_search {
 
   const Body& body;
   const Tree& tree;
-  const ball_bounds* bounds;  ///< One a part.
+  const ball_bounds* bounds;  ///< One per part.
 
-  /// How near a part must be.
+  /// How near part `k` must be.
   CLEARANCE_HD real reach(std::uint32_t k) const { return body.answer.reach(k); }
 
-  /// Pairs to begin with: each node of the top with each part.
+  /// The number of pairs to begin with: each node of the top level with each part.
   CLEARANCE_HD std::uint32_t starts() const {
     return tree.levels == 0 ? 0 : tree.size(tree.levels - 1) * body.part_count;
   }
@@ -89,13 +89,12 @@ struct tree_search {
     return look(c);
   }
 
-  /// May all of a node's points be as good as one another, for all that bounds can tell? Then it is quicker to look at
-  /// each than to open nodes.
+  /// Can bounds not tell a node's points apart? Then it is quicker to look at each point than to open nodes.
   bool is_small(const pair& p) const {
     return p.by_points && !p.whole && p.level != 0 && body.parts[p.part].tree.is_leaf(p.node) &&
            tree.balls[node_of(p)].radius <= bounds[p.part].most;
   }
-  /// Looks at all points of a node that is small. Those in one place, neighbours mostly, are looked at once.
+  /// Looks at all points of a small node.
   void look_at_points(const pair& p) const {
     pair its = p;
     its.level = 0;
@@ -107,14 +106,14 @@ struct tree_search {
     for (its.at = begin; its.at < end; ++its.at) look_at_point(its, tree.points[its.at]);
   }
 
-  /// Is there nothing left to learn from it?
+  /// Is there nothing left to learn from the pair?
   CLEARANCE_HD bool settled(const pair& p) const {
     if (!(p.bound <= reach(p.part))) return true;
     if constexpr (solid) return body.answer.settled(body.first + least(p), 0);
     return false;
   }
-  /// Of two pairs the nearer goes first. A part with an interior has nothing nearer than 0: once that is found, the
-  /// lowest number does.
+  /// Of two pairs the nearer goes first. A part with an interior has no distance below 0; once 0 is found, the lowest
+  /// number goes first.
   using order_type = pair_order<part_view>;
   CLEARANCE_HD order_type order(const pair& p) const {
     if constexpr (solid)
@@ -137,8 +136,8 @@ struct tree_search {
     return false;
   }
 
-  /// What a pair can be worth, and which of the two is to be opened; false if nothing in it matters, or all has been
-  /// looked at.
+  /// Finds a pair's bound, and which of its two nodes is to be opened. Returns false if nothing in it matters or all of
+  /// it has been looked at.
   CLEARANCE_HD bool look(pair& p) const {
     if (p.level == 0) return look_at_point(p, tree.points[p.at]);
     const ball b = tree.balls[node_of(p)];
@@ -162,14 +161,15 @@ struct tree_search {
             part.facts.radius / real(1u << (p.depth < 20 ? p.depth * 3 / 2 : 30));  // surfaces of eight children each
       }
       p.bound = max(p.bound, bound);
-      // The larger of the two is opened; which one that is changes the work, and no answer.
+      // The larger node is opened. The choice changes the work, and no answer.
       p.by_points = 10 * b.radius > 7 * size || part.tree.is_leaf(p.node);
     }
     return p.bound <= reach(p.part);
   }
 
-  /// How far a position in a part is from a node's points at least: from their box, and from their ball. What is
-  /// computed is off by no more than a point's way into the part's frame: from there to here it is the same way.
+  /// A lower bound on the distance from a position in a part to a node's points: from their box and from their ball.
+  /// Its error is no larger than that of a point transformed into the part's frame: this is the same transform
+  /// backwards.
   CLEARANCE_HD real away(const extent& box, const ball& b, vec3 x, vec3 center, std::uint32_t k) const {
     const rigid_transform& to = body.places[k].part_from_cloud;
     const vec3 d = center - to.translation;
@@ -182,10 +182,9 @@ struct tree_search {
     return rough_max(rough_length(beyond), rough_length(x - w) - b.radius * (1 + slack));
   }
 
-  /// Are all of a node's points in one place in the part's frame, as that is computed? Then the one of the lowest
-  /// number stands for them: equal points, and others that are nearer to one another than floats there can tell. What
-  /// is computed rises or falls with each coordinate, so the box's corners tell. (A sum of 0 has a sign that they do
-  /// not.)
+  /// Do all of a node's points get the same computed position in the part's frame? Then the point with the lowest
+  /// number stands for them: equal points, and points too close together for floats there. The computed position is
+  /// monotone in each coordinate, so the box's corners decide. (They do not tell the sign of a sum of 0.)
   CLEARANCE_HD bool in_one_place(const pair& p) const {
     const extent& box = tree.boxes[node_of(p)];
     if (box.lower == box.upper) return true;
@@ -200,9 +199,9 @@ struct tree_search {
     return one(to.row[0], to.translation.x) && one(to.row[1], to.translation.y) && one(to.row[2], to.translation.z);
   }
 
-  /// `here`: the pair's point, or one that stands for a node.
+  /// `here`: the pair's point, or the point that stands for a node.
   CLEARANCE_HD bool look_at_point(pair& p, const cloud_tree::numbered_point& here) const {
-    if (here.number == none) return false;  // no point, and what a volume says of NaN is its own business
+    if (here.number == none) return false;  // no point; a volume may return anything for NaN
     if (solid && p.whole) return visit(here, p.part), false;
     const auto& its = body.parts[p.part].tree;
     const vec3 q = body.places[p.part].part_from_cloud(here.at - body.origin);
@@ -215,8 +214,8 @@ struct tree_search {
     return false;
   }
 
-  /// Points within a part's ball may be inside its solid. From the distance to the surface of their ball's middle
-  /// follows whether they are, how near they can be at least, and how near some of them must be.
+  /// Points within a part's ball may be inside its solid. The distance from their ball's middle to the surface tells
+  /// whether they may be, how near they can be, and how near some of them must be.
   CLEARANCE_HD bool look_inside(pair& p, const ball& b, vec3 x) const {
     const frames::placement& place = body.places[p.part];
     const part_view& part = body.parts[p.part];

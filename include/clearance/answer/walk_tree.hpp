@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Down the trees over points and parts by one thread on a host, nearest first.
+// One host thread walks the trees over points and parts, nearest first.
 
 #include <clearance/answer/tree_search.hpp>
 
@@ -9,7 +9,7 @@
 
 namespace clearance::minimum {
 
-/// A pair that is still to be opened. It goes before all that are not nearer.
+/// A pair that is still to be opened. The nearest goes first.
 template <class Pair, class Order>
 struct pending_pair {
   Order order;

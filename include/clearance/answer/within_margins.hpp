@@ -6,20 +6,19 @@
 
 namespace clearance::minimum {
 
-/// How near a part's points must be, as they are computed, to be perhaps within its margin, and how near to be so for
-/// certain.
+/// Limits on computed distances: up to `may_be` a point may be within the part's margin; up to `is` it certainly is.
 struct margin_reach {
   real may_be, is;
 };
 
-/// What is known of a configuration's points and margins; less is more.
+/// What is known of a configuration's points and margins. A smaller value is a stronger finding.
 struct margin_word {
   static constexpr std::uint32_t certain = 0, possible = 1, nothing = 2;
 
   std::uint32_t found = nothing;
 };
 
-/// A part's visitor: what it is offered is known to all at once.
+/// A part's visitor. It publishes what it is offered at once.
 struct near_margin {
   using result_type = bool;
 
@@ -41,11 +40,11 @@ struct near_margin {
 };
 static_assert(visitor<near_margin>);
 
-/// An answer of `scan_body`: is anything within margins? Once something certainly is, nothing is looked at any more;
-/// once something may be, only what certainly is. So it is the same, whatever was found first.
+/// An answer of `scan_body`: is anything within margins? After a certain hit nothing more is looked at. After a
+/// possible hit, only a certain hit can change the result. So the result does not depend on what was found first.
 struct within_margins {
   margin_word* word;
-  const margin_reach* margins;  ///< One a part.
+  const margin_reach* margins;  ///< One per part.
 
   CLEARANCE_HD near_margin visitor(std::uint32_t, std::uint32_t k) const { return {word, margins[k]}; }
   CLEARANCE_HD void take(std::uint32_t, std::uint32_t, const near_margin&) const {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The witness of a pair: what of a part is nearest to a point.
+// The witness of a pair: the place on a part that is nearest to a point.
 
 #include <clearance/ground/pose.hpp>
 #include <clearance/result.hpp>
@@ -8,7 +8,7 @@
 
 namespace clearance::minimum {
 
-/// The closest primitive itself, of equally close ones that with the lowest id.
+/// The closest primitive itself; of equally close ones the one with the lowest id.
 template <primitive P>
 struct nearest_primitive {
   using result_type = std::uint32_t;
@@ -31,14 +31,15 @@ struct contact {
   vec3 normal;
 };
 
-/// Between a primitive and the point q, in the part's frame. From `inside` a solid the way out is towards the surface.
+/// The contact of a primitive with the point q, in the part's frame. `inside` a solid the normal is reversed: the way
+/// out is towards the surface.
 template <primitive P>
 CLEARANCE_HD contact contact_of(const P& primitive, vec3 q, bool inside, const world_transform& world_from_part) {
   const vec3 away = primitive.normal(q);
   return {world_from_part(primitive.nearest(q)), world_from_part.turned(inside ? -away : away)};
 }
 
-/// How far a point is from a part, and from which of its primitives.
+/// A point's distance to a part, and the part's nearest primitive.
 template <primitive P>
 struct nearest_of_part {
   real distance;
@@ -50,7 +51,7 @@ struct nearest_of_part {
   }
 };
 
-/// By the rule of the scan: 0 inside, else the distance to the closest primitive, if that is not above `within`.
+/// The distance by the scan's rule: 0 inside, else that of the closest primitive, if it is at most `within`.
 template <class PartView, class Traversal>
 CLEARANCE_HD auto evaluate(const PartView& part, vec3 q, real within, const Traversal& walk) {
   nearest_of_part<typename PartView::hierarchy_type::primitive_type> f{infinity, false, {within}};

@@ -5,10 +5,10 @@
 
 namespace clearance::pairwise {
 
-/// An answer: each pair's distance where it belongs, part after part. What is farther than `d_max` is left as it was.
+/// An answer: writes each pair's distance in its place, part after part. Places of pairs beyond `d_max` are left alone.
 struct written {
   real* distance;
-  const std::uint32_t* first_point;  ///< Of each cloud.
+  const std::uint32_t* first_point;  ///< Per cloud.
   std::size_t points;                ///< Of all clouds.
   real d_max;
 
@@ -19,11 +19,11 @@ struct written {
 };
 static_assert(answer<written>);
 
-/// Before: all points of a source are too far, or none.
+/// Before the scan: every point of a source is too far away, or no point (NaN).
 template <point_source Source>
 struct nothing_written {
   Source source;
-  real* distance;  ///< Of its first point to the first part.
+  real* distance;  ///< The place of its first point and the first part.
   std::size_t points, parts;
 
   CLEARANCE_HD void operator()(std::size_t i) const {

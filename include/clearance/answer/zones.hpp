@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How many points are in zones around parts, as an answer that gets pairs.
+// How many points are in zones around parts: an answer that gets pairs.
 
 #include <clearance/frame/clouds.hpp>
 #include <clearance/ground/ordered.hpp>
@@ -8,23 +8,22 @@
 
 namespace clearance::pairwise {
 
-/// What a scan keeps of one zone of one part, less what is in the zones inside it. Points are numbered through all
-/// clouds.
+/// What a scan keeps for one zone of one part, without the zones inside it. Points are numbered through all clouds.
 struct zone_words {
   unsigned long long points = 0;
   distance_key nearest = no_key;  ///< (distance, point)
   std::uint32_t first = ~0u;      ///< The lowest point.
 };
 
-/// The answer: zones of each part, the innermost first. A point is put into the innermost zone that it is in; how far
-/// away it is matters no more than that, unless it may be the nearest.
+/// The answer: zones of each part, the innermost first. A point is counted in its innermost zone. Its exact distance
+/// matters only if it may be the nearest.
 struct count_in_zones {
   static constexpr std::uint32_t copies =
-      8;  ///< Of all words, to be joined in the end: else threads would wait for one another.
+      8;  ///< Copies of all words, so that threads do not wait for one another. They are joined at the end.
 
-  zone_words* words;                 ///< `zones` a part, `total` in a copy.
-  const real* reaches;               ///< `zones` a part: how near a point must be to be counted.
-  const std::uint32_t* first_point;  ///< Of each cloud.
+  zone_words* words;                 ///< `zones` per part, `total` per copy.
+  const real* reaches;               ///< `zones` per part: how near a point must be to be counted.
+  const std::uint32_t* first_point;  ///< Per cloud.
   std::uint32_t zones, total;
 
   CLEARANCE_HD real reach(std::uint32_t part) const {
@@ -44,7 +43,7 @@ struct count_in_zones {
     if (number < load_relaxed(&zone.first)) lower_word(&zone.first, number);
   }
 
-  /// Zone `i` of all, from all copies, with the zones inside it.
+  /// Zone `i` of all zones, joined from all copies, with the zones inside it.
   CLEARANCE_HD zone_words joined(std::size_t i) const {
     zone_words all;
     for (std::uint32_t c = 0; c < copies; ++c)
@@ -64,7 +63,7 @@ struct count_in_zones {
     return number / 1024 % copies;
 #endif
   }
-  /// The innermost zone with a point so far away, or `zones`.
+  /// The innermost zone that contains a point at this distance, or `zones`.
   CLEARANCE_HD std::uint32_t innermost(std::uint32_t part, real distance) const {
     std::uint32_t z = zones;
     while (z > 0 && distance <= reaches[part * zones + z - 1]) --z;
@@ -73,7 +72,7 @@ struct count_in_zones {
 };
 static_assert(coarse_answer<count_in_zones>);
 
-/// Before: nothing is in any.
+/// Before the scan: empties all zones.
 struct empty_zones {
   zone_words* words;
   CLEARANCE_HD void operator()(std::size_t i) const { words[i] = {}; }

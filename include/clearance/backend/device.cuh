@@ -32,7 +32,7 @@ struct each_body {
   }
 };
 
-/// Bytes that travel as kernel arguments, so that nobody waits for a copy from pageable memory.
+/// Bytes that travel as kernel arguments, so that no one waits for a copy from pageable memory.
 struct argument_bytes {
   static constexpr std::size_t capacity = 3968;
   alignas(16) std::byte bytes[capacity];
@@ -45,8 +45,8 @@ __global__ void stage_kernel(std::byte* to, unsigned count, const __grid_constan
 
 }  // namespace detail
 
-/// Runs on CUDA device `id`, in the order of `stream` (which belongs to that device; null: its default stream).
-/// The caller's current device is left as it was.
+/// Runs on CUDA device `id`, in the order of `stream` (which belongs to that device; null: its default stream). The
+/// caller's current device stays as it was.
 struct device {
   template <class T>
   using buffer = device_buffer<T>;
@@ -57,7 +57,7 @@ struct device {
   int id = 0;
   cudaStream_t stream = nullptr;
 
-  /// Enqueues a kernel of one's own; a block has `shared` bytes of dynamic shared memory.
+  /// Enqueues your own kernel. A block has `shared` bytes of dynamic shared memory.
   template <class... P, class... A>
   void launch(void (*kernel)(P...), unsigned blocks, unsigned threads, std::size_t shared,
               const A&... arguments) const {
@@ -66,8 +66,8 @@ struct device {
     check_cuda(cudaGetLastError(), "kernel launch");
   }
 
-  /// Enqueues `body(indices)` over a grid stride; returns at once. A body that recurses says its need in
-  /// device_stack().
+  /// Enqueues `body(indices)` over a grid stride and returns at once. A recursive body gives the stack that it needs,
+  /// in bytes, as device_stack(). Throws std::invalid_argument if the device's limit is lower.
   template <class F>
   void for_ranges(std::size_t n, F body) const {
     if (n == 0) return;
@@ -115,13 +115,13 @@ struct device {
     return copy;
   }
 
-  /// Room for one call, in stream order.
+  /// Memory for one call, in stream order.
   template <class T>
   scratch<T> make_scratch(std::size_t n) const {
     return {n, id, stream};
   }
 
-  /// Enqueues a copy of `data`; it may change as soon as this returns, and nothing is waited for.
+  /// Enqueues a copy of `data`, which may change as soon as this returns. It does not wait.
   template <class T>
   void stage(std::span<const T> data, T* to) const {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -145,7 +145,7 @@ struct device {
     return attributes.devicePointer != nullptr;
   }
 
-  /// Can they without a bus between? Over a bus a kernel's small pieces take more than twice the time of one copy.
+  /// Can they without a bus between? Over a bus, their small reads take more than twice the time of one copy.
   bool holds(const void* memory) const {
     const device_guard guard(id);
     cudaPointerAttributes attributes{};

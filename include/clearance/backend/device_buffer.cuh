@@ -10,7 +10,7 @@
 
 namespace clearance {
 
-/// For destructors, which cannot throw.
+/// Calls `action` with `device` current. For destructors, which cannot throw.
 template <class F>
 void on_device(int device, F action) {
   int before = device;
@@ -20,8 +20,8 @@ void on_device(int device, F action) {
   if (before != device) cudaSetDevice(before);
 }
 
-/// Owns an array in the memory of one device, its own or that of a caller's resource (which hands out device memory and
-/// outlives it). Giving it back waits until no stream can still be reading it; a resource has to see to that itself.
+/// Owns an array in device memory, its own or from a caller's resource (which hands out device memory and outlives it).
+/// Freeing its own waits until no stream can still be reading it; a resource has to ensure that itself.
 template <class T>
 class device_buffer {
  public:
@@ -57,7 +57,7 @@ class device_buffer {
   std::size_t size() const { return size_; }
 
  private:
-  static constexpr std::size_t alignment = 256;  // what cudaMalloc promises
+  static constexpr std::size_t alignment = 256;  // as cudaMalloc promises
 
   T* data_ = nullptr;
   std::size_t size_ = 0;
@@ -65,7 +65,7 @@ class device_buffer {
   std::pmr::memory_resource* from_ = nullptr;
 };
 
-/// Device memory for one call: taken and given back in the order of the stream, so that the host never waits for it.
+/// Device memory for one call, allocated and freed in stream order, so that the host never waits for it.
 template <class T>
 class stream_buffer {
  public:

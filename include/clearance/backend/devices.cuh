@@ -9,16 +9,16 @@
 
 namespace clearance {
 
-/// Several CUDA devices at once: the robot is on each, and every cloud is divided among them. Each has a stream of its
-/// own, behind what is in its device's default stream; or one of the caller's. A device may be named twice. Copies of
-/// this value share the streams. The caller's current device is left as it was.
+/// Several CUDA devices at once: the robot is on each, and every cloud is divided among them. Each has its own stream,
+/// which waits for its device's default stream, or one of the caller's. A device may be named twice. Copies of this
+/// value share the streams. The caller's current device stays as it was.
 class devices {
  public:
   using own_scan = void;  ///< Operations on devices need their .cuh headers.
 
   devices() = delete;  // nvcc 13.0 would take devices{} for devices{0}
 
-  /// By number. Throws std::invalid_argument if there is none, or one that does not exist.
+  /// Devices by number. Throws std::invalid_argument if there is none, or if one does not exist.
   devices(std::initializer_list<int> ids) : devices(std::vector<int>(ids)) {}
   explicit devices(const std::vector<int>& ids) {
     for (const int id : ids) {
@@ -28,13 +28,13 @@ class devices {
     }
     check_any();
   }
-  /// With streams of the caller's, which outlive this. Throws std::invalid_argument, too, if a stream belongs to
+  /// With the caller's streams, which must outlive this. Throws std::invalid_argument also if a stream belongs to
   /// another device.
   explicit devices(std::vector<device> each) : each_(std::move(each)) {
     check_any();
     for (const device& on : each_) check_exists(on.id), check_stream(on);
   }
-  /// All that this process sees.
+  /// All devices that this process sees.
   static devices all() {
     std::vector<int> ids;
     for (int id = 0; id < count(); ++id) ids.push_back(id);
@@ -47,12 +47,12 @@ class devices {
   void wait() const {
     for (const device& on : each_) on.wait();
   }
-  /// The same, whatever has gone wrong on one of them.
+  /// The same, even if one of them has failed.
   void wait_for_all() const noexcept {
     for (const device& on : each_) {
       try {
         on.wait();
-      } catch (...) {  // what is told is what went wrong first
+      } catch (...) {  // the first error is the one reported
       }
     }
   }
@@ -71,7 +71,7 @@ class devices {
       throw std::invalid_argument("clearance: there is no CUDA device " + std::to_string(id) + "; this process sees " +
                                   std::to_string(there));
   }
-  /// An event does not go into a stream of another device. (To ask a stream for its device needs CUDA 12.8.)
+  /// An event cannot be recorded in another device's stream. (Asking a stream for its device needs CUDA 12.8.)
   static void check_stream(const device& on) {
     const device_guard guard(on.id);
     cudaEvent_t event = nullptr;

@@ -13,7 +13,7 @@
 
 namespace clearance {
 
-/// Runs on the CPU, on `threads` threads of TBB (0: as many as TBB likes). Memory is the process's own.
+/// Runs on the CPU, on `threads` threads of TBB (0: TBB decides). Memory is the process's own.
 struct host {
   template <class T>
   using buffer = std::vector<T>;
@@ -22,7 +22,7 @@ struct host {
 
   unsigned threads = 0;
 
-  /// Calls `body(indices)` for ranges that together cover 0 .. n-1 once; small enough to balance uneven work.
+  /// Calls `body(indices)` for ranges that together cover 0 .. n-1 once and are small enough to balance uneven work.
   template <class F>
   void for_ranges(std::size_t n, F body) const {
     constexpr std::size_t grain = 1024;
@@ -60,7 +60,7 @@ struct host {
     return {data, data + n};
   }
 
-  /// Room for one call.
+  /// Memory for one call.
   template <class T>
   scratch<T> make_scratch(std::size_t n) const {
     return scratch<T>(n);
@@ -74,7 +74,7 @@ struct host {
 
 static_assert(backend<host>);
 
-/// The threads of a `host`, kept from call to call. Each takes the next piece of work as soon as it is done with one.
+/// The threads of a `host`, kept from call to call. Each takes the next piece of work as soon as it has finished one.
 class host_workers {
  public:
   explicit host_workers(const host& on) : threads_(on.threads) {

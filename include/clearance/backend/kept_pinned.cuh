@@ -8,8 +8,8 @@
 
 namespace clearance {
 
-/// Pinned memory, for any device, that is kept when it is given back: the driver takes 0.2 ms for each piece. Whoever
-/// gives one back has seen to it that no device will write to it any more. It lives as long as the process.
+/// Pinned memory for any device. It keeps pieces that are given back, because the driver takes 0.2 ms for each. Give a
+/// piece back only when no device will write to it any more. It lives as long as the process.
 inline std::pmr::memory_resource* kept_pinned() {
   class from_driver : public std::pmr::memory_resource {
     void* do_allocate(std::size_t bytes, std::size_t) override {

@@ -9,9 +9,9 @@
 
 namespace clearance {
 
-/// A pool of device memory of the library's own, one a device, for what lives in the order of a stream. It keeps some
-/// of what it once had: the driver's default pool gives all back whenever somebody waits, and takes tens of
-/// microseconds to get it again. It lives as long as the process.
+/// The library's own pool of device memory, one per device, for memory in stream order. It keeps some memory: the
+/// driver's default pool releases everything whenever someone waits, and takes tens of microseconds to get it again. It
+/// is never destroyed.
 inline cudaMemPool_t kept_pool(int device) {
   static std::mutex one_at_a_time;
   static std::map<int, cudaMemPool_t> pools;
@@ -22,7 +22,7 @@ inline cudaMemPool_t kept_pool(int device) {
     properties.allocType = cudaMemAllocationTypePinned;
     properties.location.type = cudaMemLocationTypeDevice, properties.location.id = device;
     check_cuda(cudaMemPoolCreate(&pool, &properties), "cudaMemPoolCreate");
-    std::uint64_t kept = 64 << 20;  // bytes; pools grow by 32 MiB, and one that has more than this gives all back
+    std::uint64_t kept = 64 << 20;  // bytes; pools grow by 32 MiB, and one that has more than this releases everything
     check_cuda(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &kept), "cudaMemPoolSetAttribute");
   }
   return pool;

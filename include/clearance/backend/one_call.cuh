@@ -7,7 +7,7 @@
 
 namespace clearance::detail {
 
-/// Memory for one call comes in the order of its stream.
+/// Memory for one call comes in stream order.
 template <>
 struct one_call<device> {
   template <class Ask>

@@ -3,8 +3,7 @@
 
 namespace clearance::detail {
 
-/// A prepared question that is made for one call. What `ask(memory...)` answers: on a device (one_call.cuh) it is told
-/// of a resource.
+/// For a prepared question made for one call: returns `ask(memory...)`. On a device (one_call.cuh) that is a resource.
 template <class On>
 struct one_call {
   template <class Ask>

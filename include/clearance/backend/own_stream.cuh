@@ -5,7 +5,7 @@
 
 namespace clearance {
 
-/// A stream for work beside other work of the same device. Do not destroy it before all that was given to it is done.
+/// A stream for work beside other work of the same device. Do not destroy it before all its work is done.
 class own_stream {
  public:
   explicit own_stream(int id, unsigned flags = cudaStreamNonBlocking) : id_(id) {

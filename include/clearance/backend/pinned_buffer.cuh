@@ -5,8 +5,8 @@
 
 namespace clearance {
 
-/// Page-locked host memory that kernels can write and the host can watch: its own, or that of a caller's resource,
-/// which hands out such memory and outlives it.
+/// Page-locked host memory that kernels can write and the host can watch: its own, or from a caller's resource, which
+/// hands out such memory and outlives it.
 template <class T>
 class pinned_buffer {
  public:

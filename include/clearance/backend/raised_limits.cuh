@@ -8,12 +8,12 @@
 
 namespace clearance {
 
-/// Kernels that may have more shared memory than a block always has. A limit is raised once, because that takes longer
-/// than a launch. Every translation unit has kernels of its own: so they are known by address, not by type, and raised
+/// Kernels that may use more shared memory than a block always has. A limit is raised once, because that takes longer
+/// than a launch. Every translation unit has its own kernels, so they are known by address, not by type, and raised
 /// where they are launched.
 class raised_limits {
  public:
-  /// On the current device.
+  /// Raises the limit on the current device, unless that was done.
   void raise(const void* kernel, std::size_t bytes) {
     if (std::find(kernels_.begin(), kernels_.end(), kernel) != kernels_.end()) return;
     check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)),

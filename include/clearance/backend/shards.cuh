@@ -7,7 +7,7 @@
 
 namespace clearance {
 
-/// Owns a cloud in pieces, each in the memory of one of several devices. `Piece` is a slice of the source that it was.
+/// Owns a cloud in pieces, each in the memory of one of several devices. `Piece` is a slice of the original source.
 template <point_source Piece>
 class shards {
  public:
@@ -15,7 +15,7 @@ class shards {
   template <point_source S>
   shards(const devices& on, const S& cloud) : view_(copied(on, cloud)) {}
 
-  /// What a call takes for the cloud.
+  /// Pass this to a call as the cloud.
   const sharded<Piece>& view() const { return view_; }
 
  private:
@@ -41,8 +41,8 @@ class shards {
   sharded<Piece> view_;
 };
 
-/// A cloud's slices, one on each device, for clouds that stay or are too large for one. The points are in host memory
-/// or in that of any device.
+/// Copies a cloud's slices, one to each device, for clouds that stay or are too large for one device. The points may be
+/// in host memory or on any device.
 template <point_source S>
 auto shard(const devices& on, const S& cloud) {
   static_assert(

@@ -5,8 +5,8 @@
 
 namespace clearance {
 
-/// Work that may run beside other work of a stream, and that what follows there waits for. A graph that captures the
-/// stream takes both along.
+/// Work that may run beside other work of a stream. Later work of the stream waits for it. A captured graph includes
+/// both.
 class side_stream {
  public:
   explicit side_stream(const device& main) : main_(main), side_(main.id) {
@@ -21,12 +21,12 @@ class side_stream {
       if (event != nullptr) on_device(main_.id, [event] { return cudaEventDestroy(event); });
   }
 
-  /// What the main stream gets from now on is what other work may run beside.
+  /// From here on, side work may run beside what the main stream gets.
   void fork() const {
     const device_guard guard(main_.id);
     check_cuda(cudaEventRecord(events_[0], main_.stream), "cudaEventRecord");
   }
-  /// That work: `enqueue(device)`. What the main stream gets after this waits for it.
+  /// Enqueues the side work by `enqueue(device)`. What the main stream gets after this waits for it.
   template <class F>
   void join(const F& enqueue) const {
     const device_guard guard(main_.id);

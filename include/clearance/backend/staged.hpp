@@ -5,7 +5,7 @@
 
 namespace clearance {
 
-/// A copy for one call where `on` runs: nothing is waited for.
+/// A copy for one call where `on` runs. It does not wait.
 template <backend On, class T>
 auto staged(const On& on, const std::vector<T>& data) {
   auto there = on.template make_scratch<T>(data.size());

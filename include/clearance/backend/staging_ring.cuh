@@ -13,9 +13,9 @@
 
 namespace clearance {
 
-/// Bytes on their way to a device, in turns of three rooms: while one is filled, another is copied, and a third is read
-/// there. Each turn: `fill`, `copy`, what reads them into the device's stream, `read`. What is in pinned memory is
-/// copied from where it lies.
+/// Brings bytes to a device through three rooms in turn: while one is filled, another is copied, and a third is read on
+/// the device. In each turn call `fill` and `copy`, enqueue what reads the bytes in the device's stream, and call
+/// `read`. Bytes in pinned memory are copied from where they lie.
 class staging_ring {
  public:
   static constexpr std::size_t rooms = 3;
@@ -25,9 +25,9 @@ class staging_ring {
     for (room& r : rooms_) r.copied = event(on.id), r.read = event(on.id);
   }
 
-  /// Before the first turn of a call: as large as its largest, on either side.
+  /// Call it before the first turn, with the largest sizes of any turn, in bytes, on either side.
   void need(std::size_t pinned, std::size_t there) {
-    // Asked of the rooms themselves: some have none where memory once ran out.
+    // Every room is checked: some have no memory if an allocation once failed.
     if (std::ranges::all_of(rooms_,
                             [&](const room& r) { return pinned <= r.pinned.size() && there <= r.there.size(); }))
       return;
@@ -38,21 +38,21 @@ class staging_ring {
     }
   }
 
-  /// Pinned memory of turn k: waits until what was in it has been copied.
+  /// Returns the pinned memory of turn k, after its old content has been copied.
   std::byte* fill(std::size_t k) {
     room& r = rooms_[k % rooms];
     const device_guard guard(on_.id);
     check_cuda(cudaEventSynchronize(r.copied.get()), "cudaEventSynchronize");
     return r.pinned.data();
   }
-  /// Enqueues the copy of `bytes`, which the device's stream waits for. Where they will be.
+  /// Enqueues the copy of `bytes`, which the device's stream waits for. Returns where they will be.
   const std::byte* copy(std::size_t k, std::span<const std::byte> bytes) {
     room& r = rooms_[k % rooms];
     const device_guard guard(on_.id);
     const std::byte* from = bytes.data();
     if (!within(r.pinned, from) && !is_pinned(from)) {
       constexpr std::size_t grain = std::size_t(1)
-                                    << 16;  // one thread is slower than the link, and short chunks are for all, too
+                                    << 16;  // one thread is slower than the link; all threads share short chunks, too
       need_within(bytes.size(), r);
       tbb::parallel_for(
           std::size_t(0), (bytes.size() + grain - 1) / grain,
@@ -69,7 +69,7 @@ class staging_ring {
     check_cuda(cudaStreamWaitEvent(on_.stream, r.copied.get()), "cudaStreamWaitEvent");
     return r.there.data();
   }
-  /// What is in the device's stream now is all that reads turn k.
+  /// Marks that everything that reads turn k is now in the device's stream.
   void read(std::size_t k) {
     const device_guard guard(on_.id);
     check_cuda(cudaEventRecord(rooms_[k % rooms].read.get(), on_.stream), "cudaEventRecord");

@@ -8,7 +8,7 @@
 
 namespace clearance {
 
-/// Device memory for one call, in the order of a stream: taken in large blocks, handed out in pieces, and given back as
+/// Device memory for one call, in stream order. It is allocated in large blocks, handed out in pieces and given back as
 /// a whole, because each request to the driver takes microseconds.
 class stream_resource : public std::pmr::memory_resource {
  public:
@@ -32,7 +32,7 @@ class stream_resource : public std::pmr::memory_resource {
 
   int device_;
   cudaStream_t stream_;
-  std::size_t used_ = 0;  ///< Of the last block.
+  std::size_t used_ = 0;  ///< Bytes used of the last block.
   std::vector<stream_buffer<std::byte>> blocks_;
 };
 

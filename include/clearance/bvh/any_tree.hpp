@@ -5,8 +5,8 @@
 
 namespace clearance {
 
-/// A hierarchy by its members alone. Trees in arrays that are deeper or wider than `build` makes them so go to a
-/// device, which otherwise reads arrays in a quicker way that relies on both.
+/// Shows only the members of a hierarchy. It lets trees in arrays that are deeper or wider than `build` makes them run
+/// on a device, whose quicker way to read arrays relies on those limits.
 template <hierarchy H>
 struct any_tree {
   using node_type = typename H::node_type;

@@ -13,13 +13,13 @@
 namespace clearance {
 
 struct build_options {
-  std::uint32_t width = 8;      ///< Children a node: 2, 4 or 8.
+  std::uint32_t width = 8;      ///< Children per node: 2, 4 or 8.
   std::uint32_t leaf_size = 4;  ///< Most primitives in a leaf.
 };
 
 namespace detail {
 
-/// Cuts `items` into at most `width` groups, always the largest that is not yet a leaf; each gets its own range.
+/// Cuts `items` into at most `width` groups with a range each. It always cuts the largest group that is not yet a leaf.
 template <class Split>
 std::vector<std::pair<std::uint32_t, std::uint32_t>> cut(std::span<split_item> items, std::uint32_t begin,
                                                          std::uint32_t end, const build_options& options,
@@ -38,11 +38,11 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> cut(std::span<split_item> i
 
 struct topology {
   std::vector<bvh_node> nodes;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> range;  ///< Of the items below each node.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> range;  ///< The items below each node.
   std::uint32_t depth = 0;
 };
 
-/// Children of a node follow one another, and come after it.
+/// A node's children follow one another and come after it.
 template <class Split>
 topology arrange(std::span<split_item> items, const build_options& options, const Split& split) {
   topology t;
@@ -69,9 +69,9 @@ topology arrange(std::span<split_item> items, const build_options& options, cons
 
 }  // namespace detail
 
-/// Builds a tree of volumes V over a contiguous range of primitives, on the host, top down; deterministic.
-/// The depth is such that a stack of 64 entries suffices (`stack_need`). Throws if there is no primitive, or a bad one.
-/// Returns a bvh<V, P>; declared `auto`, because a V that is no volume would otherwise fail without its sentence.
+/// Builds a tree of volumes V over a contiguous range of primitives on the host, top down; deterministic. A stack of 64
+/// entries suffices for it (`stack_need`). Throws std::invalid_argument if there is no primitive, one is not finite or
+/// has a negative radius, or an option is wrong. Returns a bvh<V, P>; `auto` gives a bad V its message.
 template <class V, std::ranges::contiguous_range R, class Fit = wrapped, class Split = surface_area_split,
           primitive P = std::ranges::range_value_t<R>>
 auto build(const R& input, build_options options = {}, Fit fit = {}, Split split = {}) {

@@ -5,9 +5,9 @@
 
 namespace clearance {
 
-struct host;  // so that who has another backend needs no TBB
+struct host;  // so that other backends need no TBB
 
-/// Owns a tree in the memory of backend B; immutable once built, so any number of threads and streams may share it.
+/// Owns a tree in the memory of backend B. Immutable once built, so that many threads and streams may share it.
 template <bounding_volume V, primitive P, class B = host>
 struct bvh {
   static_assert(backend<B>);

@@ -15,9 +15,9 @@ struct bvh_node {
   CLEARANCE_HD constexpr std::uint32_t count() const { return count_and_kind & ~leaf_bit; }
 };
 
-/// A hierarchy that shows its arrays, in which children and primitives are contiguous and parents come before their
-/// children, level by level; on a device nodes and volumes begin at multiples of 16 bytes. A scan then keeps what a
-/// node says, and the first nodes at hand.
+/// A hierarchy that shows its arrays. Children and primitives are contiguous, and parents come before their children,
+/// level by level. On a device nodes and volumes begin at multiples of 16 bytes. A scan then keeps a node's content,
+/// and the first nodes in fast memory.
 template <class H>
 concept array_hierarchy = hierarchy<H> && requires(const H h) {
   { h.volumes } -> std::convertible_to<const typename H::volume_type*>;
@@ -27,7 +27,7 @@ concept array_hierarchy = hierarchy<H> && requires(const H h) {
   { h.node_count } -> std::convertible_to<std::uint32_t>;
 };
 
-/// Non-owning, trivially copyable handle to our own wide tree: what a kernel receives by value.
+/// A trivially copyable view of the library's own wide tree, which kernels receive by value.
 template <bounding_volume V, primitive P>
 struct bvh_view {
   using node_type = std::uint32_t;
@@ -39,7 +39,7 @@ struct bvh_view {
   const P* primitives;
   const std::uint32_t* ids;  ///< Position of each primitive in the user's array.
   std::uint32_t levels, widest;
-  std::uint32_t node_count;  ///< Parents come before their children, level by level: so the first nodes are the top.
+  std::uint32_t node_count;  ///< Parents come before their children, level by level, so the first nodes are the top.
 
   CLEARANCE_HD node_type root() const { return 0; }
   CLEARANCE_HD bool is_leaf(node_type n) const { return nodes[n].is_leaf(); }

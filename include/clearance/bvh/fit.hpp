@@ -5,7 +5,7 @@
 
 namespace clearance {
 
-/// Fit rule: a node encloses the balls of all leaves below it. The tighter one, and the default.
+/// Fit rule: a node encloses the balls of all leaves below it. The tighter rule, and the default.
 struct wrapped {
   template <class V>
   V operator()(std::span<const ball> leaves, std::span<const V>) const {

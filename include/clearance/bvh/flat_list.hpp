@@ -5,7 +5,7 @@
 
 namespace clearance {
 
-/// The hierarchy without a tree: one leaf that holds everything. Right for a handful of primitives, and as an oracle.
+/// A hierarchy without a tree: one leaf holds everything. For a handful of primitives, and as an oracle.
 template <bounding_volume V, clearance::primitive P>
 struct flat_list {
   using node_type = std::uint32_t;

@@ -31,7 +31,7 @@ struct center_order {
   }
 };
 
-/// The direction in which the centres spread most, of length 1.
+/// The unit direction in which the centres spread most.
 inline Eigen::Vector3f principal_direction(std::span<const split_item> items) {
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();
   for (const auto& i : items) mean += i.center() / float(items.size());
@@ -68,16 +68,16 @@ struct principal_split {
   }
 };
 
-/// Split rule: two clusters around their mean centres (Lloyd 1982), begun at the ends of the principal direction;
-/// neither side gets less than a tenth, so that the depth stays logarithmic. What batch neural gas (Weller & Zachmann
-/// 2009) does for two clusters once its neighbourhood has shrunk.
+/// Split rule: two clusters around their mean centres (Lloyd 1982), started from halves along the principal direction.
+/// Neither side gets less than a tenth, so that the depth stays logarithmic. Batch neural gas (Weller & Zachmann 2009)
+/// does the same for two clusters once its neighbourhood has shrunk.
 struct two_means_split {
   std::size_t operator()(std::span<split_item> items) const {
     const std::size_t n = items.size(), least = std::max<std::size_t>(1, n / 10);
     std::sort(items.begin(), items.end(), center_order{principal_direction(items)});
     std::size_t cut = n / 2;
     for (int round = 0; round < 16; ++round) {
-      // The clusters meet in the plane between their means, so they are a cut along the way from one to the other.
+      // The clusters meet in the plane between their means, so a cut along the way between the means separates them.
       const Eigen::Vector3f near = mean(items.first(cut)), far = mean(items.subspan(cut)), way = far - near;
       if (!(way.norm() > 0)) break;
       std::sort(items.begin(), items.end(), center_order{way});
@@ -100,8 +100,8 @@ struct two_means_split {
 };
 
 /// Split rule: two clusters by batch neural gas (Cottrell et al. 2006), as Weller & Zachmann (2009) split inner sphere
-/// trees: each item pulls the nearer mean by its volume and the farther one by ever less of it, so that little depends
-/// on where they begin. Neither side gets less than a tenth, so that the depth stays logarithmic.
+/// trees. Each item pulls the nearer mean by its volume and the farther mean by ever less of it, so the start matters
+/// little. Neither side gets less than a tenth, so that the depth stays logarithmic.
 struct neural_gas_split {
   std::size_t operator()(std::span<split_item> items) const {
     const std::size_t n = items.size(), least = std::max<std::size_t>(1, n / 10);
@@ -111,7 +111,7 @@ struct neural_gas_split {
     std::array<Eigen::Vector3f, 2> mean = {items[n / 4].center(), items[n - 1 - n / 4].center()};
     for (int round = 0; round < rounds; ++round) {
       const float width =
-          std::pow(0.01f, float(round) / (rounds - 1));  // of the neighbourhood: from one rank to a hundredth
+          std::pow(0.01f, float(round) / (rounds - 1));  // of the neighbourhood: shrinks from one rank to a hundredth
       const std::array<float, 2> pull = {1, std::exp(-1 / width)};
       std::array<Eigen::Vector3f, 2> sum = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
       std::array<float, 2> all = {0, 0};
@@ -136,8 +136,8 @@ struct neural_gas_split {
   }
 };
 
-/// Split rule: of the three axes and the principal one, the cut with the least surface-area cost (Goldsmith & Salmon
-/// 1987); neither side gets less than a third, so that the depth stays logarithmic.
+/// Split rule: the cut with the least surface-area cost (Goldsmith & Salmon 1987), along one of the three axes or the
+/// principal one. Neither side gets less than a third, so that the depth stays logarithmic. The default.
 struct surface_area_split {
   std::size_t operator()(std::span<split_item> items) const {
     const std::size_t n = items.size(), least = std::max<std::size_t>(1, n / 3);

@@ -17,7 +17,7 @@ namespace detail {
 
 inline constexpr std::uint32_t grid_threads = 3 * morton_grid::samples;
 
-/// The grid from some of the points, by one block: each thread finds the rank of one along one axis.
+/// Makes the grid from a sample of the points, by one block. Each thread finds the rank of one point along one axis.
 template <class Source>
 __global__ void __launch_bounds__(grid_threads) grid_kernel(const __grid_constant__ Source source, morton_grid* grid) {
   __shared__ real along[3][morton_grid::samples];
@@ -40,7 +40,7 @@ __global__ void __launch_bounds__(grid_threads) grid_kernel(const __grid_constan
   if (threadIdx.x == 0) *grid = count == 0 ? morton_grid() : morton_grid(ends[0], ends[1]);
 }
 
-/// Where points are on the curve; those that do not count are counted, and stay.
+/// Finds where points are on the curve. Invalid points are counted and stay in the array.
 template <point_source Source>
 struct encode_body {
   Source source;
@@ -60,7 +60,7 @@ struct encode_body {
   }
 };
 
-/// What a tree is made of, to be written.
+/// The arrays of a tree, to be written.
 struct tree_room {
   numbered_point* points;
   ball* balls;
@@ -68,7 +68,7 @@ struct tree_room {
   extent* boxes;
 };
 
-inline constexpr std::uint32_t siblings = 8;  ///< Lanes that make a node of what each of them has.
+inline constexpr std::uint32_t siblings = 8;  ///< So many lanes make one node, from one child each.
 
 template <class T, class F>
 __device__ T of_siblings(T mine, F f) {
@@ -77,8 +77,9 @@ __device__ T of_siblings(T mine, F f) {
   return mine;
 }
 
-/// A node around what siblings have: a box each, which may be empty, and how far `reach(center)` that goes. Of nothing
-/// it is a ball that nothing can be near. All of a warp's lanes call it; where `node` is none, nothing is put.
+/// Writes a node around what the sibling lanes have: one box each, which may be empty, and `reach(center)`, how far its
+/// content goes. A node without content gets a ball that nothing is near. All lanes of a warp call it; it writes
+/// nothing where `node` is none.
 template <class Reach>
 __device__ void put_node(const tree_room& to, std::uint32_t node, const extent& mine, std::uint32_t least,
                          Reach reach) {
@@ -95,8 +96,8 @@ __device__ void put_node(const tree_room& to, std::uint32_t node, const extent& 
   to.least[node] = least;
 }
 
-/// A node of a level above tiles around its children. `child`: a node of the level below, or none. All of a warp's
-/// lanes call it.
+/// Writes a node above the tiles around its children. `child`: a node of the level below, or none. A whole warp calls
+/// it.
 template <class Tree>
 __device__ void put_parent(const Tree& tree, std::uint32_t level, std::uint32_t child, const tree_room& to) {
   static_assert(Tree::fan == siblings);
@@ -113,9 +114,9 @@ __device__ void put_parent(const Tree& tree, std::uint32_t level, std::uint32_t 
 }
 
 inline constexpr std::uint32_t tile_threads =
-    siblings * siblings * siblings;  ///< Points of a block, which makes the first three levels.
+    siblings * siblings * siblings;  ///< Points per block, which makes the first three levels.
 
-/// `number_of(i)` is the number of the point that comes at position i, or none.
+/// `number_of(i)` is the number of the point at position i, or none.
 template <class Source, class Tree, class Order>
 __global__ void __launch_bounds__(tile_threads)
     tile_kernel(const __grid_constant__ Source source, const __grid_constant__ Tree tree,
@@ -143,13 +144,13 @@ __global__ void __launch_bounds__(tile_threads)
   }
 }
 
-/// A level by itself.
+/// Makes one level.
 template <class Tree>
 __global__ void __launch_bounds__(256)
     node_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
   put_parent(tree, level, blockIdx.x * 256 + threadIdx.x, to);
 }
-/// All levels from one on, by one block.
+/// Makes all levels from `level` on, by one block.
 template <class Tree>
 __global__ void __launch_bounds__(1024)
     top_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
@@ -158,9 +159,9 @@ __global__ void __launch_bounds__(1024)
       put_parent(tree, level, first + threadIdx.x, to);
 }
 
-/// Points in the order that they were sorted to.
+/// The order of sorted points.
 struct sorted_order {
-  static constexpr bool counts = false;  ///< That was done when they were encoded.
+  static constexpr bool counts = false;  ///< Invalid points were counted when points were encoded.
   const std::uint32_t* numbers;
 
   __device__ std::uint32_t operator()(std::uint32_t i) const { return numbers[i]; }
@@ -168,9 +169,8 @@ struct sorted_order {
 
 }  // namespace detail
 
-/// Owns a tree; built anew for every frame, in memory that is kept. Points that do not count stay among the others, as
-/// NaN: so its shape is known before they are read, and nobody waits. An image's tiles are its pixels' (a pyramid);
-/// other points are sorted.
+/// Owns a tree that is built anew for every frame, in memory that is kept. Invalid points stay among the others as NaN,
+/// so the shape is known before they are read and nothing waits. Images become pyramids; other points are sorted.
 class device_tree {
  public:
   using view_type = tree_view<8, 8>;
@@ -178,13 +178,14 @@ class device_tree {
   explicit device_tree(const device& on, std::pmr::memory_resource* memory = nullptr)
       : on_(on), memory_(memory), grid_(1, on.id, memory) {}
 
-  /// Enqueues it; what does not count is added to `dropped`. The device reads the source as it is.
+  /// Enqueues it. Adds invalid points to `dropped`. The device must be able to read the source as it is.
   template <point_source S>
   void build(const S& source, scan::drop_counts* dropped) {
     const std::size_t n = source.size();
     if constexpr (image_source<S>) {
       const pixel_order pixels(std::uint32_t(n), n == 0 ? 0 : source.columns());
-      if (pixels.positions() != 0 && pixels.positions() / 4 <= n)  // a few rows would be mostly what lies beyond them
+      if (pixels.positions() != 0 &&
+          pixels.positions() / 4 <= n)  // of few rows, most places would lie beyond the image
         return put_up(source, view_type(pixels.positions()), pixels, dropped);
     }
     const view_type shape(static_cast<std::uint32_t>(n));
@@ -198,10 +199,10 @@ class device_tree {
   const view_type& view() const { return view_; }
 
  private:
-  /// A pass of the sort takes eight bits. Three of them make cells as fine as tiles are.
+  /// A pass of the sort takes eight bits. Three passes make cells as fine as tiles.
   static constexpr int first_bit = 3 * morton_grid::bits - 24, last_bit = 3 * morton_grid::bits;
 
-  /// Tiles and nodes of a tree of that shape over points in that order.
+  /// Makes the tiles and nodes of a tree of that shape, over points in that order.
   template <class S, class Order>
   void put_up(const S& source, const view_type& shape, const Order& order, scan::drop_counts* dropped) {
     view_ = shape;

@@ -12,13 +12,13 @@
 
 namespace clearance::cloud_tree {
 
-/// Owns a tree; built anew for every frame, in memory that is kept. The valid points are sorted along a Z-curve: the
-/// rows of a depth image are lines, of which few are near one another, and other clouds have no order at all.
+/// Owns a tree that is built anew for every frame, in memory that is kept. The valid points are sorted along a Z-curve:
+/// a depth image's rows are lines with few points near one another, and other clouds have no order at all.
 class host_tree {
  public:
   using view_type = tree_view<8, 8>;
 
-  /// What does not count is added to `dropped`.
+  /// Builds it. Adds invalid points to `dropped`.
   template <point_source S>
   void build(host_workers& workers, const S& source, scan::drop_counts& dropped) {
     read(workers, source, dropped);
@@ -42,7 +42,7 @@ class host_tree {
 
   static std::size_t pieces(std::size_t n) { return (n + piece - 1) / piece; }
 
-  /// Valid points, each piece's at its beginning, and how many those are.
+  /// Reads the valid points, each piece's to its beginning, and how many each has.
   template <point_source S>
   void read(host_workers& workers, const S& source, scan::drop_counts& dropped) {
     const std::size_t n = source.size();
@@ -85,7 +85,7 @@ class host_tree {
     return {quantile(morton_grid::low_rank(count)), quantile(morton_grid::high_rank(count))};
   }
 
-  /// By one digit, and where that is equal as before.
+  /// Sorts by one digit; equal digits keep their order.
   void sort_by(host_workers& workers, int shift) {
     const std::size_t n = codes_.size(), rows = pieces(n);
     const auto digit = [shift](const coded& c) { return c.code >> shift & (digits - 1); };
@@ -108,8 +108,8 @@ class host_tree {
     codes_.swap(others_);
   }
 
-  /// Where very many points are in one cell of the curve, neighbours come together by a curve of that cell's own, and
-  /// equal ones in any case.
+  /// A cell of the curve with very many points gets its own curve, so that neighbours come together. Equal points
+  /// always do.
   void sort_dense_cells(host_workers& workers) {
     cells_.clear();
     const auto code_less = [](const coded& a, const coded& b) { return a.code < b.code; };

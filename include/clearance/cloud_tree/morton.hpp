@@ -6,26 +6,26 @@
 
 namespace clearance::cloud_tree {
 
-/// Numbers cells of a grid along a Z-curve (Morton). It decides how fast a tree is, and nothing else; so it need not be
-/// the same everywhere.
+/// Numbers the cells of a grid along a Z-curve (Morton). It affects only a tree's speed, so it need not be the same
+/// everywhere.
 struct morton_grid {
-  static constexpr int bits = 10;  ///< Of each coordinate.
+  static constexpr int bits = 10;  ///< Per coordinate.
   static constexpr std::uint32_t samples = 256;
 
   vec3 low = {0, 0, 0};
   real per_metre = 0;
 
   morton_grid() = default;
-  /// Around what lies between two positions, and a little more: points beyond are in the outermost cells. Where a few
-  /// points are far away, as lidars see some, the others must not fall into one cell: so these are quantiles of
-  /// samples, and not the ends.
+  /// A grid around the space between two positions, and a little more. Points beyond it fall into the outermost cells.
+  /// The positions are quantiles of samples and not the ends: a few far points, as lidars see, must not press the
+  /// others into one.
   CLEARANCE_HD morton_grid(vec3 a, vec3 b) {
     const vec3 size = b - a;
     const real side = max(max(size.x, size.y), size.z) * 1.5f;
     low = {(a.x + b.x - side) / 2, (a.y + b.y - side) / 2, (a.z + b.z - side) / 2};
     per_metre = side > least_normal * (4 << bits) ? (1 << bits) / side : 0;  // never infinite
   }
-  /// Which of so many samples, in ascending order, are these quantiles.
+  /// The ranks of these quantiles among `count` samples in ascending order.
   CLEARANCE_HD static std::uint32_t low_rank(std::uint32_t count) { return count / 16; }
   CLEARANCE_HD static std::uint32_t high_rank(std::uint32_t count) { return count - 1 - count / 16; }
 

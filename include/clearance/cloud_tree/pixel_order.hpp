@@ -7,16 +7,16 @@
 
 namespace clearance::cloud_tree {
 
-/// Squares of 64 x 64 pixels one after another, row by row, and the pixels of each along a Z-curve: eight of them are a
-/// tile of 4 x 2, eight of those a square, and so on. What lies beyond the image's edges has a place, and no number.
+/// Squares of 64 x 64 pixels one after another, row by row, and the pixels of each along a Z-curve: eight pixels are a
+/// tile of 4 x 2, eight tiles a square, and so on. Places beyond the image's edges have no number.
 struct pixel_order {
-  static constexpr bool counts = true;  ///< Nobody has looked at the points before.
+  static constexpr bool counts = true;  ///< Invalid points were not counted before.
   static constexpr std::uint32_t bits = 6, side = 1 << bits;
 
-  std::uint32_t width = 0, height = 0, squares = 0;  ///< The last: of a row.
+  std::uint32_t width = 0, height = 0, squares = 0;  ///< `squares`: in a row.
 
   pixel_order() = default;
-  /// None, if those are no whole rows, or more places than can be numbered.
+  /// Has no positions if the pixels are not whole rows, or if there are more places than numbers.
   pixel_order(std::uint32_t pixels, std::uint32_t columns) {
     if (columns == 0 || pixels % columns != 0) return;
     const std::uint64_t across = (std::uint64_t(columns) + side - 1) / side,

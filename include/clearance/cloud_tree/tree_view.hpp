@@ -13,22 +13,22 @@ struct alignas(16) numbered_point {
   std::uint32_t number;
 };
 
-/// Balls around `Tile` neighbours each, above them balls around `Fan` balls each, until no more than `Fan` are left.
-/// Where a node's children are follows from its number, so nothing is stored of that.
+/// Balls around `Tile` neighbours each, above them balls around `Fan` balls each, until at most `Fan` are left. A
+/// node's number tells where its children are, so nothing is stored about that.
 template <std::uint32_t Tile, std::uint32_t Fan>
 struct tree_view {
   static constexpr std::uint32_t tile = Tile, fan = Fan, most_levels = 16;
 
   const numbered_point* points = nullptr;  ///< Neighbours in space are neighbours here.
-  const ball* balls = nullptr;             ///< Of all nodes, level by level, tiles first.
-  const extent* boxes = nullptr;           ///< As tight as may be, of the same nodes.
+  const ball* balls = nullptr;             ///< Balls of all nodes, level by level, tiles first.
+  const extent* boxes = nullptr;           ///< The tightest boxes of the same nodes.
   const std::uint32_t* least = nullptr;    ///< The lowest number of a node's points.
-  std::uint32_t count = 0;                 ///< Of points.
+  std::uint32_t count = 0;                 ///< Number of points.
   std::uint32_t levels = 0;
-  std::uint32_t begin[most_levels + 1] = {};  ///< Where each level's nodes begin; behind the last one their end.
+  std::uint32_t begin[most_levels + 1] = {};  ///< Where each level's nodes begin, and after the last level their end.
 
   tree_view() = default;
-  /// Over so many points; where they are is not yet said.
+  /// The shape over `count` points, without the arrays.
   CLEARANCE_HD explicit tree_view(std::uint32_t count) : count(count) {
     for (std::uint32_t size = count, group = Tile; count != 0; group = Fan) {
       size = (size - 1) / group + 1;
@@ -39,7 +39,7 @@ struct tree_view {
 
   CLEARANCE_HD std::uint32_t nodes() const { return begin[levels]; }
   CLEARANCE_HD std::uint32_t size(std::uint32_t level) const { return begin[level + 1] - begin[level]; }
-  /// What is below node `n` of a level: nodes of the level below it, or points, from the first to one behind the last.
+  /// What is below node `n` of a level: nodes of the level below it, or points, from the first to one past the last.
   CLEARANCE_HD std::uint32_t first_below(std::uint32_t level, std::uint32_t n) const {
     return n * (level == 0 ? Tile : Fan);
   }
@@ -49,8 +49,8 @@ struct tree_view {
   }
 };
 
-/// The middle of a box, and how far the farthest of its corners is from there. A radius may be too large by a rounding,
-/// never too small.
+/// The middle of a box, and the distance of its farthest corner. A radius may be too large by a rounding, never too
+/// small.
 CLEARANCE_HD inline vec3 middle(const extent& box) {
   return {(box.lower.x + box.upper.x) / 2, (box.lower.y + box.upper.y) / 2, (box.lower.z + box.upper.z) / 2};
 }

@@ -15,9 +15,8 @@ namespace clearance {
 ///
 /// Law: work given to one backend value runs in the order given; `wait()` returns when all of it is done.
 /// Law: `for_ranges` calls `body(indices)` for ranges that together cover 0 .. n-1 once, `for_each` body(i) for each.
-/// Law: `stage` has taken its input when it returns, and waits for nothing; scratch memory lives until the work that
-/// was
-///      given before its end is done; `reads` says whether bodies can read an address as it is.
+/// Law: `stage` has taken its input when it returns, and does not wait. Scratch memory lives until all work given
+/// before its end is done. `reads` says whether bodies can read an address as it is.
 template <class B>
 concept backend = requires(const B on, std::size_t n, void (*one)(std::size_t), void (*range)(indices),
                            typename B::template buffer<int> data, std::span<const int> input, int* there) {

@@ -13,10 +13,9 @@ namespace clearance {
 
 /// Something stored in the leaves of a tree.
 ///
-/// Law: `p.distance(q)` is the distance in metres from point q to the primitive; negative inside, where it has an
-/// inside. Law: `p.nearest(q)` lies on the primitive, `p.distance(q)` away from q; `p.normal(q)` is the unit vector
-/// along which
-///      the distance grows fastest at q, the primitive's own where the distance is 0, or (0,0,0) if there is none.
+/// Law: `p.distance(q)` is the distance in metres from point q to the primitive; negative inside, if it has an inside.
+/// Law: `p.nearest(q)` lies on the primitive, `p.distance(q)` away from q. `p.normal(q)` is the unit vector along which
+/// the distance grows fastest at q, the primitive's own normal where the distance is 0, or (0,0,0) if there is none.
 /// Law: the convex hull of `p.balls()` contains the primitive.
 template <class P>
 concept primitive = std::is_trivially_copyable_v<P> && requires(const P p, vec3 q) {
@@ -26,15 +25,15 @@ concept primitive = std::is_trivially_copyable_v<P> && requires(const P p, vec3 
   { std::span<const ball>(p.balls()) };
 };
 
-/// A primitive that also says whether it may be as near as `reach`, more cheaply than by its distance, and without a
-/// branch: a host asks so for many points at once, in vectors. Law: `p.may_reach(q, reach)` is true if `p.distance(q)
-/// <= reach`.
+/// A primitive that also says whether it may be as near as `reach`, without a branch and more cheaply than by its
+/// distance: a host asks this for many points at once, in vector code.
+/// Law: `p.may_reach(q, reach)` is true if `p.distance(q) <= reach`.
 template <class P>
 concept foreseen_primitive = primitive<P> && requires(const P p, vec3 q, real reach) {
   { p.may_reach(q, reach) } -> std::same_as<bool>;
 };
 
-/// A primitive that tells quickly how near it can be at most.
+/// A primitive with a quick lower bound on its distance.
 /// Law: `p.lower_bound(q)` is never greater than `p.distance(q)`, rounding included.
 template <class P>
 concept bounded_primitive = primitive<P> && requires(const P p, vec3 q) {
@@ -104,8 +103,8 @@ struct bounding_volume_traits {
   }
 };
 
-/// Byte by byte, as to a device: trivially copyable, or the traits vouch for it with `static constexpr bool
-/// bitwise_copyable = true` (Eigen's types copy so, but do not say it).
+/// Can be copied byte by byte, as to a device: trivially copyable, or the traits declare `static constexpr bool
+/// bitwise_copyable = true` (as for Eigen's types, which can but do not say so).
 template <class V>
 concept copied_as_bytes =
     std::is_trivially_copyable_v<V> || requires { requires bounding_volume_traits<V>::bitwise_copyable; };
@@ -113,7 +112,7 @@ concept copied_as_bytes =
 /// A convex shape that encloses balls and can say how far away they must be.
 ///
 /// Law: `lower_bound(fit(balls), q)` never exceeds the signed distance from q to any of the balls, nor a primitive's
-///      computed distance, after float rounding (see `lowered`); inside the volume it is negative.
+/// computed distance, after float rounding (see `lowered`). Inside the volume it is negative.
 /// `fit` runs on the host while building; `lower_bound` runs wherever the query runs.
 template <class V>
 concept bounding_volume = copied_as_bytes<V> && requires(const V v, vec3 q, std::span<const ball> balls) {
@@ -121,16 +120,16 @@ concept bounding_volume = copied_as_bytes<V> && requires(const V v, vec3 q, std:
   { bounding_volume_traits<V>::lower_bound(v, q) } -> std::same_as<real>;
 };
 
-/// A volume that also says whether anything in it may be as near as `reach`, without a root or a branch: a host asks so
-/// for many points at once, in vectors.
+/// A volume that also says whether anything in it may be as near as `reach`, without a root or a branch: a host asks
+/// this for many points at once, in vector code.
 ///
-/// Law: `may_reach(q, reach)` is true if a primitive in it is computed to be at most `reach` away.
+/// Law: `may_reach(q, reach)` is true if the computed distance of a primitive in it is at most `reach`.
 template <class V>
 concept rootless_volume = bounding_volume<V> && requires(const V v, vec3 q, real reach) {
   { bounding_volume_traits<V>::may_reach(v, q, reach) } -> std::same_as<bool>;
 };
 
-/// A volume that is a ball, and says so: how far it is from a box then takes no more than its middle's distance.
+/// A volume that is a ball. Its distance from a box then follows from that of its middle.
 ///
 /// Law: `as_ball(v)` contains all that the volume encloses.
 template <class V>
@@ -155,11 +154,11 @@ consteval bool explain_bounding_volume() {
   return bounding_volume<V>;
 }
 
-/// A tree of volumes over primitives, ours or anybody's. Traversals use nothing else.
+/// A tree of volumes over primitives, the library's or yours. Traversals use nothing else.
 ///
-/// Law: the volume of a node encloses every primitive below it; every primitive is below the root exactly once.
-/// Law: `id` is the primitive's position in the user's array; `depth()` counts the edges from the root to the deepest
-///      leaf and `width()` is the largest number of children, so depth * (width - 1) + 1 entries suffice for a stack.
+/// Law: the volume of a node encloses every primitive below it. Every primitive is below the root exactly once.
+/// Law: `id` is the primitive's position in the user's array. `depth()` counts the edges from the root to the deepest
+/// leaf, and `width()` is the largest number of children, so a stack needs depth * (width - 1) + 1 entries at most.
 template <class H>
 concept hierarchy =
     std::is_trivially_copyable_v<H> && requires(const H h, const typename H::node_type n, std::uint32_t k) {
@@ -176,7 +175,7 @@ concept hierarchy =
       { h.width() } -> std::same_as<std::uint32_t>;
     };
 
-/// Entries that a depth-first walk of a tree can have pending.
+/// The most entries that a depth-first walk of a tree can have pending.
 CLEARANCE_HD constexpr std::uint64_t stack_need(std::uint32_t depth, std::uint32_t width) {
   return width == 0 ? 1 : std::uint64_t(depth) * (width - 1) + 1;
 }
@@ -234,10 +233,9 @@ consteval bool explain_hierarchy() {
 
 /// The solid of a part, besides its primitives: a view.
 ///
-/// Law: `inside(q)` tells whether q is inside; a point that is is 0 away from the part.
-/// Law: the solid ends where the part's primitives are: no point of it is outside a ball around them, and a way from
-/// inside to outside
-///      meets one, except within the part's tolerance of them. So what is not near the primitives need not be asked.
+/// Law: `inside(q)` tells whether q is inside. A point inside has distance 0 to the part.
+/// Law: the part's primitives bound the solid: no point of it is outside a ball around them, and every way from inside
+/// to outside meets one or comes within the part's tolerance of one. So points not near the primitives need no test.
 template <class I>
 concept interior = std::is_trivially_copyable_v<I> && requires(const I i, vec3 q) {
   { i.inside(q) } -> std::same_as<bool>;

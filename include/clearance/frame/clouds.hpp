@@ -12,13 +12,13 @@
 
 namespace clearance {
 
-/// A point source and where it stands: world-from-source.
+/// A point source and its pose, world-from-source.
 template <point_source S>
 struct placed {
   S source;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
 };
-// Said, because clang before 17 deduces nothing of an aggregate.
+// Needed because clang before 17 deduces no arguments from aggregates.
 template <point_source S>
 placed(S) -> placed<S>;
 template <point_source S>
@@ -48,12 +48,11 @@ inline constexpr bool one_in_each_place<T> =
 
 }  // namespace detail
 
-/// What callers may pass for clouds: a source, a placed one, or a vector of points; a range of any of these, a tuple,
-/// or a variant.
+/// What callers may pass as clouds: a source, a placed one or a vector of points; a range, tuple or variant of these.
 template <class T>
 concept clouds_of_any_kind = detail::is_cloud<T>::value;
 
-/// Calls `f(source, pose)` for each, in order.
+/// Calls `f(source, pose)` for each cloud, in order.
 template <clouds_of_any_kind Clouds, class F>
 void for_each_cloud(const Clouds& clouds, F&& f) {
   static const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
@@ -72,8 +71,7 @@ void for_each_cloud(const Clouds& clouds, F&& f) {
   }
 }
 
-/// How many that are. A range that knows its size and holds a cloud in each place is not looked into: to look may be to
-/// load.
+/// The number of clouds. A range that knows its size and holds one cloud per element is not read: reading may load one.
 template <class Clouds>
 std::size_t count_clouds(const Clouds& clouds) {
   if constexpr (detail::one_in_each_place<Clouds>) return std::size(clouds);
@@ -102,7 +100,7 @@ consteval bool explain_clouds() {
   }
   return clouds_of_any_kind<T>;
 }
-/// Of what a call is given for clouds.
+/// The same for everything that a call is given as clouds.
 template <class First, class... Rest>
 consteval bool explain_given() {
   static_assert(sizeof...(Rest) == 0 ||
@@ -113,7 +111,7 @@ consteval bool explain_given() {
   return explain_clouds<First>();
 }
 
-/// The clouds of a call, as they were given: a source and its pose are a placed source.
+/// The clouds of a call, as they were given. A source and its pose become a placed source.
 template <class Clouds>
 const Clouds& as_clouds(const Clouds& clouds) {
   static_assert(explain_given<Clouds>());
@@ -127,7 +125,7 @@ auto as_clouds(const S& source, const Pose& pose) {
 
 namespace frames {
 
-/// Throws std::invalid_argument if there is not one minimum a part.
+/// Throws std::invalid_argument if there is not one minimum per part.
 inline void check_room(std::size_t parts, std::size_t minima) {
   if (minima != parts)
     throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but room for " +
@@ -140,8 +138,9 @@ struct turn {
   bool last;
 };
 
-/// A frame, cloud by cloud: places the parts in each and calls `f(source, turn)`. Without a cloud there is one of no
-/// points. How many points there were. Throws std::invalid_argument if a pose is not rigid, or numbers run out.
+/// Goes through a frame cloud by cloud: places the parts in each and calls `f(source, turn)`; without clouds, once with
+/// no points. Returns the number of points. Throws std::invalid_argument if the number of poses is wrong, a pose is not
+/// rigid, or there are more than 2^32 - 2 points.
 template <class Clouds, class F>
 std::uint64_t for_each_turn(cloud_frame& frame, std::span<const part_facts> facts,
                             std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, F f) {

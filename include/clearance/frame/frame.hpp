@@ -11,26 +11,26 @@ namespace clearance::frames {
 /// A part as seen from a cloud.
 struct placement {
   rigid_transform part_from_cloud;  ///< The exact path: one fixed sequence of operations.
-  ball around;                      ///< The part's ball in the cloud's frame, its radius enlarged by every error.
-  real error;                       ///< Most that a distance to this part can be off, at distance 0.
+  ball around;  ///< The part's ball in the cloud's frame, its radius enlarged by arithmetic's errors.
+  real error;   ///< The largest error of a distance to this part, at distance 0.
   world_transform world_from_part;
 };
 
-/// Arithmetic in floats costs at most 16 units of rounding (2^-24) of |p| + |t| + part size, where p is less the
-/// origin: of |p| that subtraction one, the rotation's own floats 1.8, the sums of products two; of |t| three; of the
-/// point in the part's frame one, and a leaf formula five. That is 11; the other five may be the source's own.
+/// Float arithmetic is wrong by at most 16 units of rounding (2^-24) of |p| + |t| + part size, where p is less the
+/// origin. Of |p|: that subtraction one, the rotation's own floats 1.8, the sums of products two; of |t|: three; of the
+/// point in the part's frame: one, and a leaf formula five. That is 11; the other five may be the source's own.
 inline constexpr double unit_error = 0x1p-20, source_share = 5 * 0x1p-24;
-/// And this, because squares of lengths below 1e-19 m lose digits, and those of lengths below 2e-23 m are 0.
+/// Added to that, because squares of lengths below 1e-19 m lose digits, and squares of lengths below 2e-23 m are 0.
 inline constexpr double underflow_error = 0x1p-72;
-/// Poses are composed in double, from rotations orthonormal to 1e-14: with R' for the inverse of R a way is 1.5e-14 of
-/// itself off, that from the origin twice, and ten roundings of 2^-53 add 2e-15. All is less than this part of all ways
-/// together.
+/// Poses are composed in double, from rotations orthonormal to 1e-14. With R' as the inverse of R a way is wrong by
+/// 1.5e-14 of itself, the way from the origin twice, and ten roundings of 2^-53 add 2e-15. The sum is below this share
+/// of all ways.
 inline constexpr double pose_error = 0x1p-44;
 
-/// Most that a distance can be off, by what the distance itself is.
+/// The largest error of a distance, by the distance itself, in metres.
 struct float_error {
-  double here = 0;                ///< At distance 0; the largest of all parts.
-  double per_metre = unit_error;  ///< And so much more for each metre.
+  double here = 0;                ///< At distance 0, the largest over all parts.
+  double per_metre = unit_error;  ///< Added for each metre.
 
   CLEARANCE_HD double at(real distance) const { return fma(per_metre, double(absolute(distance)), here); }
   CLEARANCE_HD void widen(const float_error& other) {
@@ -39,14 +39,13 @@ struct float_error {
   }
 };
 
-/// What arithmetic in floats costs near a part whose size and distance from the origin sum up to `extent`.
+/// The error of float arithmetic near a part whose size and distance from the origin sum up to `extent`.
 CLEARANCE_HD inline double arithmetic_error(double extent) { return fma(unit_error * 2, extent, underflow_error); }
 
-/// All that a distance to it can be off. `poses` is the sum of all ways between frames, `origin` that from the source's
-/// own zero to the origin. A point's position is at most extent + distance + origin long, and off by `relative` of
-/// that; what `source_share` covers of the first two is in unit_error, which counts the extent twice. Nothing is
-/// certain of a source that is off by a quarter of its distances, or says no such numbers, nor of a part whose extent
-/// is none.
+/// The whole error of a distance to that part. `poses` is the sum of all ways between frames, `origin` the way from the
+/// source's own zero to the origin. A point's position is at most extent + distance + origin long, and wrong by
+/// `relative` of that. unit_error, which counts the extent twice, includes `source_share` of the first two. The error
+/// is infinite if `relative` is 0.25 or more, or if an error or the extent is negative or NaN.
 CLEARANCE_HD inline float_error error_near(double extent, double poses, double origin, const position_error& off) {
   if (!(off.absolute >= 0 && off.relative >= 0 && off.relative < 0.25 && extent >= 0))
     return {double(infinity), unit_error};
@@ -54,11 +53,11 @@ CLEARANCE_HD inline float_error error_near(double extent, double poses, double o
   if (off.relative <= source_share) return {here, unit_error};
   const double more = off.relative - source_share;
   return {fma(more, extent, here) / (1 - more),
-          (unit_error + more) / (1 - more)};  // of the distance as it is, said of the computed one
+          (unit_error + more) / (1 - more)};  // the error depends on the true distance; this is by the computed one
 }
 
-/// Where the cloud's coordinates start to be subtracted: near the robot, in steps of 64 m, so that ordinary scenes lose
-/// nothing and clouds in world coordinates of 1e6 m no more than their own coordinates have lost.
+/// The origin that is subtracted from a cloud's coordinates: near the robot, in steps of 64 m. So ordinary scenes lose
+/// nothing, and clouds in world coordinates of 1e6 m lose no more than their own coordinates have lost.
 CLEARANCE_HD inline vec3 origin_near(position robot_in_cloud) {
   const auto step = [](double x) { return real(round(x / 64) * 64); };
   return {step(robot_in_cloud.x), step(robot_in_cloud.y), step(robot_in_cloud.z)};
@@ -79,7 +78,7 @@ CLEARANCE_HD position middle_of(const world_transform& world_from_cloud, const P
 
 CLEARANCE_HD inline double norm(position p) { return sqrt(fma(p.x, p.x, fma(p.y, p.y, p.z * p.z))); }
 
-/// `part_from_cloud` maps positions that `origin` was subtracted from. Both transforms have passed make_rigid.
+/// Places a part in a cloud. `part_from_cloud` maps positions less `origin`. Both transforms have passed make_rigid.
 CLEARANCE_HD inline placement place(const part_facts& facts, const world_transform& world_from_part,
                                     const world_transform& world_from_cloud, vec3 origin, const position_error& off) {
   const world_transform part_from_world = world_from_part.inverse();
@@ -93,15 +92,14 @@ CLEARANCE_HD inline placement place(const part_facts& facts, const world_transfo
   const double poses = norm(world_from_part.translation()) + norm(world_from_cloud.translation()) + origin_away;
   placement p;
   p.part_from_cloud = to_floats(part_from_cloud);
-  // Only what arithmetic can do to the points as they were read: bounds are about what is computed.
+  // Only the errors of arithmetic on the points as read: bounds concern computed distances.
   p.around = {{real(center.x), real(center.y), real(center.z)}, rounded_up(radius + 2 * arithmetic_error(extent))};
   p.error = rounded_up(error_near(extent, poses, origin_away, off).here);
   p.world_from_part = world_from_part;
   return p;
 }
 
-/// By how much a part's solid may be nearer than what a distance is computed to; where facts are no lengths, nobody
-/// knows.
+/// By how much a part's solid may be nearer than its computed distance. Infinite if either fact is negative or NaN.
 CLEARANCE_HD inline double slop(const part_facts& f) {
   return f.gap >= 0 && f.tolerance >= 0 ? double(f.gap) + double(f.tolerance) : double(infinity);
 }
@@ -124,7 +122,7 @@ struct frame_facts {
   }
 };
 
-/// All parts as seen from one cloud, made on the host for every frame; kept, it allocates only once.
+/// All parts as seen from one cloud, made on the host for every frame. If it is kept, it allocates only once.
 class cloud_frame : public frame_facts {
  public:
   std::vector<placement> places;
@@ -136,8 +134,8 @@ class cloud_frame : public frame_facts {
     start(facts, parts), put(facts, cloud, 0, off);
   }
 
-  /// A frame begins: `parts` are world-from-part. Throws std::invalid_argument if there are not as many as parts, or
-  /// one is not rigid.
+  /// Begins a frame with poses world-from-part. Throws std::invalid_argument if their number is wrong or one is not
+  /// rigid.
   void start(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts) {
     if (parts.size() != facts.size())
       throw std::invalid_argument("clearance: there are " + std::to_string(facts.size()) + " parts, but " +
@@ -157,7 +155,7 @@ class cloud_frame : public frame_facts {
     with_vectors([&] {
       const world_transform world = rigid_transform_of(pose, "cloud", cloud);
       places.clear();
-      const float_error before = error;  // a bracket is over all clouds
+      const float_error before = error;  // a bracket covers all clouds
       frame_facts::operator=(
           {world,
            origin_near(middle_of(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Clouds of any kind, each become another.
+// Maps clouds of any kind, each to another.
 
 #include <clearance/frame/clouds.hpp>
 
@@ -8,7 +8,7 @@ namespace clearance {
 
 namespace detail {
 
-/// What kind of clouds they become, and how. Of ranges:
+/// The type that clouds become, and how. This is for ranges:
 template <class T, class F>
 struct mapped {
   using one = mapped<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>, F>;
@@ -46,7 +46,7 @@ struct mapped<std::variant<T...>, F> {
   static type of(const std::variant<T...>& one, F& f) { return at<0>(one, f); }
 
  private:
-  /// By number: several may become one type.
+  /// By index, because several alternatives may become the same type.
   template <std::size_t I>
   static type at(const std::variant<T...>& one, F& f) {
     if constexpr (I + 1 < sizeof...(T))
@@ -58,8 +58,8 @@ struct mapped<std::variant<T...>, F> {
 
 }  // namespace detail
 
-/// The same clouds (any that a call takes), of each source `f(source)`, in their order. Views: what they are of must
-/// outlive them. `F` is no lambda, because its name becomes part of a kernel's.
+/// The same clouds (any that a call takes) with `f(source)` for each source, in order. They are views: what they view
+/// must outlive them. `F` must not be a lambda, because its name becomes part of a kernel's.
 template <class Clouds, class F>
 auto mapped_clouds(const Clouds& clouds, F f) {
   static_assert(explain_clouds<Clouds>());

@@ -22,8 +22,8 @@ struct behind_labels {
 
 }  // namespace detail
 
-/// The same clouds (any that a call takes) without the points that are labelled `own`: `labels`, one a point of all
-/// clouds in their order, in memory that the query's backend can read. Views: clouds and labels must outlive them.
+/// The same clouds (any that a call takes) without the points labelled `own`. `labels` has one label per point of all
+/// clouds, in order, in memory that the query's backend can read. Views: clouds and labels must outlive them.
 template <class Clouds>
 auto masked_clouds(const Clouds& clouds, const point_label* labels) {
   return mapped_clouds(clouds, detail::behind_labels{labels});

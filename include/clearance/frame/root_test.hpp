@@ -5,17 +5,17 @@
 
 namespace clearance::frames {
 
-/// How far from the middle of a part's ball a point within reach can be, and a little more than rounding can add.
+/// The largest distance of a point within reach from the middle of a part's ball, and more than rounding can add.
 CLEARANCE_HD inline real limit(const ball& around, real reach) { return (reach + around.radius) * (1 + 4 * slack); }
 
-/// Cheap and conservative, from differences: for few points. NaN fails.
+/// May a point be within reach of a ball? Cheap and conservative, from differences, for few points. NaN fails.
 CLEARANCE_HD inline bool may_reach(const ball& around, real reach, vec3 p) {
   const vec3 d = p - around.center;
   const real most = limit(around, reach);
   return most >= 0 && d.x * d.x + d.y * d.y + d.z * d.z <= most * most;
 }
 
-/// A ball, and what a test against it needs whatever the reach.
+/// A ball, with what a test against it needs for any reach.
 struct root_ball {
   ball around;
   real square, twice;  ///< |c|^2 and 2 |c|.
@@ -25,11 +25,11 @@ struct root_ball {
       : around(b), square(dot(b.center, b.center)), twice(2 * length(b.center)) {}
 };
 
-/// Cheap and conservative: may a point x be within reach of a part's ball? `value(x) <= -|x|^2` says perhaps, in the
-/// cloud's own frame, with three multiply-adds. Not part of the exact path, so compilers may contract it as they like.
+/// Cheap and conservative: may a point x be within reach of a part's ball? If `value(x) <= -|x|^2`, it may, in the
+/// cloud's own frame, with three multiply-adds. This is not part of the exact path, so compilers may contract it.
 struct alignas(16) root_test {
   vec3 m;  ///< -2 c
-  real w;  ///< |c|^2 - limit^2, less what rounding can do; rises as the reach falls.
+  real w;  ///< |c|^2 - limit^2, less what rounding can add; rises as the reach falls.
 
   root_test() = default;
   CLEARANCE_HD root_test(const root_ball& r, real limit) {

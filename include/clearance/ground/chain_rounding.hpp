@@ -5,17 +5,17 @@
 
 namespace clearance {
 
-/// What double loses of a link's place along a chain of joints. A bracket covers what is little against the link's own
-/// way (half of its 2^-44 of that; the rest is for what comes after), and a nanometre, which its other terms are above.
-/// Ways that cancel lose more: origins of 1e13 m and back leave a millimetre that no bracket knows of.
+/// How wrong double makes a link's place along a chain of joints. A bracket covers errors that are small against the
+/// link's own way (half of its 2^-44 of that; the rest is for what comes after), and a nanometre, which its other terms
+/// exceed. Ways that cancel lose more: going 1e13 m out and back leaves a millimetre that no bracket includes.
 struct chain_rounding {
-  double lost = 0;  ///< Metres, at most.
-  double turn = 0;  ///< By how much the frame reached so far may be turned wrongly, radians.
+  double lost = 0;  ///< The largest error, metres.
+  double turn = 0;  ///< The largest error of the rotation of the frame reached so far, radians.
 
-  /// A frame goes on by `way` metres, which are turned, and is then `away` metres from where the chain began.
+  /// The frame moves by `way` metres, which are rotated, and is then `away` metres from where the chain began.
   CLEARANCE_HD void step(double way, double away) { lost += unit * away + (8 * unit + turn) * way; }
-  /// It is at `before`, goes on by what is `given` (and was rounded once, when it was written as a double), and is then
-  /// at `sum`; `way` is the length of which of the two is turned. Where nothing is turned, an exact sum loses no more.
+  /// The frame is at `before`, moves by `given` (rounded once, when it was written as a double), and is then at `sum`.
+  /// `way` is the length of the one of the two that is rotated. Without a rotation an exact sum loses nothing more.
   CLEARANCE_HD void step(position before, position given, position sum, double way) {
     lost += unit * most(given);
     const auto exact = [](double x, double y, double s) { return s - x == y && s - y == x; };
@@ -23,11 +23,11 @@ struct chain_rounding {
         !exact(before.z, given.z, sum.z))
       step(way, most(sum));
   }
-  /// And it turns; or did before, where a chain is followed from its end.
+  /// The frame rotates; or it did before, if a chain is followed from its end.
   CLEARANCE_HD void turned() { turn += 16 * unit; }
   CLEARANCE_HD bool covered(double away) const { return lost <= 1e-9 + 0x1p-45 * away; }
 
-  /// A length from below by its largest coordinate, and from above by their sum: no root is drawn.
+  /// Bounds on a length without a root: from below its largest coordinate, from above their sum.
   CLEARANCE_HD static double least(position p) { return larger(larger(absolute(p.x), absolute(p.y)), absolute(p.z)); }
   CLEARANCE_HD static double most(position p) { return absolute(p.x) + absolute(p.y) + absolute(p.z); }
 

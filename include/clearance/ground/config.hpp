@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The only header that asks which compiler is running. The version is read from here by CMake too.
+// The only header that asks which compiler is running. CMake reads the version from here, too.
 
 #define CLEARANCE_VERSION_MAJOR 0
 #define CLEARANCE_VERSION_MINOR 1
@@ -10,17 +10,17 @@
 
 #if defined(__CUDACC__)
 #define CLEARANCE_HD __host__ __device__
-/// Before a template that calls what it is given, which may be for the host alone.
+/// Goes before a template that calls a function of the caller's, which may be for the host alone.
 #define CLEARANCE_CALLS_ANYTHING _Pragma("nv_exec_check_disable")
 #else
 #define CLEARANCE_HD
 #define CLEARANCE_CALLS_ANYTHING
 #endif
 
-/// Before a short loop whose arrays shall live in registers.
+/// Goes before a short loop whose arrays should live in registers.
 #if defined(__CUDA_ARCH__)
 #define CLEARANCE_UNROLL _Pragma("unroll")
-/// And before one that seldom goes round.
+/// Goes before a loop that rarely repeats.
 #define CLEARANCE_ROLLED _Pragma("unroll 1")
 #else
 #define CLEARANCE_UNROLL

@@ -15,7 +15,7 @@ namespace clearance {
 
 using real = float;
 
-/// Constants, because device code may not call the functions.
+/// Constants, because device code may not call the functions of numeric_limits.
 inline constexpr real infinity = std::numeric_limits<real>::infinity();
 inline constexpr real not_a_number = std::numeric_limits<real>::quiet_NaN();
 inline constexpr real least_normal = std::numeric_limits<real>::min(), largest_real = std::numeric_limits<real>::max();
@@ -23,7 +23,7 @@ inline constexpr real least_normal = std::numeric_limits<real>::min(), largest_r
 /// Relative slack by which every lower bound is lowered and every fit inflated: 32 units of rounding (2^-24), more than
 /// all errors of a bound and of a leaf formula together.
 inline constexpr real slack = 0x1p-19f;
-/// And metres by which every fit is inflated: squares of less than 1e-19 vanish, which no relative slack covers.
+/// Metres by which every fit is also inflated: squares of less than 1e-19 vanish, which no relative slack covers.
 inline constexpr double vanishing = 0x1p-60;
 
 struct vec3 {
@@ -84,7 +84,7 @@ CLEARANCE_HD inline vec3 fma(real s, vec3 a, vec3 b) { return {fma(s, a.x, b.x),
 CLEARANCE_HD inline vec3 scaled(real s, vec3 a) { return fma(s, a, vec3{0, 0, 0}); }
 CLEARANCE_HD inline real dot(vec3 a, vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 CLEARANCE_HD inline real length(vec3 a) { return square_root(dot(a, a)); }
-/// The same, quicker on a device, but up to 2^-23 of it wrong there: for bounds, which `slack` covers, and never for
+/// A quicker root on a device, with a relative error of up to 2^-23 there. For bounds, which `slack` covers, never for
 /// answers.
 CLEARANCE_HD inline real rough_root(real a) {
 #if defined(__CUDA_ARCH__)
@@ -96,7 +96,7 @@ CLEARANCE_HD inline real rough_root(real a) {
 #endif
 }
 CLEARANCE_HD inline real rough_length(vec3 a) { return rough_root(dot(a, a)); }
-/// And the inverse of a number likewise; that of a subnormal one may be infinite.
+/// A quicker inverse likewise. That of a subnormal number may be infinite.
 CLEARANCE_HD inline real rough_inverse(real a) {
 #if defined(__CUDA_ARCH__)
   real inverse;
@@ -112,7 +112,7 @@ CLEARANCE_HD inline vec3 cross(vec3 a, vec3 b) {
 
 CLEARANCE_HD constexpr real min(real a, real b) { return b < a ? b : a; }
 CLEARANCE_HD constexpr real max(real a, real b) { return a < b ? b : a; }
-/// The same for bounds, in one instruction on a device, where a NaN gives way to a number.
+/// The same for bounds, in one instruction on a device, which returns the number if the other is NaN.
 CLEARANCE_HD inline real rough_min(real a, real b) {
 #if defined(__CUDA_ARCH__)
   return fminf(a, b);
@@ -142,8 +142,8 @@ CLEARANCE_HD inline bool is_finite(vec3 a) {
 #endif
 }
 
-/// Rounds, and lets the compiler know no more than that: g++ 12 at -O2 leaves out the rounding of neighbouring
-/// conversions to float and back, and a proof that measures from the rounded number would measure from another.
+/// Rounds so that the compiler cannot see through it: g++ 12 at -O2 omits the rounding of neighbouring conversions to
+/// float and back, and a proof about the rounded number would then hold for another one.
 CLEARANCE_HD inline real to_float(double x) {
 #if defined(__CUDA_ARCH__)
   return real(x);
@@ -163,11 +163,10 @@ CLEARANCE_HD inline real rounded_up(double x) { return -rounded_down(-x); }
 /// A computed `distance` to a volume of extent `size`, lowered so that rounding cannot push it above a true one.
 CLEARANCE_HD constexpr real lowered(real distance, real size) { return distance - slack * (absolute(distance) + size); }
 
-/// max(a, 0), but NaN of minus infinity; where compilers would make branches of that, and no vectors of the loop around
-/// them.
+/// max(a, 0), but NaN for minus infinity. For loops where compilers would turn max into branches.
 CLEARANCE_HD constexpr real positive_part(real a) { return (a + absolute(a)) * 0.5f; }
-/// What the square of a way outside a volume can be, rounding included, if what is inside may be within `reach`: NaN,
-/// which nothing is below, if that is minus infinity.
+/// The largest squared distance to a volume, rounding included, at which its content may be within `reach`. It is NaN,
+/// so that no comparison holds, if the reach is minus infinity.
 CLEARANCE_HD constexpr real square_of_reach(real reach) {
   const real most = positive_part(reach);
   return most * most * (1 + 16 * slack) + least_normal;

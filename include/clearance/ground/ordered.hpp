@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// One 64-bit word that is smaller exactly if the distance is smaller, or equal at a lower index. It can be minimised
-// atomically, in any order, by any number of threads, with one result.
+// One 64-bit word that is smaller exactly if the distance is smaller, or equal with a lower index. Any number of
+// threads can minimise it atomically, in any order, with one result.
 
 #include <clearance/ground/math.hpp>
 
@@ -25,7 +25,7 @@ CLEARANCE_HD inline real from_bits(std::uint32_t u) {
 #endif
 }
 
-/// Maps floats (never NaN) to integers in the same order; -0 and 0 are one.
+/// Maps floats (never NaN) to integers in the same order; -0 and 0 map to the same.
 CLEARANCE_HD inline std::uint32_t ordered(real distance) {
   const std::uint32_t u = to_bits(distance + 0.0f);
   return u & 0x80000000u ? ~u : u | 0x80000000u;
@@ -42,7 +42,7 @@ CLEARANCE_HD inline distance_key make_key(real distance, std::uint32_t index) {
 CLEARANCE_HD inline real key_distance(distance_key k) { return from_ordered(std::uint32_t(k >> 32)); }
 CLEARANCE_HD inline std::uint32_t key_index(distance_key k) { return std::uint32_t(k); }
 
-/// Infinitely far, at no index: larger than any other key.
+/// Infinitely far away, with no index: larger than any other key.
 inline constexpr distance_key no_key = 0xff800000ffffffffull;
 
 /// A stale value only costs work, so reads are relaxed.
@@ -73,7 +73,7 @@ CLEARANCE_HD inline void add_to(unsigned long long* word, unsigned long long val
 #endif
 }
 
-/// Adds one; of a warp's threads that come with the same word one adds for all.
+/// Adds one. On a device, one thread of a warp adds for all that have the same word.
 CLEARANCE_HD inline void add_one(unsigned long long* word) {
 #if defined(__CUDA_ARCH__)
   const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(word));
@@ -84,7 +84,7 @@ CLEARANCE_HD inline void add_one(unsigned long long* word) {
 #endif
 }
 
-/// As `lower_to` and `take_number`, of words of 32 bits.
+/// `lower_to` and `take_number` for 32-bit words.
 CLEARANCE_HD inline void lower_word(std::uint32_t* word, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)
   atomicMin(word, value);
@@ -102,7 +102,7 @@ CLEARANCE_HD inline std::uint32_t count_one(std::uint32_t* word, std::uint32_t b
 #endif
 }
 
-/// Adds one, and returns what was there.
+/// Adds one and returns the old value.
 CLEARANCE_HD inline unsigned long long take_number(unsigned long long* word) {
 #if defined(__CUDA_ARCH__)
   return atomicAdd(word, 1ull);

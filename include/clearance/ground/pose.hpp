@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// From double poses on the host to what a kernel needs of them.
+// From double poses on the host to the transforms that a kernel needs.
 
 #include <clearance/ground/math.hpp>
 
@@ -11,13 +11,13 @@
 
 namespace clearance {
 
-/// A point in world coordinates: double, because a world may be far from its origin.
+/// A point in world coordinates, metres. Double, because points may be far from the world's origin.
 struct position {
   double x, y, z;
 };
 
-/// A rigid transform in double as plain data, such as world-from-part: what kernels get, or compose themselves. Its
-/// arithmetic is the same on host and device.
+/// A rigid transform in double as plain data, such as world-from-part. Kernels get or compose it. Its arithmetic is the
+/// same everywhere.
 struct world_transform {
   double m[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 
@@ -43,7 +43,7 @@ struct world_transform {
       for (int c = 0; c < 4; ++c) ab.m[r][c] = a.along(r, {b.m[0][c], b.m[1][c], b.m[2][c]}, c == 3 ? a.m[r][3] : 0);
     return ab;
   }
-  /// Of a rotation that is orthonormal.
+  /// The inverse, if the rotation is orthonormal.
   CLEARANCE_HD world_transform inverse() const {
     world_transform t;
     for (int r = 0; r < 3; ++r)
@@ -65,7 +65,7 @@ inline Eigen::Isometry3d to_isometry(const world_transform& t) {
   return pose;
 }
 
-/// How far the axes are from orthonormal; NaN or infinite if a number of the pose is.
+/// How far the axes are from orthonormal. NaN or infinite if an entry of the pose is.
 CLEARANCE_HD inline double skew(const world_transform& t) {
   double most = 0;
   for (int i = 0; i < 3; ++i)
@@ -84,14 +84,14 @@ CLEARANCE_HD inline bool mirrors(const world_transform& t) {
 
 inline constexpr double most_skew = 1e-4;
 
-/// As `is_finite` of a point: beyond, squares of float distances would overflow.
+/// The limit of `is_finite` for points: beyond it, squares of float distances would overflow.
 CLEARANCE_HD inline bool too_far(const world_transform& t) {
   const auto far = [](double x) { return !(-1e18 <= x && x <= 1e18); };
   return far(t.m[0][3]) || far(t.m[1][3]) || far(t.m[2][3]);
 }
 
 /// Makes the rotation orthonormal to double precision, by Newton's steps towards the closest one: R (3 - R'R) / 2.
-/// False if the pose is not rigid to `most_skew`: scale, shear, a reflection, or a number that is not finite; or beyond
+/// False if the pose is not rigid to `most_skew` (scale, shear, reflection, a number that is not finite), or beyond
 /// 1e18 m.
 CLEARANCE_HD inline bool make_rigid(world_transform& t) {
   double off = skew(t);
@@ -113,9 +113,9 @@ CLEARANCE_HD inline bool make_rigid(world_transform& t) {
   return true;
 }
 
-/// `pose` with its rotation made orthonormal to double precision. Throws if it is not rigid to 1e-4: scale, shear, a
-/// reflection, or a number that is not finite; or if it is beyond 1e18 m. `what` and `number` say in the message which
-/// pose it was.
+/// `pose` with its rotation made orthonormal to double precision. Throws std::invalid_argument if it is not rigid to
+/// 1e-4 (scale, shear, a reflection, a number that is not finite) or is beyond 1e18 m. `what` and `number` name the
+/// pose in the message.
 inline world_transform rigid_transform_of(const Eigen::Isometry3d& pose, const char* what = "pose",
                                           std::int64_t number = -1) {
   world_transform t(pose);

@@ -7,7 +7,7 @@
 
 namespace clearance {
 
-/// What nobody writes while a query runs, read in wide pieces. On a device compilers so do not mix it up with shared
+/// Reads memory that no thread writes while a query runs, in wide pieces. So device compilers do not take it for shared
 /// memory.
 template <class T>
 CLEARANCE_HD T read_only(const T* from) {

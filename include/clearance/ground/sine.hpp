@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Sine and cosine with the same bits everywhere; those of libraries differ in the last.
+// Sine and cosine with the same bits everywhere. Those of libraries differ in the last bit.
 
 #include <clearance/ground/math.hpp>
 
@@ -10,10 +10,11 @@ struct sine_cosine {
   double sine, cosine;
 };
 
-/// Of an angle in radians, within 2e-16. NaN beyond 2^30 rad, where a double no longer says much about an angle.
+/// Sine and cosine of an angle in radians, within 2e-16. NaN beyond 2^30 rad, where a double says little about an
+/// angle.
 CLEARANCE_HD inline sine_cosine sine_cosine_of(double angle) {
   if (!(-0x1p30 <= angle && angle <= 0x1p30)) return {double(not_a_number), double(not_a_number)};
-  // What is left of whole quarter turns: pi / 2 in two doubles, so that what cancels is exact enough.
+  // Subtracts whole quarter turns, with pi / 2 in two doubles, so that the cancellation is exact enough.
   const double quarters = fma(angle, 0x1.45f306dc9c883p-1, angle < 0 ? -0.5 : 0.5);
   const long long turns = static_cast<long long>(quarters);
   const double r = fma(-double(turns), 0x1.1a62633145c07p-54, fma(-double(turns), 0x1.921fb54442d18p+0, angle)),

@@ -16,8 +16,8 @@ __attribute__((target("avx2,fma"), flatten)) void compiled_for_vectors(const F& 
 
 }  // namespace detail
 
-/// Calls `f()`: on x86-64 with AVX2 and fused multiply-add, if the processor turns out to have both. Without a compiler
-/// flag each fma is a call, and loops are half as wide. Same bits either way, for what keeps to the rule of math.hpp.
+/// Calls `f()`. On x86-64 it is compiled for AVX2 and fused multiply-add, and used if the processor has both: without a
+/// compiler flag each fma is a call, and loops are half as wide. By the rule of math.hpp the bits are the same.
 template <class F>
 void with_vectors(const F& f) {
   __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? detail::compiled_for_vectors(f) : f();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What ranks tell one another about a question: before it, that it is the same; after it, their answers.
+// What ranks tell one another about a question: before it, that it is the same for all; after it, their answers.
 
 #include <clearance/answer/of_pieces.hpp>
 #include <clearance/frame/clouds.hpp>
@@ -17,8 +17,7 @@
 
 namespace clearance::mpi {
 
-/// Throws std::runtime_error where a communicator returns its errors (MPI_ERRORS_RETURN); by default they end the
-/// program.
+/// Throws std::runtime_error if the communicator returns errors (MPI_ERRORS_RETURN). By default errors end the program.
 inline void check(int error, const char* call) {
   if (error == MPI_SUCCESS) return;
   char text[MPI_MAX_ERROR_STRING] = {};
@@ -27,11 +26,11 @@ inline void check(int error, const char* call) {
   throw std::runtime_error(std::string("clearance: ") + call + ": " + text);
 }
 
-/// One reduction of plain values with their own `add`, which is associative and commutative.
+/// Reduces plain values over all ranks with their own `add`, which is associative and commutative.
 template <class T>
 void reduce(MPI_Comm comm, T* values, std::size_t count) {
   static_assert(std::is_trivially_copyable_v<T>);
-  // Made once, and kept as long as the process: nobody may free them after MPI_Finalize.
+  // Made once and kept as long as the process, because they must not be freed after MPI_Finalize.
   static const MPI_Datatype type = [] {
     MPI_Datatype made;
     check(MPI_Type_contiguous(int(sizeof(T)), MPI_BYTE, &made), "MPI_Type_contiguous");
@@ -64,7 +63,7 @@ std::vector<T> gather(MPI_Comm comm, int ranks, const T* values, std::size_t cou
   return all;
 }
 
-/// One question of all ranks. Every rank does the same with it, whatever goes wrong on one: what that one threw ends
+/// One question that all ranks ask. Every rank makes the same calls, whatever fails: an exception on one ends it on
 /// all.
 class question {
  public:
@@ -78,7 +77,7 @@ class question {
     check(MPI_Comm_size(comm, &ranks_), "MPI_Comm_size");
   }
 
-  /// Does `work()` on this rank. What it throws is kept, and told by `agree` or `answer`.
+  /// Does `work()` on this rank. Keeps its exception, which `agree` or `answer` reports.
   template <class Work>
   void attempt(const Work& work) {
     try {
@@ -90,8 +89,8 @@ class question {
     }
   }
 
-  /// Throws on all ranks if one has thrown, or asks about another number of parts or clouds, or other poses. Then
-  /// `first` is known.
+  /// Throws on all ranks if one has thrown, or asks about another number of parts or clouds or about other poses, or if
+  /// there are too many points. Afterwards it is known where this rank's points begin.
   template <class Clouds>
   void agree(std::size_t parts, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
     said mine{parts, 0, 0, 0, 0};
@@ -130,7 +129,8 @@ class question {
     if (points >= none) throw std::invalid_argument("clearance: more than 2^32 - 2 points on all ranks together");
   }
 
-  /// From this rank's answers, in the numbers of its own clouds, to those of all ranks; `minima` one a part, or empty.
+  /// From this rank's answers, in the numbers of its own clouds, to those of all ranks. `minima`: one per part, or
+  /// empty.
   min_distance_result answer(const min_distance_result& mine, std::span<part_minimum> minima, bool has_interior) {
     sum all{minimum::of_pieces(in_whole(mine)), thrown_ ? std::uint32_t(rank_) : none};
     reduce(comm_, &all, 1);
@@ -148,8 +148,7 @@ class question {
   struct said {
     std::uint64_t parts, clouds, poses, points, thrown;
 
-    /// Each step is one to one, and spreads every bit: half a turn, which flips the signs of some numbers, must not
-    /// hide itself.
+    /// Each step is one to one and spreads every bit, so that half a turn, which flips some signs, shows.
     void add(const Eigen::Isometry3d& pose) {
       for (int k = 0; k < 16; ++k) {
         poses = (poses ^ std::bit_cast<std::uint64_t>(pose.matrix().data()[k] + 0.0)) *

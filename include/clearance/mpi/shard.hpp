@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 // How far is a robot from what the sensors of many machines see? Each rank of an MPI program has a piece of every
-// cloud. Needs an MPI library; nothing else includes this.
+// cloud. Needs an MPI library; no other header includes this one.
 
 #include <clearance/min_distance_query.hpp>
 #include <clearance/mpi/ranks.hpp>
@@ -9,11 +9,11 @@
 
 namespace clearance::mpi {
 
-/// The backend of min_distance, min_distance_per_part and min_distance_query on all ranks of `comm` at once: each asks
-/// `on` (host{}, device{}, devices{...}) about its own pieces of the clouds, and all get the one answer about them
-/// together, which is that of one backend to the bit. Points are numbered through the ranks in their order; a rank may
-/// have none. All ranks ask at the same time, about the same poses, with the robot where its own `on` wants it. What
-/// one rank throws ends the call on all.
+/// The backend of min_distance, min_distance_per_part and min_distance_query on all ranks of `comm` at once. Each rank
+/// asks `on` (host{}, device{}, devices{...}) about its own pieces of the clouds. All get the same answer about all
+/// pieces, to the bit that of one backend. Points are numbered through the ranks in order; a rank may have none. All
+/// ranks must ask together, about the same poses, each with the robot where its `on` needs it. An exception on one rank
+/// ends the call on all.
 template <class On>
 struct shard {
   MPI_Comm comm;
@@ -27,7 +27,7 @@ shard(MPI_Comm) -> shard<host>;
 
 namespace clearance {
 
-/// The prepared question: a prepared one on each rank.
+/// The prepared question, with one prepared on each rank.
 template <class On, class PartView>
 class min_distance_query<mpi::shard<On>, PartView> {
  public:
@@ -35,8 +35,8 @@ class min_distance_query<mpi::shard<On>, PartView> {
   min_distance_query(const mpi::shard<On>& on, const Robot& robot)
       : comm_(on.comm), parts_(view_of(robot).facts.size()), query_(on.on, robot) {}
 
-  /// As min_distance. Throws std::invalid_argument if ranks do not ask the same, and what its own part of it throws;
-  /// the others then throw std::runtime_error with that sentence.
+  /// As min_distance. Throws std::invalid_argument if ranks do not ask the same. It also throws what this rank's own
+  /// part throws; the other ranks then throw std::runtime_error with that message.
   template <class... Clouds>
   min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, const Clouds&... clouds) {
     return ask(poses, as_clouds(clouds...), {}, [&](const auto& mine) { return query_(poses, mine); });
@@ -44,8 +44,7 @@ class min_distance_query<mpi::shard<On>, PartView> {
   template <class Clouds>
   min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                std::span<part_minimum> minima) {
-    // `query_` refuses minima of another number than parts, within `attempt`: a rank that threw here would leave the
-    // others waiting.
+    // `query_` refuses a wrong number of minima within `attempt`: throwing here would leave the others waiting.
     return ask(poses, clouds, minima, [&](const auto& mine) { return query_.per_part(poses, mine, minima); });
   }
 
@@ -70,7 +69,7 @@ class min_distance_query<mpi::shard<On>, PartView> {
 
 namespace minimum {
 
-/// One call on each rank. What it answers is in host memory.
+/// One call on each rank. Its answer is in host memory.
 template <class On>
 struct search_on<mpi::shard<On>> {
   static host backend_of(const mpi::shard<On>&) { return {}; }

@@ -7,15 +7,15 @@
 
 namespace clearance {
 
-/// Pinhole camera, pixels; the centre of the first pixel is (0, 0). z looks forward, x right, y down.
+/// Pinhole camera, in pixels. The centre of the first pixel is (0, 0). z points forward, x right, y down.
 struct intrinsics {
   double fx, fy, cx, cy;
 };
 
-/// A depth image, deprojected while it is read: `std::uint16_t` pixels times `scale`, or `float` metres (REP 118).
+/// A depth image, deprojected while it is read: `std::uint16_t` pixels times `scale`, or `float` in metres (REP 118).
 ///
-/// 0 is missing, 65535 in 16 bits saturated, NaN and Inf not finite, but -Inf too close; `nearest` and `farthest` bound
-/// z, in metres.
+/// 0 is missing, 65535 in 16 bits is saturated, NaN and Inf are not finite, but -Inf is too close. `nearest` and
+/// `farthest` bound z, in metres.
 template <class Pixel>
 struct depth_image {
   static_assert(std::is_same_v<Pixel, std::uint16_t> || std::is_same_v<Pixel, float>,
@@ -24,10 +24,10 @@ struct depth_image {
   const Pixel* pixels = nullptr;
   std::uint32_t width = 0, height = 0;
   std::uint32_t row = 0;  ///< Pixels from one row to the next.
-  real scale = 1;         ///< Metres a unit.
+  real scale = 1;         ///< Metres per unit.
   real nearest = 0, farthest = infinity;
   bool minus_infinity_is_near =
-      true;  ///< A float pixel of -inf is `too_close` (REP 117); else it is not finite, and no more.
+      true;  ///< A float pixel of -inf is `too_close` (REP 117); otherwise it is just not finite.
   real inverse_fx = 1, inverse_fy = 1, cx = 0, cy = 0;
 
   depth_image() = default;
@@ -72,15 +72,15 @@ struct depth_image {
     return reasons;
   }
 
-  /// The point that pixel (u, v) shows if it holds `d`.
+  /// The point of pixel (u, v) if it holds `d`.
   CLEARANCE_HD sample deproject(Pixel d, std::uint32_t u, std::uint32_t v) const {
     const real z = product(real(d), scale);
     return depth_sample(d, {product((real(u) - cx) * inverse_fx, z), product((real(v) - cy) * inverse_fy, z), z},
                         nearest, farthest, minus_infinity_is_near);
   }
 
-  /// See `surveyed_source`. Pixels are compared, and only the corners of what they span are deprojected: rounded
-  /// arithmetic is monotonic too.
+  /// See `surveyed_source`. Compares pixels and deprojects only the corners of their range: rounded arithmetic is
+  /// monotonic.
   bool survey(std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) const {
     const std::size_t end = begin + surveyed_points - 1;
     const std::uint32_t v[2] = {std::uint32_t(begin / width), std::uint32_t(end / width)};
@@ -105,18 +105,18 @@ struct depth_image {
     return true;
   }
 
-  /// Scale, focal length and three products cost x and y six roundings, z two; and what cx and cy lost is as much of z.
+  /// Scale, focal length and three products cost x and y six roundings, and z two. Those of cx and cy add a share of z.
   position_error rounding() const {
     const auto square = [](double a) { return a * a; };
     const auto widest = [](double c, double n) { return std::fmax(std::fabs(c), std::fabs(n - 1 - c)); };
     const double slant =
-        square(widest(cx, width) * inverse_fx) + square(widest(cy, height) * inverse_fy);  // of the outermost ray
+        square(widest(cx, width) * inverse_fx) + square(widest(cy, height) * inverse_fy);  // the outermost ray's
     const double centre = std::sqrt(square(double(cx) * inverse_fx) + square(double(cy) * inverse_fy));
     return {0, 0x1.001p-24 * (std::sqrt((36 * slant + 4) / (slant + 1)) + centre)};
   }
 
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(pixels, std::size_t(row) * height)); }
-  /// What points `begin` to `end - 1` need of it: their rows.
+  /// The memory that points `begin` to `end - 1` need: their rows.
   std::span<const std::byte> bytes(std::size_t begin, std::size_t end) const {
     if (begin == end) return {};
     const std::size_t first = begin / width, count = (end - 1) / width + 1 - first;

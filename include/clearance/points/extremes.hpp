@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Least and largest of many numbers, in loops that compilers turn into vector code on every processor.
+// The least and largest of many numbers, in loops that compilers turn into vector code on every processor.
 
 #include <clearance/concepts.hpp>
 
@@ -8,7 +8,7 @@
 
 namespace clearance {
 
-/// Lanes are side by side so that they become vectors; NaN is left out.
+/// Lanes lie side by side so that they become vectors. NaN is ignored.
 template <std::size_t Lanes>
 struct extremes {
   alignas(64) real low[Lanes], high[Lanes];
@@ -25,7 +25,7 @@ struct extremes {
   }
 };
 
-/// Of as many as a survey is about.
+/// The extremes of as many values as a survey has points.
 inline void spread(const real* values, real& low, real& high) {
   constexpr std::size_t lanes = 16;
   extremes<lanes> all;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Clouds that are brought to memory a range at a time: they may be larger than a device, or than memory.
+// Clouds that are loaded one range at a time: they may be larger than a device's memory, or the host's.
 
 #include <clearance/points/slice.hpp>
 
@@ -10,13 +10,12 @@
 
 namespace clearance {
 
-/// A cloud that comes in ranges of points. Optional: `static constexpr bool in_place = true`, if nothing has to be
-/// brought.
+/// A cloud that is loaded in ranges of points. Optional: `static constexpr bool in_place = true` if it is all in
+/// memory.
 ///
-/// Law: `load(begin, end, room)` gives points `begin` to `end - 1`, from memory of its own or from the `room(end -
-/// begin)` bytes that it
-///      is given (aligned to 64), or throws why it cannot. It is called by one thread at a time, while others read what
-///      was loaded before.
+/// Law: `load(begin, end, room)` returns points `begin` to `end - 1`, in its own memory or in the `room(end - begin)`
+/// bytes that it is given (aligned to 64), or throws and says why. One thread at a time calls it, while others read
+/// what was loaded before.
 template <class C>
 concept loaded_cloud = requires(const C c, std::size_t i, std::byte* room) {
   { c.size() } -> std::convertible_to<std::size_t>;
@@ -26,13 +25,13 @@ concept loaded_cloud = requires(const C c, std::size_t i, std::byte* room) {
 template <loaded_cloud C>
 using loaded_source = decltype(std::declval<const C&>().load(0, 0, nullptr));
 
-/// One whose points have a place in the host's memory whether they are there or not: many ranges are then searched as
-/// one. Law: `whole()` is a view of all points, in which those that were loaded may be read.
+/// A cloud whose points have addresses in host memory before they are loaded, so that many ranges are searched as one.
+/// Law: `whole()` is a view of all points, of which the loaded ones may be read.
 template <class C>
 concept addressed_cloud =
     loaded_cloud<C> && requires(const C c) { requires point_source<std::remove_cvref_t<decltype(c.whole())>>; };
 
-/// A source in memory, of any kind: host memory, pinned or not, or a device's. `chunked` makes it of a source.
+/// A source in memory of any kind: host memory, pinned or not, or a device's. `chunked` makes it from a source.
 template <point_source S>
 struct in_memory {
   static constexpr bool in_place = true;
@@ -47,9 +46,9 @@ struct in_memory {
   auto load(std::size_t begin, std::size_t end, std::byte*) const { return slice(source, begin, end); }
 };
 
-/// Records that somebody reads: `read(offset, bytes)` fills `bytes` (a span) with those that begin `offset` bytes after
-/// the first record's start, or throws; `view(memory, count)` is a source over that many records in memory. Throws
-/// std::invalid_argument if a record has no bytes, or all together more than can be counted.
+/// Records that your functions read. `read(offset, bytes)` fills `bytes` (a span) with the data that begins `offset`
+/// bytes after the first record's start, or throws. `view(memory, count)` is a source over that many records in memory.
+/// Throws std::invalid_argument if a record has no bytes, or if the total size overflows.
 template <class Read, class View>
 struct read_records {
   std::size_t count, record_bytes;

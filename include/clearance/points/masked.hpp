@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Points that a mask hides, such as the robot's own.
+// A mask that hides points, such as the robot's own.
 
 #include <clearance/concepts.hpp>
 #include <clearance/ground/read_only.hpp>
 
 namespace clearance {
 
-/// Whose a point is. A byte, so that a mask of them is an image.
+/// Whose a point is. One byte, so that a mask of labels is an image.
 enum class point_label : std::uint8_t {
   rest,       ///< Not the robot's.
   own,        ///< The robot's.
-  uncertain,  ///< Perhaps the robot's; it is not hidden.
+  uncertain,  ///< Perhaps the robot's. It is not hidden.
   no_point,   ///< There was no valid point.
 };
 
@@ -31,9 +31,9 @@ struct masked_types<S> {
 };
 }  // namespace detail
 
-/// A source without the points that are labelled `own`, as fast as the source itself: they are dropped as `masked`, and
-/// the others keep their numbers. `labels`, one a point, lie in memory that the query's backend can read; the source
-/// may be anywhere.
+/// A source without the points labelled `own`, as fast as the source itself. They are dropped as `masked`, and the
+/// others keep their numbers. `labels`, one per point, lie where the query's backend can read them; the source may be
+/// anywhere.
 template <point_source S>
 struct masked : detail::masked_types<S> {
   S source;
@@ -76,7 +76,7 @@ struct masked : detail::masked_types<S> {
     return reasons;
   }
 
-  /// See `surveyed_source`: only where nothing is hidden.
+  /// See `surveyed_source`. Only if nothing is hidden there.
   bool survey(std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) const
     requires surveyed_source<S>
   {

@@ -5,13 +5,13 @@
 
 namespace clearance {
 
-/// Which points of a cloud count: metres from `sensor` (a position in the cloud's own frame), both ends included.
+/// Which points of a cloud are valid: metres from `sensor` (a position in the cloud's own frame), both limits included.
 struct point_filter {
   real nearest = 0, farthest = infinity;
   vec3 sensor = {0, 0, 0};
-  bool zero_is_missing = false;  ///< Some lidars write their own position where nothing came back.
+  bool zero_is_missing = false;  ///< Some lidars write their own position if nothing came back.
 
-  /// Only finiteness is asked: the same for all points, so a kernel asks once.
+  /// Only finiteness is tested. The same for all points, so a kernel asks once.
   CLEARANCE_HD bool plain() const { return !zero_is_missing && !(nearest > 0) && !(farthest < infinity); }
 
   CLEARANCE_HD sample operator()(vec3 p) const {
@@ -25,14 +25,14 @@ struct point_filter {
     return {p, drop_reason::none};
   }
 
-  /// Four of them, x y z one after another: where they are, and why they do not count, a drop_reason in each byte.
+  /// Filters four points, x y z one after another. Writes their positions and returns their drop reasons, one per byte.
   CLEARANCE_HD unsigned look(const real (&f)[12], vec3 (&out)[4]) const {
     bool told = plain();
     unsigned reasons = 0;
     CLEARANCE_UNROLL
     for (int j = 0; j < 4; ++j) {
       out[j] = {f[3 * j], f[3 * j + 1], f[3 * j + 2]};
-      const real square = dot(out[j], out[j]);  // a kernel needs it, too; NaN if a coordinate is
+      const real square = dot(out[j], out[j]);  // a kernel needs it, too; NaN if a coordinate is NaN
       told &= !(square >= 0x1p116f);            // all are finite
       reasons |= unsigned(square == square ? drop_reason::none : drop_reason::not_finite) << 8 * j;
     }
@@ -44,7 +44,7 @@ struct point_filter {
   }
 };
 
-/// What a pixel that holds `d` says, if its point is `p`: 0 is missing, 65535 in 16 bits saturated; z is bounded, in
+/// The sample of a pixel that holds `d`, if its point is `p`: 0 is missing, 65535 in 16 bits saturated; z is bounded,
 /// metres.
 template <class Pixel>
 CLEARANCE_HD sample depth_sample(Pixel d, vec3 p, real nearest, real farthest, bool minus_infinity_is_near) {

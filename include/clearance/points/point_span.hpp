@@ -7,12 +7,12 @@
 
 namespace clearance {
 
-/// `count` times three floats, x y z, one after another (12 bytes a point).
+/// `count` points, each three floats x y z, one after another (12 bytes per point). Metres.
 struct point_span {
   const vec3* points = nullptr;
   std::size_t count = 0;
   point_filter filter = {};
-  position_error off = {};  ///< What the floats have lost, if they were made from something finer.
+  position_error off = {};  ///< The error of the floats, if they were made from something finer.
 
   point_span() = default;
   point_span(const vec3* points, std::size_t count, point_filter filter = {})

@@ -6,13 +6,13 @@
 
 namespace clearance {
 
-/// Where a pixel looks: x and y at z = 1, in the camera's frame.
+/// The direction of a pixel: x and y at z = 1, in the camera's frame.
 struct ray {
   real x, y;
 };
 
-/// A depth image of a lens with distortion: each pixel has its ray, from a table made once (one a pixel, row by row, in
-/// memory that the query's backend can read; the pixels may be anywhere). Otherwise as depth_image.
+/// A depth image of a lens with distortion. Each pixel has a ray, from a table that is made once (one per pixel, row by
+/// row, in memory that the query's backend can read; the pixels may be anywhere). Otherwise as depth_image.
 template <class Pixel>
 struct ray_image {
   static_assert(std::is_same_v<Pixel, std::uint16_t> || std::is_same_v<Pixel, float>,
@@ -22,10 +22,10 @@ struct ray_image {
   const ray* rays = nullptr;
   std::uint32_t width = 0, height = 0;
   std::uint32_t row = 0;  ///< Pixels from one row to the next; the table has no padding.
-  real scale = 1;         ///< Metres a unit.
+  real scale = 1;         ///< Metres per unit.
   real nearest = 0, farthest = infinity;
   bool minus_infinity_is_near =
-      true;  ///< A float pixel of -inf is `too_close` (REP 117); else it is not finite, and no more.
+      true;  ///< A float pixel of -inf is `too_close` (REP 117); otherwise it is just not finite.
 
   ray_image() = default;
   ray_image(const Pixel* pixels, const ray* rays, std::uint32_t width, std::uint32_t height,
@@ -72,11 +72,11 @@ struct ray_image {
     return reasons;
   }
 
-  /// Scale, ray and two products.
+  /// The roundings of scale, ray and two products.
   position_error rounding() const { return {0, 4 * 0x1.001p-24}; }
 
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(pixels, std::size_t(row) * height)); }
-  /// What points `begin` to `end - 1` need of it: their rows.
+  /// The memory that points `begin` to `end - 1` need: their rows.
   std::span<const std::byte> bytes(std::size_t begin, std::size_t end) const {
     if (begin == end) return {};
     const std::size_t first = begin / width, count = (end - 1) / width + 1 - first;

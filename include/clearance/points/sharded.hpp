@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Pieces of a cloud are a cloud: what a slice takes apart, side by side again.
+// A cloud made of pieces, the reverse of slices.
 
 #include <clearance/points/slice.hpp>
 
@@ -11,14 +11,14 @@
 
 namespace clearance {
 
-/// Sources of one kind, one behind another: points are numbered through all of them, and each piece may be in the
-/// memory of another device. It may be empty. At most 16.
+/// Up to 16 sources of one kind, one after another. Points are numbered through all of them. Each piece may be in the
+/// memory of another device, and may be empty.
 template <point_source S>
 class sharded {
  public:
   static constexpr std::size_t most = 16;  // as an argument of a kernel it has 4 KiB
 
-  /// Throws std::invalid_argument if there is no piece, or there are too many.
+  /// Throws std::invalid_argument if there are no pieces or too many.
   explicit sharded(const std::vector<S>& pieces) : sharded(checked(pieces), std::make_index_sequence<most>()) {}
 
   CLEARANCE_HD std::size_t size() const { return first_[most]; }
@@ -27,7 +27,7 @@ class sharded {
     while (i >= first_[k + 1]) ++k;
     return piece_[k][i - first_[k]];
   }
-  /// The worst of all pieces.
+  /// The largest errors of all pieces.
   position_error rounding() const {
     position_error worst;
     for (const S& piece : piece_) {
@@ -39,7 +39,7 @@ class sharded {
 
   std::size_t pieces() const { return pieces_; }
   const S& piece(std::size_t k) const { return piece_[k]; }
-  /// The number of a piece's first point; of the piece behind the last: how many points there are.
+  /// The number of piece k's first point. For k = pieces(), the number of points.
   std::size_t first(std::size_t k) const { return first_[k]; }
 
  private:
@@ -61,8 +61,8 @@ class sharded {
   std::size_t first_[most + 1] = {};
 };
 
-/// How a cloud is dealt to `n`: sharded ones as they are, all others in about equal slices. The number of the first
-/// point of piece `k`; of the n-th, how many points there are.
+/// The number of the first point of piece `k`, if a cloud is split into `n`: sharded clouds into their own pieces,
+/// others into about equal slices. For k = n, the number of points.
 template <point_source S>
 std::size_t first_of_piece(const S& cloud, std::size_t k, std::size_t n) {
   if constexpr (requires { cloud.piece(k); })
@@ -78,7 +78,7 @@ auto piece_of(const S& cloud, std::size_t k, std::size_t n) {
     return slice(cloud, first_of_piece(cloud, k, n), first_of_piece(cloud, k + 1, n));
 }
 
-/// Throws std::invalid_argument if a cloud comes in other pieces than `n`.
+/// Throws std::invalid_argument if a sharded cloud does not have `n` pieces.
 template <point_source S>
 void check_pieces(const S& cloud, std::size_t n) {
   if constexpr (requires { cloud.pieces(); })

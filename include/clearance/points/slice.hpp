@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A piece of a cloud is a cloud.
+// A piece of a cloud, as a cloud.
 
 #include <clearance/concepts.hpp>
 
@@ -18,8 +18,7 @@ struct fetched_types<S> {
 };
 }  // namespace detail
 
-/// Points `begin` to `begin + count - 1` of any source, as fast as the source itself where `begin` is a multiple of
-/// four.
+/// Points `begin` to `begin + count - 1` of any source, as fast as the source itself if `begin` is a multiple of four.
 template <point_source S>
 struct sliced : detail::fetched_types<S> {
   S whole;
@@ -66,8 +65,8 @@ struct sliced : detail::fetched_types<S> {
   }
   position_error rounding() const { return rounding_of(whole); }
 
-  /// All of the source's; or of one that has `bytes(begin, end)` what these points need, from a multiple of 256 on, as
-  /// copies are aligned.
+  /// The source's memory. If the source has `bytes(begin, end)`, only what these points need, from a multiple of 256
+  /// bytes on, because copies are aligned so.
   std::span<const std::byte> bytes() const
     requires requires(const S s) { s.bytes(); }
   {
@@ -91,7 +90,7 @@ struct sliced : detail::fetched_types<S> {
   }
 };
 
-/// Points `begin` to `end - 1`; a source that has a `slice` of its own says how.
+/// Points `begin` to `end - 1`, by the source's own `slice` if it has one.
 CLEARANCE_CALLS_ANYTHING
 template <point_source S>
 CLEARANCE_HD auto slice(const S& source, std::size_t begin, std::size_t end) {
@@ -103,8 +102,8 @@ CLEARANCE_HD auto slice(const S& source, std::size_t begin, std::size_t end) {
     return sliced<S>(source, begin, end - begin);
 }
 
-/// Where slice k of `n` about equal ones of a cloud of so many points begins: at a multiple of four, so that points are
-/// read by fours; of one that fits, all are. The n-th begins where the points end.
+/// Where slice k of `n` about equal slices begins: at a multiple of four, so that points are read in fours, or at the
+/// end of the points. For k = n, the number of points.
 inline std::size_t first_of_slice(std::size_t points, std::size_t k, std::size_t n) {
   return std::min(points, (points + 3) / 4 * k / n * 4);
 }

@@ -18,7 +18,7 @@ struct strided_points {
   std::size_t count = 0;
   std::uint32_t step = 0;               ///< point_step, bytes.
   std::uint32_t offset[3] = {0, 4, 8};  ///< of x, y and z within a record, bytes.
-  std::uint32_t width = 0;              ///< Records a row, where rows are padded; 0: all records follow one another.
+  std::uint32_t width = 0;              ///< Records per row, if rows are padded; 0: all records follow one another.
   std::size_t row_step = 0;             ///< Bytes from one row to the next, if `width` is not 0.
   vec3 origin = {0, 0, 0};              ///< Subtracted from doubles before they become floats.
   point_filter filter = {};
@@ -64,7 +64,7 @@ struct strided_points {
   std::span<const std::byte> bytes() const {
     return {data, width == 0 ? count * step : (count + width - 1) / width * row_step};
   }
-  /// What points `begin` to `end - 1` need of it.
+  /// The memory that points `begin` to `end - 1` need.
   std::span<const std::byte> bytes(std::size_t begin, std::size_t end) const {
     if (begin == end) return {};
     if (width == 0) return {data + begin * step, (end - begin) * step};
@@ -75,7 +75,7 @@ struct strided_points {
     moved.data = copy;
     return moved;
   }
-  /// Of a double less the origin: 2^-53, and 2^-24 when it becomes a float.
+  /// For a double less the origin: 2^-53, and 2^-24 when it becomes a float.
   position_error rounding() const {
     const bool as_they_are = std::is_same_v<Scalar, float> && origin == vec3{0, 0, 0};
     return {0, as_they_are ? 0 : 0x1.00001p-24};
@@ -86,7 +86,7 @@ struct strided_points {
   CLEARANCE_HD static real load(const std::byte* from, real minus) {
     Scalar s;
     if (reinterpret_cast<std::uintptr_t>(from) % alignof(Scalar) == 0)
-      s = read_only(reinterpret_cast<const Scalar*>(from));  // else compilers make one load of both: the slow one
+      s = read_only(reinterpret_cast<const Scalar*>(from));  // otherwise compilers merge both loads into the slow one
     else
       memcpy(&s, from, sizeof s);
     return real(s - minus);

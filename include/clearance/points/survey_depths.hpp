@@ -5,15 +5,15 @@
 
 namespace clearance::detail {
 
-/// The least and largest depth of 128 pixels, and how many of them are none.
+/// The least and largest depth of 128 pixels, and how many pixels hold none.
 template <class Pixel>
 struct depths {
   Pixel ends[2];
   std::uint32_t missing = 0, saturated = 0, not_finite = 0, minus_infinity = 0;
-  bool strange = false;  ///< Some are too large to say what becomes of them.
+  bool strange = false;  ///< Some are so large that their points may fail is_finite.
 
   explicit depths(const std::uint16_t* pixels) {
-    // 0 and 65535 are no depths: one less and one more takes them to the far end.
+    // 0 and 65535 are not depths: subtracting and adding one wraps them to the other end.
     std::uint16_t low = 65535, high = 0, zeros = 0, full = 0;
     for (std::size_t j = 0; j < surveyed_points; ++j) {
       const std::uint16_t d = pixels[j], less = std::uint16_t(d - 1), more = std::uint16_t(d + 1);

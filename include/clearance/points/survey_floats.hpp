@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Where 128 points in one array are, and how many of them are none.
+// The box of 128 points in one array, and how many of them are invalid.
 
 #include <clearance/points/extremes.hpp>
 
 namespace clearance::detail {
 
-/// The box around x, y, z of many points, one after another, without taking them apart.
+/// The box around many points, x y z one after another, without separating the coordinates.
 inline extent box_of(const real* f) {
   constexpr std::size_t lanes = 24;
   extremes<lanes> all;
@@ -23,7 +23,7 @@ inline extent box_of(const real* f) {
   return box;
 }
 
-/// Is every number finite? Says no, too, if their sum is not.
+/// Is every number finite? Also false if only their sum is not.
 inline bool sum_is_finite(const real* f) {
   constexpr std::size_t lanes = 16;
   alignas(64) real sums[lanes] = {};
@@ -35,7 +35,7 @@ inline bool sum_is_finite(const real* f) {
   return sum - sum == 0;
 }
 
-/// Points of which some coordinate is not finite.
+/// Counts points with a coordinate that is not finite.
 inline std::uint32_t count_not_finite(const real* f) {
   std::uint32_t all = 0;
   for (std::size_t i = 0; i < 3 * surveyed_points; i += 3)  // as is_finite, without branches
@@ -47,8 +47,8 @@ struct surveyed {
   extent box;
   std::uint32_t not_finite;
 };
-/// Asks for what will be surveyed soon: the work on one tile would otherwise begin with a wait for memory. To ask for
-/// what is not there does nothing.
+/// Prefetches what will be surveyed soon: otherwise the work on a tile would begin with a wait for memory. Prefetching
+/// beyond the array does nothing.
 inline void ask_ahead(const real* f) {
   constexpr std::size_t tile = 3 * surveyed_points * sizeof(real), tiles = 4, line = 64;
   const auto there = reinterpret_cast<std::uintptr_t>(f) + tiles * tile;
@@ -61,7 +61,7 @@ inline surveyed survey_here(const real* f) {
   return {box, box.lower.x > box.upper.x ? std::uint32_t(surveyed_points) : count_not_finite(f)};
 }
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__)
-/// Twice as wide where the processor can, without a compiler flag; boxes and counts are the same.
+/// Twice as wide if the processor can, without a compiler flag. Boxes and counts are the same.
 __attribute__((target("avx2"), flatten)) inline surveyed survey_avx2(const real* f) { return survey_here(f); }
 inline surveyed survey(const real* f) { return __builtin_cpu_supports("avx2") ? survey_avx2(f) : survey_here(f); }
 #else

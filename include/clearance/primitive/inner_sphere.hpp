@@ -16,7 +16,7 @@ struct inner_sphere {
   CLEARANCE_HD vec3 nearest(vec3 q) const {
     const vec3 n = normal(q);
     return fma(radius, n == vec3{0, 0, 0} ? vec3{1, 0, 0} : n,
-               center);  // at the centre all of the surface is equally near
+               center);  // at the centre the whole surface is equally near
   }
   CLEARANCE_HD vec3 normal(vec3 q) const {
     const vec3 d = q - center;

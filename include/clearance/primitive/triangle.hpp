@@ -9,10 +9,10 @@ namespace clearance {
 
 /// A flat triangle, slivers and degenerate ones included; the distance is unsigned.
 ///
-/// Three clamped segments are always right, so they decide; the plane is asked only where the point surely projects
-/// inside: it does so by every side's sign, and the nearest side is near with its interior (to a convex polygon's
-/// inside no corner is the nearest). Signs alone would let through points beyond the tip of a needle, metres away. The
-/// unit normal is made in double, so that no error grows with the triangle's aspect, as in region-based formulas.
+/// Three clamped segments are always right, so they decide. The plane is asked only if the point surely projects
+/// inside: every side's sign says so, and the nearest side is nearest with its interior (inside a convex polygon no
+/// corner is the nearest). Signs alone would pass points beyond the tip of a needle, metres away. The unit normal is
+/// made in double, so that errors do not grow with the triangle's aspect as in region-based formulas.
 struct triangle {
   vec3 a, b, c;
   vec3 unit_normal;  ///< (b-a) x (c-a), normalised in double; (0,0,0) for a triangle without area.
@@ -33,7 +33,7 @@ struct triangle {
     return m.over_face ? min(m.edge, absolute(m.height) + 0.0f) : m.edge;  // + 0: never -0
   }
 
-  /// As `distance`, but rounded roughly, and short by what that can be: over the face by the signs of its sides alone.
+  /// Like `distance`, but rounded roughly, which it allows for. Only the sides' signs say whether q is over the face.
   CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
     const vec3 ab = b - a, bc = c - b, ca = a - c;
     const vec3 aq = q - a, bq = q - b, cq = q - c;
@@ -46,8 +46,8 @@ struct triangle {
     return min(edges, height * height + beside) <= square_of_reach(reach + noise);
   }
 
-  /// Never above `distance(q)`, hardly below it except over the tips of needles, and half its work: the same formulas
-  /// with rough quotients and roots.
+  /// Never above `distance(q)`, and hardly below it except over the tips of needles. It takes half the work: the same
+  /// formulas with rough quotients and roots.
   CLEARANCE_HD real lower_bound(vec3 q) const {
     const vec3 ab = b - a, bc = c - b, ca = a - c;
     const vec3 aq = q - a, bq = q - b, cq = q - c;
@@ -57,7 +57,7 @@ struct triangle {
     const bool perhaps_over = over_face(ab, bc, ca, aq, bq, cq);
     const real d = perhaps_over ? rough_min(edge, absolute(dot(aq, unit_normal))) : edge;
     const real size = 2 * rough_root(rough_max(ab2, ca2));
-    return d - fma(slack, d + size, 0x1p-60f);  // the last because squares below 1e-38 are 0
+    return d - fma(slack, d + size, 0x1p-60f);  // the last term because squares below 1e-38 are 0
   }
 
   CLEARANCE_HD vec3 nearest(vec3 q) const { return q - away(q); }
@@ -74,19 +74,19 @@ struct triangle {
   struct measured {
     vec3 offset;     ///< From the nearest point of the three sides to the query point,
     real edge;       ///< and its length.
-    real height;     ///< Above the plane.
+    real height;     ///< Height above the plane.
     bool over_face;  ///< Does the query point surely project inside?
   };
   struct side {
     vec3 offset;
     real squared;
-    bool interior;  ///< Nearest with its interior, not with a corner.
+    bool interior;  ///< The interior is nearest, not a corner.
   };
 
   CLEARANCE_HD measured measure(vec3 q) const {
     const vec3 ab = b - a, bc = c - b, ca = a - c;
     const vec3 aq = q - a, bq = q - b, cq = q - c;
-    // What positions below are uncertain by. A power of two, so that no contraction changes a bit.
+    // The uncertainty of positions below. The factor is a power of two, so that contraction changes no bit.
     const real noise = 0x1p-22f * (extent(aq) + extent(ab) + extent(ca));
     const side sides[3] = {to_side(aq, ab, noise), to_side(bq, bc, noise), to_side(cq, ca, noise)};
     side least = sides[0];
@@ -104,20 +104,20 @@ struct triangle {
     const measured m = measure(q);
     return m.over_face && absolute(m.height) <= m.edge ? scaled(m.height, unit_normal) : m.offset;
   }
-  /// The side starts at 0 and goes along `edge`.
+  /// A side that starts at 0 and goes along `edge`.
   CLEARANCE_HD static side to_side(vec3 p, vec3 edge, real noise) {
     const real length2 = dot(edge, edge);
     const real t = length2 > 0 ? divide(dot(p, edge), length2) : 0, beyond = max(-t, t - 1);
     const vec3 offset = fma(-clamp01(t), edge, p);
     return {offset, dot(offset, offset), beyond < 0 || beyond * beyond * length2 <= noise * noise};
   }
-  /// Of the way to a side.
+  /// The squared distance to a side.
   CLEARANCE_HD static real rough_square(vec3 p, vec3 edge) {
     const real t = dot(p, edge) * (1 / (dot(edge, edge) + least_normal));
     const vec3 offset = fma(positive_part(1 - positive_part(t)) - 1, edge, p);
     return dot(offset, offset);
   }
-  /// By every side's sign.
+  /// Decided by every side's sign.
   CLEARANCE_HD bool over_face(vec3 ab, vec3 bc, vec3 ca, vec3 aq, vec3 bq, vec3 cq) const {
     return dot(cross(unit_normal, ab), aq) > 0 && dot(cross(unit_normal, bc), bq) > 0 &&
            dot(cross(unit_normal, ca), cq) > 0;

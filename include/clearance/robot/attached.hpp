@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What a robot holds becomes part of it, between two frames.
+// Makes an object that a robot holds part of it, between two frames.
 
 #include <clearance/robot/model.hpp>
 
 namespace clearance {
 
-/// A robot and an object put on one of its links: both one's parts, the object's behind the robot's, so that poses
-/// follow in that order (an object's is world-from-link * link-from-object). Only views are copied; robot and object
-/// must outlive it. It is taken off by asking the robot itself again.
+/// A robot with an object on one of its links: the parts of both, the robot's first. Poses come in that order (an
+/// object's is world-from-link * link-from-object). Only views are copied; robot and object must outlive it. To take
+/// the object off, ask the robot itself again.
 template <class PartView, class B = host>
 class attached {
   static_assert(backend<B>);
@@ -33,8 +33,7 @@ class attached {
   typename B::template buffer<PartView> views_;
 };
 
-/// Both have to be where `on` runs, and of the same kind of part: spheres on spheres, meshes on meshes, the same volume
-/// in their trees.
+/// Both must be where `on` runs and have the same kind of part: spheres or meshes, with the same volume.
 template <backend B, robot Robot, robot Object>
 auto attach(const B& on, const Robot& robot, const Object& object) {
   using part = typename decltype(view_of(robot))::part_type;

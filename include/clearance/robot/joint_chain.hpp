@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// From joint vectors to poses of parts, on any backend, with the same bits: forward kinematics for many configurations.
+// Forward kinematics for many configurations: from joint vectors to poses of parts, on any backend, with the same bits.
 
 #include <clearance/backend/host.hpp>
 #include <clearance/ground/chain_rounding.hpp>
@@ -13,14 +13,14 @@
 
 namespace clearance {
 
-/// How a link hangs on its parent: `origin`, then a turn about `axis` (of length 1), or a shift along it, by `factor`
-/// times the joint vector's number `value` plus `offset`, in radians or metres.
+/// How a link hangs on its parent: `origin`, then a rotation about `axis` (of length 1) or a shift along it, by
+/// `factor` times the joint vector's number `value` plus `offset`, in radians or metres.
 struct chain_link {
   world_transform origin;
   position axis{1, 0, 0};
   double factor = 0, offset = 0;
-  std::uint32_t value = none;   ///< `none`: it does not move.
-  std::uint32_t parent = none;  ///< `none`: it hangs on the base.
+  std::uint32_t value = none;   ///< `none`: the link does not move.
+  std::uint32_t parent = none;  ///< `none`: the link hangs on the base.
   bool slides = false;
 };
 
@@ -28,11 +28,11 @@ struct joint_range {
   double lower = -double(infinity), upper = double(infinity);
 };
 
-/// What a kernel needs of it.
+/// What a kernel needs of a joint chain.
 struct joint_chain_view {
   const chain_link* links;
   const std::uint32_t* link_of_part;
-  const joint_range* ranges;  ///< One a value.
+  const joint_range* ranges;  ///< One per value.
   std::uint32_t parts, values;
   world_transform base;  ///< World-from-base.
 
@@ -42,8 +42,8 @@ struct joint_chain_view {
     return true;
   }
 
-  /// World-from-part; of joint vectors that are not allowed, or that put it by ways that cancel as no bracket covers,
-  /// all numbers are NaN, which no question takes for a pose.
+  /// World-from-part. All its numbers are NaN, which no question takes for a pose, if the joint vector is not allowed,
+  /// or if ways cancel so that double loses more than a bracket covers.
   CLEARANCE_HD world_transform pose(const double* q, std::uint32_t part) const {
     world_transform below;
     chain_rounding rounding;
@@ -95,7 +95,7 @@ struct joint_chain_view {
   }
 };
 
-/// Poses of all parts of many configurations, those of one after another.
+/// Computes poses of all parts, one configuration after another.
 struct place_links {
   joint_chain_view chain;
   const double* q;
@@ -107,21 +107,20 @@ struct place_links {
   }
 };
 
-/// What a number of a joint vector is.
+/// The name and the range of one number of a joint vector.
 struct joint_value {
   std::string name;
   joint_range range;
 };
 
-/// A robot's links, joined: an owner, as `model` is of its trees. `io::joint_chain_of` makes one of a robot
-/// description.
+/// Owns a robot's links and joints, as `model` owns its trees. `io::joint_chain_of` makes one from a robot description.
 template <class B = host>
 class joint_chain {
   static_assert(backend<B>);
 
  public:
-  /// Part k is link `link_of_part[k]`, and `base` is world-from-base. Throws std::invalid_argument if links hang on one
-  /// another in a ring, a number is of nothing, nothing moves, or a pose is not rigid.
+  /// Part k is link `link_of_part[k]`, and `base` is world-from-base. Throws std::invalid_argument if links form a
+  /// ring, a number names nothing, an axis of a moving link is not of length 1, nothing moves, or a pose is not rigid.
   joint_chain(std::vector<chain_link> links, std::vector<std::uint32_t> link_of_part, std::vector<joint_value> values,
               const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity(), const B& on = {})
       : links_(std::move(links)),
@@ -149,9 +148,9 @@ class joint_chain {
     return joint_chain<Other>(links_, of_part_, values_, base_, other);
   }
 
-  /// How many configurations `q` is: one number a value, one configuration after another. Throws std::invalid_argument
-  /// if they are not whole, or a number is not finite, or outside its range, or turns a link by more than 2^30 rad, or
-  /// puts a part by ways that cancel so that double loses what no bracket covers.
+  /// The number of configurations in `q`: one number per value, one configuration after another. Throws
+  /// std::invalid_argument if one is not whole, or a number is not finite, outside its range, or turns a link by more
+  /// than 2^30 rad, or if ways to a part cancel so that double loses more than a bracket covers.
   std::size_t count(std::span<const double> q) const {
     if (q.size() % values_.size() != 0)
       throw std::invalid_argument("clearance: " + std::to_string(q.size()) + " numbers are no whole joint vectors of " +
@@ -174,7 +173,7 @@ class joint_chain {
     return q.size() / values_.size();
   }
 
-  /// World-from-part, one a part of the first configuration, then those of the next, as min_distances takes them.
+  /// World-from-part, one per part of the first configuration, then those of the next, as min_distances takes them.
   /// Throws as `count`.
   std::vector<Eigen::Isometry3d> poses(std::span<const double> q) const
     requires std::is_same_v<B, host>
@@ -187,7 +186,7 @@ class joint_chain {
   }
 
  private:
-  /// Ordinary robots are far from it, whatever the ways: only others are followed joint by joint.
+  /// A bound on all ways clears ordinary robots at once; only others are followed joint by joint.
   void check_ways(std::span<const double> q) const {
     double origins = chain_rounding::most(world_transform(base_).translation());
     for (const chain_link& link : links_) origins += chain_rounding::most(link.origin.translation());
@@ -210,7 +209,7 @@ class joint_chain {
   void check() const {
     const auto refuse = [](const std::string& why) { throw std::invalid_argument("clearance: a joint chain " + why); };
     if (values_.empty()) refuse("has no joint that moves");
-    std::vector<bool> hangs(links_.size());  // is known to, on the base
+    std::vector<bool> hangs(links_.size());  // known to hang on the base
     for (const chain_link& link : links_) {
       rigid_transform_of(to_isometry(link.origin), "a link's origin");
       if (link.value != none && link.value >= values_.size())

@@ -8,27 +8,26 @@
 
 namespace clearance {
 
-/// What an operation takes of a robot: part views in the memory of a backend, and their facts on the host.
-/// Whoever has trees of his own fills this in himself; his facts are those of the part views, and are checked as a
-/// model's.
+/// What an operation takes as a robot: part views in the memory of a backend, and their facts on the host. To use trees
+/// of your own, fill it in yourself. The facts must be those of the part views; they are checked as a model's.
 template <class PartView>
 struct model_view {
   using part_type = PartView;
 
   const PartView* parts;
   std::span<const part_facts> facts;
-  std::uint32_t depth, width;  ///< The largest of all trees.
+  std::uint32_t depth, width;  ///< The largest over all trees.
 
   std::size_t size() const { return facts.size(); }
 };
 
-/// Throws std::invalid_argument if facts of a part are none. Every view that nobody has checked passes here.
+/// Throws std::invalid_argument if a part's facts are invalid. Every view that no model has checked comes here.
 template <class PartView>
 void check(const model_view<PartView>& view) {
   for (std::size_t k = 0; k < view.size(); ++k) check(view.facts[k], std::int64_t(k));
 }
 
-/// What operations take for a robot: a `model` or its view. `view_of` gives the view.
+/// What operations take as a robot: a `model` or its view. `view_of` returns the view.
 template <class Robot>
 concept robot = requires(const Robot r) {
   { r.facts } -> std::convertible_to<std::span<const part_facts>>;
@@ -43,7 +42,7 @@ auto view_of(const Robot& r) {
 }
 
 template <class Model>
-class replicas;  // of several backends: robot/replicas.hpp
+class replicas;  // for several backends: robot/replicas.hpp
 
 /// Owns the parts of a robot in the memory of one backend. Parts are numbered as given.
 template <class Part, class B = host>
@@ -54,7 +53,7 @@ class model {
   using part_type = Part;
   using view_type = decltype(std::declval<const Part&>().view());
 
-  /// Throws std::invalid_argument if there is no part, or facts of one are none.
+  /// Throws std::invalid_argument if there is no part, or if a part's facts are invalid.
   explicit model(std::vector<Part> parts, const B& on = {}) : parts_(std::move(parts)) {
     if (parts_.empty()) throw std::invalid_argument("clearance::model: there are no parts");
     std::vector<view_type> views;

@@ -9,21 +9,21 @@
 
 namespace clearance {
 
-/// What the bracket needs to know of a part. Metres, in the part's frame.
+/// What the bracket needs to know about a part. Metres, in the part's frame.
 struct part_facts {
   vec3 center = {0, 0, 0};  ///< A ball around every primitive.
   real radius = infinity;
-  real gap = 0;        ///< The solid's largest distance to the primitives, certified; infinite: no certificate.
+  real gap = 0;        ///< The solid's largest distance to the primitives, certified. Infinite: no certificate.
   real tolerance = 0;  ///< How far the solid may differ from the true surface, either way (tessellation).
 };
 
-/// Throws std::invalid_argument unless `metres` is a length, from 0 to infinity: what is less, or no number, would make
-/// points free that are not.
+/// Throws std::invalid_argument unless `metres` is a length from 0 to infinity: others would make points free that are
+/// not.
 inline void check_length(double metres, const std::string& what) {
   if (!(metres >= 0))
     throw std::invalid_argument("clearance: " + what + " is " + std::to_string(metres) + " m, which must be 0 or more");
 }
-/// The one rule of what is known of a part; `number` says in the message which it is.
+/// Checks a part's facts; the only rule for them. Throws std::invalid_argument. `number` names the part in the message.
 inline void check(const part_facts& facts, std::int64_t number = -1) {
   const std::string of = number < 0 ? " of a part" : " of part " + std::to_string(number);
   check_length(facts.gap, "the gap" + of);
@@ -32,12 +32,12 @@ inline void check(const part_facts& facts, std::int64_t number = -1) {
   if (!is_finite(facts.center)) throw std::invalid_argument("clearance: the centre" + of + " is not finite");
 }
 
-/// For primitives that know their own inside: nothing else is asked.
+/// For primitives that know their own inside: no solid is asked.
 struct no_interior {
   CLEARANCE_HD bool inside(vec3) const { return false; }
 };
 
-/// One rigid body as a kernel sees it: a tree, the test for points inside (or none), and the facts.
+/// One rigid body as a kernel sees it: a tree, the test for points inside a solid (or none), and the facts.
 template <hierarchy H, interior Interior = no_interior>
 struct part_view {
   using hierarchy_type = H;
@@ -48,7 +48,7 @@ struct part_view {
   part_facts facts;
 };
 
-/// A ball around all of them, in double and rounded up. Not the smallest, but a fair one.
+/// A ball around all balls, in double and rounded up. Small, but not the smallest.
 inline ball enclosing_ball(std::span<const ball> balls) {
   double lo[3] = {infinity, infinity, infinity}, hi[3] = {-infinity, -infinity, -infinity};
   for (const ball& b : balls) {
@@ -64,7 +64,7 @@ inline ball enclosing_ball(std::span<const ball> balls) {
   return {center, rounded_up(radius * (1 + 2.0 * slack))};
 }
 
-/// Around primitives, in their part's frame.
+/// A ball around primitives, in their part's frame.
 template <primitive P>
 ball enclosing_ball(std::span<const P> primitives) {
   std::vector<ball> balls;
@@ -75,7 +75,7 @@ ball enclosing_ball(std::span<const P> primitives) {
 
 namespace detail {
 
-/// An owner's view and its copy on another backend; what owns no memory stands for itself.
+/// An owner's view and its copy on another backend. An object without its own memory stands for itself.
 template <class T>
 auto view_or_self(const T& owner) {
   if constexpr (requires { owner.view(); })
@@ -94,7 +94,7 @@ auto copy_or_self(const T& owner, const Other& other) {
 }  // namespace detail
 
 /// Owns what a part_view points to, in the memory of one backend. `Tree` is an owner with `view()`, such as bvh, or a
-/// hierarchy itself: so a tree of one's own becomes a part by `part{tree, no_interior{}, facts}`.
+/// hierarchy itself: `part{tree, no_interior{}, facts}` makes a part from your own tree.
 template <class Tree, class Interior = no_interior>
 struct part {
   Tree tree;
@@ -120,8 +120,8 @@ struct part {
 template <class Tree, class Interior>
 part(Tree, Interior, part_facts) -> part<Tree, Interior>;
 
-/// A part whose primitives are all there is of the solid; or, with a certified `gap`, all but that. Metres. Throws
-/// std::invalid_argument if gap or tolerance is negative or NaN.
+/// A part whose primitives are the whole solid, up to the certified `gap`. Metres. Throws std::invalid_argument if
+/// `gap` or `tolerance` is negative or NaN.
 template <bounding_volume V, primitive P>
 part<bvh<V, P>> make_part(bvh<V, P> tree, double gap = 0, double tolerance = 0) {
   check_length(gap, "the gap of a part"), check_length(tolerance, "the tolerance of a part");

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A robot that is on each of several backends.
+// A robot with a copy on each of several backends.
 
 #include <clearance/robot/model.hpp>
 
 namespace clearance {
 
-/// What an operation on several backends takes of a robot: a view in the memory of each.
+/// What an operation on several backends takes as a robot: a view in the memory of each.
 template <class PartView>
 struct replicas_view {
   using part_type = PartView;
@@ -18,7 +18,7 @@ struct replicas_view {
   replicas_view view() const { return *this; }
 };
 
-/// Owns the copies; `model::on` makes them.
+/// Owns the copies that `model::on` makes.
 template <class Model>
 class replicas {
  public:

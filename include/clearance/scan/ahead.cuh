@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Points of sources that fetch are read a round ahead, with few wide loads.
+// Reads points of fetched sources one round ahead, with few wide loads.
 
 #include <clearance/scan/reader.cuh>
 
 namespace clearance::scan {
 
-/// Rounds of all `blocks` that are read ahead: those in which no thread lacks a point.
+/// How many rounds of all `blocks` are read ahead: those in which every thread has its points.
 template <point_source Source>
 std::uint32_t rounds_ahead(const Source& source, std::uint32_t points, std::uint32_t blocks) {
   if constexpr (fetched_source<Source>) return source.fetches() ? points / (in_block_round * blocks) : 0;
   return 0;
 }
 
-/// Points that are not read ahead, with few wide loads all the same, where there are four.
+/// Reads points that are not read ahead; also with few wide loads, if there are four.
 template <point_source Source>
 __device__ quad_points look_wide(const Source& source, std::uint32_t points, std::uint32_t first) {
   if constexpr (fetched_source<Source>)
@@ -41,12 +41,12 @@ class point_reader<Source, Answer> {
   __device__ point_reader(const Source& source, std::uint32_t rounds, const cards<Answer>& all)
       : source_(source), rounds_(rounds), all_(all), from_(source.seek(all.index(0))) {}
 
-  /// Starts to read the points of a round, of one after the other.
+  /// Starts to read the points of a round. Rounds come in order.
   __device__ void fetch(std::uint32_t round) {
     if (round < rounds_) next_ = source_.fetch(from_);
     from_ = source_.skip(from_, in_block_round * gridDim.x);
   }
-  /// This thread's points of `round`; those of the next are on their way.
+  /// This thread's points of `round`. Starts to read those of the next.
   __device__ quad_points take(std::uint32_t round) {
     const typename Source::four now = next_;
     fetch(round + 1);

@@ -6,8 +6,7 @@
 
 namespace clearance::scan {
 
-/// One thread down a tree by itself. If the tree is too deep for a stack of its own, the block has one in memory, for
-/// one at a time.
+/// One thread walks a tree by itself. For too deep a tree the block has a stack in memory, for one thread at a time.
 template <class Answer>
 struct walk_alone {
   template <hierarchy H, visitor Q>

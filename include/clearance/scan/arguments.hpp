@@ -1,49 +1,48 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What the kernel of a scan is told.
+// The arguments of a scan's kernel.
 
 #include <clearance/frame/frame.hpp>
 #include <clearance/frame/root_test.hpp>
 
 namespace clearance::scan {
 
-inline constexpr std::uint32_t most_parts = 128;   ///< In one kernel.
-inline constexpr std::uint32_t inline_parts = 12;  ///< As many as travel with the launch.
-inline constexpr std::uint32_t most_children = 8;  ///< Of a node,
+inline constexpr std::uint32_t most_parts = 128;   ///< Parts in one kernel.
+inline constexpr std::uint32_t inline_parts = 12;  ///< As many parts travel with the launch.
+inline constexpr std::uint32_t most_children = 8;  ///< Children of a node,
 inline constexpr std::uint32_t deepest_stack =
-    64;  ///< and what a tree's depth-first stack may need; trees that `build` makes keep to both.
+    64;  ///< and entries of a tree's depth-first stack. Trees from `build` keep to both.
 inline constexpr std::uint32_t most_width = most_children << 15;  ///< Children of a node of any other tree.
 inline constexpr std::uint32_t cluster = 8;  ///< Parts that are first tested together, as one ball.
 inline constexpr std::uint32_t most_clusters = most_parts / cluster;
-inline constexpr std::uint32_t no_bound =
-    0xff800000u;  ///< ordered(infinity): nothing is known of how near anything is.
+inline constexpr std::uint32_t no_bound = 0xff800000u;  ///< ordered(infinity): no bound is known.
 
-/// Lives in device memory from scan to scan: the last block of a scan sets it back.
+/// Lives in device memory from scan to scan. The last block of a scan resets it.
 struct scan_state {
   std::uint32_t done = 0;   ///< Blocks that have finished.
   std::uint32_t taken = 0;  ///< Batches that warps have asked for, beyond their first.
   unsigned long long dropped[drop_reasons] = {};
 };
 
-/// Where one part is in one frame, as far as every block needs it.
+/// What every block needs about where one part is in a frame.
 struct alignas(16) frame_part {
   rigid_transform part_from_cloud;
   frames::root_ball root;
   real error;
-  real away;  ///< The farthest that its ball reaches from its cluster's centre.
+  real away;  ///< How far its ball reaches from its cluster's centre.
 
   frame_part() = default;
   CLEARANCE_HD explicit frame_part(const frames::placement& p)
       : part_from_cloud(p.part_from_cloud), root(p.around), error(p.error) {}
 };
 
-/// Some parts of a frame, and a ball around each eight of them.
+/// Some parts of a frame, and a ball around every eight of them.
 template <std::uint32_t Most>
 struct alignas(16) frame_parts_of {
   frames::root_ball cluster[(Most + scan::cluster - 1) / scan::cluster];
   frame_part part[Most];
 
-  /// Sets the ball around cluster c's parts, and what they need of it; there are `count` parts.
+  /// Sets the ball around cluster c's parts and their `away`. There are `count` parts in all.
   CLEARANCE_HD void gather(std::uint32_t c, std::uint32_t count) {
     const std::uint32_t begin = c * scan::cluster, end = count < begin + scan::cluster ? count : begin + scan::cluster;
     vec3 low{infinity, infinity, infinity}, high = -low;
@@ -62,8 +61,8 @@ struct alignas(16) frame_parts_of {
   }
 };
 
-/// In device memory: all parts, if poses live there and a kernel of its own has made them ready, or if there are too
-/// many to travel with the launch.
+/// All parts, in device memory. Used if poses live there and a kernel prepares them, or if they are too many to travel
+/// with the launch.
 struct placed_parts {
   frames::frame_facts frame;
   bool rigid;
@@ -71,22 +70,21 @@ struct placed_parts {
   world_transform world_from_part[most_parts];
 };
 
-/// One cloud, in few words: what every block keeps. `Answer` is an answer as a block gives it, such as
-/// `minimum::least`.
+/// What every block keeps about one cloud. `Answer` is a block's form of an answer, such as `minimum::least`.
 template <class Answer>
 struct alignas(16) scan_head {
   using part_type = typename Answer::part_type;
 
   std::uint32_t points, parts;
   std::uint32_t cloud, first;   ///< The cloud's number, and that of its first point among all clouds' points.
-  std::uint32_t rounds;         ///< Until every point has been read by some block;
+  std::uint32_t rounds;         ///< Rounds until some block has read every point;
   std::uint32_t ahead;          ///< and how many of them are read a round ahead.
-  std::uint32_t top_stride;     ///< First nodes of a tree that there is room for in shared memory.
+  std::uint32_t top_stride;     ///< How many first nodes of each tree shared memory has room for.
   bool last;                    ///< No cloud follows: conclude.
   bool far;                     ///< All parts are in `rest`,
   bool placed;                  ///< and so is the frame.
-  std::uint32_t columns;        ///< Of an image whose tiles are packets; or 0.
-  std::uint32_t overflow_room;  ///< Entries that `overflow` has for each warp, and then for each block,
+  std::uint32_t columns;        ///< Columns of an image whose tiles are packets; or 0.
+  std::uint32_t overflow_room;  ///< Entries in `overflow` for each warp, and after those for each block,
   std::byte* overflow;          ///< for trees that are too deep or wide for stacks in shared memory; or null.
   scan_state* state;
   const part_type* views;
@@ -94,7 +92,7 @@ struct alignas(16) scan_head {
   typename Answer::arguments answer;
 };
 
-/// And all of it, but for its points. What every block reads comes first and last what one block reads.
+/// All arguments but the points. What every block reads comes first; what one block reads comes last.
 template <class Answer>
 struct scan_arguments : scan_head<Answer> {
   using scan_head<Answer>::far;

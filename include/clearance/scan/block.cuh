@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What the threads of one block share: the parts, the pairs still to be looked at, and what the answer keeps.
+// What the threads of a block share: the parts, the pairs still to be tested, and what the answer keeps.
 
 #include <clearance/scan/arguments.hpp>
 #include <clearance/scan/nodes.hpp>
@@ -16,7 +16,7 @@ struct alignas(16) pair {
   std::uint32_t point;
 };
 
-/// A pair (in one word with its part) against the children or primitives of a node no nearer than `bound`.
+/// A pair (in one word with its part) that has to be tested against a node's content, which is no nearer than `bound`.
 template <class Node>
 struct alignas(16) pending {
   real bound;
@@ -27,7 +27,7 @@ struct alignas(16) pending {
 inline constexpr std::uint32_t pair_capacity = 1024;
 inline constexpr std::uint32_t stack_capacity = 3 * deepest_stack;  ///< Of a warp.
 
-/// The first nodes of every tree, of trees that show them; in so many bytes.
+/// The first nodes of every tree, in `Bytes` bytes, for trees in arrays.
 template <hierarchy H, std::size_t Bytes>
 struct tree_tops {
   static constexpr std::uint32_t capacity = 0;
@@ -49,15 +49,15 @@ struct block_memory {
   scan_head<Answer> head;
   typename Answer::memory answer;
   std::uint32_t dropped[drop_reasons];
-  std::uint32_t last;       ///< Not 0: this is the last block to finish.
-  alignas(16) vec3 origin;  ///< Is subtracted from points, if it is not 0 (`shifted`); read as sixteen bytes, with
-  bool rigid, shifted;      ///< what nobody writes any more by then.
+  std::uint32_t last;       ///< Not 0 if this is the last block to finish.
+  alignas(16) vec3 origin;  ///< Subtracted from points if it is not 0 (`shifted`). It is read as sixteen bytes, with
+  bool rigid, shifted;      ///< these, which no thread writes any more by then.
   frames::root_test near_cluster[most_clusters], near_part[most_parts];
   frames::root_ball cluster[most_clusters];
   tree_tops<hierarchy_type, Answer::top_bytes> tops;
 };
 
-/// And of one that looks at pairs of a point and a part.
+/// For a block that tests pairs of a point and a part.
 template <class Answer>
 struct pair_memory : block_memory<Answer> {
   using pending_type = pending<typename node_of<typename block_memory<Answer>::hierarchy_type>::type>;
@@ -70,11 +70,11 @@ struct pair_memory : block_memory<Answer> {
   pending_type stack[warps][stack_capacity];
   pending_type given_nodes[given_capacity];
 
-  /// By one thread.
+  /// Called by one thread.
   __device__ void clear() { pairs = given = overflow_lock = 0; }
 };
 
-/// One part for one frame: behind `block_memory`, as many as there are.
+/// One part in one frame. These follow `block_memory`, one per part.
 template <class PartView>
 struct alignas(16) block_part {
   frame_part place;
@@ -88,8 +88,7 @@ constexpr std::size_t memory_bytes(std::uint32_t parts) {
   return sizeof(typename Answer::block) + parts * sizeof(block_part<typename Answer::part_type>);
 }
 
-/// A block's shared memory. Functions that are not inlined ask for it themselves, so that they know what kind of memory
-/// it is.
+/// A block's shared memory. Functions that are not inlined call it themselves, so that its kind is known.
 template <class Answer>
 __device__ typename Answer::block& memory_of_block() {
   extern __shared__ __align__(16) std::byte scan_memory[];

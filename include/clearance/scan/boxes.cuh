@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Boxes around neighbours of a cloud that is on a device, a block each.
+// Boxes around neighbouring points of a cloud on a device, one block per piece.
 
 #include <clearance/backend/device.cuh>
 #include <clearance/scan/boxes.hpp>
@@ -41,7 +41,7 @@ __global__ void __launch_bounds__(boxing_threads) box_pieces(const __grid_consta
   pieces[blockIdx.x] = mine;
 }
 
-/// Enqueues it; `pieces`, on the device, one for each `piece_points` of the source, are written.
+/// Enqueues it. Writes `pieces` on the device: one per `piece_points` of the source.
 template <point_source S>
 void enqueue_boxes(const device& on, const S& source, boxed_piece* pieces) {
   if (source.size() != 0)

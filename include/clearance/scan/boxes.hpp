@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Where neighbours of a cloud are, kept from the first scan, so that a later one need not read them.
+// Where neighbouring points of a cloud are, kept from the first scan, so that later scans need not read them.
 
 #include <clearance/scan/tile_scan.hpp>
 
@@ -8,8 +8,8 @@
 
 namespace clearance::scan {
 
-/// What is known of `piece_points` neighbours: a box around those that count, and how many do not. A cache line,
-/// because several threads write neighbouring ones.
+/// A box around the valid ones of `piece_points` neighbours, and how many are invalid. It fills a cache line, because
+/// several threads write neighbouring pieces.
 struct alignas(64) boxed_piece {
   extent box;
   std::uint32_t dropped[drop_reasons] = {};
@@ -26,7 +26,7 @@ struct alignas(64) boxed_piece {
   }
 };
 
-/// About how far a box is from a ball.
+/// The approximate distance of a box from a ball.
 inline double away(const ball& around, const extent& box) {
   const auto beyond = [](double low, double high, double c) { return std::max({low - c, c - high, 0.0}); };
   const vec3 c = around.center;
@@ -35,8 +35,8 @@ inline double away(const ball& around, const extent& box) {
   return std::sqrt(x * x + y * y + z * z) - around.radius;
 }
 
-/// A source that writes down what a host's scan sees of it on its way. `pieces`: one for each `piece_points`, which one
-/// thread scans; or null. The tile that is not whole is not surveyed: `add_rest` adds it.
+/// A source that records what a host's scan sees of it. `pieces`: one per `piece_points`, which one thread scans; or
+/// null. An incomplete last tile is not surveyed: call `add_rest` for it.
 template <point_source S>
 struct boxing {
   S source;
@@ -69,13 +69,13 @@ struct boxing {
   }
 };
 
-/// Some of a source's pieces as one source: piece k of it is piece `numbers[k]` of the whole. Only the last may be the
-/// whole's last, which may be shorter.
+/// Some pieces of a source as one source: its piece k is piece `numbers[k]` of the whole. The whole's last piece, which
+/// may be shorter, may only come last.
 template <point_source S>
 struct listed_pieces {
   S whole;
   const std::uint32_t* numbers;
-  std::size_t count;  ///< Of points.
+  std::size_t count;  ///< Number of points.
 
   CLEARANCE_HD std::size_t size() const { return count; }
   CLEARANCE_HD std::size_t at(std::size_t i) const {

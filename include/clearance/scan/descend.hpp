@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Greedily to one leaf, for a bound that something attains.
+// Goes greedily to one leaf, for a bound that a real primitive attains.
 
 #include <clearance/concepts.hpp>
 
 namespace clearance::scan {
 
-/// Goes down by itself.
+/// A team of one thread.
 struct alone {
   static constexpr std::uint32_t size = 1;
   CLEARANCE_HD std::uint32_t rank() const { return 0; }
@@ -41,7 +41,7 @@ struct plain_steps {
   CLEARANCE_HD real distance(node_type n, std::uint32_t j, vec3 q) const { return tree.primitive(n, j).distance(q); }
 };
 
-/// Hears how near volumes are that are passed by, and says how far to go.
+/// Observers of `nearest_leaf`: `passed` gets the bounds of volumes that are left aside, `wants` says how far to go.
 struct nobody {
   CLEARANCE_HD void passed(real) {}
   CLEARANCE_HD bool wants(real) const { return true; }
@@ -55,8 +55,8 @@ struct nearest_passed {
   CLEARANCE_HD bool wants(real lower) const { return lower <= reach; }
 };
 
-/// From the root always to the child whose volume is nearest: a leaf; `live` becomes false if that leads nowhere. Those
-/// that are not `live` go along. `others` hears of a team's share of what is left aside.
+/// Goes from the root always to the child whose volume is nearest, and returns the leaf. `live` becomes false if that
+/// leads nowhere. Threads that are not `live` take part. `others` gets this thread's share of what is left aside.
 template <class Steps, class Team = alone, class Others = nobody>
 CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, bool& live, const Team& team = {},
                                                     Others&& others = {}) {
@@ -87,8 +87,7 @@ CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, 
   return n;
 }
 
-/// The distance to what is in that leaf, or to this one's share of it if a team goes down together; infinite if there
-/// is none.
+/// The distance to that leaf's primitives, or to this thread's share of them in a team. Infinite if there is none.
 template <class Steps, class Team = alone>
 CLEARANCE_HD real descend(const Steps& steps, vec3 q, bool live = true, const Team& team = {}) {
   const typename Steps::node_type n = nearest_leaf(steps, q, live, team);

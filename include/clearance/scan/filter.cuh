@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Which points are near which parts: one ball around eight parts first, which keeps almost all points from the eight.
+// Finds which points are near which parts. One ball around eight parts comes first; almost no point passes it.
 
 #include <clearance/scan/pairs.cuh>
 
 namespace clearance::scan {
 
-/// Sets the root tests to the present bounds, a thread each; `bound` is all parts', if they share one. Nobody may be
-/// reading them.
+/// Sets the root tests to the present bounds, one thread per test. `bound` is that of all parts, if they share one. No
+/// thread may be reading the tests.
 template <class Answer>
 __device__ void sharpen(std::uint32_t thread, std::uint32_t bound) {
   using parts = frame_parts<Answer>;
@@ -37,15 +37,15 @@ __device__ void shift(quad_points& p) {
   for (int j = 0; j < quad; ++j) p.at[j] = p.at[j] - s.origin;
 }
 
-/// Where a warp has stopped for want of room, if it has (not 0): in the last of so many clusters, of whose pairs with
-/// this lane's points `those` are still to be handed over.
+/// Where a warp has stopped because there was no room. If `clusters` is not 0, it stopped in the last of so many
+/// clusters, and `those` pairs with this lane's points are still to be handed over.
 struct unfinished {
   std::uint32_t clusters = 0;
   unsigned those = ~0u;
 };
 
-/// Hands four points to the search, pair by pair, with the parts of all clusters, or with what was `left` of that;
-/// false: there was no room for some. The whole warp calls it.
+/// Hands over four points to the search, pair by pair, with the parts of all clusters, or with those that were `left`.
+/// Returns false if some had no room. The whole warp calls it.
 template <class Answer, class Index>
 __device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clusters, unfinished& left) {
   using pairs = pair_search<Answer>;
@@ -61,7 +61,7 @@ __device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clust
     if (__any_sync(all_lanes, near)) {
       const frames::root_test* const near_part = s.near_part + c * cluster;
       const std::uint32_t parts = s.head.parts - c * cluster;
-      unsigned those = 0;  // a bit a part and point
+      unsigned those = 0;  // one bit per part and point
 #pragma unroll
       for (std::uint32_t k = 0; k < cluster; ++k) {
         if (k >= parts) break;

@@ -7,7 +7,7 @@
 
 namespace clearance::scan {
 
-/// Counts this block in; by the last one the answer is given, and all is made ready for a next scan.
+/// Counts this block as done. The last block gives the answer and prepares everything for the next scan.
 template <class Answer, class Source>
 __noinline__ __device__ void finish_block(const scan_arguments<Answer>& a, const Source& source) {
   auto& s = memory_of_block<Answer>();
@@ -31,7 +31,7 @@ __noinline__ __device__ void finish_block(const scan_arguments<Answer>& a, const
   }
 }
 
-/// What there was, by one thread of the last block after the last cloud; `counts` may be null.
+/// Writes the point counts after the last cloud, with one thread of the last block. `counts` may be null.
 template <class Answer>
 __device__ void write_counts(const scan_arguments<Answer>& a, point_counts* counts) {
   if (threadIdx.x != 0 || !a.last || counts == nullptr) return;

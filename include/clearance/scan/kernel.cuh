@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A cloud in one kernel: a first bound, every point read once and tested against the parts' balls in its own frame, the
-// few near ones against the trees. The last block to finish writes the answer.
+// A cloud in one kernel. It finds a first bound, reads every point once and tests it against the parts' balls in the
+// cloud's frame. The few near points go to the trees. The last block to finish writes the answer.
 
 #include <clearance/scan/ahead.cuh>
 #include <clearance/scan/filter.cuh>
@@ -9,7 +9,7 @@
 
 namespace clearance::scan {
 
-/// Rounds after which the block comes together, by how far that filled the table of pairs last time.
+/// After how many rounds the block synchronizes, by how full the table of pairs became last time.
 CLEARANCE_HD constexpr std::uint32_t rounds_of_batch(std::uint32_t pairs, std::uint32_t capacity) {
   return pairs <= capacity / 8 ? 32 : pairs <= capacity / 4 ? 16 : 8;
 }
@@ -31,15 +31,15 @@ __global__ void __launch_bounds__(block_threads, 2)
   const bool cold = bound == no_bound;
   if (cold && rounds > 0) {
     __pipeline_wait_prior(0);
-    __syncthreads();  // the tops are there
+    __syncthreads();  // the tops have arrived
     quad_points p = ahead > 0 ? reader.peek() : look_closely(source, a.points, all.index(0));
     if (s.shifted) shift<Answer>(p);
     Answer::seed_cold(p);
     __syncthreads();
     bound = Answer::common_bound(s);
   }
-  // All that these loops call is inlined: what lives across a call would be kept in memory, for every point. A warp
-  // that finds no room for a pair stops where it is, and goes on from there once the table of pairs is empty.
+  // Everything that these loops call is inlined: what lives across a call would be kept in memory, for every point. A
+  // warp that finds no room for a pair stops, and goes on from there when the table of pairs is empty.
   drop_counter dropped;
   unfinished left;
   std::uint32_t r = 0, end = 0, batch = cold ? 8 : 16;
@@ -62,7 +62,7 @@ __global__ void __launch_bounds__(block_threads, 2)
       if (shifted) shift<Answer>(p);
       if (!hand_over<Answer>(p, [&] { return all.index(r); }, clusters, left)) break;
     }
-    __pipeline_wait_prior(0);  // the tops
+    __pipeline_wait_prior(0);  // the tops have arrived
     dropped.report(s.dropped);
     __syncthreads();
     const std::uint32_t found = s.pairs;
@@ -75,7 +75,7 @@ __global__ void __launch_bounds__(block_threads, 2)
   finish_block<Answer>(a, source);
 }
 
-/// How such a scan is launched.
+/// How this scan is launched.
 struct by_pairs {
   static constexpr std::uint32_t in_block = in_block_round;  ///< Points that a block takes at once.
 
@@ -91,8 +91,8 @@ struct by_pairs {
   }
 };
 
-/// The same with fewer points for a block, so that few fill the device, too: for answers that want many pairs, each of
-/// which takes longer than it takes to read its point.
+/// The same with fewer points per block, so that small clouds also fill the device. It is for answers that want many
+/// pairs: a pair takes longer than reading its point.
 struct by_many_pairs : by_pairs {
   static constexpr std::uint32_t in_block = in_block_round / 2;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The memory that the kernels of a prepared scan share, whatever is asked, and their launch.
+// The memory that the kernels of a prepared scan share, for any answer, and their launch.
 
 #include <clearance/backend/device.cuh>
 #include <clearance/backend/raised_limits.cuh>
@@ -18,7 +18,7 @@ namespace clearance::scan {
 template <class PartView>
 class launcher {
  public:
-  /// Throws std::invalid_argument if trees in arrays are deeper or wider than `build` makes them.
+  /// Throws std::invalid_argument if a tree in arrays exceeds what `build` makes, or another one `most_width`.
   launcher(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory)
       : on_(on),
         parts_(std::uint32_t(model.size())),
@@ -49,9 +49,9 @@ class launcher {
     forget();
   }
 
-  /// Parts beyond 128 are looked at by kernels of their own, a group each.
+  /// Parts come in groups of 128, with one kernel per group.
   std::uint32_t groups() const { return parts_ == 0 ? 1 : (parts_ + most_parts - 1) / most_parts; }
-  /// Blocks of a kernel, at most.
+  /// The most blocks of a kernel.
   unsigned most_blocks() const { return 2 * processors_; }
 
   void forget() {
@@ -59,7 +59,7 @@ class launcher {
     on_.stage(std::span<const scan_state>(fresh), state_.data());
   }
 
-  /// One cloud against a group of parts.
+  /// The arguments for one cloud and one group of parts.
   template <class Answer>
   scan_arguments<Answer> begin(std::uint32_t group, const frames::turn& now,
                                const typename Answer::arguments& answer) const {
@@ -72,7 +72,7 @@ class launcher {
     return a;
   }
 
-  /// Poses that the host has made ready: few travel with the launch, many beforehand.
+  /// Poses that the host has prepared. Few travel with the launch; many are copied before it.
   template <class Answer>
   void put(const frames::cloud_frame& frame, std::uint32_t group, scan_arguments<Answer>& a) {
     const auto places = std::span(frame.places).subspan(group * most_parts, a.parts);
@@ -93,13 +93,13 @@ class launcher {
     on_.stage(std::span<const world_transform>(staged_->world_from_part, a.parts), there->world_from_part);
   }
 
-  /// Poses in device or pinned memory, made ready there for all groups; `off` is the `rounding_of` the cloud's source.
+  /// Prepares poses from device or pinned memory on the device, for all groups. `off`: `rounding_of` the source.
   void place(const world_transform* poses, const world_transform* cloud, const position_error& off) {
     on_.launch(place_kernel<PartView>, 1, most_parts, 0, poses, cloud, views_.data(), parts_, off, placed_.data());
   }
 
-  /// All clouds of a frame against all groups: `answer(group)` is what the answer is told, `here(source, cloud)` what
-  /// the device can read of a cloud. What all clouds have in common.
+  /// All clouds of a frame against all groups. `answer(group)` gives the answer's arguments, `here(source, cloud)` a
+  /// source that the device can read. Returns the facts of all clouds together.
   template <class Answer, class Clouds, class Arguments, class Here>
   const frames::frame_facts& pass(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses,
                                   const Clouds& clouds, const Arguments& answer, const Here& here) {
@@ -119,7 +119,7 @@ class launcher {
     return frame_;
   }
 
-  /// Enqueues what has been begun. A kernel numbers more points than there are: those must not run over.
+  /// Enqueues the kernel. Throws std::invalid_argument for too many points: it numbers more than there are.
   template <class Answer, point_source Source>
   void operator()(const Source& source, scan_arguments<Answer>& a) {
     const std::uint64_t end = std::uint64_t(a.first) + source.size();
@@ -153,16 +153,16 @@ class launcher {
   }
 
   device on_;
-  frames::cloud_frame frame_;  ///< Of `pass`.
+  frames::cloud_frame frame_;  ///< For `pass`.
   std::uint32_t parts_;
   unsigned processors_, most_shared_, shared_of_processor_;
   device_buffer<scan_state> state_;
   device_buffer<PartView> views_;
   device_buffer<placed_parts> placed_;
-  device_buffer<std::byte> overflow_;  ///< Stacks of trees for which shared memory is not enough.
+  device_buffer<std::byte> overflow_;  ///< Stacks of trees that shared memory is too small for.
   std::uint32_t overflow_room_ = 0;
   raised_limits limits_;
-  std::unique_ptr<placed_parts> staged_;  ///< Of many parts, on their way to `placed_`.
+  std::unique_ptr<placed_parts> staged_;  ///< Many parts on their way to `placed_`.
 };
 
 }  // namespace clearance::scan

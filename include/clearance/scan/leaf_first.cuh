@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Many pairs of a point and a part, a thread each: down to one leaf, which nearly always says enough.
+// Takes many pairs of a point and a part down to one leaf each, a thread per pair. That leaf is nearly always enough.
 
 #include <clearance/ground/ordered.hpp>
 #include <clearance/scan/interior.hpp>
@@ -13,8 +13,8 @@ struct leaf_first : tree_steps<Answer> {
   using frame = frame_parts<Answer>;
   using steps = tree_steps<Answer>;
 
-  /// All pairs of the table go down greedily and at once: eight lanes each if they are few, or four, or two, or a lane
-  /// each. If whatever they have passed by on their way is too far to matter, they are done; the others are left open,
+  /// All pairs of the table go down greedily at once, with eight, four, two or one lanes per pair: the fewer pairs, the
+  /// more lanes. A pair is done if everything that it passed by is too far away to matter. The others are left open,
   /// with a bound for their walk. The whole block calls it.
   static __device__ void go(std::uint32_t count) {
     auto& s = frame::here();
@@ -29,7 +29,7 @@ struct leaf_first : tree_steps<Answer> {
         go_as<lanes<2>>(count);
       else
         go_as<alone>(count);
-      __syncthreads();  // only now: what may be the nearest of its part is measured by the least of all
+      __syncthreads();  // only now: the test needs the least distances over all pairs
       for (std::uint32_t i = threadIdx.x; i < count; i += block_threads)
         if (passed_by(i) <= Answer::reach_of_pair(s, s.part_of_pair[i], i)) Answer::leave_open(s, i);
     }
@@ -48,7 +48,7 @@ struct leaf_first : tree_steps<Answer> {
       const pair c = live ? s.pair_table[i] : pair{};
       const std::uint32_t part = live ? s.part_of_pair[i] : 0;
       live = live && !Answer::skips(s, part, c.point, i, c.x);
-      live = team.first(!live) < 0;  // others may be changing what decides it
+      live = team.first(!live) < 0;  // others may be changing its inputs
       const vec3 q = frame::place(part).part_from_cloud(c.x);
       nearest_passed others{Answer::reach_of_part(s, part, 0)};
       bool found = live;
@@ -68,8 +68,8 @@ struct leaf_first : tree_steps<Answer> {
     }
   }
 
-  /// How near what pair `i` has passed by may be; of one that may be in a solid all is yet to be found. Kept where
-  /// nobody has a stack yet.
+  /// A lower bound on what pair `i` has passed by. It is minus infinity if the part has a solid: everything is still to
+  /// be found. It lies in the stacks, which no warp uses yet.
   static __device__ real& passed_by(std::uint32_t i) {
     auto& s = frame::here();
     static_assert(pair_capacity <= warps * stack_capacity);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What a block of threads keeps of a tree's node: eight bytes, whatever the tree.
+// What a block keeps about a tree's node: eight bytes for any tree.
 
 #include <clearance/bvh/bvh_view.hpp>
 
@@ -8,13 +8,13 @@
 
 namespace clearance::scan {
 
-/// A handle of any tree's, as words.
+/// A handle of any tree's node, as words.
 struct linked_node {
   std::uint32_t words[2];
 };
 
-/// Of any hierarchy. `place` is where a primitive is found again; `any_size`: of any depth and width, for which a stack
-/// may go on in memory.
+/// For any hierarchy. `place` is where a primitive is found again. `any_size`: trees of any depth and width, whose
+/// stacks may continue in memory.
 template <hierarchy H>
 struct node_of {
   static constexpr bool any_size = true;
@@ -38,7 +38,7 @@ struct node_of {
   }
 };
 
-/// Of one in arrays: what the node says, so that nobody reads it again.
+/// For a tree in arrays: the node's content, so that it need not be read again.
 template <array_hierarchy H>
 struct node_of<H> {
   static constexpr bool any_size = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Neighbours that go down a tree together, on the host: loops over them become vector code.
+// Neighbouring points that walk a tree together on the host. Loops over them become vector code.
 
 #include <clearance/traversal/near_first.hpp>
 #include <clearance/visitor/nearest.hpp>
@@ -9,7 +9,7 @@
 
 namespace clearance::scan {
 
-/// May something in a volume be within reach? As the volume says it fastest.
+/// May something in a volume be within reach? Asks the volume's fastest test.
 template <bounding_volume V>
 CLEARANCE_HD bool may_reach(const V& v, vec3 q, real reach) {
   if constexpr (rootless_volume<V>)
@@ -18,7 +18,7 @@ CLEARANCE_HD bool may_reach(const V& v, vec3 q, real reach) {
     return bounding_volume_traits<V>::lower_bound(v, q) <= reach;
 }
 
-/// Points, and how near something must be to each. NaN: no point.
+/// Points, and how near something must be to each. NaN means no point.
 template <std::size_t Lanes>
 struct packet {
   alignas(64) real x[Lanes], y[Lanes], z[Lanes], within[Lanes];
@@ -26,7 +26,7 @@ struct packet {
   vec3 operator[](std::size_t j) const { return {x[j], y[j], z[j]}; }
   void put(std::size_t j, vec3 p, real reach) { x[j] = p.x, y[j] = p.y, z[j] = p.z, within[j] = reach; }
 
-  /// Which lanes may something in a volume be within reach of? And is it any?
+  /// Marks the lanes that something in a volume may be within reach of. Returns true if there are any.
   template <class V>
   bool mark(const V& volume, std::uint32_t (&near)[Lanes]) const {
     for (std::size_t j = 0; j < Lanes; ++j) near[j] = may_reach(volume, (*this)[j], within[j]);
@@ -45,24 +45,24 @@ struct primitive_place {
   decltype(auto) in(const H& tree) const { return tree.primitive(leaf, number); }
 };
 
-/// Points in a part's frame, and the nearest primitive to each so far, as the visitor `nearest` keeps it.
+/// Points in a part's frame, and each one's nearest primitive so far, as the visitor `nearest` keeps it.
 template <hierarchy H, std::size_t Lanes>
 struct walking_packet : packet<Lanes> {
   using packet<Lanes>::within;
 
   std::uint32_t best[Lanes];
-  primitive_place<H> where[Lanes] = {};  ///< Of that.
+  primitive_place<H> where[Lanes] = {};  ///< The place of `best`.
 
   walking_packet() { std::fill_n(best, Lanes, nearest::none); }
 
-  /// Shows each lane what is within its reach. Children go in the order of the lane `lead`; `pending` has
+  /// Shows each lane what is within its reach. Children go in the order of lane `lead`. `pending` has
   /// `stack_need(tree)` entries.
   void walk(const H& tree, std::size_t lead, near_first::entry_of<H>* pending) {
     std::uint32_t count = 0;
     pending[count++] = {0, tree.root()};
     for (bool tested = false; count > 0;) {
       const auto node = pending[--count].node;
-      if (!tested && !reaches(tree.volume(node))) continue;  // others have come first
+      if (!tested && !reaches(tree.volume(node))) continue;  // the reaches may have shrunk since
       tested = false;
       if (tree.is_leaf(node)) {
         offer(tree, node);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A cloud in one kernel for answers whose bound belongs to a single point: a warp takes 32 neighbours after another,
-// and then helps.
+// A cloud in one kernel, for answers whose bound belongs to a single point. A warp takes one packet of 32 neighbours
+// after another, and then helps other warps.
 
 #include <clearance/scan/filter.cuh>
 #include <clearance/scan/finish.cuh>
@@ -26,7 +26,7 @@ __device__ bool near_any(vec3 x, std::uint32_t parts) {
   return near;
 }
 
-/// Counts those of a warp's points that do not count, a reason a lane.
+/// Counts a warp's invalid points, one reason per lane.
 __device__ inline void add_dropped(std::uint32_t& dropped, drop_reason mine) {
   if (!__any_sync(all_lanes, mine != drop_reason::none)) return;
 #pragma unroll
@@ -38,7 +38,7 @@ __device__ inline void add_dropped(std::uint32_t& dropped, drop_reason mine) {
 
 inline constexpr std::uint32_t tile_columns = 8, tile_rows = 4;
 
-/// Number of this lane's point in packet b: the packet is a row, or a tile of an image of so many columns.
+/// Number of this lane's point in packet b. The packet is a row of points, or a tile of an image.
 __device__ inline std::uint32_t place_in_packet(std::uint32_t b, std::uint32_t columns) {
   const std::uint32_t lane = threadIdx.x % 32;
   if (columns == 0) return b * 32 + lane;
@@ -66,7 +66,7 @@ __global__ void __launch_bounds__(block_threads, 2)
   for (;;) {
     const bool own = packet < packets;
     std::uint32_t p = packet;
-    if (!own) {  // there is none left: a part of another warp's
+    if (!own) {  // none is left: take a part of another warp's packet
       if (!sharing::receive()) break;
       p = sharing::task().packet;
       next = read(p);
@@ -90,7 +90,7 @@ __global__ void __launch_bounds__(block_threads, 2)
     }
     packet_search<Answer>::search(p, live, x, v);
     if (sharing::last(v) && exists) Answer::take(s, index, counts, v);
-    if (own && left == 0) {  // rows are dealt, not before the last is done, to who has none left: some take much longer
+    if (own && left == 0) {  // a warp gets its next row only when it needs one: some rows take much longer
       if (lane == 0) packet = (all_warps + atomicAdd(&a.state->taken, 1u)) * row;
       packet = __shfl_sync(all_lanes, packet, 0), left = row;
       next = read(packet);
@@ -101,7 +101,7 @@ __global__ void __launch_bounds__(block_threads, 2)
   finish_block<Answer>(a, source);
 }
 
-/// How such a scan is launched.
+/// How this scan is launched.
 struct by_packets {
   static constexpr std::uint32_t in_block = block_threads;  ///< Points that a block takes at once.
 
@@ -112,8 +112,8 @@ struct by_packets {
 
   template <class Answer, class Source>
   static void plan(const Source& source, scan_arguments<Answer>& a, unsigned blocks) {
-    // Packets in a row: one, so that all warps end at about the same time; or some, where most are far and asking would
-    // take longer.
+    // Packets in a row: one, so that all warps end at about the same time; or more, if most points are far away and
+    // asking for each packet would take longer.
     a.rounds = Answer::all_near(a.answer) ? 1 : std::clamp(a.points / (32 * 4 * warps * blocks), 1u, 4u);
     a.columns = 0;
     if constexpr (image_source<Source>) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Neighbouring points down the trees as packets: a warp walks once for 32 of them, a lane a point, and all lanes look
-// at the same node. It is taken if any of them wants it, the nearest first. Where the depth jumps, points before and
-// behind go one after the other: alone, a point a lane, they would be the last to end. Points that are no neighbours at
-// all do walk alone. (A ball around the packet that first tells which children may be wanted takes longer: at some
-// distance it tells of too many.)
+// Neighbouring points walk the trees as packets: a warp walks once for 32 points, one per lane, and all lanes test the
+// same node. A node is taken if any lane wants it, the nearest first. At a jump in depth the points before and behind
+// it go one group after the other: if each lane walked alone, they would end last. Points that are not neighbours do
+// walk alone. (A first test of children with a ball around the packet is slower: farther away it passes too many.)
 
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/shared_walk.cuh>
@@ -28,9 +27,9 @@ struct packet_memory : block_memory<Answer> {
   __device__ void clear() { sharing.clear(); }
 };
 
-/// Each lane has a point, and a visitor for it:
+/// Each lane has a point and a visitor for it:
 ///   reach(k)                                how near part k must be to the point to matter;
-///   offer(k, place, id, distance), where `place` is the primitive's own in the tree; offer_inside(k).
+///   offer(k, place, id, distance), where `place` is the primitive's place in the tree; offer_inside(k).
 template <class Answer>
 struct packet_search : tree_steps<Answer> {
   using frame = frame_parts<Answer>;
@@ -41,7 +40,7 @@ struct packet_search : tree_steps<Answer> {
   using stacked = packet_node<node_type>;
   using sharing = shared_walk<Answer>;
 
-  /// The point of this lane, `x` in the cloud's frame, if it is `live`. The whole warp calls it.
+  /// Searches for this lane's point `x`, in the cloud's frame, if it is `live`. The whole warp calls it.
   template <class Visitor>
   static __device__ void search(std::uint32_t packet, bool live, vec3 x, Visitor& v) {
     unsigned left = __ballot_sync(all_lanes, live);
@@ -50,14 +49,14 @@ struct packet_search : tree_steps<Answer> {
     if (!helps) sharing::begin(packet);
 #pragma unroll 1
     while (left != 0) {
-      const unsigned later = left >> 16 << 16;  // of neighbours in a row the one in the middle, if it is there
+      const unsigned later = left >> 16 << 16;  // the middle one of neighbours in a row, if it is left
       const vec3 middle = from_lane(x, later != 0 ? __ffs(int(later)) - 1 : 31 - __clz(int(left)));
       const real way = rough_length(x - middle);
       unsigned near = left;
       if (!helps && !too_deep()) {
         const real most = gap_to(middle) / 2;
         near = __ballot_sync(all_lanes, live && way <= most);
-        if (4 * __popc(near) < __popc(left)) {  // no neighbours
+        if (4 * __popc(near) < __popc(left)) {  // not neighbours
           v = alone(live, x, v);
           return;
         }
@@ -70,10 +69,10 @@ struct packet_search : tree_steps<Answer> {
 
  private:
   static constexpr std::uint32_t at_once = most_children;
-  static constexpr std::uint32_t worth_sharing = 4;  ///< So few pending nodes are sooner looked at than handed over.
+  static constexpr std::uint32_t worth_sharing = 4;  ///< So few pending nodes are tested faster than handed over.
   static __device__ std::uint32_t lane() { return threadIdx.x % 32; }
 
-  /// How far the nearest part is, about.
+  /// The approximate distance of the nearest part.
   static __device__ real gap_to(vec3 middle) {
     real gap = infinity;
     for (std::uint32_t k = lane(); k < frame::here().head.parts; k += 32)
@@ -81,13 +80,13 @@ struct packet_search : tree_steps<Answer> {
     return from_bits(least_of(all_lanes, to_bits(gap)));
   }
 
-  /// Points within `spread` of their middle, part by part.
+  /// Searches part by part for points within `spread` of their middle.
   template <class Visitor>
   static __device__ void together(bool live, vec3 x, vec3 middle, real spread, Visitor& v) {
     const bool helps = sharing::helps();
     const std::uint32_t first = helps ? sharing::task().part : 0, end = helps ? first + 1 : frame::here().head.parts;
 #pragma unroll 1
-    for (std::uint32_t begin = first; begin < end; begin += 32) {  // a lane a part, and the nearest first
+    for (std::uint32_t begin = first; begin < end; begin += 32) {  // one part per lane, the nearest first
       std::uint32_t mine = no_bound;
       if (begin + lane() < end) {
         const ball around = frame::place(begin + lane()).root.around;
@@ -119,7 +118,7 @@ struct packet_search : tree_steps<Answer> {
     return s.stack[threadIdx.x / 32];
   }
 
-  /// Then nothing is to be looked for in part k's tree.
+  /// Is the point inside part k's solid? Then its tree need not be searched.
   template <class Visitor>
   static __device__ bool inside(std::uint32_t k, vec3 x, Visitor& v) {
     if constexpr (has_interior<typename Answer::part_type>) {
@@ -145,15 +144,15 @@ struct packet_search : tree_steps<Answer> {
     std::uint32_t part;
   };
 
-  /// Every lane by itself, through eight parts after the others; but step by step, because lanes that part ways would
-  /// each have the warp to themselves.
+  /// Every lane by itself, eight parts after eight. They go step by step: lanes that diverge would run one after
+  /// another.
   template <class Visitor>
   static __noinline__ __device__ Visitor alone(bool live, vec3 x, Visitor v) {
     const std::uint32_t parts = frame::here().head.parts;
     part_node stack[deepest_stack + cluster];
 #pragma unroll 1
     for (std::uint32_t begin = 0; begin < parts; begin += cluster) {
-      part_node next{not_a_number, {}, begin};  // the nearest of all that is known of, or nothing
+      part_node next{not_a_number, {}, begin};  // the nearest known node, or nothing (NaN)
       std::uint32_t below = 0;
       const auto keep = [&](part_node e) {
         if (!(next.bound <= e.bound)) {
@@ -195,7 +194,7 @@ struct packet_search : tree_steps<Answer> {
     return v;
   }
 
-  /// Part k's tree, all lanes together.
+  /// Walks part k's tree with all lanes together.
   template <class Visitor>
   static __device__ void walk(std::uint32_t k, bool live, vec3 q, Visitor& v) {
     sharing::talk(v);
@@ -207,7 +206,7 @@ struct packet_search : tree_steps<Answer> {
     if (lane() == 0 && given == 0) stack[0] = {-infinity, steps::root(k)};
 #pragma unroll 1
     while (top > 0) {
-      __syncwarp();  // all that has been pushed is there
+      __syncwarp();  // all pushes are visible
       const stacked e = stack[--top];
       if (!__any_sync(all_lanes, e.bound <= reach)) continue;
       const std::uint32_t count = steps::size(k, e.node);
@@ -216,7 +215,7 @@ struct packet_search : tree_steps<Answer> {
         for (std::uint32_t j = 0; j < count; ++j) {
           const auto place = steps::place_of(e.node, j);
           const auto primitive = steps::primitive(k, place);
-          if constexpr (bounded_primitive<typename hierarchy::primitive_type>)  // most need no more than a rough look
+          if constexpr (bounded_primitive<typename hierarchy::primitive_type>)  // a rough test is enough for most
             if (__all_sync(all_lanes, primitive.lower_bound(q) > reach)) continue;
           if (const real d = primitive.distance(q); d <= reach)
             v.offer(k, place, steps::id(k, place), d), reach = v.reach(k);
@@ -234,12 +233,12 @@ struct packet_search : tree_steps<Answer> {
     }
   }
 
-  /// Of eight children those that some point wants, the nearest on top; the stack's new size.
+  /// Pushes those of eight children that some point wants, the nearest on top. Returns the stack's new size.
   static __device__ std::uint32_t push(std::uint32_t k, const node_type& node, std::uint32_t begin, std::uint32_t count,
                                        vec3 q, real reach, stacked* stack, std::uint32_t top) {
     constexpr std::uint32_t unwanted = none,
                             number =
-                                at_once - 1;  // a child's number is in the lowest bits of its bound: no two are equal
+                                at_once - 1;  // the lowest bits of a bound hold the child's number, so no two are equal
     std::uint32_t low[at_once];
 #pragma unroll
     for (std::uint32_t four = 0; four < at_once; four += 4) {
@@ -250,12 +249,12 @@ struct packet_search : tree_steps<Answer> {
       }
 #pragma unroll
       for (std::uint32_t h = four; h < four + 4; ++h) {
-        const std::uint32_t j = lower_of(begin + h, count - 1);  // no branch, so that all four are read at once
+        const std::uint32_t j = lower_of(begin + h, count - 1);  // without a branch, so that all four are read at once
         const real b = traits::lower_bound(steps::child(k, node, j).volume, q);
         low[h] = least_of(all_lanes, begin + h < count && b <= reach ? (ordered(b) & ~number) | h : unwanted);
       }
     }
-    std::uint32_t mine = unwanted, nearer = 0, all = 0;  // a child a lane
+    std::uint32_t mine = unwanted, nearer = 0, all = 0;  // one child per lane
 #pragma unroll
     for (std::uint32_t h = 0; h < at_once; ++h) mine = lane() == h ? low[h] : mine;
 #pragma unroll

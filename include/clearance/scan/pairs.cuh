@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The few points near a part, against the trees. Every warp walks with some of them: eight nodes at once, four lanes to
-// a node's children, from a stack that is its own, and gives away what is too much for it, to be dealt to all warps
-// when they are done.
+// Tests the few points near a part against the trees. Every warp walks with some of them: eight nodes at once, four
+// lanes per node, from its own stack. What is too much for it is dealt to all warps at the end.
 
 #include <clearance/ground/ordered.hpp>
 #include <clearance/scan/alone.cuh>
@@ -23,8 +22,8 @@ struct pair_search : tree_steps<Answer> {
   using node_type = typename steps::node_type;
   static constexpr bool any_size = node_of<hierarchy>::any_size;
 
-  /// Keeps those of a lane's points for `drain` that are near a part of the cluster from `first_part` on, four bits a
-  /// part; says which it has no room for. There is room for all of those that come first.
+  /// Keeps pairs for `drain`: `those` of a lane's points that are near a part of the cluster from `first_part` on, four
+  /// bits per part. Returns those that it has no room for. The pairs that come first always have room.
   static __device__ unsigned add(unsigned those, const quad_points& p, std::uint32_t first, std::uint32_t first_part) {
     static_assert(quad * cluster <= 32 && pair_capacity >= quad * cluster);
     memory& s = frame::here();
@@ -42,7 +41,7 @@ struct pair_search : tree_steps<Answer> {
     return left;
   }
 
-  /// All pairs that were kept, to the end; `found` is how many there were, or more. The whole block calls it together.
+  /// Searches all kept pairs to the end. `found` is at least their number. The whole block calls it together.
   static __device__ void drain(std::uint32_t found) {
     memory& s = frame::here();
     if (found == 0) return;
@@ -55,17 +54,17 @@ struct pair_search : tree_steps<Answer> {
     }
     __syncthreads();
     Answer::drained(s, count);
-    if (threadIdx.x == 0) s.pairs = s.given = 0;  // a barrier comes before the next one is kept
+    if (threadIdx.x == 0) s.pairs = s.given = 0;  // a barrier comes before the next pair is kept
   }
 
  private:
-  static constexpr std::uint32_t mates = 4;             ///< Lanes that share a node: two children each.
-  static constexpr std::uint32_t at_once = 32 / mates;  ///< Nodes that a warp looks at together.
+  static constexpr std::uint32_t mates = 4;             ///< Lanes that share a node, two children per lane.
+  static constexpr std::uint32_t at_once = 32 / mates;  ///< Nodes that a warp tests together.
 
   static __device__ std::uint32_t lane() { return threadIdx.x % mates; }
   static __device__ std::uint32_t group() { return threadIdx.x % 32 / mates; }
 
-  /// Is the point in the part's solid? Then its distance is 0, and there is nothing to look for in the tree.
+  /// Is the point in the part's solid? Then its distance is 0, and the tree need not be searched.
   static __device__ bool inside(vec3 q, std::uint32_t point, std::uint32_t k, std::uint32_t pair) {
     if constexpr (has_interior<typename Answer::part_type>) {
       memory& s = frame::here();
@@ -80,22 +79,22 @@ struct pair_search : tree_steps<Answer> {
     return false;
   }
 
-  /// A pair's point into its part's frame; and onto the stack what is within reach below the root of that part's tree,
-  /// or the root if it is a leaf, unless the pair ends here. Four lanes to a pair.
+  /// Transforms a pair's point into its part's frame. Pushes the root's children within reach, or the root if it is a
+  /// leaf, unless the pair ends here. Four lanes per pair.
   static __device__ std::uint32_t admit(std::uint32_t i, bool live, pending* stack, std::uint32_t top) {
     memory& s = frame::here();
     const pair c = live ? s.pair_table[i] : pair{};
     const std::uint32_t part = live ? s.part_of_pair[i] : 0;
     live = live && s.near_part[part].passes(c.x) && !Answer::skips(s, part, c.point, i, c.x);
     if constexpr (Answer::goes_ahead)
-      live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0;  // others may be changing what decides it
+      live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0;  // others may be changing its inputs
     const vec3 q = frame::place(part).part_from_cloud(c.x);
     if constexpr (has_interior<typename Answer::part_type>) {
       const unsigned gone =
           __ballot_sync(all_lanes, live && lane() == 0 && inside(q, c.point, part, i)) >> group() * mates;
       live = live && (gone & 1) == 0;
     }
-    __syncwarp();  // all have read the pair
+    __syncwarp();  // all lanes have read the pair
     if (live && lane() == 0) s.pair_table[i].x = q;
     node_type root{};
     if (live) root = steps::root(part);
@@ -108,22 +107,22 @@ struct pair_search : tree_steps<Answer> {
   }
 
   /// A warp's share of the pairs, then of what warps have given away: a far point can be about equally far from
-  /// hundreds of nodes. It takes nodes from the end of its stack, and fewer as that fills, at last one, whose whole
-  /// subtree then fits into what is kept free: so the stack cannot overflow. Of trees for which that is not enough it
-  /// takes one node at a time, and the lower end of the stack goes to memory.
+  /// hundreds of nodes. It takes nodes from the end of its stack, fewer as the stack fills, and at last one, whose
+  /// subtree fits into the reserve. So the stack cannot overflow. For larger trees it takes one node at a time, and the
+  /// lower end of the stack goes to memory.
   static __device__ void walk(std::uint32_t count) {
     memory& s = frame::here();
     const std::uint32_t warp = threadIdx.x / 32;
     pending* const stack = s.stack[warp];
     typename Answer::news elsewhere(s);
     std::uint32_t top = 0, row = 0;
-    [[maybe_unused]] std::uint32_t below = 0;  // what is in memory
+    [[maybe_unused]] std::uint32_t below = 0;  // nodes in memory
     bool shared = false;
 #pragma unroll 1
     for (int round = 0;; ++round) {
 #pragma unroll 1
       for (; row * warps < count && top < at_once && (!any_size || below == 0); row += at_once) {
-        // A point's pairs follow one another, and so do neighbours': from another warp on in each row.
+        // A point's pairs follow one another, and so do its neighbours'. So each row begins with another warp.
         const std::uint32_t its = row + group(), i = its * warps + (its + warp) % warps;
         if constexpr (Answer::goes_ahead)
           top = admit(i < count ? Answer::open_pair(s, i) : 0, i < count, stack, top);
@@ -148,7 +147,7 @@ struct pair_search : tree_steps<Answer> {
                     at_once - 1 + at_once * (most_children + 1) < stack_capacity);
       std::uint32_t taken = top < at_once ? top : at_once;
       if (top > room - at_once * growth) taken = top + 2 * growth <= room ? 2 : 1;
-      __syncwarp();  // all that has been pushed is there
+      __syncwarp();  // all pushes are visible
       if constexpr (any_size)
         if (s.head.overflow != nullptr) {
           taken = 1;
@@ -164,7 +163,7 @@ struct pair_search : tree_steps<Answer> {
     }
   }
 
-  /// The first child of a node that is not yet looked at.
+  /// The first child of a node that has not been tested yet.
   static __device__ std::uint32_t first_of(std::uint32_t pair) {
     if constexpr (any_size) return steps::begin(pair);
     return 0;
@@ -174,16 +173,16 @@ struct pair_search : tree_steps<Answer> {
     return pair;
   }
 
-  /// This warp's share of the memory for what is below the stack.
+  /// This warp's memory for the lower end of its stack.
   static __device__ pending* memory_below() {
     const auto& head = frame::here().head;
     return reinterpret_cast<pending*>(head.overflow) +
            std::size_t(blockIdx.x * warps + threadIdx.x / 32) * head.overflow_room;
   }
-  /// All of the stack's nodes but the last eight to there. All lanes of a warp call it.
+  /// Moves all nodes but the last eight there. All lanes of a warp call it.
   static __noinline__ __device__ void sink(pending* stack, std::uint32_t top, std::uint32_t below) {
     const std::uint32_t lane = threadIdx.x % 32, some = top - at_once;
-    if (below + some > frame::here().head.overflow_room) __trap();  // the tree is deeper than it said
+    if (below + some > frame::here().head.overflow_room) __trap();  // the tree is deeper than it claimed
     for (std::uint32_t k = lane; k < some; k += 32) memory_below()[below + k] = stack[k];
     pending kept;
     if (lane < at_once) kept = stack[some + lane];
@@ -191,7 +190,7 @@ struct pair_search : tree_steps<Answer> {
     if (lane < at_once) stack[lane] = kept;
     __syncwarp();
   }
-  /// So many of them back to the stack.
+  /// Moves `some` of them back to the stack.
   static __noinline__ __device__ void raise(pending* stack, std::uint32_t some, std::uint32_t below) {
     const std::uint32_t lane = threadIdx.x % 32;
     __syncwarp();
@@ -199,22 +198,22 @@ struct pair_search : tree_steps<Answer> {
     __syncwarp();
   }
 
-  /// All but the first of a warp's nodes, if there is room for all; the stack's new size. If another warp is quicker,
-  /// some are kept and given, and looked at twice. All lanes of a warp call it.
+  /// Gives away all but the first eight of a warp's nodes, if there is room for all. Returns the stack's new size. If
+  /// another warp is quicker, some nodes are both kept and given, and tested twice. All lanes of a warp call it.
   static __device__ std::uint32_t give(const pending* stack, std::uint32_t top) {
     memory& s = frame::here();
     const std::uint32_t lane = threadIdx.x % 32, some = top - at_once;
     std::uint32_t at = memory::given_capacity;
     if (lane == 0 && fresh(s.given) + some <= memory::given_capacity) at = atomicAdd(&s.given, some);
     at = __shfl_sync(all_lanes, at, 0);
-    __syncwarp();  // all that has been pushed is there
+    __syncwarp();  // all pushes are visible
 #pragma unroll 1
     for (std::uint32_t k = lane; k < some && at + k < memory::given_capacity; k += 32)
       s.given_nodes[at + k] = stack[at_once + k];
     return at + some <= memory::given_capacity ? at_once : top;
   }
 
-  /// This warp's share of what all have given; the stack's size.
+  /// Takes this warp's share of what all have given. Returns the stack's size.
   static __device__ std::uint32_t take_share(pending* stack) {
     memory& s = frame::here();
     const std::uint32_t lane = threadIdx.x % 32, warp = threadIdx.x / 32, i = lane * warps + warp;
@@ -223,12 +222,12 @@ struct pair_search : tree_steps<Answer> {
     return (given + warps - 1 - warp) / warps;
   }
 
-  /// Inner children within reach go onto the stack, primitives are looked at. All lanes of a warp call it.
+  /// Pushes inner children within reach and tests primitives. All lanes of a warp call it.
   static __device__ std::uint32_t expand(const pending& e, pending* stack, std::uint32_t top) {
     memory& s = frame::here();
     const std::uint32_t part = steps::part_of(e.pair), i = steps::pair_of(e.pair);
     pair v{};
-    if (e.bound == e.bound) v = s.pair_table[i];  // else another warp may be writing there
+    if (e.bound == e.bound) v = s.pair_table[i];  // otherwise another warp may be writing there
     const real reach = Answer::reach_of_pair(s, part, i);
     const bool live = e.bound <= reach, leaf = live && steps::is_leaf(part, e.node);
     const std::uint32_t count = live ? steps::size(part, e.node) : 0;
@@ -240,7 +239,7 @@ struct pair_search : tree_steps<Answer> {
     return top;
   }
 
-  /// The first of `count` children of a node that are within reach, and for the others the node; the stack's new size.
+  /// Pushes the first of `count` children if within reach, and the node for the rest. Returns the stack's new size.
   static __device__ std::uint32_t push_children(real bound, const node_type& node, std::uint32_t count,
                                                 std::uint32_t pair_and_part, vec3 q, real reach, pending* stack,
                                                 std::uint32_t top) {
@@ -248,7 +247,7 @@ struct pair_search : tree_steps<Answer> {
     if constexpr (any_size) {
       if (count > most_children &&
           (frame::here().head.overflow == nullptr || first_of(pair_and_part) + count > most_width))
-        __trap();  // the tree is wider than it said
+        __trap();  // the tree is wider than it claimed
       pending others{bound, node, pair_and_part};
       steps::skip(others.pair);
       top = push(others, count > most_children && lane() == 0, stack, top);
@@ -270,7 +269,7 @@ struct pair_search : tree_steps<Answer> {
     return top;
   }
 
-  /// Those of a warp's lanes that have something to push do so at once; the stack's new size.
+  /// All lanes with `mine` push at once. Returns the stack's new size.
   static __device__ std::uint32_t push(const pending& e, bool mine, pending* stack, std::uint32_t top) {
     const unsigned those = __ballot_sync(all_lanes, mine);
     pending* const place = stack + top + __popc(those & ((1u << threadIdx.x % 32) - 1));
@@ -278,7 +277,7 @@ struct pair_search : tree_steps<Answer> {
     return top + std::uint32_t(__popc(those));
   }
 
-  /// The primitives of leaves. All lanes of a warp call it.
+  /// Tests the primitives of leaves. All lanes of a warp call it.
   static __device__ void look(const node_type& leaf, std::uint32_t count, std::uint32_t part, std::uint32_t pair,
                               const scan::pair& v, real reach) {
 #pragma unroll 1

@@ -22,12 +22,12 @@ struct frame_parts {
   static __device__ const frame_part& place(std::uint32_t k) { return parts()[k].place; }
   static __device__ const view_type& view(std::uint32_t k) { return parts()[k].view; }
 
-  /// Every thread brings a share of it; and calls `meanwhile` once, while it waits for the first.
+  /// Copies them there. Every thread copies a share, and calls `meanwhile` once while it waits for its first words.
   template <class F>
   static __device__ void prepare(const scan_arguments<Answer>& a, F meanwhile) {
     memory& s = here();
     const std::uint32_t t = threadIdx.x;
-    // Dealt to all warps alike: threads of a warp read kernel arguments one after another.
+    // Dealt evenly to all warps, because threads of a warp read kernel arguments one after another.
     const std::uint32_t dealt = (t & 31) * warps + t / 32;
     if (a.far)
       copy_parts(a.rest->parts.part, a.views, a.parts, t, meanwhile);
@@ -52,7 +52,7 @@ struct frame_parts {
   }
 
  private:
-  /// Every thread first reads, and then writes: it waits once.
+  /// Every thread reads first and then writes, so that it waits once.
   template <class F>
   static __device__ void copy_parts(const frame_part* places, const view_type* views, std::uint32_t count,
                                     std::uint32_t thread, F meanwhile) {

@@ -6,8 +6,8 @@
 
 namespace clearance::scan {
 
-/// What the host does with poses, for poses in memory that the device reads: one block, each of its threads a part of
-/// every group.
+/// Does what the host does with poses, for poses in memory that the device reads. One block; a thread has a part of
+/// each group.
 template <class PartView>
 __global__ void __launch_bounds__(most_parts)
     place_kernel(const world_transform* world_from_part, const world_transform* world_from_cloud, const PartView* views,

@@ -9,9 +9,9 @@
 
 namespace clearance::scan {
 
-/// All clouds of a frame by a loop over their points, on any backend that has no scan of its own; enqueued.
-/// `answer(source, turn)` is that of `scan_body` for a cloud, `here(source, cloud)` what the backend can read of it.
-/// What all clouds have in common.
+/// Enqueues a loop over the points of all clouds of a frame, on any backend without its own scan. `answer(source,
+/// turn)` is the answer of `scan_body` for a cloud, `here(source, cloud)` a source that the backend can read. Returns
+/// the facts of all clouds together.
 template <class On, class PartView, class Clouds, class Answer, class Here>
 frames::frame_facts plain_pass(const On& on, const model_view<PartView>& model,
                                std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,

@@ -1,47 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A block's points, four a thread a round: which they are, and why some do not count.
+// A block's points, four per thread and round: which they are, and why some are invalid.
 
 #include <clearance/scan/block.cuh>
 
 namespace clearance::scan {
 
-inline constexpr int quad = 4;  ///< Points that a thread has in hand, in a row.
+inline constexpr int quad = 4;  ///< Consecutive points that a thread holds.
 inline constexpr std::uint32_t in_block_round = block_threads * quad;
 
-/// A thread's points, less the frame's origin; and why they do not count, a byte each: a drop_reason, or `no_point`.
+/// A thread's points, and why they are invalid, one byte each: a drop_reason, or `no_point`.
 struct quad_points {
   vec3 at[quad];
   unsigned reasons;
 };
-inline constexpr unsigned no_point = 0xff;  ///< There is none.
+inline constexpr unsigned no_point = 0xff;  ///< There is no such point.
 
-/// Neighbouring points share their fate, and a block that gets many that are near some part keeps all others waiting:
-/// so the pieces are dealt out to the blocks like cards.
+/// Neighbouring points are near a part together, and a block that gets many such points keeps all others waiting. So
+/// pieces of points are dealt out to the blocks like cards.
 template <class Answer>
 class cards {
  public:
-  /// A row of cards after the other, each dealt from another block on: else a block's cards could all be of one column.
+  /// Deals one row of cards after another, each from another block on. Otherwise they could all be from one column.
   explicit __device__ cards(std::uint32_t rounds) : once_(rounds == 1) {
     const std::uint32_t row = threadIdx.x / threads();
     std::uint32_t column = blockIdx.x + __umulhi(row * 0x9e3779b9u, gridDim.x);
     if (column >= gridDim.x) column -= gridDim.x;
     card_ = row * gridDim.x + column;
   }
-  /// Of this thread's first point in a round; the others follow it.
+  /// The index of this thread's first point in a round. The others follow it.
   __device__ std::uint32_t index(std::uint32_t round) const {
     return card_ * (threads() * quad) + threadIdx.x % threads() * quad + round * in_block_round * gridDim.x;
   }
 
  private:
-  /// Whose points in a row stay together: few, where each part has a bound and so more points are near; and one, where
-  /// pairs take long and nothing evens out what a block is dealt in its only round.
+  /// How many threads have neighbouring points: few, if each part has a bound and so more points are near; one, if
+  /// pairs take long and nothing evens out the only round.
   __device__ std::uint32_t threads() const {
     if constexpr (!Answer::bound_per_part)
       return 4;
     else if constexpr (!Answer::goes_ahead)
       return 2;
-    else if constexpr (Answer::few != 0)  // its first points may be the last that matter
+    else if constexpr (Answer::few != 0)  // a block's first points may be the last that matter
       return 2;
     else
       return once_ ? 1 : 2;
@@ -51,8 +51,8 @@ class cards {
   [[maybe_unused]] bool once_;
 };
 
-/// Counts of a thread's points that do not count, a byte for each of the first reasons; the others go to the block's at
-/// once, because another register would be one too many for all that lives across the loop.
+/// Counts a thread's invalid points, in one byte for each of the first reasons. Other reasons go to the block's counts
+/// at once, because the loop has no register left for them.
 class drop_counter {
  public:
   __device__ void add(unsigned reasons, std::uint32_t (&block)[drop_reasons]) {
@@ -71,7 +71,7 @@ class drop_counter {
     }
   }
 
-  /// Adds this warp's to the block's; due before 63 rounds are over, or a byte is full.
+  /// Adds this warp's counts to the block's. Call it at least every 63 rounds, before a byte overflows.
   __device__ void report(std::uint32_t (&block)[drop_reasons]) {
     if (!__any_sync(all_lanes, dropped_ != 0)) return;
     const std::uint32_t odd = sum_of(dropped_ & 0xff00ffu), even = sum_of(dropped_ >> 8 & 0xff00ffu),
@@ -86,7 +86,7 @@ class drop_counter {
   std::uint32_t dropped_ = 0;
 };
 
-/// Points one by one, from memory; there may be none.
+/// Reads points one by one from memory. There may be fewer than four.
 template <class Source>
 __device__ quad_points look_closely(const Source& source, std::uint32_t points, std::uint32_t first) {
   quad_points p;

@@ -7,7 +7,7 @@
 
 namespace clearance::scan {
 
-/// A primitive near a point: all that is needed to name it, so that nobody has to search for it again.
+/// A primitive near a point, with all that names it, so that it need not be searched for again.
 template <class Place>
 struct record {
   distance_key key = no_key;

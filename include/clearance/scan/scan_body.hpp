@@ -8,8 +8,8 @@
 
 namespace clearance::scan {
 
-/// A range of points against every part, by one thread: the loop of any backend that has none of its own. `Answer` says
-/// how near something must be, what a walk carries, and takes what it found.
+/// Tests a range of points against every part, by one thread: the loop of any backend without its own scan. `Answer`
+/// says how near something must be, gives a walk its visitor, and takes what it found.
 template <class PartView, point_source Source, class Traversal, class Answer>
 struct scan_body {
   const PartView* parts;
@@ -34,12 +34,12 @@ struct scan_body {
     mine.add_to(*counts);
   }
 
-  /// One point against every part.
+  /// Tests one point against every part.
   CLEARANCE_HD void visit(vec3 p, std::size_t i) const {
     for (std::uint32_t k = 0; k < part_count; ++k) visit(p, first + std::uint32_t(i), k);
   }
 
-  /// Against one; `index` is its number among all clouds' points.
+  /// Tests it against one part. `index` is its number among all clouds' points.
   CLEARANCE_HD void visit(vec3 p, std::uint32_t index, std::uint32_t k) const {
     const frames::placement& place = places[k];
     if (!frames::may_reach(place.around, answer.reach_of_pair(index, k), p)) return;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Warps of a block that have no packet left help those that have: some packets take many times as long as most, and a
-// block ends with its last. Whoever walks for a shared packet finds for itself, and tells how near; who is done last
-// has all that was found. Nobody waits for another's walk, and who does what changes no answer: of what is found the
-// least counts, in whatever order.
+// Warps of a block that have no packet left help the others: some packets take many times as long as most, and a block
+// ends with its last one. Warps that share a packet keep their own finds and tell one another how near these are. The
+// last to finish has all finds. No warp waits for another's walk. Who does what changes no answer: the least find
+// counts, in any order.
 
 #include <clearance/ground/ordered.hpp>
 #include <clearance/result.hpp>
@@ -11,28 +11,28 @@
 
 namespace clearance::scan {
 
-/// What a warp is at.
+/// What a warp works on.
 struct packet_task {
   std::uint32_t packet;  ///< Its number.
-  std::uint32_t shared;  ///< Where in `sharing_memory` it is, if other warps are or have been at it, too; or none.
-  std::uint32_t nodes;   ///< If this warp helps, so many are in its stack; 0: the packet is its own.
-  std::uint32_t part;    ///< Those are of this part's tree,
+  std::uint32_t shared;  ///< Its place in `sharing_memory`, if other warps work or have worked on it, too; or none.
+  std::uint32_t nodes;   ///< If this warp helps: nodes in its stack. 0: the packet is its own.
+  std::uint32_t part;    ///< Those nodes are of this part's tree,
   unsigned live;         ///< and for these points.
 };
 
-/// A packet that several warps walk for.
+/// A packet that several warps work on.
 template <class Visitor>
 struct shared_packet {
-  std::uint32_t walkers;  ///< So many; 0: nobody, and the place is free.
-  unsigned lock;          ///< Of `found`.
+  std::uint32_t walkers;  ///< How many warps; 0: none, and the place is free.
+  unsigned lock;          ///< Guards `found`.
   Visitor found[32];
 };
 
-/// In a block's shared memory. For few packets at once, because what it takes is taken from the cache.
+/// In a block's shared memory. It holds few packets at once, because it takes its room from the cache.
 template <class Answer>
 struct sharing_memory {
   static constexpr std::uint32_t most = 8;
-  std::uint32_t idle;        ///< A bit a warp; if all are set, nobody can be handed anything any more.
+  std::uint32_t idle;        ///< One bit per warp. If all are set, no warp has anything left to hand over.
   packet_task tasks[warps];  ///< In shared memory, because registers are few.
   shared_packet<typename Answer::visitor_type> packets[most];
 
@@ -43,41 +43,41 @@ struct sharing_memory {
   }
 };
 
-/// An answer's visitor says what another has found:
-///   hear(other)  makes the reach no larger than that; is one's own nearer? `other` may be changing.
-///   join(other)  takes it, if it is nearer.
+/// An answer's visitor takes what another one has found:
+///   hear(other)  lowers the reach to the other's; returns true if its own find is nearer. `other` may be changing.
+///   join(other)  takes the other's find if it is nearer.
 template <class Answer>
 struct shared_walk {
   using visitor = typename Answer::visitor_type;
 
-  /// This warp's. The whole warp calls whatever is here.
+  /// This warp's task. The whole warp calls each function here.
   static __device__ packet_task& task() { return memory().tasks[warp()]; }
   static __device__ bool helps() { return task().nodes != 0; }
 
-  /// Waits for something to help with, which is then this warp's task; false: no warp of the block has anything left.
+  /// Waits for work to help with, which is then this warp's task. Returns false if no warp of the block has any left.
   static __device__ bool receive() {
-    __syncwarp();  // all have seen what this warp's last task was
+    __syncwarp();  // all lanes have read this warp's last task
     if (lane() == 0) atomicOr(&memory().idle, 1u << warp());
     for (;;) {
       bool over = false, given = false;
       if (lane() == 0) given = fresh(task().shared) != none, over = fresh(memory().idle) == all_warps;
       if (__any_sync(all_lanes, given)) break;
       if (__any_sync(all_lanes, over)) return false;
-      __nanosleep(300);  // warps that wait should not take the working ones' turns; how long changes no answer
+      __nanosleep(300);  // waiting warps should not slow working ones; how long changes no answer
     }
     __threadfence_block();
     return true;
   }
 
-  /// An own packet begins to be walked.
+  /// Begins a packet of this warp's own.
   static __device__ void begin(std::uint32_t packet) {
     if (lane() == 0) task().packet = packet;
   }
 
-  /// Does a warp of the block wait for something to do? A few instructions.
+  /// Does a warp of the block wait for work? It takes a few instructions.
   static __device__ bool asked() { return __any_sync(all_lanes, fresh(memory().idle) != 0); }
 
-  /// Says and hears how near something is, if others are at this packet.
+  /// Exchanges how near something is with other warps on this packet.
   static __device__ void talk(visitor& v) {
     const std::uint32_t place = task().shared;
     if (place == none) return;
@@ -88,14 +88,14 @@ struct shared_walk {
     release(p);
   }
 
-  /// Hands every second of the nodes that this warp has still to look at in part k to an idle one, the nearest not;
-  /// `stacks` are all warps'.
+  /// Hands every second of this warp's pending nodes in part k to an idle warp, but never the nearest. `stacks` are
+  /// those of all warps.
   template <class Node, std::size_t Room>
   static __device__ void hand_over(std::uint32_t k, real reach, const visitor& v, Node (&stacks)[warps][Room],
                                    std::uint32_t top) {
     auto& s = memory();
     Node* const mine = stacks[warp()];
-    __syncwarp();  // all that has been pushed is there
+    __syncwarp();  // all pushes are visible
     const real most = from_ordered(most_of(all_lanes, ordered(reach)));
     const unsigned those = __ballot_sync(all_lanes, lane() < top && mine[lane()].bound <= most);
     if (__popc(those) < 2) return;
@@ -118,7 +118,7 @@ struct shared_walk {
     const unsigned given = __ballot_sync(all_lanes, give), live = __ballot_sync(all_lanes, reach > -infinity);
     if (give) {
       stacks[helper][__popc(given & ((1u << lane()) - 1))] = mine[lane()];
-      mine[lane()].bound = not_a_number;  // nobody wants it here
+      mine[lane()].bound = not_a_number;  // not wanted here any more
     }
     if (first) s.packets[place].found[lane()] = v;
     packet_task& its = s.tasks[helper];
@@ -131,7 +131,7 @@ struct shared_walk {
     if (lane() == 0) *static_cast<volatile std::uint32_t*>(&its.shared) = place;
   }
 
-  /// The task is done. Was that all of its packet? Then `v` is all that was found.
+  /// Ends the task. Returns true if its packet is done; then `v` is all that was found.
   static __device__ bool last(visitor& v) {
     const std::uint32_t place = task().shared;
     if (place == none) return true;

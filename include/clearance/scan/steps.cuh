@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How the threads of a block go down a part's tree.
+// How a block's threads go down a part's tree.
 
 #include <clearance/scan/nodes.hpp>
 #include <clearance/scan/parts.cuh>
@@ -13,7 +13,7 @@ struct step_to {
   Volume volume;
 };
 
-/// Down any tree, by its own members.
+/// For any tree, by its own members.
 template <class Answer, hierarchy H>
 struct steps_down : frame_parts<Answer> {
   using parts = frame_parts<Answer>;
@@ -38,8 +38,8 @@ struct steps_down : frame_parts<Answer> {
     return tree(k).id(kind::unpack(p.leaf), p.number);
   }
   static __device__ place_type place_of(const node_type& leaf, std::uint32_t j) { return {leaf, j}; }
-  /// Of more than eight children the first that are not yet pushed: their number goes with the pair, in bits that it
-  /// leaves. Those count to `most_width`.
+  /// For a node with more than eight children: the first child that is not pushed yet. Its number, up to `most_width`,
+  /// lies in spare bits of the pair's word.
   static __device__ std::uint32_t begin(std::uint32_t pair) {
     return (pair >> 10 & 63 | pair >> 23 << 6) * most_children;
   }
@@ -47,14 +47,14 @@ struct steps_down : frame_parts<Answer> {
     const std::uint32_t eights = begin(pair) / most_children + 1;
     pair = from_first(pair) | (eights & 63) << 10 | eights >> 6 << 23;
   }
-  /// And none: of a child that number says nothing.
+  /// Clears that number, because it does not apply to a child.
   static __device__ std::uint32_t from_first(std::uint32_t pair) { return pair & 0x7f03ff; }
   static __device__ std::uint32_t pair_of(std::uint32_t pair) { return pair & 1023; }
   static __device__ std::uint32_t part_of(std::uint32_t pair) { return pair >> 16 & 127; }
   static __device__ void fetch_tops(std::uint32_t) {}
 };
 
-/// Down one in arrays; its top from shared memory.
+/// For a tree in arrays. Its top is read from shared memory.
 template <class Answer, array_hierarchy H>
 struct steps_down<Answer, H> : frame_parts<Answer> {
   using parts = frame_parts<Answer>;
@@ -80,12 +80,12 @@ struct steps_down<Answer, H> : frame_parts<Answer> {
   static __device__ std::uint32_t pair_of(std::uint32_t pair) { return pair & 0xffff; }
   static __device__ std::uint32_t part_of(std::uint32_t pair) { return pair >> 16; }
 
-  /// Starts to copy the first nodes of each tree, its top levels: no point then waits for them. After `prepare`.
+  /// After `prepare`: starts to copy the first nodes of each tree, its top levels, so that no point waits for them.
   static __device__ void fetch_tops(std::uint32_t count) {
     auto& tops = parts::here().tops;
     const std::uint32_t stride = parts::here().head.top_stride;
 #pragma unroll 1
-    for (std::uint32_t k = threadIdx.x / 64; k < count; k += warps / 2) {  // two warps a tree
+    for (std::uint32_t k = threadIdx.x / 64; k < count; k += warps / 2) {  // two warps per tree
       const H& from = tree(k);
       const std::uint32_t top = stride < from.node_count ? stride : from.node_count;
 #pragma unroll 1
@@ -98,7 +98,7 @@ struct steps_down<Answer, H> : frame_parts<Answer> {
   }
 
  private:
-  /// Node n of part k, and its volume: from shared memory, if it is one of the first.
+  /// Node n of part k, and its volume: from shared memory if it is one of the first.
   static __device__ bvh_node node(std::uint32_t k, std::uint32_t n) {
     if constexpr (Answer::top_bytes > 0)
       if (const std::uint32_t stride = parts::here().head.top_stride; n < stride)
@@ -111,8 +111,8 @@ struct steps_down<Answer, H> : frame_parts<Answer> {
         return near(parts::here().tops.volumes + k * stride + n);
     return far(tree(k).volumes + n);
   }
-  /// In as few pieces as its size allows, whatever its members ask for: these arrays begin where the largest may. A
-  /// minimum's walks wait for one another and not for that.
+  /// Reads in as few pieces as the size allows, whatever alignment the members have: these arrays are aligned for the
+  /// largest piece. Not for a minimum, whose walks wait for one another and not for reads.
   template <class T>
   static constexpr std::size_t piece = sizeof(T) % 16 == 0  ? 16
                                        : sizeof(T) % 8 == 0 ? 8

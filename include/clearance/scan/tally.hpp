@@ -6,13 +6,12 @@
 
 namespace clearance::scan {
 
-/// How many points of a scan do not count, by drop_reason.
+/// How many points of a scan are invalid, by drop_reason.
 struct drop_counts {
   unsigned long long dropped[drop_reasons] = {};
 };
 
-/// From that to how many points there were, and how many of them count. `Counts`: point_counts, or a result that has
-/// the same.
+/// Computes how many points there were and how many are valid. `Counts`: point_counts, or a result with its members.
 template <class Counts>
 CLEARANCE_HD void count(Counts& r, const unsigned long long (&dropped)[drop_reasons], std::uint64_t seen) {
   r.seen = r.valid = seen;
@@ -23,11 +22,11 @@ CLEARANCE_HD void count(Counts& r, const unsigned long long (&dropped)[drop_reas
   }
 }
 
-/// What one thread met, added to the counts of all once.
+/// What one thread met. It is added to the counts of all once.
 struct tally {
   std::uint32_t dropped[drop_reasons] = {};
 
-  /// Is there a point? If not, it is counted.
+  /// Is the point valid? If not, counts its reason.
   CLEARANCE_HD bool counts(const sample& s) {
     for (int r = 1; r < drop_reasons; ++r) dropped[r] += int(s.dropped) == r;
     return s.valid();
@@ -35,7 +34,7 @@ struct tally {
 
   CLEARANCE_HD void add_to(drop_counts& all) const {
     for (int r = 1; r < drop_reasons; ++r) {
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800  // older ones have no such sum
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800  // older devices have no such instruction
       const unsigned together = __activemask();
       const unsigned sum = __reduce_add_sync(together, dropped[r]);
       if (sum != 0 && (threadIdx.x & 31) == unsigned(__ffs(int(together)) - 1)) add_to_word(&all.dropped[r], sum);

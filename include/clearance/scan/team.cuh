@@ -7,8 +7,7 @@
 
 namespace clearance::scan {
 
-/// Some lanes of a warp, which stays together all the way down: groups that part ways wait for one another at every
-/// step.
+/// Some lanes of a warp. The whole warp stays together: groups that diverge would wait for one another.
 template <std::uint32_t Size>
 struct lanes {
   static constexpr std::uint32_t size = Size;

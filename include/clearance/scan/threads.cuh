@@ -17,8 +17,8 @@ __device__ T fresh(const T& shared) {
   return *static_cast<const volatile T*>(&shared);
 }
 
-/// Adds one to a counter of the whole device and returns what it was. What this thread has written, and read, before it
-/// is seen by who counts later; what others wrote before they counted is seen after it.
+/// Adds one to a counter of the whole device and returns its old value. Threads that count later see what this thread
+/// wrote before. This thread sees what others wrote before they counted.
 __device__ inline std::uint32_t count_in(std::uint32_t& counter) {
   return cuda::atomic_ref<std::uint32_t, cuda::thread_scope_device>(counter).fetch_add(1, cuda::memory_order_acq_rel);
 }
@@ -39,10 +39,10 @@ __device__ inline std::uint32_t least_of(unsigned mask, std::uint32_t value) {
 #endif
 }
 
-/// The largest.
+/// The largest of them.
 __device__ inline std::uint32_t most_of(unsigned mask, std::uint32_t value) { return ~least_of(mask, ~value); }
 
-/// What one lane of a warp has, to all that call it.
+/// Gives the value of one lane of a warp to all that call it.
 template <class T>
 __device__ T from_lane(const T& mine, int lane, unsigned mask = all_lanes) {
   static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);

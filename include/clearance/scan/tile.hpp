@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The host's way to read a cloud: first only where a hundred points are together, in loops that compilers turn into
-// vector code on every processor; their coordinates one by one only if a part may be near.
+// How the host reads a cloud: first only the box around a hundred points, in loops that compilers turn into vector code
+// on every processor. Single coordinates are read only if a part may be near.
 
 #include <clearance/points/extremes.hpp>
 #include <clearance/scan/tally.hpp>
@@ -11,21 +11,21 @@ namespace clearance::scan {
 inline constexpr std::size_t tile_points = surveyed_points;
 inline constexpr std::size_t piece_points = 32 * tile_points;  ///< What one thread takes at a time.
 
-/// The points of a tile, less the search's origin. What is no point is NaN and fails every comparison.
+/// The points of a tile, less the search's origin. An invalid point is NaN and fails every comparison.
 struct tile {
   alignas(64) real x[tile_points], y[tile_points], z[tile_points];
 
   void put(std::size_t j, vec3 p) { x[j] = p.x, y[j] = p.y, z[j] = p.z; }
   vec3 operator[](std::size_t j) const { return {x[j], y[j], z[j]}; }
 
-  /// Points begin, begin + stride, ..., `count` of them; what is dropped is counted. The source is a copy, which no
-  /// write here can change, and is read in this loop alone, so that compilers take it apart.
+  /// Loads `count` points: begin, begin + stride, ...; counts dropped ones. The source is a copy that no write here can
+  /// change, and only this loop reads it, so that compilers can split it into its members.
   template <point_source S>
   [[gnu::flatten]] void load(const S source, std::size_t begin, std::size_t count, std::size_t stride, tally& mine) {
     constexpr vec3 nowhere{not_a_number, not_a_number, not_a_number};
     for (std::size_t j = count; j < tile_points; ++j) put(j, nowhere);
     if constexpr (unfiltered_source<S>) {
-      if (source.unfiltered()) {  // only finiteness is asked, and in vectors
+      if (source.unfiltered()) {  // only finiteness is tested, in vector code
         for (std::size_t j = 0; j < count; ++j) put(j, source[begin + j * stride].position);
         mine.dropped[int(drop_reason::not_finite)] += drop_not_finite() - std::uint32_t(tile_points - count);
         return;
@@ -55,7 +55,7 @@ struct tile {
   }
 };
 
-/// The box from coordinates that are there already.
+/// The box around points that are already loaded.
 inline extent box_of(const tile& t) {
   extent box;
   spread(t.x, box.lower.x, box.upper.x);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A range of points against every part on the host. `Body` is a scan_body: where the parts are, what is asked, and the
-// exact visit for the few points that are left.
+// Tests a range of points against every part on the host. `Body` is a scan_body: it has the parts' places, the answer,
+// and the exact visit for the few points that are left.
 
 #include <clearance/frame/root_test.hpp>
 #include <clearance/ground/vectors.hpp>
@@ -33,7 +33,7 @@ inline void mark(const tile& t, vec3 c, real most, std::uint32_t* near) { mark_h
 /// Which points of a tile may be within reach of some part.
 class tile_survivors {
  public:
-  /// Conservative as `may_reach`; a reach below 0 can leave no point at all.
+  /// Conservative, like `may_reach`. A reach below 0 may leave no point at all.
   void add(const tile& t, const ball& around, real reach) {
     const real most = frames::limit(around, reach);
     if (most >= 0) detail::mark(t, around.center, most * most, near_);
@@ -65,8 +65,8 @@ inline bool may_reach(const ball& around, real reach, const extent& box) {
   return limit >= 0 && dx * dx + dy * dy + dz * dz <= limit * limit;
 }
 
-/// A box around all that is within reach of some part now, and so later on: no box that `may_reach` says yes to is
-/// beside it. (Slack enough for what that rounds, and for the sums here; and squares may vanish.)
+/// A box around all that is within reach of some part now, and so also later: every box that passes `may_reach`
+/// overlaps it. (The slack covers the rounding there, the sums here, and squares that underflow.)
 template <class Body>
 extent within_reach(const Body& body) {
   extent all;
@@ -86,18 +86,18 @@ inline bool beside(const extent& a, const extent& b) {
   return !together;
 }
 
-/// Counts what a whole tile drops and says where the rest is, without loading it; false: this source cannot.
+/// Counts a whole tile's dropped points and finds the others' box, without loading it. False if this source cannot.
 template <point_source S>
 bool survey(const S& source, std::size_t begin, extent& box, tally& mine) {
   if constexpr (surveyed_source<S>) return source.survey(begin, box, mine.dropped);
   return false;
 }
 
-/// Points begin .. end - 1, tile by tile; nearly all tiles are far from every part, and are not looked at again.
+/// Tests points begin .. end - 1, tile by tile. Nearly all tiles are far from every part and are done after one test.
 template <class Body>
 void scan_tiles(const Body& body, std::size_t begin, std::size_t end, tally& mine) {
   const auto reach = [&](std::uint32_t k) { return body.answer.reach(k); };
-  const extent near_robot = within_reach(body);  // nearly all boxes are beside it, and are not compared with every part
+  const extent near_robot = within_reach(body);  // spares nearly all boxes the test of every part
   for (std::size_t i = begin; i < end; i += tile_points) {
     const std::size_t count = std::min(tile_points, end - i);
     tile t;
@@ -129,8 +129,8 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, tally& min
   }
 }
 
-/// A few points spread over the cloud, each taken greedily to one leaf, before all others; `descend(p, index, part)`
-/// does it. Those nearest to each part's middle go first, for a bound that makes the others few.
+/// Before all others, takes a few points spread over the cloud to one leaf each, by `descend(p, index, part)`. For a
+/// good bound it takes those nearest to each part's middle.
 template <class Body, class Descend>
 void sample_tiles(const Body& body, std::size_t tiles, Descend descend) {
   const std::size_t stride = body.source.size() / (tiles * tile_points);

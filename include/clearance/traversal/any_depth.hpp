@@ -7,8 +7,7 @@
 
 namespace clearance {
 
-/// Nearest first on the host, whatever the depth and width: where 64 entries are not enough, each walk asks for a
-/// stack.
+/// Nearest first on the host, for any depth and width. If 64 entries are not enough, each walk allocates a stack.
 struct any_depth {
   std::uint64_t need;  ///< `stack_need` of the deepest tree.
 

@@ -5,7 +5,7 @@
 
 namespace clearance {
 
-/// Depth first, nearest child first, the children's bounds carried on the stack so that a node is tested once.
+/// Depth first, nearest child first. The stack carries the children's bounds, so that a node is tested once.
 template <int Capacity = 64>
 struct basic_near_first {
   static constexpr std::uint32_t capacity = Capacity;
@@ -22,7 +22,7 @@ struct basic_near_first {
     walk(tree, p, q, pending);
   }
 
-  /// The same with a stack of the caller's, of `stack_need(tree)` entries.
+  /// The same with the caller's stack of `stack_need(tree)` entries.
   template <hierarchy H, visitor Q>
   CLEARANCE_HD static void walk(const H& tree, vec3 p, Q& q, entry_of<H>* pending) {
     using traits = bounding_volume_traits<typename H::volume_type>;
@@ -47,7 +47,7 @@ struct basic_near_first {
     }
   }
 
-  /// One more of a node's children, the first of which is at `base`: the nearest stays on top.
+  /// Pushes one more of a node's children, whose first is at `base`. The nearest stays on top.
   template <hierarchy H>
   CLEARANCE_HD static void push(entry_of<H>* pending, std::uint32_t base, std::uint32_t& count, const entry_of<H>& e) {
     std::uint32_t at = count++;

@@ -7,11 +7,11 @@ namespace clearance {
 
 /// Depth first on the call stack, children in stored order: the paper's Algorithm 4.
 struct recursive {
-  /// Upper bound of what one level takes on the device's call stack: ptxas reports at most 240 for trees of ours
-  /// (triangles in boxes, sm_75), 144 with inner spheres. A primitive of one's own may need more.
+  /// Upper bound of one level's bytes on a device's call stack. For the library's trees ptxas reports at most 240
+  /// (triangles in boxes, sm_75), and 144 with inner spheres. A primitive of your own may need more.
   static constexpr std::size_t bytes_a_level = 256;
 
-  /// What a launch needs of cudaLimitStackSize, with room for the kernel itself.
+  /// The cudaLimitStackSize that a launch needs, in bytes, with room for the kernel itself.
   static std::size_t device_stack(std::uint32_t depth) { return 512 + (depth + 1) * bytes_a_level; }
 
   template <hierarchy H, visitor Q>

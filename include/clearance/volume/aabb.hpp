@@ -29,16 +29,16 @@ struct aabb {
     return {{down(lo[0]), down(lo[1]), down(lo[2])}, {up(hi[0]), up(hi[1]), up(hi[2])}};
   }
 
-  /// Outside: the distance to the box. Inside: minus the distance to the nearest face, or deep points would be lost.
+  /// Outside: the distance to the box. Inside: minus the distance to the nearest face, or deep points would be pruned.
   CLEARANCE_HD real lower_bound(vec3 q) const {
     const vec3 beyond{rough_max(lower.x - q.x, q.x - upper.x), rough_max(lower.y - q.y, q.y - upper.y),
                       rough_max(lower.z - q.z, q.z - upper.z)};
     const real deepest = rough_max(rough_max(beyond.x, beyond.y), beyond.z);
     const real outside = rough_length({rough_max(beyond.x, 0), rough_max(beyond.y, 0), rough_max(beyond.z, 0)});
-    return rough_min(deepest, 0) * (1 + slack) + outside * (1 - slack);  // one of them is 0, and there is no branch
+    return rough_min(deepest, 0) * (1 + slack) + outside * (1 - slack);  // one of the two is 0; so there is no branch
   }
 
-  /// As from the box outside, whatever the reach inside.
+  /// Outside it measures from the box. Inside it is true for any reach but minus infinity.
   CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
     const vec3 beyond{positive_part(max(lower.x - q.x, q.x - upper.x)),
                       positive_part(max(lower.y - q.y, q.y - upper.y)),

@@ -46,7 +46,7 @@ struct obb {
            slack * absolute(deepest);
   }
 
-  /// As from the box outside, whatever the reach inside.
+  /// Outside it measures from the box. Inside it is true for any reach but minus infinity.
   CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
     const vec3 d = q - center;
     const vec3 beyond{positive_part(absolute(dot(axis[0], d)) - half[0]),
@@ -73,7 +73,7 @@ struct obb {
       box.axis[k] = {to_float(frame(0, k)), to_float(frame(1, k)), to_float(frame(2, k))};
       axes.row(k) << box.axis[k].x, box.axis[k].y, box.axis[k].z;
     }
-    // Measured from a float near by: far from the origin, even a double would lose the size of something tiny.
+    // Measured from a near float: far from the origin, even doubles would lose the size of something tiny.
     const Eigen::Vector3d near(balls[0].center.x, balls[0].center.y, balls[0].center.z);
     Eigen::Vector3d lo = Eigen::Vector3d::Constant(infinity), hi = -lo;
     for (const ball& b : balls) {

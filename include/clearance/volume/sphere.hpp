@@ -15,7 +15,7 @@ struct sphere {
   real radius;
 
   /// Moves the centre towards the farthest ball by ever smaller steps (Badoiu & Clarkson 2003), in double. Any centre
-  /// is valid, so the radius that is then measured and rounded up carries the whole proof.
+  /// is valid: the proof needs only the radius, which is then measured and rounded up.
   static sphere fit(std::span<const ball> balls) {
     double c[3] = {0, 0, 0};
     for (const ball& b : balls) {
@@ -35,7 +35,7 @@ struct sphere {
       for (const ball& b : balls)
         if (const double r = reach(b); r > most) farthest = &b, most = r;
       if (!(most > 0)) break;
-      // Towards the far side of that ball: the step that would centre it, damped.
+      // A step towards the far side of that ball: the one that would centre it, damped.
       const double along = away(*farthest);
       if (!(along > 0)) break;
       const double step = std::min(1.0, most / (along * (k + 1)));
