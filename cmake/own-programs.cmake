@@ -100,12 +100,13 @@ if(CLEARANCE_DEVICE_PROGRAMS AND NOT CLEARANCE_DEVICE_PROGRAMS STREQUAL "CHECK")
   set(clearance_device_programs ON)
 endif()
 
-# clearance_together(units name sources... [RENAME words...]): what is compiled instead of the sources: some of one language at
-# a time, included by one unit, so that what they share is parsed and instantiated once. Words get a number in each source.
-# So two sources of a program must not define the same name in one namespace.
+# clearance_together(units name sources... [RENAME words...] [MAINS]): what is compiled instead of the sources: some of one
+# language at a time, included by one unit, so that what they share is parsed and instantiated once. So two sources of a program
+# must not define the same name in one namespace. Words get each source's number, from 1; MAINS: tests/support/programs.cpp
+# runs the main of that number.
 set(CLEARANCE_TOGETHER 10 CACHE STRING "How many sources of a program are compiled together, at most; 1: each alone")
 function(clearance_together units name)
-  cmake_parse_arguments(P "" "" "RENAME" ${ARGN})
+  cmake_parse_arguments(P "MAINS" "" "RENAME" ${ARGN})
   set(made)
   foreach(language cpp cu)
     set(those ${P_UNPARSED_ARGUMENTS})
@@ -122,6 +123,9 @@ function(clearance_together units name)
     set(number 0)
     foreach(piece RANGE 1 ${pieces})
       set(text)
+      if(P_MAINS)
+        set(text "#include \"${PROJECT_SOURCE_DIR}/tests/support/programs.hpp\"\n")
+      endif()
       math(EXPR last "${count} * ${piece} / ${pieces}")
       while(number LESS last)
         list(GET those ${number} source)
@@ -134,6 +138,9 @@ function(clearance_together units name)
         foreach(word ${P_RENAME})
           string(APPEND text "#undef ${word}\n")
         endforeach()
+        if(P_MAINS)
+          string(APPEND text "static const testing::program program_${number}(${number}, main_${number});\n")
+        endif()
       endwhile()
       set(unit ${CMAKE_CURRENT_BINARY_DIR}/together/${name}_${piece}.${language})
       file(CONFIGURE OUTPUT ${unit} CONTENT "${text}" @ONLY)
