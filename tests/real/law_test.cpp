@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The law of the bracket on everything there is: every link of every robot and every mesh that has an inside, packed;
-// points around, near the surface, inside and in the gaps. The exact distance is the double one of the mesh's solid,
-// which is itself checked against brute force in long double and solid angles, that share nothing with it.
+// The law of the bracket on all real data: every link of every robot and every mesh with an inside, packed; points
+// around, near the surface, inside and in the gaps. The exact distance comes from the mesh's solid in double, which is
+// checked by brute force in long double and solid angles; these share nothing with it.
 #include "support/laws.hpp"
 #include "support/oracle.hpp"
 #include "support/random.hpp"
