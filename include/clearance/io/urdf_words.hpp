@@ -133,7 +133,7 @@ class urdf_judge {
       if (has_word(words.attributes, name) || has_word(words.attributes_unused, name) || name == "xmlns" ||
           name.starts_with("xmlns:") || name.starts_with("xml:"))
         continue;
-      // A misspelt attribute that matters would be missing.
+      // Not for name and type: their readers notice if one is missing.
       const auto matters = [](std::string_view word) { return word != "name" && word != "type"; };
       const std::string_view meant = first_word(words.attributes, [&](std::string_view word) {
         return matters(word) &&

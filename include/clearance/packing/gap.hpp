@@ -37,7 +37,7 @@ struct gap_visit {
     met[i] = open[i] = closed[i] = 0;
     const double gap = in.gap(c.middle, double(infinity), least - reach), bound = gap + reach;
     if (bound <= least) return;
-    c.depth = signed_depth(in.solid, c.middle, c.depth, reach);  // as far from its parent's middle
+    c.depth = signed_depth(in.solid, c.middle, c.depth, reach);  // also the way to its parent's middle
     if (c.depth < -reach * (1 + 1e-12)) return;                  // no point of the solid is here
     if (c.depth >= 0) met[i] = gap;
     // The solid is less than `reach` from the middle, so a small cell's bound is at most twice `reach` too high.

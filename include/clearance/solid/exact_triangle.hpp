@@ -15,7 +15,7 @@ class exact_triangle {
   exact_triangle(const vec3d& a, const vec3d& b, const vec3d& c) : v_{a, b, c} {
     const vec3d n = (b - a).cross(c - a);
     const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    // On a thinner triangle the normal loses digits, but there an edge is within 1e-8: its segments suffice.
+    // On a thinner triangle the normal loses digits; its edges alone are then right to 1e-8 of an edge.
     if (n.norm() > 1e-8 * longest * longest) normal_ = (1 / n.norm()) * n;
     for (int k = 0; k < 3; ++k) {
       const vec3d edge = v_[(k + 1) % 3] - v_[k];

@@ -89,7 +89,7 @@ class winding_grid {
                      g_.row(std::min({v[0][2], v[1][2], v[2][2]})), g_.row(std::max({v[0][2], v[1][2], v[2][2]}))};
   }
 
-  /// Skips cells beyond one side of a triangle. They are inflated first, because a point's cell is computed in T.
+  /// Is the cell beyond one side of the triangle? It is inflated first, because a point's cell is computed in T.
   bool misses(const crossing_triangle<T>& t, std::uint32_t column, std::uint32_t row) const {
     const double cell_y = y_ / g_.columns, cell_z = z_ / g_.rows;
     const double half_y = cell_y / 2 + 8 * double(std::numeric_limits<T>::epsilon()) * y_;
