@@ -44,7 +44,7 @@ struct read_limits {
 /// "1024 MiB", for sentences.
 inline std::string mebibytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
-/// Identifies a file by whatever name.
+/// Identifies a file, whatever its name.
 struct file_identity {
   ::dev_t device = 0;
   ::ino_t number = 0;
