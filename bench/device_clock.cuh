@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How benchmarks time a device, and the floor beside them.
+// How benchmarks time a device, and the floor for comparison.
 
 #include <clearance/backend/cuda_error.cuh>
 
@@ -26,9 +26,8 @@ __global__ void spin_kernel() {
 template <bool Dummy = true>
 __global__ void empty_kernel() {}
 
-/// CUDA events around what is enqueued on the default stream. On an idle device the time includes the host's, from the
-/// first event to the launch; queued behind other work, it is the device's alone, which still starts and ends each
-/// kernel.
+/// CUDA events around work on the default stream. On an idle device the time includes the host's, from the first event
+/// to the launch. Queued behind other work, it is the device's alone, including the start and end of each kernel.
 class device_clock {
  public:
   explicit device_clock(bool queued = false) : queued_(queued) {
@@ -60,7 +59,7 @@ class device_clock {
   cudaEvent_t start_ = nullptr, stop_ = nullptr;
 };
 
-/// The floor of everything: each byte read once, and nothing found.
+/// The floor: reads each byte once, and finds nothing.
 template <bool Dummy = true>
 __global__ void read_kernel(const float4* from, std::size_t count, float* never) {
   float least = 0;

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes the target clearance::io when everything it needs is found; else clearance_io_missing names what is not, as the
-# Debian packages. Included by our own build and by the installed package (there because of COMPONENTS io).
+# Makes the target clearance::io if everything it needs is found; otherwise clearance_io_missing lists the missing
+# Debian packages. Our own build includes this, and so does the installed package (for COMPONENTS io).
 
 set(clearance_io_missing)
 
-# Packages may name files for the linker that another package brings.
-# Appends to `absent` what a target and those behind it ask for and what is not there.
+# Packages may name linker files that another package brings. Appends to `absent` the missing files that a target and
+# its dependencies ask for.
 function(clearance_io_link_files target absent)
   set(targets ${target})
   set(seen)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Settings for our own tests, examples, benchmarks and the command; nothing here reaches a consumer.
+# Settings for our own tests, examples, benchmarks and the command; nothing here affects a consumer.
 
 if(PROJECT_IS_TOP_LEVEL)
   if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
@@ -18,8 +18,8 @@ endif()
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
-# CLEARANCE_HAS_CUDA: our CUDA programs are built. They are for one architecture unless told otherwise; "native" would
-# be an error on a machine without a GPU, and CI is one.
+# CLEARANCE_HAS_CUDA: build our CUDA programs. The default is one architecture, because "native" is an error on a
+# machine without a GPU, as in CI.
 set(CLEARANCE_HAS_CUDA OFF)
 if(NOT CLEARANCE_CUDA STREQUAL "OFF")
   include(CheckLanguage)
@@ -37,31 +37,31 @@ if(NOT CLEARANCE_CUDA STREQUAL "OFF")
   endif()
 endif()
 
-# clearance_own: linked by every program of ours; warnings and sanitizers.
+# clearance_own: warnings and sanitizers, linked by all of our programs.
 add_library(clearance_own INTERFACE)
 target_link_libraries(clearance_own INTERFACE clearance::clearance)
 target_compile_options(clearance_own INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic>
   $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Xcompiler=-Wall,-Wextra>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # False alarms of GCC 12, inside its own std::string and inside Eigen.
+  # False alarms of GCC 12 in its own std::string and in Eigen.
   target_compile_options(clearance_own INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict -Wno-maybe-uninitialized>
     $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Xcompiler=-Wno-restrict,-Wno-maybe-uninitialized>)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 17)
-  # A false alarm of newer clang with an older libstdc++, inside its own std::stable_sort.
+  # A false alarm of newer clang in the std::stable_sort of an older libstdc++.
   target_compile_options(clearance_own INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-deprecated-declarations>)
 endif()
-# Recursion is what the recursive traversal is; its programs say how much stack it needs.
+# The recursive traversal recurses; its programs say how much stack it needs.
 target_compile_options(clearance_own INTERFACE $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Xptxas=--suppress-stack-size-warning>)
 if(CLEARANCE_WARNINGS_AS_ERRORS)
   target_compile_options(clearance_own INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-Werror> $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-Werror=all-warnings -Xcompiler=-Werror>)
 endif()
 if(CLEARANCE_SANITIZE)
-  # Checks of every access for null and for an object's size find what the address sanitizer finds. One for alignment is for
-  # programs that look into bytes which may lie anywhere (CLEARANCE_READS_BYTES). Together they double the time of compiling.
+  # Checks of every access for null and object size only find what the address sanitizer finds. The alignment check is only
+  # for programs that read bytes at any address (CLEARANCE_READS_BYTES). Together they would double the compile time.
   target_compile_options(clearance_own INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined
                          -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=undefined -fno-omit-frame-pointer
                          $<$<NOT:$<BOOL:$<TARGET_PROPERTY:CLEARANCE_READS_BYTES>>>:-fno-sanitize=alignment>>)
@@ -69,13 +69,13 @@ if(CLEARANCE_SANITIZE)
   target_compile_definitions(clearance_own INTERFACE CLEARANCE_SANITIZED)  # not every compiler has a word of its own
 endif()
 
-# clearance_compile_faster(language): from here on and in this folder, a release is -O1 on the host. For CUDA that halves
-# the time of what only tests; code for the GPU stays optimised, as nvcc's -O is the host's alone.
+# clearance_compile_faster(language): from here on in this folder, a release is -O1 on the host. For CUDA that halves
+# the compile time of tests. GPU code stays optimised, because nvcc's -O is for the host only.
 macro(clearance_compile_faster language)
   string(REPLACE "-O3" "-O1" CMAKE_${language}_FLAGS_RELEASE "${CMAKE_${language}_FLAGS_RELEASE}")
 endmacro()
 
-# The GPU check, linked into device programs that CTest runs: exit code 77 ("skipped") where there is no GPU.
+# The GPU check, linked into device programs that CTest runs: exit code 77 ("skipped") without a GPU.
 if(CLEARANCE_HAS_CUDA AND CLEARANCE_BUILD_TESTS)
   add_library(clearance_require_device OBJECT ${PROJECT_SOURCE_DIR}/tests/support/require_device.cu)
   target_link_libraries(clearance_require_device PRIVATE clearance_own)
@@ -94,16 +94,16 @@ if(IS_ABSOLUTE ${clearance_data} AND NOT EXISTS ${clearance_data})  # a relative
   message(STATUS "clearance: tests of real data are skipped (no folder ${clearance_data})")
 endif()
 
-# clearance_device_programs: what needs a GPU to run is built, and run by CTest.
+# clearance_device_programs: build programs that need a GPU, and let CTest run them.
 set(clearance_device_programs OFF)
 if(CLEARANCE_DEVICE_PROGRAMS AND NOT CLEARANCE_DEVICE_PROGRAMS STREQUAL "CHECK")
   set(clearance_device_programs ON)
 endif()
 
-# clearance_together(units name sources... [RENAME words...] [MAINS]): what is compiled instead of the sources: some of one
-# language at a time, included by one unit, so that what they share is parsed and instantiated once. So two sources of a program
-# must not define the same name in one namespace. Words get each source's number, from 1; MAINS: tests/support/programs.cpp
-# runs the main of that number.
+# clearance_together(units name sources... [RENAME words...] [MAINS]): replaces sources by units, each including some sources
+# of one language, so that shared headers are parsed and instantiated once. So two sources of a program must not define the
+# same name in one namespace. Words get each source's number, from 1; with MAINS tests/support/programs.cpp runs the main of
+# that number.
 set(CLEARANCE_TOGETHER 10 CACHE STRING "How many sources of a program are compiled together, at most; 1: each alone")
 function(clearance_together units name)
   cmake_parse_arguments(P "MAINS" "" "RENAME" ${ARGN})
@@ -150,9 +150,9 @@ function(clearance_together units name)
   set(${units} ${made} PARENT_SCOPE)
 endfunction()
 
-# clearance_checked(name [RENAME words...]): this folder's programs for a GPU that are not built: their CUDA sources as far as
-# PTX. That pass reads the host's code as well, and makes every template that it calls; what it leaves out is optimisation,
-# the assembler and the link.
+# clearance_checked(name [RENAME words...]): compiles the CUDA sources of this folder's GPU programs, which are not
+# built, as far as PTX. That pass also reads the host's code, and instantiates every template that it calls; it only
+# leaves out optimisation, the assembler and the link.
 function(clearance_checked name)
   get_property(programs DIRECTORY PROPERTY clearance_checked_programs)
   get_property(sources DIRECTORY PROPERTY clearance_checked_sources)
@@ -178,7 +178,7 @@ if(CLEARANCE_HAS_CUDA AND CLEARANCE_DEVICE_PROGRAMS STREQUAL "CHECK")
 endif()
 
 # clearance_program(NAME name SOURCES files... [DEVICE] [TEST] [GPU_RUN kind] [ARGUMENTS args...] [LIBRARIES targets...])
-# One program; DEVICE: needs a GPU to run; TEST: CTest runs it; GPU_RUN: scripts/gpu-test runs it, as what.
+# One program. DEVICE: needs a GPU to run; TEST: CTest runs it; GPU_RUN: scripts/gpu-test runs it as this kind.
 function(clearance_program)
   cmake_parse_arguments(P "DEVICE;TEST" "NAME;GPU_RUN" "SOURCES;ARGUMENTS;LIBRARIES" ${ARGN})
   clearance_together(units ${P_NAME} ${P_SOURCES})
@@ -205,8 +205,8 @@ function(clearance_program)
   endif()
 endfunction()
 
-# clearance_lacks(part packages...): something of TESTS, EXAMPLES, BENCH or TOOLS is left out for want of these Debian
-# packages. clearance_say_what_is_missing(): one line a part, or, where the part was asked for, an error.
+# clearance_lacks(part packages...): part of TESTS, EXAMPLES, BENCH or TOOLS is left out because these Debian packages
+# are missing. clearance_say_what_is_missing(): one line per part, or an error if the part was asked for.
 function(clearance_lacks part)
   set_property(GLOBAL APPEND PROPERTY clearance_lacks_${part} ${ARGN})
 endfunction()
@@ -232,8 +232,8 @@ function(clearance_say_what_is_missing)
   endforeach()
 endfunction()
 
-# clearance_needs(part sources libraries complete): what the sources need besides the library, by what they include, and
-# whether all of that is here; if not, the part lacks it.
+# clearance_needs(part sources libraries complete): what the sources need besides the library, judging by their
+# includes, and whether all of it is here; if not, calls clearance_lacks for the part.
 find_package(fcl CONFIG QUIET)
 find_package(embree 3 CONFIG QUIET)
 find_package(nlohmann_json CONFIG QUIET)
@@ -269,7 +269,7 @@ function(clearance_needs part sources libraries complete)
   set(${libraries} "${found}" PARENT_SCOPE)
 endfunction()
 
-# What scripts/gpu-test builds (the target gpu_programs) and runs (gpu-programs.txt): lines of kind, name, file.
+# What scripts/gpu-test builds (target gpu_programs) and runs (gpu-programs.txt; lines of kind, name, file).
 function(clearance_gpu_run kind target)
   set_property(GLOBAL APPEND PROPERTY clearance_gpu_programs ${target})
   set_property(GLOBAL APPEND_STRING PROPERTY clearance_gpu_lines "${kind} ${target} $<TARGET_FILE:${target}>\n")

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cpack makes clearance-dev_*.deb: the headers and the CMake files, for every architecture. Nothing is built for it.
+# cpack makes clearance-dev_*.deb: headers and CMake files, for every architecture. Nothing is built for it.
 
-# The version stands in include/clearance/ground/config.hpp; package.xml, which other tools read, must say the same.
+# The version is in include/clearance/ground/config.hpp; package.xml, which other tools read, must have the same one.
 file(STRINGS package.xml said REGEX "<version>")
 if(NOT said MATCHES "<version>${PROJECT_VERSION}</version>")
   message(FATAL_ERROR "package.xml must say version ${PROJECT_VERSION}, as include/clearance/ground/config.hpp does")
 endif()
 
-# What it needs is what scripts/lib.sh says: the library's packages it depends on, those of io it suggests.
+# Dependencies come from scripts/lib.sh: the package depends on those of the library, and suggests those of io.
 foreach(list library io)
   file(STRINGS scripts/lib.sh names REGEX "^packages_${list}=")
   string(REGEX MATCHALL "[^ \"]+-dev" clearance_${list}_packages "${names}")
@@ -44,7 +44,7 @@ This package has the C++20 and CUDA headers, and the files for CMake's
 find_package. Its component io, which reads robots, meshes and clouds from
 files, needs the suggested packages.")
 
-# What Debian wants in /usr/share/doc, beside what every installation has.
+# Debian's files in /usr/share/doc, besides those of every installation.
 find_program(CLEARANCE_GZIP gzip)
 mark_as_advanced(CLEARANCE_GZIP)
 if(CLEARANCE_GZIP)

@@ -61,7 +61,7 @@ def demo_boxes(of, backend):
     return format(of.number("demo.txt", f"{backend} triangles sphere", -1) / of.number("demo.txt", f"{backend} triangles aabb", -1), ".1f")
 
 
-# The goals of a frame: what was measured, with "missed" before it where the goal is not reached.
+# The goals for a frame: the measured value, after "missed" if the goal is not reached.
 
 
 @figure
@@ -155,7 +155,7 @@ def plan_ms(of, row, threads=1, configurations=1000, form=".0f"):
     return format(of.number("two-threads.txt", f"random/{row}/threads:{threads}/configurations:{configurations}"), form)
 
 
-# A deadline: microseconds of deadline.txt without one, divided into pieces.
+# A deadline: microseconds in deadline.txt without one, divided into pieces.
 
 
 @figure

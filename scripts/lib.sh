@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sourced by the other scripts: where things are, and what must be installed. POSIX shell.
+# Sourced by the other scripts: paths, and what must be installed. POSIX shell.
 
 root=$(cd "$(dirname "$0")/.." && pwd)
 
-# What each part needs on a Debian 12 that has nothing; each list holds the one before. README.md names the same.
-# Ubuntu 24.04 has the same names (untried there).
+# What each part needs on a bare Debian 12; each list contains the one before. README.md lists the same. Ubuntu 24.04
+# uses the same names (untested there).
 packages_library="cmake g++ make libeigen3-dev libtbb-dev"
 packages_io="$packages_library libexpat1-dev nlohmann-json3-dev libstb-dev liblzf-dev libyaml-cpp-dev libxxhash-dev"
 packages_command="$packages_io libcli11-dev ninja-build"
@@ -15,14 +15,14 @@ packages_clang="clang-19 libclang-rt-19-dev clang-format-19"  # sanitizers by an
 say() { printf '%s\n' "$*"; }
 fail() { say "$*" >&2; exit 1; }
 
-# need_room FOLDER MIB: says so in one sentence where less is free.
+# need_room FOLDER MIB: stops with a sentence if less is free.
 need_room() {
   free=$(df -Pk "$1" 2>/dev/null | awk 'NR == 2 { print int($4 / 1024) }')
   [ -z "$free" ] || [ "$free" -ge "$2" ] || fail "Only $free MiB are free in $1, and $2 are needed."
 }
 
-# install_packages yes|no names...: does nothing where all are there; "no" only says what is missing. Nothing is unpacked
-# before all of it has been fetched, so that without a network nothing is half installed.
+# install_packages yes|no names...: does nothing if all are there; "no" only says what is missing. Downloads everything
+# before it unpacks anything, so that a lost network leaves nothing half installed.
 install_packages() {
   may_install=$1
   shift
@@ -63,7 +63,7 @@ install_packages() {
   fi
 }
 
-# An older CMake is refused before anything is installed; the least that will do stands in CMakeLists.txt.
+# Refuses an older CMake before anything is installed; the minimum is in CMakeLists.txt.
 need_cmake() {
   command -v cmake >/dev/null 2>&1 || return 0
   least=$(sed -n 's/^cmake_minimum_required(VERSION \([0-9.]*\))$/\1/p' "$root/CMakeLists.txt")
@@ -72,7 +72,7 @@ need_cmake() {
     fail "The cmake on the PATH is $have, and $least is needed (a newer one: pip install cmake)."
 }
 
-# A CUDA toolkit is used where there is one, also if it is not on the PATH.
+# Uses a CUDA toolkit if there is one, even if it is not on the PATH.
 find_cuda() {
   if ! command -v nvcc >/dev/null 2>&1 && [ -x /usr/local/cuda/bin/nvcc ]; then
     PATH=$PATH:/usr/local/cuda/bin
@@ -81,7 +81,7 @@ find_cuda() {
   command -v nvcc >/dev/null 2>&1
 }
 
-# The generator of a build folder is fixed when it is made, so it is only chosen for a new one.
+# A build folder keeps its generator, so only a new one gets a choice.
 configure() {
   at=$1
   shift

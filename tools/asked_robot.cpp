@@ -16,12 +16,12 @@ using namespace clearance;
 
 namespace {
 
-/// The spheres of --packing by the number of their link; nullptr for links that it does not name.
+/// The spheres of --packing by link number; nullptr for links that it does not name.
 std::vector<const io::packed_part*> assigned(const std::vector<io::packed_part>& given, const io::robot& robot,
                                              const query_options& asked) {
   const auto& parts = robot.parts();
   std::vector<const io::packed_part*> to(parts.size(), nullptr);
-  if (given.size() == 1 && parts.size() == 1) return {&given[0]};  // whatever it is called
+  if (given.size() == 1 && parts.size() == 1) return {&given[0]};  // whatever its name is
   for (const io::packed_part& each : given) {
     const auto at = std::find_if(parts.begin(), parts.end(), [&](const auto& part) { return part.name == each.name; });
     if (at != parts.end())
@@ -80,7 +80,7 @@ attached_thing load_attached(const query_options& asked, const attachment_option
     io::refuse(from.file,
                "holds the spheres of " + std::to_string(parts.size()) + " parts, and --attach takes those of one");
   if (!std::isfinite(parts[0].spheres.gap)) {
-    parts[0].spheres.gap = 0;  // nobody knows of a mesh that they stand for
+    parts[0].spheres.gap = 0;  // no mesh is known that they stand for
     notes.push_back(from.file + ": has no certificate, so its spheres themselves are taken for what link " +
                     io::quoted(from.link) + " holds");
   }
@@ -103,7 +103,7 @@ body make_held(const query_options& asked, const attached_thing& thing, progress
     body made = std::move(make_bodies(std::vector{source}, body_options_of(asked), shown, account)[0]);
     notes.insert(notes.end(), account.notes.begin(), account.notes.end());
     return made;
-  } catch (const std::runtime_error& error) {  // it is known by its file, and is no link
+  } catch (const std::runtime_error& error) {  // its file identifies it, not a link
     std::string why = error.what();
     if (const std::string link = "link " + io::quoted(thing.name) + ": "; why.starts_with(link))
       why.erase(0, link.size());

@@ -8,7 +8,7 @@
 #include <clearance/io/packed_part.hpp>
 #include <clearance/io/robot.hpp>
 
-/// What `ask()` returns; what it refuses about joints, links and poses is said of this file.
+/// Returns what `ask()` returns. An error about joints, links or poses names this file.
 template <class Ask>
 auto about_file(const std::string& file, Ask ask) {
   try {
@@ -20,21 +20,21 @@ auto about_file(const std::string& file, Ask ask) {
   }
 }
 
-/// What a link holds: a mesh, or the spheres that it is made of.
+/// An object that a link holds: a mesh, or its spheres.
 struct attached_thing {
-  std::string name;  // as a part, of which no other has it
+  std::string name;  // its name as a part, different from all others
   attachment_options from;
   std::size_t link;  // its number in the kinematic tree
   clearance::triangle_mesh mesh;
   std::optional<clearance::io::packed_part> spheres;
 };
 
-/// The robot of --robot, and what it holds by --attach: one part more each, behind its own.
+/// The robot of --robot, and the objects of --attach that it holds: one more part each, after its own.
 struct asked_robot {
   clearance::io::robot description;
   std::vector<attached_thing> held;
 
-  /// The part's number as that of something held; nullptr for the robot's own.
+  /// The held object that is this part; nullptr for the robot's own parts.
   const attached_thing* held_as(std::size_t part) const {
     const std::size_t own = description.parts().size();
     return part < own ? nullptr : &held[part - own];
@@ -45,17 +45,17 @@ struct asked_robot {
   }
 };
 
-/// Reads all files. Notes are what a user should see.
+/// Reads all files. Notes are shown to the user.
 asked_robot load_robot(const query_options& asked, std::vector<std::string>& notes);
 
-/// The poses of all links, moved by the base.
+/// The poses of all links, moved to the base.
 std::vector<Eigen::Isometry3d> all_links(const query_options& asked, const clearance::io::robot& robot,
                                          const std::vector<double>& joints);
 
-/// The poses of all parts; throws if one of them is where no query can be. `when` says more of it.
+/// The poses of all parts. Throws if one is out of range for queries; `when` then adds the occasion.
 std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const asked_robot& robot,
                                             const std::vector<double>& joints, const std::string& when = {});
 
-/// One body for each of its parts, packed if the model is of spheres. Notes are what a user should see.
+/// One body per part, packed if the model is of spheres. Notes are shown to the user.
 std::vector<body> make_bodies(const query_options& asked, const asked_robot& robot, progress& shown,
                               std::vector<std::string>& notes);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The only way from the command to what the library does on a backend: plain data in, plain data out, so that only the
-// device's translation units need nvcc.
+// The command's only way to what the library does on a backend: plain data in and out, so that only the device's
+// translation units need nvcc.
 
 #include <clearance/packing/packing.hpp>
 #include <clearance/points/depth_image.hpp>
@@ -42,7 +42,7 @@ inline const char* to_string(volume_kind kind) {
   return kind == volume_kind::sphere ? "sphere" : kind == volume_kind::aabb ? "aabb" : "obb";
 }
 
-/// Of the trees that are the quickest for a model.
+/// The volume of the fastest trees for a model.
 inline volume_kind usual_volume(model_kind kind) {
   return kind == model_kind::spheres ? volume_kind::sphere : volume_kind::obb;
 }
@@ -50,7 +50,7 @@ inline volume_kind usual_volume(model_kind kind) {
 /// One rigid body: what its models are built from.
 struct body {
   std::string name;
-  clearance::packing packed;      // for spheres; empty if nobody asks
+  clearance::packing packed;      // for spheres; empty if not needed
   clearance::closed_mesh closed;  // for triangles
   double tolerance = 0;           // how far the true surface may be from the mesh, m
 };
@@ -68,43 +68,42 @@ struct reply {
 
 using poses_of = std::span<const Eigen::Isometry3d>;
 
-/// A robot whose trees a backend holds, and the points that it was shown last. Each question is a translation unit of
-/// its own in questions/, so that they compile beside one another; a tree is built when it is first needed.
+/// A robot whose trees a backend holds, and the points that it was shown last. Each question is its own translation
+/// unit in questions/, so that they compile in parallel. A tree is built when it is first needed.
 class backend_robot {
  public:
   virtual ~backend_robot() = default;
 
-  /// Takes points to where the backend reads them; what they view stays until the next ones. Seconds spent.
+  /// Takes points to where the backend reads them; what they view must stay until the next call. Returns the seconds.
   virtual double see(const std::vector<seen_points>& clouds) = 0;
 
-  /// The least distance, by the library's prepared query. `poses` of all questions: world-from-body.
+  /// The least distance, by the library's prepared query. In all questions `poses` are world-from-body.
   virtual reply least(poses_of poses) = 0;
-  /// With every part's. Asked up to so often, while that takes little, from cold; the time is the shortest.
+  /// With that of every part. Asked up to `repeat` times from cold while that is quick; the time is the shortest.
   virtual reply least_per_part(poses_of poses, int repeat) = 0;
 
-  // These have trees of one volume for each model: their answers do not depend on it.
-  /// As much of the least distance as is known so many seconds after it is asked; of single parts nothing.
+  // The next ones use trees of one volume per model, because their answers do not depend on it.
+  /// The least distance as far as it is known after this many seconds; nothing about single parts.
   virtual reply least_by(poses_of poses, double deadline) = 0;
   virtual clearance::zones_result zones(poses_of poses, const clearance::zones_options& options) = 0;
-  /// `is_signed`: negative inside closed meshes, of triangles alone.
+  /// `is_signed`: negative inside closed meshes; for triangles only.
   virtual clearance::point_distances distances(poses_of poses, double d_max, bool is_signed) = 0;
   /// The k nearest points of each part.
   virtual clearance::nearest_k_result nearest(poses_of poses, std::size_t k, double d_max) = 0;
-  /// Which points are the robot itself, `padding` metres around it included.
+  /// Which points belong to the robot itself, within `padding` metres of it?
   virtual clearance::self_filter_result own_points(poses_of poses, double padding) = 0;
   virtual clearance::supported_distance supported(poses_of poses, const clearance::support_options& options) = 0;
-  /// Where the minima of least_per_part are.
+  /// The witnesses of the minima of least_per_part.
   virtual std::vector<clearance::part_witness> witnesses(poses_of poses,
                                                          std::span<const clearance::part_minimum> minima) = 0;
-  /// `poses`: those of one configuration after another. It is prepared when it is first asked, and remembers where
-  /// minima were.
+  /// `poses`: those of one configuration after another. The query is prepared at the first call, and remembers the
+  /// places of the minima.
   virtual clearance::min_distances_result plan(poses_of poses, double d_max) = 0;
   /// How near the robot comes on each way.
   virtual std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
                                                                const clearance::motion_clearance_options& options) = 0;
 
-  // Seconds: what the last question took, and what trees have taken until now, to be made and to be where the backend
-  // reads them.
+  // Seconds: for the last question; so far for building trees; and for moving them to where the backend reads them.
   double query = 0, build = 0, upload = 0;
 };
 
@@ -122,12 +121,12 @@ inline std::unique_ptr<backend_robot> robot_on(bool device, const asked_model& a
   return device ? robot_on_device(asked) : robot_on_host(asked);
 }
 
-/// As clearance::pack, on the device; from any thread. Throws std::runtime_error if no device is compiled in.
+/// As clearance::pack, on the device; any thread may call it. Throws std::runtime_error if no device is compiled in.
 clearance::packing pack_on_device(const clearance::mesh_solid& solid, const clearance::pack_options& options);
 
 struct device_state {
   bool compiled = false, present = false;
-  std::string says;  // which device, or why there is none
+  std::string says;  // the device's name, or why there is none
 };
 
 device_state find_device();

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double width = 960, height = 400, left = 80, right = width - 20, top = 50, bottom = height - 50;
 
-/// Text of an XML file: one printable line of UTF-8, without what means something there, and without the two characters
-/// that it may not hold.
+/// Text for an XML file: one printable line of UTF-8, with XML's own characters escaped, and without the two that XML
+/// does not allow.
 std::string escaped(const std::string& words) {
   std::string line = io::sentence(words, 80), out;
   for (const char* never : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
@@ -43,15 +43,15 @@ struct axes {
   std::string at(std::size_t frame, double metres) const { return text("%.2f %.2f", x(double(frame)), y(metres)); }
 };
 
-/// How high a frame reaches: the upper end of its bracket, if that is finite.
+/// The height of a frame: the upper end of its bracket if that is finite, else its distance, else its lower end.
 double top_of(const min_distance_result& r) {
   for (const real end : {r.upper, r.distance, r.lower})
     if (std::isfinite(end)) return end;
   return 0;
 }
 
-/// 0 and the margin are in sight, and what is nearer; what is far above all others is not, lest it flattens them: more
-/// than three times what nine of ten stay below.
+/// The axis shows 0, the margin and what is below. It leaves out outliers, which would flatten the rest: frames above
+/// three times the value that nine of ten stay below.
 axes around(std::span<const min_distance_result> frames, std::optional<double> margin) {
   axes made{0, 0, 0, frames.size()};
   const auto hold = [&](double metres) {
@@ -82,7 +82,7 @@ std::string marks(const axes& to, std::span<const min_distance_result> frames) {
   return out;
 }
 
-/// A round number of about a fifth.
+/// A round number, about a fifth of the range.
 double step_of(double range) {
   const double power = std::pow(10, std::floor(std::log10(range / 5)));
   for (const double step : {power, 2 * power, 5 * power})

@@ -103,7 +103,7 @@ clearance::io::mesh_limits limits_of(const std::vector<std::string>& given) {
     if (seen[which]) throw usage_error("--mesh-limit", name + " is given twice");
     seen[which] = true;
     const auto value = clearance::io::number<std::uint64_t>(word);
-    const std::uint64_t most = name == "depth" ? 1000 : std::uint64_t(1) << 40;  // readers call themselves as deep
+    const std::uint64_t most = name == "depth" ? 1000 : std::uint64_t(1) << 40;  // readers recurse this deeply
     if (!value || *value < 1 || *value > most)
       throw usage_error("--mesh-limit",
                         clearance::io::quoted(text) + " needs a whole number from 1 to " + std::to_string(most));

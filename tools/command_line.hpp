@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What the subcommands share: how words become numbers and poses, and what is said when they do not.
+// What the subcommands share: how words become numbers and poses, and the errors if they do not.
 
 #include <clearance/io/limits.hpp>
 #include <clearance/io/sentence.hpp>
@@ -18,21 +18,21 @@ namespace CLI {
 class App;
 }
 
-/// A sentence about an option; exit code 1.
+/// An error sentence about an option; exit code 1.
 struct usage_error : std::invalid_argument {
   usage_error(const std::string& option, const std::string& why)
       : std::invalid_argument(clearance::io::sentence_about(option, why)) {}
 };
 
-/// What the library says; the command begins its own sentences.
+/// The library's error text without its prefix, because the command begins sentences in its own way.
 inline std::string without_prefix(std::string why) { return why.starts_with("clearance: ") ? why.substr(11) : why; }
 
-/// What --help says of them.
+/// The text about them in --help.
 inline constexpr const char* exit_codes =
     "Exit codes: 0 done; 1 an error, wrong usage included; 2 --check fails, or points are in the first of --zones; 3 "
     "no valid point.";
 
-/// A subcommand: its options are filled in when `run` is called; what it returns is the exit code.
+/// A subcommand. Calling it reads the options and runs it; it returns the exit code.
 using subcommand = std::function<int()>;
 
 subcommand add_query(CLI::App& app);
@@ -42,7 +42,7 @@ subcommand add_pack(CLI::App& app);
 subcommand add_demo(CLI::App& app);
 subcommand add_info(CLI::App& app);
 
-/// Numbers between commas, finite unless `infinite`; `what` names them: "fx,fy,cx,cy".
+/// Numbers between commas, finite unless `infinite` is set; `what` names them, such as "fx,fy,cx,cy".
 std::vector<double> numbers(const std::string& option, const std::string& text, bool infinite = false);
 std::vector<double> numbers(const std::string& option, const std::string& text, std::size_t count,
                             const std::string& what, bool infinite = false);
@@ -55,16 +55,16 @@ std::size_t whole_number(const std::string& option, const std::string& text, std
 Eigen::Isometry3d pose(const std::string& option, const std::string& text);
 Eigen::Isometry3d pose(const std::string& option, const Eigen::Vector3d& translation, Eigen::Quaterniond rotation);
 
-/// Which of `names` the text is.
+/// The index of the text in `names`.
 std::size_t choice(const std::string& option, const std::string& text, const std::vector<std::string>& names);
 
-/// The limits of meshes that --mesh-limit sets: name=number each, by the names that a refusal gives them.
+/// The mesh limits of --mesh-limit, name=number each; the names are those in refusals.
 clearance::io::mesh_limits limits_of(const std::vector<std::string>& given);
 std::string mesh_limit_says();
 
-/// Two words, split at the first '='; a refusal names the form that they should have.
+/// Splits a text into two words at the first '='; a refusal shows the expected form.
 std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text,
                                                const char* form = "name=value");
 
-/// Is it --backend device? Throws if there is none.
+/// Is it --backend device? Throws if no device is there.
 bool is_device(const std::string& backend);

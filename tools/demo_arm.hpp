@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The arm of the demonstration, made in code.
+// The arm of the demonstration, built by code.
 
 #include <clearance/solid/triangle_mesh.hpp>
 
@@ -19,7 +19,7 @@ struct demo_part {
   Eigen::Isometry3d pose;         // world-from-part
 };
 
-/// A barrel around z from `bottom` to `top` with rounded rims: 864 triangles. Added to `mesh` at `place`.
+/// Adds a barrel around z from `bottom` to `top`, with rounded rims, to `mesh` at `place`: 864 triangles.
 inline void add_barrel(clearance::triangle_mesh& mesh, const Eigen::Isometry3d& place, double bottom, double top,
                        double radius, double rim) {
   constexpr std::uint32_t sides = 36, rings = 12;
@@ -49,7 +49,7 @@ inline void add_barrel(clearance::triangle_mesh& mesh, const Eigen::Isometry3d& 
   }
 }
 
-/// Seven parts of 1,728 triangles each, with six joints between them, leaning over what lies in front of them.
+/// Seven parts of 1,728 triangles each, joined by six joints, leaning over the objects in front.
 inline std::vector<demo_part> make_demo_arm() {
   struct link {
     const char* name;

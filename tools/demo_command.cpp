@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Both models and every volume on every backend ask the same question; the answers are printed and must agree.
+// Asks the same question with both models and every volume on every backend. Prints the answers, which must agree.
 #include "backends.hpp"
 #include "command_line.hpp"
 #include "demo_scene.hpp"

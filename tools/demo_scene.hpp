@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The scene of the demonstration: an arm with a depth camera on its hand before a table with boxes.
+// The scene of the demonstration: an arm with a depth camera on its hand, in front of a table with boxes.
 
 #include "demo_arm.hpp"
 
@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-/// A box about its own centre, half its sides long each way.
+/// A box around its own centre; `half` holds half of each side.
 struct demo_box {
   Eigen::Isometry3d pose;
   Eigen::Vector3d half;
@@ -25,7 +25,7 @@ struct demo_scene {
   Eigen::Isometry3d world_from_camera;
 };
 
-/// Numbers that are the same with every standard library.
+/// Random numbers that are the same with every standard library.
 class demo_random {
  public:
   explicit demo_random(unsigned seed) : bits_(seed) {}
@@ -39,7 +39,7 @@ class demo_random {
   std::mt19937 bits_;
 };
 
-/// Where a ray enters a box: `along` is in lengths of the direction, `cosine` that of the angle to the face's normal.
+/// Where a ray enters a box: `along` in lengths of the direction, `cosine` of the angle to the face's normal.
 struct demo_hit {
   double along = std::numeric_limits<double>::infinity(), cosine = 0;
 };
@@ -59,7 +59,7 @@ inline demo_hit hit(const demo_box& box, const Eigen::Vector3d& origin, const Ei
   return {enter, std::abs(d[face]) / d.norm()};
 }
 
-/// A floor, a table, a box close to the hand, and five more that `random` puts farther back.
+/// A floor, a table, a box close to the hand, and five more that `random` puts farther away.
 inline std::vector<demo_box> make_demo_boxes(demo_random& random) {
   constexpr double table = 0.35;
   const auto box = [](double x, double y, double bottom, double degrees, Eigen::Vector3d sides) {
@@ -76,14 +76,14 @@ inline std::vector<demo_box> make_demo_boxes(demo_random& random) {
   return boxes;
 }
 
-/// The same scene for the same seed. The noise grows with the square of the depth, as for sensors that triangulate;
-/// pixels are missing at random, at grazing angles, beyond 4 m, and in the shadow beside what is nearer.
+/// The same scene for the same seed. Noise grows with the square of the depth, as for triangulating sensors. Pixels are
+/// missing at random, at grazing angles, beyond 4 m, and in shadows beside nearer objects.
 inline demo_scene make_demo_scene(unsigned seed = 1) {
   demo_random random(seed);
   demo_scene scene;
   scene.parts = make_demo_arm();
   scene.boxes = make_demo_boxes(random);
-  // In front of the hand and looking away from it, so that the arm is never in view.
+  // In front of the hand, looking away from it, so that the arm is never in view.
   scene.world_from_camera = scene.parts.back().pose;
   scene.world_from_camera.translate(Eigen::Vector3d(0, 0, 0.135));
   scene.world_from_camera.rotate(Eigen::AngleAxisd(-std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));

@@ -5,14 +5,14 @@
 
 namespace {
 
-// Launched by nobody: is there code for this GPU in the program?
+// Never launched; its attributes tell whether the program has code for this GPU.
 template <int>
 __global__ void probe() {}
 
 }  // namespace
 
 clearance::packing pack_on_device(const clearance::mesh_solid& solid, const clearance::pack_options& options) {
-  const clearance::own_stream stream(0);  // so that links are packed beside one another
+  const clearance::own_stream stream(0);  // so that links are packed side by side
   return clearance::pack(stream.on(), solid, options);
 }
 
@@ -30,7 +30,7 @@ device_state find_device() {
                            std::to_string(properties.minor) + ')';
   cudaFuncAttributes attributes{};
   if (const cudaError_t why = cudaFuncGetAttributes(&attributes, probe<0>); why != cudaSuccess) {
-    cudaGetLastError();  // it is answered; the next call shall not see it
+    cudaGetLastError();  // clears the error, so that the next call does not see it
     return {true, false, name + " cannot run this clearance (" + cudaGetErrorString(why) + ')'};
   }
   return {true, true, name};

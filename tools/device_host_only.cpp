@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands for all that nvcc compiles, where there is no CUDA compiler.
+// Replaces everything that nvcc compiles if there is no CUDA compiler.
 #include "backends.hpp"
 
 #include <stdexcept>

@@ -17,7 +17,7 @@ double blue_at(const query_options& asked) { return std::isfinite(asked.d_max) ?
 
 namespace {
 
-/// The points of all clouds that count, in pieces that memory has room for.
+/// The valid points of all clouds, in pieces that fit into memory.
 class distance_pieces {
  public:
   distance_pieces(const asked_clouds& clouds, const point_distances& found, double blue)
@@ -63,7 +63,7 @@ class distance_pieces {
   const point_distances& found_;
   double blue_;
   std::size_t cloud_ = 0, begin_ = 0,
-              first_ = 0;  // the next record of a cloud, and the number of the cloud's first among all
+              first_ = 0;  // next record of a cloud; the cloud's first among all
 };
 
 }  // namespace

@@ -21,7 +21,7 @@ using json = nlohmann::ordered_json;
 
 namespace {
 
-/// What a file of spheres holds. Exit code 0: it is whole.
+/// Describes a file of spheres. Exit code 0: the file is complete.
 int describe(const std::string& file, bool as_json) {
   const auto parts = clearance::io::within_memory(file, [&] { return clearance::io::load_spheres(file); });
   json out = {{"file", file}, {"parts", json::array()}};
@@ -58,7 +58,7 @@ int describe(const std::string& file, bool as_json) {
   return 0;
 }
 
-/// The parts of a robot, or the one of a mesh: how what they enclose is known. Exit code 0: every file of it is whole.
+/// Says how the inside of each part of a robot, or of a mesh, is known. Exit code 0: all of its files are complete.
 int describe_solids(const std::string& file, const std::vector<std::string>& packages, bool as_json) {
   std::vector<clearance::io::robot_part> parts;
   std::vector<std::string> notes;

@@ -6,13 +6,12 @@
 #include <cmath>
 #include <string>
 
-/// JSON as the command prints it: ASCII, with U+FFFD for bytes that are no UTF-8, and a line end. An indent of -1: one
-/// line.
+/// JSON as the command prints it: ASCII, with U+FFFD for bytes that are not UTF-8, and a line end. Indent -1: one line.
 inline std::string json_text(const nlohmann::ordered_json& value, int indent) {
   return value.dump(indent, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }
 
-/// A number, or null: infinity and NaN have no place in JSON.
+/// A number, or null: JSON cannot hold infinity and NaN.
 inline nlohmann::ordered_json or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }

@@ -25,11 +25,9 @@ constexpr int failure = 1;
 
 bool blank(std::string_view text) { return text.find_first_not_of(" \t\r\n\v\f") == text.npos; }
 
-/// The words of the command line as CLI11 wants them. It would drop an empty value, take the next option for the value
-/// of
-/// "--cache=", and "-.5" for an option: so every option that takes a value is handed to it in one word,
-/// "--option=value", and has one. A flag has none; CLI11 would take "--flag=false", or a number, for how often it is
-/// given.
+/// The words of the command line as CLI11 needs them. CLI11 would drop an empty value, take the next option for the
+/// value of "--cache=", and take "-.5" for an option. So every option with a value becomes one word, "--option=value",
+/// and must have a value. A flag must not: CLI11 would take "--flag=false", or a number, as a count.
 std::vector<std::string> checked_words(int argc, char** argv, const CLI::App& app) {
   std::vector<std::string> words;
   const CLI::App* sub = nullptr;
@@ -53,17 +51,17 @@ std::vector<std::string> checked_words(int argc, char** argv, const CLI::App& ap
     }
     words.push_back(word);
   }
-  std::reverse(words.begin(), words.end());  // as CLI11 wants them
+  std::reverse(words.begin(), words.end());  // CLI11 takes them in reverse
   return words;
 }
 
-/// One value each time that an option is given; CLI11 would take "[a,b]" and further words for more.
+/// Each use of an option has one value; CLI11 would take "[a,b]" and further words for several.
 void take_one_value_each(CLI::App& app) {
   for (CLI::App* sub : app.get_subcommands({}))
     for (CLI::Option* option : sub->get_options()) option->allow_extra_args(false);
 }
 
-/// Of all subcommands that compute.
+/// For all subcommands that compute.
 void add_threads(CLI::App& app, std::string& threads) {
   for (CLI::App* sub : app.get_subcommands({}))
     if (!sub->check_name("info"))
@@ -72,7 +70,7 @@ void add_threads(CLI::App& app, std::string& threads) {
           "How many threads of the CPU may work, 1 to 1024 (default: as many as it has); no answer depends on it");
 }
 
-/// CLI11 would only say that a subcommand is missing.
+/// Names a wrong subcommand; CLI11 would only say that one is missing.
 void check_subcommand(int argc, char** argv, const CLI::App& app) {
   if (argc < 2 || argv[1][0] == '-') return;
   std::string names;
@@ -88,14 +86,14 @@ int fail(const std::string& why) {
   return failure;
 }
 
-/// What the command printed has left it, or the exit code says so.
+/// Flushes the output; if that fails, the exit code says so.
 int finish(int code) {
   std::cout.flush();
   return !std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) ? fail("the output cannot be written") : code;
 }
 
-/// Files that are opened later must not become what is closed now, and a file that grows too large is an error, no
-/// signal.
+/// Keeps files opened later from taking the number of a closed standard stream. A file that grows too large becomes an
+/// error instead of a signal.
 void hold_streams() {
   std::signal(SIGXFSZ, SIG_IGN);
   for (int stream = 0; stream < 3; ++stream)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// All that the command says to people, beside its answers: one line of at most 400 bytes, harmless on a terminal.
+// Everything that the command tells people besides its answers: lines of at most 400 bytes, harmless on a terminal.
 
 #include <clearance/io/sentence.hpp>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// On stderr, as "word: text".
+/// Prints "word: text" on stderr.
 inline void say(const std::string& word, const std::string& text) {
   const std::string line =
       word + ": " + clearance::io::sentence(text, clearance::io::longest_sentence - word.size() - 2) + '\n';

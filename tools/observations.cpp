@@ -15,9 +15,9 @@ using namespace clearance;
 
 namespace {
 
-/// Refuses a small file that becomes very much, by all that is made of each of its points.
+/// Refuses a file if what is made of its points is too large for its size.
 void check_made(const cloud_options& from, std::uint64_t points, std::uint64_t each, const std::string& what) {
-  constexpr std::uint64_t times = 64;  // of the file: what is not packed stays far below
+  constexpr std::uint64_t times = 64;  // the file's size; unpacked files stay far below
   std::error_code none;
   const auto size = std::filesystem::file_size(from.file, none);
   const std::uint64_t made = points * (from.bytes_each + each),

@@ -16,34 +16,34 @@
 /// One loaded --cloud.
 struct observation {
   cloud_options from;
-  std::string name;  // in the answer: that of the file; "c.xyz (2)" where it is there again
+  std::string name;  // its name in the answer: the file's; "c.xyz (2)" if it repeats
   std::variant<clearance::io::cloud, clearance::io::depth_frame> data;
-  std::uint64_t zeros = 0;  // records that are (0,0,0) and were taken for missing, so that they are NaN in `data`
+  std::uint64_t zeros = 0;  // records at (0,0,0) that count as missing, so that they are NaN in `data`
   std::vector<std::string> notes;
 
   std::uint64_t size() const;
   const clearance::io::cloud* points() const { return std::get_if<clearance::io::cloud>(&data); }
   const clearance::io::depth_frame* image() const { return std::get_if<clearance::io::depth_frame>(&data); }
 
-  /// World-from-cloud. `carrier`: world-from-link of the link that --camera-link names, else the identity.
+  /// World-from-cloud. `carrier`: world-from-link for the link of --camera-link, otherwise the identity.
   Eigen::Isometry3d world(const Eigen::Isometry3d& carrier) const;
 
-  /// What the query reads, in memory of this object; `robot`: where the parts will be, roughly, so that floats are fine
-  /// there.
+  /// What the query reads, in this object's memory. `robot`: roughly where the parts will be, because floats are
+  /// precise near there.
   seen_points seen(const Eigen::Isometry3d& carrier, poses_of robot);
 
-  /// Where its points of numbers begin to end - 1 are in the world; of those that do not count, anywhere. `seen`: what
-  /// seen(carrier, ...) gave.
+  /// World positions of its points `begin` to end - 1; arbitrary for points that are not valid. `seen`: the return
+  /// value of seen(carrier, ...).
   std::vector<Eigen::Vector3d> in_world(const Eigen::Isometry3d& carrier, const seen_points& seen, std::size_t begin,
                                         std::size_t end) const;
 
-  /// Takes points out of what seen() gave: those that are labelled as the robot's own. Where they were, in that frame.
+  /// Removes points that are labelled as the robot's own from what seen() gave. Returns where they were, in that frame.
   std::vector<clearance::vec3> hide(std::span<const clearance::point_label> labels, const seen_points& seen);
 
-  /// Counts what was turned into NaN as missing, and what was hidden as masked.
+  /// Counts points that became NaN as missing, and hidden ones as masked.
   void recount(clearance::min_distance_result& r) const;
 
-  /// Frees the memory of points and pixels.
+  /// Frees the memory of points or pixels.
   void forget_points();
 
  private:
@@ -51,5 +51,5 @@ struct observation {
   std::uint64_t hidden_ = 0;
 };
 
-/// Reads the file. Throws if it is damaged. `taken`: the names of others, and of this one afterwards.
+/// Reads the file. Throws if it is damaged. `taken`: the names in use, to which this one is added.
 observation observe(const cloud_options& from, std::set<std::string>& taken);

@@ -25,7 +25,7 @@ struct pack_settings {
   bool overlap = false, strict = false, no_cache = false, json = false;
 };
 
-/// What is packed: the links of a robot, or a mesh alone.
+/// What to pack: the links of a robot, or one mesh.
 struct subject {
   std::vector<io::robot_part> parts;
   std::vector<Eigen::Isometry3d> poses;
@@ -37,7 +37,7 @@ struct packed_subject {
   std::vector<body> bodies;
   std::vector<bool> cached;
   std::vector<std::string> notes;
-  double seconds = 0;  // of all, beside one another
+  double seconds = 0;  // for all, side by side
 };
 
 bool ends(const std::string& file, const char* ending) { return std::filesystem::path(file).extension() == ending; }
@@ -92,7 +92,7 @@ packed_subject fill(const subject& what, const pack_settings& asked, progress& s
   positive("--seconds", asked.seconds, how.pack.seconds);
   if (!asked.seed.empty()) how.pack.seed = whole_number("--seed", asked.seed);
   how.pack.allow_overlap = asked.overlap;
-  how.sheets = what.robot;  // who packs a mesh wants to know that nothing fits
+  how.sheets = what.robot;  // for a mesh, the user wants to know that nothing fits
   how.on_device = is_device(asked.backend);
   how.cache = chosen_cache(asked.no_cache, asked.cache);
   std::vector<body_source> sources;
@@ -104,7 +104,7 @@ packed_subject fill(const subject& what, const pack_settings& asked, progress& s
     made.bodies = make_bodies(sources, how, shown, account);
     made.cached = account.cached;
     made.notes = std::move(account.notes);
-  } catch (const std::runtime_error& error) {  // a mesh alone is known by its file's name
+  } catch (const std::runtime_error& error) {  // a single mesh is identified by its file's name
     std::string why = error.what();
     const std::string link = "link " + io::quoted(what.parts[0].name) + ": ";
     if (!what.robot && why.starts_with(link)) why.erase(0, link.size());

@@ -15,7 +15,7 @@ using namespace clearance;
 
 namespace {
 
-/// From each row to the next, every joint at constant speed.
+/// The ways from each row to the next, every joint at constant speed.
 std::vector<io::joint_motion> ways_between(const query_options& asked, const asked_robot& robot,
                                            const std::vector<std::vector<double>>& rows) {
   std::vector<io::joint_motion> ways;
@@ -47,7 +47,7 @@ int run_plan(const query_options& asked) {
   report.found = ask_plan(*there, placed, asked.d_max, report.query);
   if (asked.between) {
     shown.show("asking about the ways between them");
-    // With a margin no more than what decides; without, to a centimetre.
+    // With a margin only as exact as the decision needs; otherwise to a centimetre.
     const motion_clearance_options options{.tolerance = asked.margin ? double(infinity) : 0.01,
                                            .margin = asked.margin.value_or(0)};
     report.ways = there->ways(ways_between(asked, robot, rows), options);

@@ -9,12 +9,12 @@
 #include <cstdio>
 #include <string>
 
-/// One line on a terminal that is written again and again, and is gone at the end. Silent in a pipe.
+/// One line on a terminal, rewritten again and again, and erased at the end. Silent in a pipe.
 class progress {
  public:
   ~progress() { clear(); }
 
-  /// At most ten times a second, so that it costs nothing.
+  /// At most ten times a second, so that it costs little.
   void show(const std::string& what) {
     doing_ = what;
     if (!terminal_ || (shown_ && (since_ += clock_.lap()) < 0.1)) return;
@@ -22,7 +22,7 @@ class progress {
     shown_ = true;
     since_ = 0;
   }
-  /// What was shown last: what is being done.
+  /// The text shown last: what is being done.
   static const std::string& doing() { return doing_; }
 
   void clear() {

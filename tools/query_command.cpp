@@ -31,7 +31,7 @@ std::vector<double> configuration(const query_options& asked, const io::kinemati
   return tree.configuration({asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits});
 }
 
-/// How the distances of all parts change.
+/// How each part's distance changes.
 std::vector<part_gradient> gradients(const query_options& asked, const asked_robot& robot,
                                      const std::vector<double>& joints, poses_of poses,
                                      std::span<const part_witness> witnesses) {
@@ -49,7 +49,7 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
           const point_distances* distances) {
   io::scene scene;
   const min_distance_result& r = report.found.result;
-  // A glTF file holds floats: a scene far away is drawn around its robot.
+  // A glTF file holds floats, so a scene far away is drawn relative to its robot.
   const Eigen::Vector3d base = report.asked->base.translation();
   if (base.norm() > 1000) scene.origin = base;
   const io::colour nearest{0.95f, 0.6f, 0.2f, 1};
@@ -70,7 +70,7 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
   for (std::size_t i = 0; i < clouds.files.size(); ++i) {
     scene.clouds.push_back(drawn(*report.asked, clouds.files[i], clouds.seen[i], distances, first));
     first += clouds.files[i].size();
-    if (!clouds.hidden.empty() && !clouds.hidden[i].empty())  // what is filtered out is seen, in grey
+    if (!clouds.hidden.empty() && !clouds.hidden[i].empty())  // filtered points are shown in grey
       scene.clouds.push_back({.name = clouds.files[i].name + " (the robot's own)",
                               .points = clouds.hidden[i],
                               .pose = clouds.seen[i].pose,
@@ -82,7 +82,7 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
   io::save_scene(scene, report.asked->scene);
 }
 
-/// Who asks about nothing but what is hidden should know that.
+/// Adds a note if a threshold is within --self-filter, which hides the points that it is about.
 void note_hidden(const query_options& asked, std::vector<std::string>& notes) {
   const auto note = [&](const char* option, double metres) {
     if (metres <= *asked.self_filter)
@@ -95,7 +95,7 @@ void note_hidden(const query_options& asked, std::vector<std::string>& notes) {
   if (!asked.zones.empty()) note("--zones", asked.zones[0]);
 }
 
-/// What is written is no input, and not two things.
+/// Refuses to write an input, or two outputs to one file.
 void check_outputs(const query_options& asked, const io::files_read& inputs) {
   if (!asked.scene.empty()) io::check_output(asked.scene, inputs);
   if (!asked.distances.empty()) io::check_output(asked.distances, inputs);
@@ -104,7 +104,7 @@ void check_outputs(const query_options& asked, const io::files_read& inputs) {
     throw usage_error("--distances", "is the same file as --scene: " + asked.distances);
 }
 
-/// `ranks`: of --shard.
+/// `ranks`: those of --shard.
 int run(const query_options& asked, all_ranks* ranks) {
   const bool speaks = !ranks || ranks->speaks();
   stopwatch clock;
@@ -120,7 +120,7 @@ int run(const query_options& asked, all_ranks* ranks) {
   asked_clouds clouds;
   clouds.load(asked, shown, report.notes);
   clouds.place(asked, robot.description, joints, poses);
-  if (speaks) check_outputs(asked, inputs);  // known before the robot is packed
+  if (speaks) check_outputs(asked, inputs);  // fail before the robot is packed
   report.load = clock.lap();
 
   const std::vector<body> bodies = make_bodies(asked, robot, shown, report.notes);
@@ -146,7 +146,7 @@ int run(const query_options& asked, all_ranks* ranks) {
   if (!asked.zones.empty())
     report.zones = there->zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
   if (asked.nearest != 0) {
-    std::size_t points = 1;  // of more there is no list
+    std::size_t points = 1;  // for more points there is no list
     for (const observation& cloud : clouds.files) points += cloud.size();
     report.nearest = there->nearest(poses, std::min(asked.nearest, points), asked.d_max);
   }
@@ -159,7 +159,7 @@ int run(const query_options& asked, all_ranks* ranks) {
   if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max, asked.is_signed);
   report.build = there->build;
   report.upload += there->upload;
-  if (report.found.unseen == 0)  // else nobody knows which of them were seen
+  if (report.found.unseen == 0)  // otherwise it is unknown which of them were seen
     for (const observation& cloud : clouds.files) cloud.recount(report.found.result);
   check_outputs(asked, inputs);
   if (distances) report.distances = write_distances(asked, clouds, *distances);

@@ -22,7 +22,7 @@ void cloud_options::check(const std::string& option) const {
 
 namespace {
 
-constexpr std::size_t most_listed = std::size_t(1) << 20;  // as the library's, of --nearest and --support-limit
+constexpr std::size_t most_listed = std::size_t(1) << 20;  // the library's limit, for --nearest and --support-limit
 
 constexpr std::string_view for_images[] = {"--intrinsics", "--depth-scale"},
                            for_clouds[] = {"--use-viewpoint", "--zero-is-missing"};
@@ -53,7 +53,7 @@ struct raw_options {
        gradient = false, shard = false, is_signed = false, between = false;
 };
 
-/// Sets one per-cloud option, as it was given on the command line.
+/// Sets one per-cloud option, given on the command line.
 void set(cloud_options& cloud, const std::string& option, const std::string& text) {
   if (option == "--camera-pose") cloud.pose = pose(option, text);
   if (option == "--camera-link") cloud.link = text;
@@ -81,7 +81,7 @@ void set(cloud_options& cloud, const std::string& option, const std::string& tex
     throw usage_error(option, "is for point clouds, and " + cloud.file + " is a depth image");
 }
 
-/// Every option with its value, as they were given one after another.
+/// Every option with its value, in the order of the command line.
 std::vector<std::pair<std::string, std::string>> in_order(const CLI::App& app) {
   std::vector<std::pair<std::string, std::string>> all;
   std::map<const CLI::Option*, std::size_t> taken;
@@ -90,7 +90,7 @@ std::vector<std::pair<std::string, std::string>> in_order(const CLI::App& app) {
   return all;
 }
 
-/// The clouds in their order; an option before the first goes to `all`, one after a cloud to that one.
+/// The clouds in their order. An option before the first cloud goes to `all`, one after a cloud to that cloud.
 std::vector<cloud_options> clouds_of(const CLI::App& app, cloud_options& all) {
   std::vector<cloud_options> clouds;
   for (const auto& [name, text] : in_order(app)) {
@@ -106,7 +106,7 @@ std::vector<cloud_options> clouds_of(const CLI::App& app, cloud_options& all) {
   return clouds;
 }
 
-/// What links hold; a pose is that of the thing before it.
+/// The objects that links hold; a pose belongs to the object before it.
 std::vector<attachment_options> attached_of(const CLI::App& app) {
   std::vector<attachment_options> things;
   bool placed = false;
@@ -130,7 +130,7 @@ std::vector<attachment_options> attached_of(const CLI::App& app) {
   return things;
 }
 
-/// Metres from 0 on, of which squares are numbers.
+/// Metres, 0 or more, small enough to be squared.
 double length(const std::string& option, const std::string& text) {
   const double metres = number(option, text);
   if (!(metres >= 0 && metres <= 1e15)) throw usage_error(option, "must be from 0 to 1e15 (metres)");
@@ -153,7 +153,7 @@ std::vector<double> thresholds(const std::string& option, const std::string& tex
   return values;
 }
 
-/// Throws if something is asked beside the least distance, which is all that `option` knows.
+/// Throws if `option` is used with another question: it only works for the least distance.
 void check_alone(const std::string& option, const query_options& o) {
   const std::pair<const char*, bool> others[] = {{"--zones", !o.zones.empty()},
                                                  {"--distances", !o.distances.empty()},
@@ -166,7 +166,7 @@ void check_alone(const std::string& option, const query_options& o) {
       throw usage_error(option, std::string("is for the least distance alone, and cannot be mixed with ") + other);
 }
 
-/// How the least distance is asked for: until when, and by whom.
+/// How the least distance is asked: until when, and by which ranks.
 void read_deadline(const raw_options& raw, query_options& o) {
   if (!raw.deadline.empty()) {
     const double milliseconds = number("--deadline", raw.deadline);
@@ -184,7 +184,7 @@ void read_deadline(const raw_options& raw, query_options& o) {
   if (o.deadline) throw usage_error("--shard", "cannot be mixed with --deadline: ranks wait for one another");
 }
 
-/// Throws if something is said about spheres, and there are none.
+/// Throws if an option is about spheres, but the model has none.
 void check_model(const query_options& o) {
   const std::pair<const char*, bool> of_spheres[] = {{"--packing", !o.packing.empty()},
                                                      {"--spheres", o.spheres.has_value()},
@@ -194,7 +194,7 @@ void check_model(const query_options& o) {
     if (given && o.model != model_kind::spheres) throw usage_error(option, "is for --model spheres");
 }
 
-/// What is asked beside the least distance.
+/// The questions besides the least distance.
 void read_questions(const raw_options& raw, query_options& o) {
   if (!raw.check.empty()) {
     o.margin = number("--check", raw.check) + 0.0;  // no -0
@@ -241,13 +241,13 @@ void read_questions(const raw_options& raw, query_options& o) {
   }
 }
 
-/// What is made of each point by what is asked: bytes, or time that is worth as many.
+/// Bytes made per point by these questions, or time worth as many.
 std::uint64_t bytes_each(const query_options& o) {
   std::uint64_t bytes = 16;
   for (const bool asked : {!o.zones.empty(), o.nearest != 0, o.support.has_value(), o.self_filter.has_value(),
                            o.model == model_kind::triangles})
     if (asked) bytes += 16;
-  if (!o.distances.empty()) bytes += 64;                                    // what is known, and a record of the file
+  if (!o.distances.empty()) bytes += 64;                                    // the result, and a record of the file
   if (!o.scene.empty()) bytes += 128;                                       // several copies of position and colour
   if (!o.configurations.empty() || !o.recording.plan.empty()) bytes += 80;  // a tree
   if (o.recording.merge) bytes += 64;
@@ -297,7 +297,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   return o;
 }
 
-/// The robot, and what it is made of.
+/// The options of the robot and its models.
 void add_robot_options(CLI::App& app, raw_options& raw) {
   app.add_flag("--ignore-limits", raw.ignore_limits, "Accept joint positions outside their limits");
   app.add_option("--geometry", raw.geometry, "visual or collision (default; visual where a link has no collision)");
@@ -308,7 +308,7 @@ void add_robot_options(CLI::App& app, raw_options& raw) {
                  "x,y,z,qx,qy,qz,qw: world-from-base (m; default: the base is at the world's origin)");
 }
 
-/// Where the robot is.
+/// The options for the robot's configuration.
 void add_joint_options(CLI::App& app, raw_options& raw, asking how) {
   const bool recorded = how == asking::run, planned = how == asking::plan;
   if (recorded) {

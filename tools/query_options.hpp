@@ -18,7 +18,7 @@ namespace CLI {
 class App;
 }
 
-/// One --cloud, with the options that hold for it.
+/// One --cloud with its options.
 struct cloud_options {
   std::string file;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // world-from-cloud, or link-from-cloud
@@ -28,20 +28,19 @@ struct cloud_options {
   double nearest = 0, farthest = clearance::infinity;
   bool use_viewpoint = false, zero_is_missing = false;
   clearance::io::read_limits limits;
-  std::uint64_t bytes_each =
-      0;  // that are made of each point, in memory or in a file that is written; of which the limit is, too
-  std::vector<std::string> given;  // the options before the first --cloud, by name: of all clouds
+  std::uint64_t bytes_each = 0;    // made per point, in memory or in an output file; the limit counts these
+  std::vector<std::string> given;  // the options before the first --cloud, by name: for all clouds
 
   bool is_image() const;
 
-  /// Throws usage_error, about `option`, if something is missing.
+  /// Throws usage_error about `option` if something is missing.
   void check(const std::string& option) const;
 };
 
-/// Throws usage_error if something is said of `all` that is for another kind than any of `clouds` is.
+/// Throws usage_error if an option in `all` fits the kind of none of `clouds`.
 void check_all_clouds(const cloud_options& all, const std::vector<cloud_options>& clouds);
 
-/// One --attach: something that a link holds.
+/// One --attach: an object that a link holds.
 struct attachment_options {
   std::string link, file;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // link-from-thing
@@ -54,12 +53,12 @@ struct support_asked {
   std::size_t most = 4096;  // --support-limit
 };
 
-/// What `clearance run` plays.
+/// The recording that `clearance run` plays.
 struct recording_options {
   std::string frames, trajectory;
   cloud_options camera;  // holds for every frame; .file is empty
   bool merge = false;
-  std::string plan;  // configurations to come, asked about in every frame; empty: none
+  std::string plan;  // future configurations, asked about in every frame; empty: none
   std::string svg;   // a picture of all frames; empty: none
 };
 
@@ -85,24 +84,24 @@ struct query_options {
   std::optional<double> margin;
   bool json = false;
   std::string scene;
-  std::vector<double> zones;   // --zones: thresholds in metres, ascending; empty: nobody asks
-  std::size_t min_points = 1;  // of a zone that counts
-  std::string distances;       // --distances: a file; empty: nobody asks
-  bool is_signed = false;      // --signed: of --distances
-  std::size_t nearest = 0;     // --nearest: points to list of each part
+  std::vector<double> zones;   // --zones: thresholds in metres, ascending; empty: not asked
+  std::size_t min_points = 1;  // for a zone to count
+  std::string distances;       // --distances: a file; empty: not asked
+  bool is_signed = false;      // --signed, for --distances
+  std::size_t nearest = 0;     // --nearest: points to list per part
   double d_max = clearance::infinity;
-  std::optional<double> self_filter;     // --self-filter: metres around the robot that are its own
+  std::optional<double> self_filter;     // --self-filter: points within this many metres are the robot's own
   std::optional<support_asked> support;  // --min-support
   bool gradient = false;
   std::optional<double> deadline;  // --deadline: milliseconds for the least distance
   bool shard = false;              // --shard: one of the ranks that mpirun started
-  std::string configurations;      // of `clearance plan`
-  bool csv = false;                // of `clearance plan` and `clearance run`
-  bool between = false;            // of `clearance plan`
-  recording_options recording;     // of `clearance run`
+  std::string configurations;      // for `clearance plan`
+  bool csv = false;                // for `clearance plan` and `clearance run`
+  bool between = false;            // for `clearance plan`
+  recording_options recording;     // for `clearance run`
 };
 
 enum class asking { query, run, plan };
 
-/// Declares the options of a subcommand; what it returns reads them once they are parsed. Throws usage_error.
+/// Declares a subcommand's options; the returned function reads them after parsing. Throws usage_error.
 std::function<query_options()> add_query_options(CLI::App& app, asking how);

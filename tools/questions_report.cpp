@@ -9,7 +9,7 @@ using namespace clearance;
 
 namespace {
 
-/// Who and where a point of a zone is.
+/// The cloud and number of a point in a zone.
 json place(const query_report& report, std::uint32_t cloud, std::uint32_t point) {
   return {{"cloud", (*report.clouds)[cloud].name}, {"point", point}};
 }
@@ -34,7 +34,7 @@ json zones_of(const query_report& report, std::size_t part) {
 json nearest_of(const query_report& report, std::size_t part) {
   json all = json::array();
   for (const pair_distance& pair : report.nearest->of(part)) {
-    if (pair.point == none) break;  // there are no more
+    if (pair.point == none) break;  // the list has ended
     json one = place(report, pair.cloud, pair.point);
     const auto at = pixel((*report.clouds)[pair.cloud], pair.point);
     one["pixel"] = at ? json{at->first, at->second} : json(nullptr);
@@ -91,7 +91,7 @@ std::string filter_text(const query_report& report) {
                        nearest_is_uncertain(report) ? ", the nearest among them" : "");
 }
 
-/// With --check: is the nearest confirmed point certainly farther away than the margin?
+/// For --check: is the nearest confirmed point certainly farther away than the margin?
 bool passes(const query_report& report) {
   return report.support->state != state::no_data && report.support->lower > *report.asked->margin;
 }
@@ -218,7 +218,7 @@ std::string deadline_text(const query_report& report) {
                    (unsigned long long)(found.unseen + found.result.seen));
 }
 
-/// What the zones say of the robot.
+/// What the zones say about the robot.
 std::string innermost_text(const query_report& report) {
   if (report.zones->counts.valid == 0) return "nothing is known, which counts as the first";
   if (report.zones->counts.dropped[int(drop_reason::too_close)] != 0)

@@ -15,8 +15,8 @@ class mpi_ranks final : public all_ranks {
   mpi_ranks() {
     int given = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);  // other threads only search
-    std::atexit([] {                                                 // behind all that is said
-      MPI_Barrier(MPI_COMM_WORLD);  // mpirun ends all as soon as one has an exit code that is not 0
+    std::atexit([] {                                                 // after everything is printed
+      MPI_Barrier(MPI_COMM_WORLD);  // mpirun ends all ranks at the first exit code that is not 0
       MPI_Finalize();
     });
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
@@ -49,7 +49,7 @@ class mpi_ranks final : public all_ranks {
     return out;
   }
 
-  /// Waits until all are here. Throws what this rank or another one brings.
+  /// Waits until all are here. Throws an error of this rank or of another.
   void meet(std::exception_ptr failure) {
     met_ = true;
     mpi::question here(MPI_COMM_WORLD);

@@ -23,7 +23,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// The names in the first line; each is a joint that takes a value, and none is there twice or in `fixed`.
+/// The names in the first line. Each must be a joint that takes a value, named only once and not in `fixed`.
 std::vector<std::string> columns(const std::string& file, std::string_view line, const io::kinematic_tree& tree,
                                  const std::map<std::string, double>& fixed) {
   std::vector<std::string> names;
@@ -39,7 +39,7 @@ std::vector<std::string> columns(const std::string& file, std::string_view line,
     names.push_back(name);
   }
   try {
-    tree.configuration(values, {.ignore_limits = true});  // knows all names, or says which not
+    tree.configuration(values, {.ignore_limits = true});  // throws for an unknown name
   } catch (const std::invalid_argument& error) {
     io::refuse(file, error.what(), 1);
   }
@@ -49,7 +49,7 @@ std::vector<std::string> columns(const std::string& file, std::string_view line,
   return names;
 }
 
-/// What is named like a frame and left out would renumber those behind it.
+/// Refuses what is named like a frame and is no file; leaving it out would renumber those after it.
 void check_frame(const std::string& file) {
   std::error_code failed;
   const fs::file_status there = fs::status(file, failed);
@@ -169,7 +169,7 @@ void merged_cloud::add(observation frame, const Eigen::Isometry3d& carrier) {
         }
       },
       seen.points);
-  dropped_[int(drop_reason::not_finite)] -= frame.zeros;  // what was turned into NaN was missing
+  dropped_[int(drop_reason::not_finite)] -= frame.zeros;  // those made NaN were missing
   dropped_[int(drop_reason::missing)] += frame.zeros;
   frame.forget_points();
   frames_.push_back(std::move(frame));
@@ -178,7 +178,7 @@ void merged_cloud::add(observation frame, const Eigen::Isometry3d& carrier) {
 seen_points merged_cloud::finish(const std::vector<Eigen::Isometry3d>& robot) {
   const std::size_t all = points_.size();
   cloud_ = io::make_cloud("merged", std::move(points_), all, 1).near(robot);
-  // From its sensor a point is no farther than by way of the origin; and the sensor's pose has moved it in double.
+  // A point's distance from its sensor is at most the way by the origin, and the sensor's pose has moved it in double.
   position_error worst;
   for (const sensor& s : sensors_) {
     const double off = s.relative + frames::pose_error;
@@ -192,7 +192,7 @@ seen_points merged_cloud::finish(const std::vector<Eigen::Isometry3d>& robot) {
 
 std::pair<const observation*, std::uint32_t> merged_cloud::origin(std::uint32_t i) const {
   const auto after = std::upper_bound(first_.begin(), first_.end(), i);
-  const std::size_t frame = std::size_t(after - first_.begin()) - 1;  // frames without points are passed over
+  const std::size_t frame = std::size_t(after - first_.begin()) - 1;  // skips frames without points
   return {&frames_[frame], std::uint32_t(i - first_[frame])};
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What `clearance run` plays: the files of its frames and the robot's configuration in each.
+// The recording of `clearance run`: the files of its frames, and the robot's configuration in each.
 
 #include "asked_robot.hpp"
 #include "observations.hpp"
@@ -9,27 +9,26 @@
 #include <string>
 #include <vector>
 
-/// The frames of a folder in the order of their names, or those that a text file lists, relative to it. At least one.
+/// The frames in a folder, sorted by name, or those listed in a text file, relative to it. At least one.
 std::vector<std::string> list_frames(const std::string& where);
 
-/// One configuration a row. Every movable joint has either a column or a value in `fixed`; if all are fixed, there is
-/// one row, and no file (an empty name) or one without columns.
+/// One configuration per row. Every movable joint has a column or a value in `fixed`. If all are fixed, there is one
+/// row, and the file has no columns or no name (empty).
 std::vector<std::vector<double>> read_trajectory(const std::string& file, const clearance::io::kinematic_tree& tree,
                                                  const std::map<std::string, double>& fixed,
                                                  clearance::io::joint_options limits);
 
-/// The same of what is asked, --joint among it.
+/// The same for the given options, including --joint.
 std::vector<std::vector<double>> read_rows(const query_options& asked, const clearance::io::robot& robot,
                                            const std::string& file);
 
-/// The parts' poses in one row of a file after another, in blocks that memory has room for. All that is given must
-/// stay.
+/// The parts' poses in each row of a file, in blocks that fit into memory. All arguments must outlive it.
 class placed_rows {
  public:
   placed_rows(const query_options& asked, const asked_robot& robot, const std::vector<std::vector<double>>& rows,
               const std::string& file);
 
-  /// Of the first block, and so nearly always all.
+  /// The poses of the first block, which is nearly always the only one.
   poses_of first() const { return first_; }
 
   /// Calls `ask(poses)` for each block.
@@ -50,22 +49,22 @@ class placed_rows {
   std::vector<Eigen::Isometry3d> first_;
 };
 
-/// Asks about all of them; seconds are added to `query`.
+/// Asks about all rows; adds the seconds to `query`.
 clearance::min_distances_result ask_plan(backend_robot& there, const placed_rows& rows, double d_max, double& query);
 
-/// The clouds of many frames as one, in the world. Points that do not count keep their places, as NaN.
+/// The clouds of many frames as one, in the world. Invalid points keep their places as NaN.
 class merged_cloud {
  public:
-  /// Adds what `frame` shows, which needs not stay.
+  /// Adds the points of `frame`, which may go afterwards.
   void add(observation frame, const Eigen::Isometry3d& carrier);
 
-  /// To be called once, after the last frame; `robot` as of observation::seen.
+  /// Call this once, after the last frame; `robot` as in observation::seen.
   seen_points finish(const std::vector<Eigen::Isometry3d>& robot);
 
   /// The frame in which point `i` of the merged cloud was seen, and the point's number there.
   std::pair<const observation*, std::uint32_t> origin(std::uint32_t i) const;
 
-  /// Counts the points that do not count by why they did not in their frames.
+  /// Counts invalid points by the reasons in their own frames.
   void recount(clearance::min_distance_result& r) const;
 
  private:
@@ -73,7 +72,7 @@ class merged_cloud {
   std::vector<std::size_t> first_;   // the number of each frame's first point
   struct sensor {
     Eigen::Vector3d at;  // in the world
-    double relative;     // how far a point may be off, as a part of its distance from there
+    double relative;     // a point's possible error, as a part of its distance from `at`
   };
   std::vector<sensor> sensors_;
   std::vector<Eigen::Vector3d> points_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tables of `plan` and `run`. A cell is what JSON says, and empty for null.
+// The tables of `plan` and `run`. A cell holds the value in JSON, or nothing for null.
 #include "report.hpp"
 
 #include "report_json.hpp"
@@ -10,7 +10,7 @@ using namespace clearance;
 
 namespace {
 
-/// A word of CSV (RFC 4180); nothing for null. What JSON cannot say of numbers, CSV can.
+/// A word of CSV (RFC 4180), empty for null. Infinities, which JSON lacks, are words in CSV.
 std::string csv_word(const json& value, double number = 0) {
   if (std::isinf(number)) return number > 0 ? "inf" : "-inf";
   if (value.is_null()) return {};
@@ -48,7 +48,7 @@ std::string to_csv(const plan_report& report) {
     const min_distance_result& r = report.found.of[k];
     out += std::to_string(k) + ',' + cells(r, cloud_of(report, r), r.point, *report.bodies);
     if (report.asked->between) {
-      const json way = k < report.ways.size() ? way_of(report, k) : json::object();  // none from the last
+      const json way = k < report.ways.size() ? way_of(report, k) : json::object();  // the last has none
       for (const char* name : {"state", "lower", "upper", "time", "from", "to", "part"})
         out += ',' + (way.contains(name) ? csv_word(way[name]) : std::string());
     }

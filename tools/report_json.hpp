@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What the reports of all commands say in the same words.
+// What the reports of all commands share.
 
 #include "json_text.hpp"
 #include "observations.hpp"
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-using json = nlohmann::ordered_json;  // keys in the order in which the manual names them
+using json = nlohmann::ordered_json;  // keys in the manual's order
 
 inline constexpr const char* reasons[clearance::drop_reasons] = {"none",         "not_finite", "missing",  "saturated",
                                                                  "out_of_range", "masked",     "too_close"};
@@ -18,13 +18,13 @@ inline constexpr const char* reasons[clearance::drop_reasons] = {"none",        
 /// The pixel of a point of an image.
 std::optional<std::pair<std::uint64_t, std::uint64_t>> pixel(const observation& cloud, std::uint32_t point);
 
-/// State, distance, bracket and witness, which is `point` of `cloud` (null if there is none).
+/// State, distance, bracket and witness: `point` of `cloud` (null if there is none).
 json witness(const clearance::min_distance_result& r, const observation* cloud, std::uint32_t point,
              const std::vector<body>& bodies);
 
 json counts(const clearance::min_distance_result& r);
 
-/// To the clock's nanoseconds.
+/// Rounded to the clock's nanoseconds.
 double microseconds(double seconds);
 
 struct plan_report;
@@ -32,9 +32,9 @@ struct plan_report;
 /// The witness's cloud; null if there is none.
 const observation* cloud_of(const plan_report& report, const clearance::min_distance_result& r);
 
-/// From row k to the next; `time` and `from` to `to` are between 0 and 1.
+/// The way from row k to the next; `time`, `from` and `to` are between 0 and 1.
 json way_of(const plan_report& report, std::size_t k);
 
-/// How many configurations there are, the least distance of all, at which that is, and, with --check, the first that
+/// The number of configurations, the least distance of all with its configuration, and, for --check, the first that
 /// fails.
 json outcome_of(const plan_report& report);

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-/// printf's text, of at most 1023 bytes.
+/// printf's text, at most 1023 bytes.
 [[gnu::format(printf, 1, 2)]] inline std::string text(const char* format, ...) {
   char line[1024];
   va_list values;

@@ -20,7 +20,7 @@ namespace {
   io::refuse("link " + io::quoted(name), without_prefix(error.what()));
 }
 
-/// The part's tolerance holds either way; what sticks out of the solid goes there.
+/// A part's tolerance covers both directions, so what sticks out of the solid is added to it.
 void take(body& made, io::certified_spheres proven) {
   made.tolerance += proven.excess;
   made.packed = std::move(proven.spheres);
@@ -41,7 +41,7 @@ void take(body& made, const io::packed_part& given, progress& shown, body_accoun
   take(made, std::move(proven));
 }
 
-/// No sphere fits into it: small ones along its surface stand for it, as far as they are proven to.
+/// If no sphere fits into a body, small ones along its surface stand for it, as far as that is proven.
 void line(body& made, std::size_t count, progress& shown) {
   shown.show("lining " + made.name);
   const mesh_solid solid = mesh_solid::of_surface(made.closed);
@@ -58,7 +58,7 @@ std::string mm(double metres) {
   return text;
 }
 
-/// Notes about what the links enclose, one of each kind.
+/// Adds notes about the insides of the links, one of each kind.
 void note_insides(const std::vector<body>& bodies, const std::vector<std::string>& lined, body_account& account) {
   const auto is_lined = [&](const body& b) { return std::ranges::find(lined, b.name) != lined.end(); };
   double unsure = 0, gap = 0;
@@ -81,7 +81,7 @@ void note_insides(const std::vector<body>& bodies, const std::vector<std::string
   account.notes = notes.sentences();
 }
 
-/// Closes the meshes beside one another.
+/// Closes the meshes side by side.
 void close(const std::vector<body_source>& sources, std::vector<body>& made, progress& shown) {
   shown.show(sources.size() == 1 ? "closing " + sources[0].name
                                  : "closing " + std::to_string(sources.size()) + " links");
@@ -101,7 +101,7 @@ void close(const std::vector<body_source>& sources, std::vector<body>& made, pro
     }
 }
 
-/// Packs the bodies with these numbers, beside one another.
+/// Packs the bodies with these numbers, side by side.
 void fill(std::vector<body>& bodies, const std::vector<std::size_t>& which, const body_options& options,
           progress& shown, body_account& account, std::vector<std::string>& lined) {
   pack_options wanted = options.pack;

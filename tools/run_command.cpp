@@ -20,7 +20,7 @@ using namespace clearance;
 
 namespace {
 
-/// A file that will be read, and so must not be written.
+/// Records a file that will be read, and so must not be written.
 void note_file(const std::string& file) {
   struct ::stat there{};
   if (::stat(file.c_str(), &there) == 0) io::files_read::note({there.st_dev, there.st_ino});
@@ -31,7 +31,7 @@ void print(const std::vector<std::string>& notes, progress& shown) {
   say_notes(notes);
 }
 
-/// The robot along its trajectory, and the camera with it.
+/// The robot along its trajectory, with the camera.
 class motion {
  public:
   motion(const query_options& asked, const asked_robot& robot)
@@ -70,7 +70,7 @@ std::vector<cloud_options> frames_of(const query_options& asked) {
   return frames;
 }
 
-/// What would be in the way of writing the picture is known before a frame is answered, or read.
+/// Checks that the picture can be written, before any frame is read or answered.
 void check_picture(const std::string& file, const std::vector<cloud_options>& frames, const io::files_read& inputs) {
   for (const cloud_options& each : frames) note_file(each.file);
   io::check_output(file, inputs);
@@ -100,7 +100,7 @@ int run_frames(const query_options& asked) {
   std::set<std::string> names;
   const auto load = [&](std::size_t k) {
     shown.show("frame " + std::to_string(k + 1) + '/' + std::to_string(frames.size()));
-    if (!asked.recording.merge) names.clear();  // the line says which frame it is
+    if (!asked.recording.merge) names.clear();  // the line names its frame
     observation frame = observe(frames[k], names);
     print(frame.notes, shown);
     return frame;
@@ -109,7 +109,7 @@ int run_frames(const query_options& asked) {
   if (asked.recording.merge)
     for (std::size_t k = 0; k < frames.size(); ++k) merged.add(load(k), moves.carrier(k));
   else
-    moves.carrier(0);  // a wrong --camera-link is known before the robot is packed
+    moves.carrier(0);  // refuse a wrong --camera-link before packing the robot
 
   if (!asked.recording.svg.empty()) check_picture(asked.recording.svg, frames, inputs);
   const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
@@ -122,7 +122,7 @@ int run_frames(const query_options& asked) {
   for (std::size_t k = 0; k < frames.size(); ++k) {
     if (!asked.recording.merge) {
       observation next = load(k);
-      frame.emplace(std::move(next));  // it stays while it is asked about
+      frame.emplace(std::move(next));  // it must outlive the question
       upload = there->see({about_file(frames[k].file, [&] {
         const seen_points seen = frame->seen(moves.carrier(k), moves.poses(k));
         rigid(seen.pose, "cloud");
@@ -143,7 +143,7 @@ int run_frames(const query_options& asked) {
           frame ? std::pair<const observation*, std::uint32_t>(&*frame, r.point) : merged.origin(r.point);
     frame ? frame->recount(r) : merged.recount(r);
     std::cout << (asked.csv ? to_csv(report) : to_json(report));
-    if (!std::cout) return code;  // main says so
+    if (!std::cout) return code;  // main reports it
     if (!asked.recording.svg.empty()) seen.push_back(r);
     const int each = r.state == state::no_data ? 3 : asked.margin && !(r.lower > *asked.margin) ? 2 : 0;
     code = std::max({code, each, report.plan ? plan.code() : 0});

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-/// Seconds since it was made or last read.
+/// Seconds since it was made, or since the last call.
 class stopwatch {
  public:
   double lap() {

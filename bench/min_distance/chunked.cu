@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clouds that come in chunks: 10^8 points from pinned, pageable and mapped memory through the ring to one GPU, and on
-// the host, against what the copies, or reading, alone take. By the host's clock, medians. `first`: nothing is known of
-// the cloud; `next`: its boxes are. Every answer is compared with that about the whole cloud in memory, bit for bit.
+// Clouds in chunks: 10^8 points from pinned, pageable and mapped memory through the ring to one GPU, and on the host,
+// compared with copying, or reading, alone. The host's clock, medians. `first`: nothing is known about the cloud;
+// `next`: its boxes are. Every answer is compared bit for bit with that about the whole cloud in memory.
 #include "device.cuh"
 #include "shell.hpp"
 
@@ -40,7 +40,7 @@ const auto& robot() {
   return model;
 }
 
-/// The answer about the whole, once a count, by the host.
+/// Compares with the host's answer about the whole cloud, made once per count.
 void same_bits(benchmark::State& state, const clearance::min_distance_result& r) {
   static std::map<std::int64_t, clearance::min_distance_result> known;
   const scene& s = the_scene();
@@ -74,7 +74,7 @@ void ask(benchmark::State& state, const On& on, C source, bool next) {
   same_bits(state, r);
 }
 
-/// Pinned once, as the driver takes long for it.
+/// Pinned once, because the driver takes long.
 const clearance::pinned_buffer<vec3>& pinned_cloud(std::size_t count) {
   static std::map<std::size_t, clearance::pinned_buffer<vec3>> made;
   auto& memory = made[count];
@@ -99,7 +99,7 @@ void pageable(benchmark::State& state, bool next) {
   if (no_device(state)) return;
   ask(state, device{}, in_memory{point_span(cloud(std::size_t(state.range(0))))}, next);
 }
-/// The whole by one copy, and nothing else.
+/// Copies the whole cloud once, and does nothing else.
 void copy_alone(benchmark::State& state, bool from_pinned) {
   if (no_device(state)) return;
   const auto count = std::size_t(state.range(0));
@@ -117,7 +117,7 @@ void copy_alone(benchmark::State& state, bool from_pinned) {
 void on_host(benchmark::State& state, bool next) {
   ask(state, host{}, in_memory{point_span(cloud(std::size_t(state.range(0))))}, next);
 }
-/// Not in chunks, and nothing is kept of it.
+/// The whole cloud without chunks; nothing about it is kept.
 void host_whole(benchmark::State& state) {
   const point_span points(cloud(std::size_t(state.range(0))));
   clearance::min_distance_query query(host{}, robot());
@@ -127,7 +127,7 @@ void host_whole(benchmark::State& state) {
       state, 9, 2, [&](std::size_t) { r = query(s.poses, points, s.world_from_camera); }, [&] { query.forget(); });
   same_bits(state, r);
 }
-/// The least that reading takes: every number is added up, by all threads.
+/// The least time that reading takes: all threads sum up every number.
 double sum_of(const vec3* points, std::size_t count) {
   std::vector<double> sums(count / 65536 + 1);
   tbb::parallel_for(std::size_t(0), sums.size(), [&](std::size_t k) {
@@ -166,7 +166,7 @@ void mapped(benchmark::State& state, const On& on, bool next) {
   const scratch file(cloud(std::size_t(state.range(0))));
   ask(state, on, clearance::io::map_points(file.path), next);
 }
-/// A mapping of the file, new in every call, as a first question finds it.
+/// A new mapping of the file in every call, as in a first question.
 void mapped_reads(benchmark::State& state) {
   const scratch file(cloud(std::size_t(state.range(0))));
   percentiles(

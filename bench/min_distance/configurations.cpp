@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many configurations against one frame of 307,200 points on the CPU, the tree over the points included: at random,
-// whole or as far as 5 cm, and a trajectory that is watched from frame to frame. *each* asks for one after another by a
-// prepared min_distance.
+// Many configurations and one frame of 307,200 points on the CPU, including the tree over the points: random ones, in
+// full or up to 5 cm, and a trajectory that is watched from frame to frame. *each* asks a prepared min_distance for one
+// after another.
 #include "configurations.hpp"
 
 #include <clearance/min_distance_query.hpp>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many configurations against one frame of 307,200 points on a GPU, the points resident there, the tree over them and
-// all witnesses
-// included: at random, whole or as far as 5 cm, and a trajectory of 500 waypoints that is watched from frame to frame.
-// CUDA events, behind other work; *states* asks only which are nearer than a margin, *image* has the frame as a depth
-// image; *call* is one call as a program makes it, by the host's clock, poses and results copied.
+// Many configurations and one frame of 307,200 points on a GPU that holds the points, including the tree over them and
+// all witnesses: random ones, in full or up to 5 cm, and a trajectory of 500 waypoints that is watched from frame to
+// frame. CUDA events, behind other work. *states* only asks which are nearer than a margin. *image* has the frame as a
+// depth image. *call* is one call as in a program, by the host's clock, copying poses and results.
 #include "configurations.hpp"
 #include "device.cuh"
 
@@ -31,7 +30,7 @@ void report(benchmark::State& state, const std::vector<clearance::min_distance_r
   state.counters["mean_mm"] = near > 0 ? 1e3 * sum / near : 0;
 }
 
-/// What a frame enqueues, as a graph: a dozen kernels take the host longer than the device.
+/// A frame's work as a graph, because enqueuing a dozen kernels takes the host longer than the device.
 class recorded {
  public:
   template <class F>
@@ -60,7 +59,7 @@ void report(benchmark::State& state, const std::vector<clearance::state>& found)
   state.counters["free"] = free, state.counters["collision"] = near;
 }
 
-/// `frames` are asked about in turn, by `enqueue(query, cloud)`.
+/// Asks about `frames` in turn, by `enqueue(query, cloud)`.
 template <class Query, class Enqueue>
 void ask(benchmark::State& state, const device& gpu, Query& query, const std::vector<Eigen::Isometry3d>& poses,
          const std::vector<std::vector<vec3>>& frames, bool warm, Enqueue ask_of) {
@@ -74,7 +73,7 @@ void ask(benchmark::State& state, const device& gpu, Query& query, const std::ve
       results =
           ask_of(query, placed{point_span(there.back().data(), there.back().size()), the_scene().world_from_camera});
     };
-    enqueue();  // once outside of a graph: it asks for memory
+    enqueue();  // once outside of a graph, because it allocates
     gpu.wait();
     turns.emplace_back(gpu, enqueue);
   }
@@ -116,8 +115,8 @@ void states(benchmark::State& state, Make make, double margin) {
   ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
       [margin](auto& its, const auto& cloud) { return its.enqueue(cloud, margin); });
 }
-/// The frame as a depth image, whose tree needs no sort: nearly the same points. `Query` is asked by `enqueue(query,
-/// cloud)`.
+/// The frame as a depth image: nearly the same points, but its tree needs no sort. `enqueue(query, cloud)` asks a
+/// `Query`.
 template <template <class, class> class Query, class Enqueue>
 void ask_image(benchmark::State& state, Enqueue enqueue) {
   if (no_device(state)) return;
@@ -148,7 +147,7 @@ void monitor(benchmark::State& state, float d_max) {
       d_max, true);
 }
 
-/// Of points that are there already; waited for. `ask(gpu, model)` makes what is asked for `(poses, cloud)`.
+/// Waits for answers about points that are already there. `ask(gpu, model)` makes the function of `(poses, cloud)`.
 template <class Ask>
 void waited(benchmark::State& state, Ask ask) {
   if (no_device(state)) return;
@@ -167,7 +166,7 @@ void call(benchmark::State& state) {
     return [&](const auto& poses, const auto& cloud) { return clearance::min_distances(gpu, model, poses, cloud).of; };
   });
 }
-/// Each part's least distances, beside `call`'s one for all parts.
+/// Each part's least distances, to compare with `call`'s one for all parts.
 void each_part(benchmark::State& state) {
   waited(state, [](const device& gpu, const auto& model) {
     return [&](const auto& poses, const auto& cloud) {

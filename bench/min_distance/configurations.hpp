@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Many configurations of the benchmarks' robot: at random, or one after another along a trajectory.
+// Many configurations of the benchmarks' robot: random, or along a trajectory.
 #include "scene.hpp"
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace bench {
 
-/// Joints of the KUKA where its data is; else its stand-in turns about its base, and sways.
+/// The joints of the KUKA if its data is there; otherwise its stand-in turns about its base, and sways.
 class moved_robot {
  public:
   explicit moved_robot(const scene& s) : scene_(s) {
@@ -30,7 +30,7 @@ class moved_robot {
   std::vector<clearance::io::robot> robot_;  // one, or none
 };
 
-/// Joints up to 2 rad, within the limits of all.
+/// Random joints up to 2 rad, within all limits.
 inline std::vector<Eigen::Isometry3d> random_configurations(std::size_t count) {
   const moved_robot robot(the_scene());
   std::mt19937 bits(5);
@@ -57,7 +57,7 @@ inline std::vector<Eigen::Isometry3d> trajectory(std::size_t count) {
   return all;
 }
 
-/// The scene's frame as it is seen a moment later: 1 mm of noise.
+/// The scene's frame as seen a moment later: with 1 mm of noise.
 inline std::vector<clearance::vec3> next_frame(const std::vector<clearance::vec3>& frame, unsigned seed) {
   std::mt19937 bits(seed);
   std::normal_distribution<float> noise(0, 0.001f);

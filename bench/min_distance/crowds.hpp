@@ -11,7 +11,7 @@ inline Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Eigen::Vecto
   return Eigen::Translation3d(by) * pose;
 }
 
-/// Robots in a row behind the first, 64 parts in all.
+/// Copies of the robot in a row behind it, 64 parts in all.
 inline scene sixty_four_parts(const scene& one) {
   scene s;
   s.cloud = one.cloud, s.world_from_camera = one.world_from_camera;
@@ -23,7 +23,7 @@ inline scene sixty_four_parts(const scene& one) {
   return s;
 }
 
-/// A second robot 20 m away, before every other point of the frame.
+/// A second robot 20 m away; every other point of the frame moves there.
 inline scene two_robots(const scene& one) {
   scene s = one;
   const Eigen::Vector3d by(20, 0, 0), in_camera = one.world_from_camera.linear().transpose() * by;
@@ -36,7 +36,7 @@ inline scene two_robots(const scene& one) {
   return s;
 }
 
-/// The whole robot as one rigid part of 100,000 spheres: each link's, and smaller ones inside those.
+/// The whole robot as one rigid part of 100,000 spheres: each link's, and smaller ones inside them.
 inline scene one_large_part(const scene& one) {
   scene s;
   s.cloud = one.cloud, s.world_from_camera = one.world_from_camera;

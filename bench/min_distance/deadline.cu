@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A least distance with a deadline, on a GPU with the points there or in host memory, and on the host: how much is
-// seen, and how late it is, by the host's clock. A deadline of 0 us stands for none: what all pieces take together.
+// A least distance with a deadline, on a GPU with points there or in host memory, and on the host: how much is seen,
+// and how late it is, by the host's clock. A deadline of 0 us means none: the time for all pieces.
 #include "device.cuh"
 
 #include <clearance/min_distance_by.cuh>
@@ -12,8 +12,8 @@ namespace {
 using namespace bench;
 using clearance::device, clearance::vec3;
 
-/// 300 calls. Counters: `seen` of all points in the median call, and how many microseconds after the deadline calls
-/// came back.
+/// 300 calls. Counters: `seen` is the part of all points in the median call; the others say how many microseconds after
+/// the deadline calls returned.
 template <class On, class Model>
 void ask(benchmark::State& state, const On& on, const Model& model, const clearance::point_span& points) {
   const scene& s = the_scene<false>();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What the benchmarks of the minimum on a device share.
+// Shared by the benchmarks of the minimum on a device.
 #include "device_clock.cuh"
 #include "scene.hpp"
 
@@ -14,8 +14,8 @@
 
 namespace bench {
 
-/// The frame, repeated with 2 mm of noise until there are `count` points. Made once a frame and count, as it takes
-/// longer than what it is for.
+/// The frame, repeated with 2 mm of noise up to `count` points. Made once per frame and count, because that takes
+/// longer than the measurement.
 inline const std::vector<clearance::vec3>& repeated(const std::vector<clearance::vec3>& frame, std::size_t count) {
   static std::map<std::pair<const clearance::vec3*, std::size_t>, std::vector<clearance::vec3>> made;
   std::vector<clearance::vec3>& points = made[{frame.data(), count}];
@@ -30,7 +30,7 @@ inline const std::vector<clearance::vec3>& repeated(const std::vector<clearance:
   return points;
 }
 
-/// Times `calls` calls by the host's clock, after `others` that do not count; `before` comes before each, untimed.
+/// Times `calls` calls by the host's clock, after `others` that do not count. Calls `before` before each, untimed.
 template <class F, class Before>
 void percentiles(benchmark::State& state, std::size_t calls, std::size_t others, F call, Before before) {
   std::vector<double> us;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What several GPUs of one process bring: clouds of up to a thousand million points that stay on them, frames of 300k
-// points, and clouds that come from pinned memory, on one GPU, on one named twice, and on two. By the host's clock,
-// from the call to the answer on the host; percentiles are counters, in microseconds. Every answer is compared with
-// that of one GPU, bit for bit.
+// What several GPUs in one process gain: clouds of up to 10^9 points that stay on them, frames of 300k points, and
+// clouds from pinned memory, on one GPU, on one named twice, and on two. By the host's clock, from the call to the
+// answer on the host; percentiles are counters, in microseconds. Every answer is compared with that of one GPU, bit for
+// bit.
 #include "device.cuh"
 #include "shell.hpp"
 
@@ -23,8 +23,7 @@ const auto& robot() {
   return model;
 }
 
-/// Each point is one of the frame's, up to 3.5 mm off along each axis: as large a cloud as one likes, wherever it is
-/// made.
+/// Each point is one of the frame's, up to 3.5 mm off along each axis: a cloud of any size, in any memory.
 struct repeated_frame {
   const vec3* frame;
   std::size_t frame_points, first;
@@ -38,7 +37,7 @@ struct repeated_frame {
   }
 };
 
-/// Points `first` to `end - 1`, made in the memory of a device.
+/// Points `first` to `end - 1`, made in a device's memory.
 clearance::device_buffer<vec3> made(const device& on, std::size_t first, std::size_t end) {
   const auto& frame = the_scene().cloud;
   const auto there = on.copy_in(std::span<const vec3>(frame));
@@ -48,7 +47,7 @@ clearance::device_buffer<vec3> made(const device& on, std::size_t first, std::si
   return points;
 }
 
-/// The cloud in pieces, each made where it will be read.
+/// The cloud in pieces, each made where it is read.
 struct resident {
   std::vector<clearance::device_buffer<vec3>> memory;
   std::optional<clearance::sharded<point_span>> view;
@@ -68,7 +67,7 @@ struct resident {
 
 enum class which { one, one_twice, two };
 
-/// Which GPUs; none where there are too few.
+/// The chosen GPUs; none if there are too few.
 std::optional<devices> picked(benchmark::State& state, which w) {
   if (no_device(state)) return {};
   int there = 0;
@@ -80,7 +79,7 @@ std::optional<devices> picked(benchmark::State& state, which w) {
   return w == which::one ? devices{0} : w == which::two ? devices{0, 1} : devices{0, 0};
 }
 
-/// The same for every way to ask about as many points, or the row is none.
+/// Every way to ask about as many points must give the same answer, or its row fails.
 void same_bits(benchmark::State& state, const clearance::min_distance_result& r) {
   static std::map<std::int64_t, clearance::min_distance_result> known;
   const auto [first, fresh] = known.emplace(state.range(0), r);
@@ -96,7 +95,7 @@ void same_bits(benchmark::State& state, const clearance::min_distance_result& r)
 
 std::size_t calls(std::size_t points) { return points > 500000000 ? 60 : points > 20000000 ? 200 : 5000; }
 
-/// Points that are there; `warm`: the last frame is remembered.
+/// Points that stay on the GPUs; `warm`: the last frame is remembered.
 void stays(benchmark::State& state, which w, bool warm) {
   const auto on = picked(state, w);
   if (!on) return;
@@ -114,7 +113,7 @@ void stays(benchmark::State& state, which w, bool warm) {
   same_bits(state, r);
 }
 
-/// The same by one `device`, to see what the list of devices costs; and by one call that prepares nothing.
+/// The same with one `device`, to see the cost of a list of devices; and with one call that prepares nothing.
 void one_device(benchmark::State& state, bool prepared) {
   if (no_device(state)) return;
   const auto count = std::size_t(state.range(0));
@@ -148,7 +147,7 @@ void one_call(benchmark::State& state, which w) {
   same_bits(state, r);
 }
 
-/// Each device reads its piece, and nothing else is done: the floor, by the same clock.
+/// Each device only reads its piece: the floor, by the same clock.
 void read(benchmark::State& state, which w) {
   const auto on = picked(state, w);
   if (!on) return;
@@ -170,7 +169,7 @@ void read(benchmark::State& state, which w) {
 
 enum class from { pinned, pinned_copy_alone, first_device };
 
-/// Points that are elsewhere, and are copied in every call: from pinned memory, or from the first GPU's.
+/// Points that are copied in every call: from pinned memory, or from the first GPU's.
 void comes(benchmark::State& state, which w, from where) {
   const auto on = picked(state, w);
   if (!on) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every point's own distance on the CPU: one frame of 307,200 pixels against the whole robot, as it comes or in random
-// order, and its part and primitive too.
+// Every point's own distance on the CPU: one frame of 307,200 pixels and the whole robot, in the frame's order or
+// random order, and with part and primitive.
 #include "scene.hpp"
 
 #include <clearance/distances.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every point's own distance on a GPU, the points resident there: cold, and warm with what was nearest in the last
-// frame. CUDA events, behind other work.
+// Every point's own distance on a GPU that holds the points: cold, and warm with what was nearest in the last frame.
+// CUDA events, behind other work.
 #include "device.cuh"
 #include "shell.hpp"
 
@@ -18,7 +18,7 @@ namespace {
 using namespace bench;
 using clearance::device, clearance::vec3;
 
-/// Two clouds in turn, so that a frame remembers another one; cold, each is the first.
+/// Alternates two clouds, so that a frame remembers the other one; when cold, each is the first.
 template <class Model, class Source>
 void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::Isometry3d>& poses,
          const Eigen::Isometry3d& pose, const Source& first, const Source& second, float d_max, bool warm) {
@@ -54,7 +54,7 @@ struct options {
   clearance::build_options build = {};
 };
 
-/// The frame, and the frame with 2 mm of noise; `close`: the camera before the robot, so that the table is about it.
+/// The frame, and the frame with 2 mm of noise; `close`: seen from close_camera().
 template <class Make>
 void frame(benchmark::State& state, Make make, const options& how) {
   if (no_device(state)) return;
@@ -96,8 +96,8 @@ void image(benchmark::State& state, Make make, const options& how) {
 void spheres_image(benchmark::State& state, const options& how) { image(state, of_spheres, how); }
 void triangles_image(benchmark::State& state, const options& how) { image(state, of_triangles, how); }
 
-/// Points of the worst cloud there is, so that only what is nearer than their own distance counts; in random order, or
-/// as a sensor sees them: neighbours beside one another (along a Z-curve of 2 mm).
+/// Points of the worst cloud, where only spheres nearer than a point's own distance matter; in random order, or as a
+/// sensor sees them, with neighbours side by side (along a Z-curve of 2 mm).
 void shell(benchmark::State& state, bool ordered) {
   if (no_device(state)) return;
   const scene& s = the_scene();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is not ours on a GPU, beside what is: a binary tree linked by pointers, and points in records of 32 bytes. The
-// robot and the frame are those of min_distance.cu; times are of the device alone, behind other work.
+// Foreign data on a GPU, compared with ours: a binary tree linked by pointers, and points in records of 32 bytes. Robot
+// and frame are those of min_distance.cu; times are the device's alone, behind other work.
 #include "../../tests/support/linked_tree.hpp"
 #include "device.cuh"
 #include "scene_files.hpp"
@@ -51,7 +51,7 @@ void linked_tree(benchmark::State& state, bool cold) {
   std::vector<view> parts;
   std::vector<clearance::part_facts> facts;
   std::uint32_t depth = 0;
-  for (const auto& part : ours().parts()) {  // in the order of our leaves, so that neighbours are near one another
+  for (const auto& part : ours().parts()) {  // in the order of our leaves, so that neighbours stay close
     const testing::linked_tree<sphere, inner_sphere> tree(part.tree.primitives);
     nodes.push_back(gpu.copy_in(std::span<const testing::linked_node<sphere, inner_sphere>>(tree.placed_at(nullptr))));
     const auto moved = tree.placed_at(nodes.back().data());

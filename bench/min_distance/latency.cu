@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a control loop sees: from points in pinned memory to the answer on the host, a new pose against points that
-// stay, frames back to back on one stream, and the worst cloud there is. Percentiles are counters, in microseconds.
+// What a control loop sees: the time from points in pinned memory to the answer on the host, a new pose with points
+// that stay, frames back to back on one stream, and the worst cloud. Percentiles are counters, in microseconds.
 #include "device.cuh"
 #include "shell.hpp"
 
@@ -20,7 +20,7 @@ const auto& robot() {
 
 enum class way { given, copied, copy_alone };
 
-/// From pinned memory to the answer on the host: given to the query as it is, or copied before.
+/// From pinned memory to the answer on the host: the query reads them there, or they are copied before.
 template <class T, class Make>
 void from_pinned(benchmark::State& state, const std::vector<T>& data, way by, std::size_t calls, Make make) {
   const scene& s = the_scene();
@@ -48,7 +48,7 @@ void from_pinned(benchmark::State& state, const std::vector<T>& data, way by, st
 
 void pinned_depth(benchmark::State& state, way by) {
   if (no_device(state)) return;
-  // The frame's own depths; the pinhole that fits it is near enough, as only time is asked here.
+  // The frame's own depths. The fitted pinhole is close enough, because only time matters here.
   std::vector<std::uint16_t> depth;
   for (const vec3& p : the_scene().cloud) depth.push_back(clearance::is_finite(p) ? std::uint16_t(p.z * 1000) : 0);
   depth.resize(640 * 480);
@@ -63,7 +63,7 @@ void pinned_points(benchmark::State& state, way by) {
               [&](const vec3* p) { return clearance::point_span(p, points.size()); });
 }
 
-/// 1 kHz haptics: points stay where they are, the robot has moved a little.
+/// 1 kHz haptics: the points stay, the robot moves a little.
 void new_pose(benchmark::State& state) {
   if (no_device(state)) return;
   const scene& s = the_scene();
@@ -81,7 +81,7 @@ void new_pose(benchmark::State& state) {
   });
 }
 
-/// A hundred frames enqueued at once; the time of one.
+/// The time per frame of a hundred that are enqueued at once.
 void back_to_back(benchmark::State& state) {
   if (no_device(state)) return;
   const scene& s = the_scene();
@@ -101,7 +101,7 @@ void back_to_back(benchmark::State& state) {
     }) / 100);
 }
 
-/// Every point 0.3 m from the robot, to rounding: no bound culls anything.
+/// Every point is 0.3 m from the robot, up to rounding: no bound culls anything.
 void shell(benchmark::State& state, bool cold) {
   if (no_device(state)) return;
   const scene& s = the_scene();
@@ -113,7 +113,7 @@ void shell(benchmark::State& state, bool cold) {
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
   const device_clock clock;
   const auto frame = [&] { query.enqueue(s.poses, clearance::point_span(there.data(), there.size()), result.data()); };
-  frame();  // once, as the first loads the kernel and is cold
+  frame();  // the first loads the kernel and is cold
   for (auto _ : state) {
     if (cold) query.forget();
     state.SetIterationTime(clock.seconds(frame));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One frame on the CPU: 307,200 points against the whole robot, by model and volume. *warm* is a prepared query that
-// remembers the last frame, *cold* one that does not, *plain* min_distance, *parts* warm with every part's own minimum.
+// One frame on the CPU: 307,200 points and the whole robot, by model and volume. *warm* is a prepared query that
+// remembers the last frame, *cold* one that does not, *plain* min_distance, *parts* warm with every part's minimum.
 #include "crowds.hpp"
 
 #include <clearance/min_distance_query.hpp>
@@ -43,7 +43,7 @@ void triangles(benchmark::State& state) {
   ask(state, model, clearance::point_span(bench::the_scene().cloud), How);
 }
 
-/// The frame as a depth camera sends it: millimetres in 16 bits, deprojected while they are read.
+/// The frame as a depth camera sends it: 16-bit millimetres, deprojected as they are read.
 template <kind How>
 void depth(benchmark::State& state) {
   static const auto model = bench::sphere_model<clearance::sphere>(bench::the_scene());
@@ -63,7 +63,7 @@ void crowd(benchmark::State& state) {
   ask(state, model, clearance::point_span(s.cloud), How, s);
 }
 
-/// All that reading the points takes: their sum, in vector code.
+/// The time to read the points: their sum, in vector code.
 void read(benchmark::State& state) {
   const auto& cloud = bench::the_scene().cloud;
   const float* const f = &cloud[0].x;

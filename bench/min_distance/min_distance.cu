@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One frame on a GPU, its points resident there: the prepared query warm (it remembers the last frame) and cold, beside
-// a kernel that only reads the points and one that does nothing. Times are CUDA events around the frame on an idle
-// device, the host's time to launch included; rows that are `queued` find the device at work, and are of the device
-// alone.
+// One frame on a GPU that holds its points: the prepared query warm (it remembers the last frame) and cold, compared
+// with a kernel that only reads the points and one that does nothing. Times are CUDA events around the frame on an idle
+// device, including the host's time to launch. In `queued` rows the device is busy, and the time is its own alone.
 #include "crowds.hpp"
 #include "device.cuh"
 #include "scene_files.hpp"
@@ -16,7 +15,7 @@ namespace {
 
 using namespace bench;
 
-/// Writes more than the L2 cache holds, so that the next kernel finds nothing there.
+/// Writes more than the L2 cache holds, so that the next kernel finds it cold.
 class cache_flush {
  public:
   void operator()() const { clearance::check_cuda(cudaMemsetAsync(dirt_.data(), 1, dirt_.size()), "cudaMemsetAsync"); }
@@ -25,13 +24,13 @@ class cache_flush {
   clearance::device_buffer<std::byte> dirt_{256u << 20, 0};
 };
 
-/// How a frame is asked and timed.
+/// How to ask and time a frame.
 struct manner {
-  bool cold = false;     ///< Nothing is known of the last frame.
-  bool plain = false;    ///< The loop over points, with a traversal.
-  bool once = false;     ///< By min_distance_async, which prepares nothing.
-  bool each = false;     ///< Every part's minimum too.
-  bool flushed = false;  ///< Nothing is in the cache.
+  bool cold = false;     ///< Nothing is known about the last frame.
+  bool plain = false;    ///< The loop over points with a traversal.
+  bool once = false;     ///< By min_distance_async, unprepared.
+  bool each = false;     ///< Also every part's minimum.
+  bool flushed = false;  ///< The cache is cold.
   bool queued = false;   ///< Behind other work.
 };
 
@@ -39,7 +38,7 @@ void empty(benchmark::State& state, bool queued) {
   if (no_device(state)) return;
   const device_clock clock(queued);
   const auto launch = [] { empty_kernel<><<<1, 32>>>(); };
-  launch();  // once, as a kernel is loaded by its first launch
+  launch();  // the first launch loads the kernel
   for (auto _ : state) state.SetIterationTime(clock.seconds(launch));
 }
 

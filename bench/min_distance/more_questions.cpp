@@ -8,7 +8,7 @@ namespace {
 
 const int rows = [] {
   bench::for_each_question([](const std::string& name, const auto& row) {
-    if (name.ends_with(", one call")) return;  // nothing is prepared on the CPU but memory
+    if (name.ends_with(", one call")) return;  // on the CPU, preparing only allocates
     benchmark::RegisterBenchmark(name.c_str(),
                                  [row](benchmark::State& state) {
                                    const bench::scene& s = bench::the_scene();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Zones, lists, the nearest, confirmed points, motions, gradients and joint vectors on a GPU, the points there. What is
-// waited for by the host's clock; *enqueued* and *placed* by CUDA events, behind other work: at once with memory for
-// one call, or prepared.
+// Zones, lists, the nearest, confirmed points, motions, gradients and joint vectors on a GPU that holds the points.
+// Calls that wait are timed by the host's clock. *enqueued* and *placed* use CUDA events, behind other work: in one
+// call, with memory for it, or prepared.
 #include "device.cuh"
 #include "more_questions.hpp"
 
@@ -102,7 +102,7 @@ void per_part(benchmark::State& state, float d_max) {
   q.time(state, [&] { query.enqueue(q.s.poses, q.cloud, distance.data(), q.counts.data(), d_max); });
 }
 
-/// To triangles: signed, beside the distances that it begins with.
+/// To triangles: signed, to compare with the distances that it computes first.
 void to_triangles(benchmark::State& state, bool is_signed) {
   if (no_device(state)) return;
   question q(std::size_t(state.range(0)));
@@ -127,7 +127,7 @@ void compacted(benchmark::State& state) {
   state.counters["points"] = double(q.gpu.copy_out(count)[0]);
 }
 
-/// Seven joints, as the KUKA has them; or a stand-in's, where its data is not.
+/// The KUKA's seven joints; a stand-in's if its data is missing.
 clearance::joint_chain<> seven_joints() {
   const std::size_t parts = the_scene().poses.size();
   if (the_scene().name == "kuka") return clearance::io::joint_chain_of(load_kuka(CLEARANCE_TEST_DATA));
@@ -148,7 +148,7 @@ std::vector<double> joint_vectors(std::size_t count) {
   return q;
 }
 
-/// Poses of joint vectors that are on the GPU, by the GPU's time.
+/// Turns joint vectors on the GPU into poses, by the GPU's time.
 void placed(benchmark::State& state) {
   if (no_device(state)) return;
   const question of(1);
@@ -157,8 +157,8 @@ void placed(benchmark::State& state) {
   clearance::min_distances_query query(of.gpu, of.model);
   of.time(state, [&] { query.place(chain, q.data(), std::size_t(state.range(0))); });
 }
-/// Of joint vectors of the host, until they are placed; by the host's clock. *there*: the GPU makes poses of them; else
-/// the host does.
+/// Turns joint vectors on the host into poses, by the host's clock. *there*: the GPU makes the poses, else the host
+/// does.
 void placed_call(benchmark::State& state, bool there) {
   if (no_device(state)) return;
   const question of(1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Questions about one frame of 307,200 points that are waited for, wherever they run: prepared, and as one call, by the
-// host's clock.
+// Questions about one frame of 307,200 points, on any backend, that wait for the answer: prepared, and in one call, by
+// the host's clock.
 #include "configurations.hpp"
 
 #include <clearance/compacted.hpp>
@@ -24,7 +24,7 @@
 
 namespace bench {
 
-/// Asks once, as the first time takes memory, and then again and again; the last answer.
+/// Asks once to allocate memory, then again and again; returns the last answer.
 template <class Ask>
 auto ask_often(benchmark::State& state, const Ask& ask) {
   auto found = ask();
@@ -32,7 +32,7 @@ auto ask_often(benchmark::State& state, const Ask& ask) {
   return found;
 }
 
-/// The scene's robot in motion, towards the table and back up: every part by its own way from one pose to another.
+/// The scene's robot moves to the table and up again: every part on its own way from one pose to another.
 inline clearance::straight_motion some_motion() {
   const std::size_t parts = the_scene().poses.size();
   const auto path = trajectory(500);
@@ -42,8 +42,8 @@ inline clearance::straight_motion some_motion() {
 
 inline Eigen::Vector3d origin_of(std::size_t part) { return the_scene().poses[part].translation(); }
 
-/// What gradients cost, each beside the minimum that it is of. The least distance: with respect to the pose of its
-/// part, and to the joints (of the KUKA alone; its stand-in has none). Every part's: one more walk a part.
+/// The cost of gradients, each to compare with its minimum. The least distance: with respect to the pose of its part,
+/// and to the joints (only of the KUKA; its stand-in has none). Every part's: one more walk per part.
 template <class Add>
 void for_each_gradient(const Add& add) {
   add("min_distance, prepared", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
@@ -94,7 +94,7 @@ void for_each_gradient(const Add& add) {
       });
 }
 
-/// A robot that holds something: putting it on, and the minimum of both, to be compared with the robot's alone.
+/// A robot that holds something: attaching it, and the minimum of both, to compare with the robot's alone.
 template <class Add>
 void for_each_attached(const Add& add) {
   const auto held = [](const auto& on) {
@@ -115,7 +115,7 @@ void for_each_attached(const Add& add) {
       });
 }
 
-/// Calls `add(name, row)` for each question: `row(state, on, model, cloud)`, the model and the cloud there.
+/// Calls `add(name, row)` for each question: `row(state, on, model, cloud)`, with model and cloud on the backend.
 template <class Add>
 void for_each_question(const Add& add) {
   const auto both = [&](const std::string& name, const auto& prepare, const auto& once, const auto& count,
@@ -174,7 +174,7 @@ void for_each_question(const Add& add) {
   });
   for_each_gradient(add);
   for_each_attached(add);
-  // The robot's triangles; signed_distances beside the distances that it begins with.
+  // The robot's triangles; signed_distances, to compare with the distances that it computes first.
   const auto exact = [&](const char* name, const auto& ask) {
     add(name, [=](benchmark::State& state, const auto& on, const auto&, const auto& cloud) {
       const auto triangles = triangle_model<clearance::aabb>(the_scene()).on(on);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Questions about pairs on a GPU, the points resident there: zones, the points within a distance, whether there is one,
-// and which are the robot's own; beside them every part's minimum. *close*: the camera before the robot. CUDA events,
-// behind other work.
+// Questions about pairs on a GPU that holds the points: zones, the points within a distance, whether there is one, and
+// which are the robot's own; and, to compare, every part's minimum. *close*: from close_camera(). CUDA events, behind
+// other work.
 #include "device.cuh"
 
 #include <clearance/in_collision.cuh>
@@ -45,7 +45,7 @@ struct question {
     return gpu.copy_in(std::span<const T>(all));
   }
 
-  /// Sets `words` back and asks, again and again.
+  /// Resets `words` and asks, again and again.
   template <class Answer, class T>
   void ask(benchmark::State& state, const Answer& answer, const clearance::device_buffer<T>& words,
            const std::vector<T>& fresh) {
@@ -108,7 +108,7 @@ void every_part(benchmark::State& state) {
   for (auto _ : state) state.SetIterationTime(q.clock.seconds(frame));
 }
 
-/// Which points are the robot's own; and then, behind that, every other one's least distance.
+/// Which points are the robot's own; afterwards, if `minimum`, the least distance of the others.
 void own(benchmark::State& state, bool minimum, bool prepared) {
   if (no_device(state)) return;
   question q(state, true);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What the benchmarks of the minimum ask about: a KUKA LWR before a table seen by a depth camera where the real data
-// is, and the scene of `clearance demo`, made in code, everywhere.
+// The scene of the benchmarks of the minimum: a KUKA LWR in front of a table seen by a depth camera, if the real data
+// is there; otherwise the scene of `clearance demo`, made by code.
 
 #include "../../tools/demo_scene.hpp"
 
@@ -21,7 +21,7 @@ namespace bench {
 struct scene {
   std::string name;
   std::vector<clearance::closed_mesh> meshes;
-  std::vector<clearance::packing> packings;  ///< 2,048 inner spheres a link.
+  std::vector<clearance::packing> packings;  ///< 2,048 inner spheres per link.
   std::vector<Eigen::Isometry3d> poses;
   std::vector<clearance::vec3> cloud;  ///< One 640 x 480 frame, in the camera's frame.
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
@@ -39,7 +39,7 @@ inline Eigen::Isometry3d looking(const Eigen::Vector3d& from, Eigen::Vector3d fo
   return pose;
 }
 
-/// Where else the camera may stand: points are a third of a metre from the robot in the median.
+/// Another place for the camera: the median point is a third of a metre from the robot.
 inline Eigen::Isometry3d close_camera() { return looking({1.62, -0.1, 1.05}, {-0.75, 0.1, -0.65}); }
 
 inline void pack_all(scene& s) {
@@ -75,7 +75,7 @@ inline clearance::io::robot load_kuka(const std::filesystem::path& data) {
 
 inline const std::vector<double> kuka_joints{0, 0.6, 0, -1.4, 0, 0.5, 0};
 
-/// The scene that all figures of this library speak of; the robot's links about 10 cm from the nearest point.
+/// The scene of all figures of this library; the robot's links are about 10 cm from the nearest point.
 inline scene kuka(const std::filesystem::path& data, bool packed) {
   const auto robot = load_kuka(data);
   scene s;
@@ -90,7 +90,7 @@ inline scene kuka(const std::filesystem::path& data, bool packed) {
   return s;
 }
 
-/// The KUKA where its data is, else the demo; not packed, where triangles are enough.
+/// The KUKA if its data is there, else the demo; not packed if triangles are enough.
 template <bool Packed = true>
 const scene& the_scene() {
   static const scene s = [] {

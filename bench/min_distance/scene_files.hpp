@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The scene in files, for peers that are no C++.
+// The scene in files, for peers not written in C++.
 
 #include "scene.hpp"
 
@@ -12,8 +12,7 @@
 
 namespace bench {
 
-/// Triangles in the camera's frame, as a peer gets them; those without area are left out, because some peers fail on
-/// them.
+/// Triangles in the camera's frame, for peers. Those without area are left out, because some peers fail on them.
 inline std::vector<std::array<Eigen::Vector3d, 3>> robot_in_camera(const scene& s) {
   std::vector<std::array<Eigen::Vector3d, 3>> all;
   for (std::size_t k = 0; k < s.meshes.size(); ++k) {
@@ -27,7 +26,7 @@ inline std::vector<std::array<Eigen::Vector3d, 3>> robot_in_camera(const scene& 
   return all;
 }
 
-/// Corners of triangles and points, x y z as floats, both in the camera's frame, in two files of `folder`.
+/// Writes triangle corners and points to two files of `folder`: x y z as floats, both in the camera's frame.
 inline int write_scene(const std::filesystem::path& folder) {
   const scene& s = the_scene<false>();
   const auto write = [&](const char* name, const std::vector<clearance::vec3>& all) {
@@ -41,7 +40,7 @@ inline int write_scene(const std::filesystem::path& folder) {
   return write("robot.f32", corners) && write("points.f32", s.cloud) ? 0 : 1;
 }
 
-/// Instead of BENCHMARK_MAIN: `--write-scene FOLDER` writes the scene, and measures nothing.
+/// Replaces BENCHMARK_MAIN: `--write-scene FOLDER` writes the scene and measures nothing.
 inline int run_all(int argc, char** argv) {
   if (argc == 3 && std::string_view(argv[1]) == "--write-scene") return write_scene(argv[2]);
   benchmark::Initialize(&argc, argv);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The worst cloud there is, made where its points will be read.
+// The worst possible cloud, made in the memory where it is read.
 
 #include <clearance/ground/pose.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
@@ -12,7 +12,7 @@ namespace bench {
 
 using clearance::vec3;
 
-/// Random bits that depend on nothing but the point's number: the finaliser of splitmix64 over a counter.
+/// Random bits that depend only on the point's number: the finaliser of splitmix64 over a counter.
 class point_bits {
  public:
   CLEARANCE_HD explicit point_bits(std::uint64_t point) : counter_(mixed(point)) {}
@@ -33,8 +33,8 @@ struct shell_part {
   std::uint32_t count;
 };
 
-/// From far away towards a random sphere of the robot, step by step, each as long as nothing can be nearer than `away`.
-/// (Of points placed around single spheres, one in four thousand has no other sphere that is nearer.)
+/// Goes from far away to a random sphere of the robot, in steps so long that nothing gets nearer than `away`. (Of
+/// points placed around single spheres, only one in four thousand has no other sphere that is nearer.)
 template <class PartView>
 struct shell_body {
   const PartView* parts;
@@ -60,7 +60,7 @@ struct shell_body {
     return nearest.within;
   }
 
-  /// NaN where the steps do not end `away` from the robot, such as along a ray that grazes it.
+  /// NaN if the steps do not end `away` from the robot, such as along a ray that grazes it.
   CLEARANCE_HD vec3 seen_along_a_ray(point_bits& bits) const {
     const std::uint64_t which = bits();
     const shell_part& part = placed[(which >> 32) % count];
@@ -84,8 +84,8 @@ struct shell_body {
   }
 };
 
-/// Writes `count` points, in world coordinates, `away` metres from the robot to two micrometres. Parts are of our own
-/// trees; `points` is memory of the backend, and is there when this returns.
+/// Writes `count` points in world coordinates, `away` metres from the robot to two micrometres. The parts have our own
+/// trees. `points` is memory of the backend, and filled when this returns.
 template <clearance::backend B, class Model>
 void put_shell(const B& on, const Model& model, std::span<const Eigen::Isometry3d> poses, float away, vec3* points,
                std::size_t count) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What ranks add to the slowest of them: mpirun -n N bench_mpi_shard. A frame of 300k points for each rank; medians of
-// the time from a barrier to the answer, on all ranks together and on the slowest by itself, and of one 8-byte
-// reduction.
+// What ranks add to the slowest of them: mpirun -n N bench_mpi_shard. Each rank has a frame of 300k points. Medians of
+// the time from a barrier to the answer, on all ranks together and on the slowest alone, and of one 8-byte reduction.
 #include <clearance/make_model.hpp>
 #include <clearance/mpi/shard.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
@@ -13,7 +12,7 @@
 
 namespace {
 
-/// Microseconds of the slowest rank, in the median of `calls`.
+/// The slowest rank's microseconds, median of `calls`.
 template <class F>
 double median(int calls, F call) {
   std::vector<double> us;

@@ -14,7 +14,7 @@ using namespace clearance;
 
 constexpr std::size_t sphere_count = 2048;
 
-/// The eight links of the KUKA LWR 4+ from the data folder, or the mesh files that are named.
+/// The eight links of the KUKA LWR 4+ from the data folder, or the given mesh files.
 inline std::vector<std::filesystem::path> mesh_files(int argc, char** argv) {
   std::vector<std::filesystem::path> files(argv + 1, argv + argc);
   const std::filesystem::path folder = std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/meshes";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenVDB's fillWithSpheres on the links of the KUKA LWR 4+, and pack beside it: the same count, one thread, one judge:
-// fill, certified gap, and how many spheres stick out of the mesh or into one another. CPU seconds without the judge's
-// (make_s; pack's hold a certificate of its own), and what a certificate takes (certify_s). --benchmark_format=json.
+// OpenVDB's fillWithSpheres on the links of the KUKA LWR 4+, compared with pack: the same count, one thread, one judge
+// of fill, certified gap, and how many spheres stick out of the mesh or into one another. CPU seconds without the judge
+// (make_s; pack's include its own certificate), and of a certificate (certify_s). --benchmark_format=json.
 
 #include "packing/links.hpp"
 

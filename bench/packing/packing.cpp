@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Packs meshes with inner spheres: time, fill, gaps. Mesh files are arguments; without any, the eight links of the KUKA
-// LWR 4+ from the data folder. "all" packs them beside one another, as a robot's links are, "one_by_one" one after
-// another; closing the meshes included. --benchmark_format=json.
+// LWR 4+ from the data folder. "all" packs them side by side, as for a robot's links, "one_by_one" one after another;
+// both include closing the meshes. --benchmark_format=json.
 
 #include "packing/links.hpp"
 

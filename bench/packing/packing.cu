@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Packs meshes with inner spheres on a GPU: time, fill, gaps. Mesh files are arguments; without any, the eight links of
-// the KUKA LWR 4+ from the data folder. "all" packs them beside one another, on a stream each, closing the meshes
-// included; "one_by_one" on one stream; "solids" from solids made beforehand. --benchmark_format=json.
+// the KUKA LWR 4+ from the data folder. "all" packs them side by side, each on its stream, including closing the
+// meshes; "one_by_one" on one stream; "solids" from solids made beforehand. --benchmark_format=json.
 
 #include "packing/links.hpp"
 

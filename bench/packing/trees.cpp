@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trees over the packings of the KUKA LWR 4+ (2,048 spheres a link): bounds and primitives tested for the distance of a
-// point to all links, one after another, by split rule, width and fit; and how far the spheres' minimum is from the
+// Trees over the packings of the KUKA LWR 4+ (2,048 spheres per link). For the distance of a point to all links in
+// turn: bounds and primitives tested, by split rule, width and fit; and how far the spheres' minimum is from the
 // triangles', 5 cm, 20 cm and 1 m from the robot. --benchmark_format=json.
 
 #include "packing/links.hpp"
@@ -74,7 +74,7 @@ robot_and_points load() {
   std::normal_distribution<double> normal;
   const double far = 2 * bounds.diagonal().norm() + 2;
   for (int k = 0; k < 3; ++k)
-    while (r.points[k].size() < 3000) {  // from far away towards the robot, until so near
+    while (r.points[k].size() < 3000) {  // from far away towards the robot, up to this distance
       Eigen::Vector3d at(normal(random), normal(random), normal(random));
       at = bounds.center() + far * at.normalized();
       const Eigen::Vector3d target =

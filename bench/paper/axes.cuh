@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The design space on the GPU, points resident: each axis alone, from the paper's own method (recursive, one stream a
-// part, bound shared by all, unseeded) and from its best variant (near first, fused).
+// The design space on a GPU that holds the points: each axis alone, from the paper's own method (recursive, one stream
+// per part, bound shared by all, unseeded) and from its best variant (near first, fused).
 
 #include "lab.cuh"
 #include "moved.cuh"
@@ -22,7 +22,7 @@ void traversals(lab& l, const Parts& parts, double reference) {
   l.time_method("cooperative", method<shared_by_all, cooperative>{}, parts, reference);
 }
 
-/// Fig. 4 right: parts in sequence, in streams, or in one kernel: fused in a thread's loop, or a grid of parts x
+/// Fig. 4 right: parts in sequence, in streams, or in one kernel: in a thread's loop ("fused"), or as a grid of parts x
 /// points.
 template <class Parts>
 void schedules(lab& l, const Parts& parts, double reference) {
@@ -37,7 +37,7 @@ void schedules(lab& l, const Parts& parts, double reference) {
   }
 }
 
-/// Section 4.2: what is moved. Moved trees round differently, so these agree to 2 um.
+/// Section 4.2: what is moved. Moved trees round differently, so these agree only to 2 um.
 template <class Model, class Parts>
 void transforms(lab& l, const Model& model, const Parts& parts, double reference) {
   l.out.begin("transform", l.scene->name, l.points.size());
@@ -64,7 +64,7 @@ void sharing(lab& l, const Parts& parts, double reference) {
   l.time_method("near first; nobody", method<shared_by_nobody, near_first>{}, parts, reference);
   l.time_method("near first; block", method<shared_by_block, near_first>{}, parts, reference);
   l.time_method("near first; all", method<shared_by_all, near_first>{}, parts, reference);
-  // As many threads as the paper's GTX 780 holds (12 multiprocessors of 2,048): 3 blocks a part, that stay and take
+  // As many threads as the paper's GTX 780 holds (12 multiprocessors of 2,048): 3 blocks per part. They stay and take
   // one point after another, with the block's bound.
   l.time_method("recursive; block; few threads", method<shared_by_block, recursive>{.threads = 1024, .most_blocks = 3},
                 parts, reference);
@@ -93,7 +93,7 @@ void cache_of(lab& l, const std::string& walk, const auto& parts, double referen
              "cudaFuncSetAttribute");
 }
 
-/// Fig. 7 right: more cache, less shared memory; and the other way round.
+/// Fig. 7 right: more cache and less shared memory, and the reverse.
 template <class Parts>
 void caches(lab& l, const Parts& parts, double reference) {
   l.out.begin("cache", l.scene->name, l.points.size());
@@ -120,7 +120,7 @@ void block_sizes(lab& l, const Parts& parts, double reference) {
   blocks_of<method<shared_by_all, near_first>>(l, "near first; all", parts, reference);
 }
 
-/// Where the bound starts: at infinity, after a sample spread over the cloud, or just above the last frame's answer.
+/// Where the bound starts: at infinity, from a sample spread over the cloud, or just above the last frame's answer.
 template <class Method, class Parts>
 void seeds_of(lab& l, const std::string& name, const Method& m, const Parts& parts, double reference) {
   l.time_method(name + "; none", m, parts, reference);
@@ -146,7 +146,7 @@ void seeds(lab& l, const Parts& parts, double reference) {
            method<shared_by_all, near_first, survivors_into_parts>{.order = schedule::fused}, parts, reference);
 }
 
-/// Is it the culling? Node tests, leaf tests and accepted updates a point, by who shares the bound.
+/// Is it due to culling? Node tests, leaf tests and accepted updates per point, by who shares the bound.
 template <class Model, class Parts>
 void culling(lab& l, const Model& on_host, const Parts& parts, double reference) {
   l.out.begin("culling", l.scene->name, l.points.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Who shares the bound, as queries that every traversal of the library can carry; and what a walk costs, counted by a
-// tree that counts who looks at it.
+// Who shares the bound, as queries for all traversals of the library; and the cost of a walk, counted by a tree that
+// counts how often it is read.
 
 #include <clearance/concepts.hpp>
 #include <clearance/ground/ordered.hpp>
@@ -10,8 +10,8 @@ namespace bench::paper {
 
 using clearance::real;
 
-/// Nobody: each walk, or each thread, has its own. On one thread of the host, from point to point: the paper's
-/// Algorithm 1.
+/// Nobody: each walk, or each thread, has its own. On one thread of the host, carried from point to point, it is the
+/// paper's Algorithm 1.
 struct own_bound {
   using result_type = real;
 
@@ -39,21 +39,21 @@ struct word_bound {
     if (!(distance < reach())) return;
     const std::uint32_t mine = clearance::ordered(distance);
 #if defined(__CUDA_ARCH__)
-    accepted += mine < atomicMin(word, mine);  // who loses a race has lowered nothing
+    accepted += mine < atomicMin(word, mine);  // a lost race lowers nothing
 #else
-    *word = mine, ++accepted;  // nearer than what is there; one thread
+    *word = mine, ++accepted;  // nearer than the old one; only one thread
 #endif
   }
   CLEARANCE_HD real result() const { return reach(); }
 };
 static_assert(clearance::visitor<word_bound>);
 
-/// What walks did, summed.
+/// What walks did, in total.
 struct counts {
   unsigned long long tests = 0, leaves = 0, accepted = 0;
 };
 
-/// The same tree; every look at a volume is a node test, every look at a primitive a leaf test.
+/// The same tree, but it counts: reading a volume is a node test, reading a primitive a leaf test.
 template <clearance::hierarchy H>
 struct counted : H {
   unsigned* tests;

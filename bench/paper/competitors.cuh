@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// From points on the host to the minimum on the host: the paper's method, ours, and the octree before the GPU (Fig. 8,
-// 9).
+// From points on the host to the minimum on the host: the paper's method, ours, and the octree with a GPU (Fig. 8, 9).
 
 #include "host_competitors.hpp"
 #include "lab.cuh"
@@ -10,7 +9,7 @@
 
 namespace bench::paper {
 
-/// What one thread of the host enqueues and waits for, per frame; points come from pinned memory.
+/// What one host thread enqueues and waits for, per frame; points are in pinned memory.
 template <class Model, class Binary>
 class frames {
  public:
@@ -33,7 +32,7 @@ class frames {
                "cudaMemcpyAsync");
   }
 
-  /// The paper's: copy, a kernel a part in its stream, the bound back.
+  /// The paper's: copy, one kernel per part in its stream, the bound back.
   double papers(const clearance::vec3* from) {
     l_.enqueue_reset();
     copy(from);
@@ -41,18 +40,18 @@ class frames {
     return l_.found();
   }
 
-  /// Ours, reading the points where they are.
+  /// Ours: reads the points where they are.
   double ours(const clearance::point_span& from) { return query_(l_.poses, from, l_.scene->world_from_cloud).distance; }
 
 #ifdef CLEARANCE_BENCH_OCTOMAP
-  /// The paper's octree + GPU: each part its own filtered set, copied and tested in its own stream.
+  /// The paper's octree + GPU: each part has its own filtered points, copied and tested in its own stream.
   template <class Tree, class View>
   double octree_then_gpu(Tree& tree, const View& host_model) {
     const clearance::frames::cloud_frame frame(host_model.facts, l_.poses, l_.scene->world_from_cloud);
     const auto sets = tree.filtered(host_model, frame);
     l_.enqueue_reset();
     auto parts = l_.parts(binary_, views_);
-    parts.origin = {0, 0, 0};  // the octree's points have it subtracted
+    parts.origin = {0, 0, 0};  // the octree's points are already relative to it
     std::vector<std::size_t> first = {0};
     for (const auto& set : sets) {
       std::copy(set.begin(), set.end(), filtered_.data() + first.back());
@@ -82,7 +81,7 @@ class frames {
   std::size_t copied_ = 0;
 };
 
-/// Fig. 8 right and the GPU's part of Fig. 9, for the lab's cloud.
+/// Fig. 8 right, and the GPU's part of Fig. 9, for the lab's cloud.
 template <class HostModel, class Model, class Binary>
 void device_competitors(lab& l, const HostModel& on_host, const Model& model, const Binary& binary, double reference) {
   frames all(l, model, binary);
@@ -123,7 +122,7 @@ struct runner {
   int passes;
 };
 
-/// Fig. 8 left: one run, time and distance, step after step; each step the median of what its passes took.
+/// Fig. 8 left: time and distance along one run, step by step; each step is the median over its passes.
 template <class HostModel, class Model, class Binary>
 void along_motion(lab& l, const HostModel& on_host, const Model& model, const Binary& binary, int steps, int passes) {
   frames all(l, model, binary);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Everything on the CPU over the size of the cloud (the paper's Fig. 9): Algorithm 1 as compilers make it and by hand
-// with SIMD, the octree with and without its construction, and ours.
+// All CPU methods by the size of the cloud (the paper's Fig. 9): Algorithm 1 as compiled and with SIMD by hand, the
+// octree with and without its construction, and ours.
 
 #include "octree.hpp"
 #include "report.hpp"
@@ -16,7 +16,7 @@
 
 namespace bench::paper {
 
-/// Seconds that one competitor is measured for.
+/// Seconds to measure one competitor.
 inline double host_budget = 0.15;
 
 template <class Model>
@@ -59,7 +59,7 @@ void host_competitors(report& out, const scenario& scene, std::size_t count, con
 #ifdef CLEARANCE_BENCH_OCTOMAP
   using tree_of_points = octree<typename Model::view_type>;
   std::optional<tree_of_points> tree;
-  std::vector<double> builds;  // for a cloud that is new: first the tree, then the query
+  std::vector<double> builds;  // for a new cloud: first the tree, then the query
   const auto whole = [&] {
     tree.reset();
     builds.push_back(host_time([&] { tree.emplace(cloud, frame.origin, scene.cell); }));
@@ -73,7 +73,7 @@ void host_competitors(report& out, const scenario& scene, std::size_t count, con
 #endif
 }
 
-/// The distances along the run of the robot, and what one thread of ours takes for them.
+/// The distances along the robot's run, and our time for them on one thread.
 template <class Model>
 void host_along_motion(report& out, const scenario& scene, std::size_t count, const Model& model, int steps,
                        int passes) {

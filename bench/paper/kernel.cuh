@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The paper's kernel, one thread (or group of lanes) a point, and its launches: parts one after another, one stream a
-// part, or all in one kernel: fused in a thread's loop, or in a grid of parts x points.
+// The paper's kernel, one thread (or group of lanes) per point, and its launches: parts one after another, one stream
+// per part, or all in one kernel: in a thread's loop ("fused"), or in a grid of parts x points.
 
 #include "policies.cuh"
 
@@ -14,7 +14,7 @@ namespace bench::paper {
 
 using clearance::check_cuda;
 
-/// What a frame's kernels are given.
+/// What the kernels of a frame receive.
 template <class View>
 struct parts_at {
   static constexpr unsigned most = 16;
@@ -68,7 +68,7 @@ __global__ void paper_kernel(const __grid_constant__ parts_at<View> parts, unsig
 
 enum class schedule { sequential, streams, fused, grid };
 
-/// CUDA streams, one a part, that start after and end before what is on the main one (the default stream).
+/// CUDA streams, one per part. They start after the work on the main one (the default stream), which waits for them.
 class part_streams {
  public:
   part_streams() {
@@ -84,7 +84,7 @@ class part_streams {
     cudaEventDestroy(start_);
   }
 
-  /// `work(k, stream)` for each part.
+  /// Calls `work(k, stream)` for each part.
   template <class F>
   void fork(unsigned count, F work) const {
     check_cuda(cudaEventRecord(start_, nullptr), "cudaEventRecord");
@@ -102,19 +102,19 @@ class part_streams {
   cudaEvent_t start_;
 };
 
-/// A point of the design space: the compiled axes as types, the others as values.
+/// A point of the design space: compiled axes as types, the others as values.
 template <class Sharing, class Walk, class Transform = points_into_parts, bool Count = false>
 struct method {
   schedule order = schedule::streams;
   unsigned threads = 128;
-  unsigned most_blocks = 0x7fffffff;  ///< Fewer than points need: blocks that stay, and take several points a thread.
+  unsigned most_blocks = 0x7fffffff;  ///< If fewer than points need, blocks stay, and a thread takes several points.
 
   template <class View, class Source>
   static auto kernel() {
     return paper_kernel<Sharing, Walk, Transform, Count, View, Source>;
   }
 
-  /// One kernel over parts begin .. end-1 and every `stride`-th point; of a grid, each row has one of the parts.
+  /// One kernel over parts begin .. end-1 and every `stride`-th point; in a grid, each row has one of the parts.
   template <class View, class Source>
   void launch(const parts_at<View>& parts, unsigned begin, unsigned end, const Source& cloud, std::uint32_t* bound,
               counts* all, cudaStream_t on, std::size_t stride = 1, unsigned rows = 1) const {
@@ -127,7 +127,7 @@ struct method {
     check_cuda(cudaGetLastError(), "kernel launch");
   }
 
-  /// All of a frame, in the order of the default stream.
+  /// Everything for a frame, in the order of the default stream.
   template <class View, class Source>
   void enqueue(const part_streams& streams, const parts_at<View>& parts, const Source& cloud, std::uint32_t* bound,
                counts* all) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// One cloud on the GPU, the robot in one configuration, and how a method is timed, checked and counted on them.
+// One cloud on the GPU, the robot in one configuration, and how to time, check and count a method on them.
 
 #include "device_clock.cuh"
 #include "kernel.cuh"
@@ -16,7 +16,7 @@
 
 namespace bench::paper {
 
-/// Seconds that one variant is measured for.
+/// Seconds to measure one variant.
 inline double budget = 0.06;
 
 class lab {
@@ -45,7 +45,7 @@ class lab {
 
   clearance::point_span cloud() const { return {there->data(), points.size()}; }
 
-  /// min_distance on the host: what everybody must find.
+  /// min_distance on the host, which everyone must match.
   template <class Model>
   double reference(const Model& model) const {
     const clearance::placed<clearance::point_span> placed{points, scene->world_from_cloud};
@@ -58,7 +58,7 @@ class lab {
     return least;
   }
 
-  /// A model on the device as a kernel of the paper's gets it.
+  /// A model on the device, in the form for the paper's kernel.
   template <class Model>
   auto parts(const Model& model) const {
     return parts(model, gpu.copy_out(model.view().parts, model.size()));
@@ -79,7 +79,7 @@ class lab {
     return all;
   }
 
-  /// Puts the bound back to `from`; kernels are timed without it.
+  /// Resets the bound to `from`; kernels are timed without this.
   void reset(real from) const {
     const std::uint32_t start = clearance::ordered(from);
     check_cuda(cudaMemcpy(bound_.data(), &start, sizeof start, cudaMemcpyHostToDevice), "cudaMemcpy");
@@ -93,7 +93,7 @@ class lab {
   std::uint32_t* bound() const { return bound_.data(); }
   double found() const { return clearance::from_ordered(gpu.copy_out(bound_)[0]); }
 
-  /// Times `enqueue` with the bound reset before each run, and checks what it found. Returns the median.
+  /// Times `enqueue`, resetting the bound before each run, and checks its result. Returns the median.
   template <class F>
   double time(const std::string& variant, F enqueue, double reference, double tolerance = 0,
               real from = clearance::infinity) {
@@ -113,7 +113,7 @@ class lab {
     return time(variant, [&] { m.enqueue(streams, p, cloud(), bound(), nullptr); }, reference);
   }
 
-  /// What a kernel that only reads the points takes, and one that does nothing.
+  /// The times of a kernel that only reads the points, and of one that does nothing.
   void floors() {
     out.begin("floor", scene->name, points.size());
     const auto read = [&](std::size_t n) {
@@ -128,7 +128,7 @@ class lab {
     out.times("read", read(points.size() * 3 / 4));
   }
 
-  /// Counts instead: node tests, leaf tests and accepted updates of the bound, a point of the cloud.
+  /// Counts instead of timing: node tests, leaf tests and accepted updates of the bound, per point of the cloud.
   template <class Method, class Parts>
   void count(const std::string& variant, const Method& m, const Parts& p, double reference,
              real from = clearance::infinity) {
@@ -146,7 +146,7 @@ class lab {
     out.row(variant, "updates", double(all.accepted) / n);
   }
 
-  /// Ours: the prepared query, cold (nothing is known of a last frame) or warm. Returns the median.
+  /// Ours: the prepared query, cold (nothing is known about a last frame) or warm. Returns the median.
   template <class Query, class Source>
   double time_ours(const std::string& variant, Query& query, const Source& source, bool cold, double reference) {
     const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);

@@ -28,7 +28,7 @@ class moved_trees {
     }
   }
 
-  /// The same parts with their trees in the new place; filled in the order of the default stream.
+  /// The same parts with their trees in the cloud's frame; filled in the order of the default stream.
   parts_at<view> enqueue(const parts_at<view>& parts) const {
     parts_at<view> there = parts;
     for (unsigned k = 0; k < parts.count; ++k) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 // The paper's competitor with an octree over the cloud, after Pan et al. (2013): OctoMap's tree, whose leaves also hold
-// their points. Cells that are farther from the robot's trees than the bound are left out.
+// their points. It skips cells farther from the robot's trees than the bound.
 
 #if __has_include(<octomap/OccupancyOcTreeBase.h>)
 #define CLEARANCE_BENCH_OCTOMAP
@@ -33,7 +33,7 @@ class bucket_tree : public octomap::OccupancyOcTreeBase<bucket_node> {
   }
 };
 
-/// A cloud in an octree of cells of `cell` metres; coordinates have the frame's origin subtracted.
+/// A cloud in an octree with cells of `cell` metres; coordinates are relative to the frame's origin.
 template <class PartView>
 class octree {
  public:
@@ -43,14 +43,14 @@ class octree {
       if (const clearance::sample s = cloud[i]; s.valid()) tree_.insert(s.position - origin);
   }
 
-  /// The least distance, cells and children nearest first.
+  /// The least distance, visiting cells and children nearest first.
   clearance::real distance(clearance::model_view<PartView> model, const clearance::frames::cloud_frame& frame) {
     start(model, frame);
     visit(root(), [&](const bucket_node& leaf, std::uint64_t parts) { evaluate(leaf, parts); });
     return best_;
   }
 
-  /// For each part the points that may be as near as a first greedy guess: what is left to test on the GPU.
+  /// For each part the points that may be as near as a first greedy guess; the GPU tests these.
   std::vector<std::vector<clearance::vec3>> filtered(clearance::model_view<PartView> model,
                                                      const clearance::frames::cloud_frame& frame) {
     start(model, frame);
@@ -71,7 +71,7 @@ class octree {
     const bucket_node* node = nullptr;
     clearance::vec3 center = {0, 0, 0};
     real half = 0;
-    std::uint64_t parts = 0;  ///< Those that it may be near enough to.
+    std::uint64_t parts = 0;  ///< The parts that it may be near enough to.
     real lower = 0;
   };
 
@@ -83,7 +83,7 @@ class octree {
     return {tree_.getRoot(), {0, 0, 0}, real(tree_.getResolution() * 32768), ~std::uint64_t(0) >> (64 - model_.size())};
   }
 
-  /// The existing children, each with the parts that are near enough and a lower bound, nearest first.
+  /// The existing children, nearest first, each with a lower bound and the parts that are near enough.
   int children(const cell& of, std::array<cell, 8>& out) const {
     int count = 0;
     for (unsigned i = 0; i < 8; ++i) {
@@ -94,7 +94,7 @@ class octree {
              h,
              0,
              clearance::infinity};
-      const real radius = 1.7320510f * h + 1e-5f;  // and what rounding can do
+      const real radius = 1.7320510f * h + 1e-5f;  // and possible rounding
       for (std::uint64_t left = of.parts; left != 0; left &= left - 1) {
         const auto k = std::size_t(std::countr_zero(left));
         clearance::nearest ask{.within = best_ + radius};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The axes that the paper does not have: width, fit, volumes, exact triangles, layouts of points; and the headline, the
-// paper's own method on its best width over the prepared query.
+// Axes that the paper does not have: width, fit, volumes, exact triangles, layouts of points; and the headline, the
+// paper's own method at its best width over the prepared query.
 
 #include "lab.cuh"
 
@@ -15,14 +15,14 @@ namespace bench::paper {
 
 using sphere_parts = decltype(sphere_model<clearance::sphere>(std::declval<const scene&>()));
 
-/// The widths and leaf sizes that are tried.
+/// The widths and leaf sizes to try.
 inline const std::vector<clearance::build_options> shapes = {{2, 1}, {2, 4}, {4, 1}, {4, 4}, {8, 1}, {8, 4}};
 inline std::string name_of(const clearance::build_options& o) {
   return "width " + std::to_string(o.width) + " leaf " + std::to_string(o.leaf_size);
 }
 
-/// The paper's own method on every width, and ours on every width it has; the ratio of the best of the one to ours as
-/// it comes, cold. Returns the number of the paper's best.
+/// The paper's own method on every width, and ours on each of its widths. The headline is the ratio of the paper's best
+/// to our default, cold and warm. Returns the number of the paper's best.
 template <class Models>
 std::size_t headline(lab& l, const Models& models, double reference) {
   l.floors();
@@ -61,8 +61,8 @@ void volume_of(lab& l, const std::string& name, const Model& on_host) {
   l.time_ours("ours warm; " + name, query, l.cloud(), false, reference);
 }
 
-/// Volumes around inner spheres and around triangles. The paper's kernel asks no interior, so the robot must touch
-/// nothing.
+/// Volumes around inner spheres and around triangles. The paper's kernel does not ask for the interior, so the robot
+/// must touch nothing.
 inline void volumes(lab& l, const scene& robot) {
   l.out.begin("volume", l.scene->name, l.points.size());
   volume_of(l, "spheres in spheres", sphere_model<clearance::sphere>(robot));
@@ -72,7 +72,7 @@ inline void volumes(lab& l, const scene& robot) {
   volume_of(l, "triangles in obb", triangle_model<clearance::obb>(robot));
 }
 
-/// Nodes around their leaves, or around their children as in the first Inner Sphere Trees.
+/// Nodes fitted around their leaves, or around their children as in the first Inner Sphere Trees.
 inline void fits(lab& l, const scene& robot) {
   l.out.begin("fit", l.scene->name, l.points.size());
   for (const clearance::build_options options : {clearance::build_options{2, 1}, clearance::build_options{8, 4}}) {
@@ -84,7 +84,7 @@ inline void fits(lab& l, const scene& robot) {
   }
 }
 
-/// The same parts, their trees built by another rule.
+/// The same parts with trees by another split rule.
 template <class Model, class Split>
 Model rebuilt(const Model& model, Split split) {
   auto parts = model.parts();
@@ -97,7 +97,7 @@ Model rebuilt(const Model& model, Split split) {
   return Model(std::move(parts));
 }
 
-/// How nodes are split: the rules that a tree may be built by.
+/// The rules for splitting nodes when a tree is built.
 inline void splits(lab& l, const scene& robot) {
   l.out.begin("split", l.scene->name, l.points.size());
   const auto spheres = sphere_model<clearance::sphere>(robot);
@@ -113,7 +113,7 @@ inline void splits(lab& l, const scene& robot) {
   by("neural gas", clearance::neural_gas_split{});
 }
 
-/// x, y and z each in an array of its own: a point source like any other.
+/// x, y and z in separate arrays: a point source like any other.
 struct point_arrays {
   const float *x, *y, *z;
   std::size_t count;
@@ -132,7 +132,7 @@ void layout_of(lab& l, Query& query, const std::string& name, const Source& sour
   l.time_ours(name + "; warm", query, source, false, reference);
 }
 
-/// The same points as they may lie in memory; and, of one frame, the depth image that they come from.
+/// The same points in different layouts in memory; for one frame also as its depth image.
 template <class Model>
 void layouts(lab& l, const Model& on_host) {
   l.out.begin("layout", l.scene->name, l.points.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The host's part of the paper's comparison, for machines without a GPU: the competitors on the CPU over the size of
-// the cloud, and what Algorithm 1 costs in node tests. CSV, as from bench_paper_device.
+// The CPU part of the paper's comparison, for machines without a GPU: the competitors by the size of the cloud, and the
+// node tests of Algorithm 1. CSV, as from bench_paper_device.
 //
 //   bench_paper [FILE.csv [STAMP]]            with CLEARANCE_QUICK=1 a test: small clouds, exact against brute force
 #include "host_competitors.hpp"

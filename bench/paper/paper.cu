@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The design space of Kaluschke et al. (2014) on today's GPU, beside this library: every axis, on both of the paper's
-// scenarios, as CSV. All variants must find the minimum that min_distance finds, else the exit code is 1.
+// The design space of Kaluschke et al. (2014) on today's GPU, compared with this library: every axis, on both of the
+// paper's scenarios, as CSV. All variants must find the minimum of min_distance, otherwise the exit code is 1.
 //
-//   bench_paper_device [FILE.csv [STAMP]]     scripts/paper runs it, and draws what it writes; with CLEARANCE_QUICK=1 a
-//   test:
-//                                             small clouds, exact against brute force
+//   bench_paper_device [FILE.csv [STAMP]]     scripts/paper runs it, and draws the results
+//   CLEARANCE_QUICK=1 makes it a test: small clouds, exact against brute force
 #include "axes.cuh"
 #include "competitors.cuh"
 #include "ours.cuh"
@@ -35,7 +34,7 @@ void explore(lab& l, const bench::scene& robot, const scenario& s) {
     models.push_back(on_host.back().on(l.gpu));
   }
 
-  // The headline's sizes first: they say which width is the paper's best.
+  // The headline's sizes first, because they determine the paper's best width.
   const std::vector<std::size_t> one = {quick_points}, most = {5'000'000, 307'200};
   std::size_t best = 0;
   for (const std::size_t n : quick ? one : most) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The axes of the paper's kernel that are compiled in: who shares the bound, how a tree is walked by a group of lanes,
-// and how point and tree come into one frame.
+// The compiled axes of the paper's kernel: who shares the bound, how a group of lanes walks a tree, and how point and
+// tree get into one frame.
 
 #include "bounds.hpp"
 
@@ -11,7 +11,7 @@
 
 namespace bench::paper {
 
-/// A part's tree and where it stands in the cloud's frame.
+/// A part's tree and its place in the cloud's frame.
 template <class View>
 struct part_at {
   View tree;
@@ -22,13 +22,13 @@ struct part_at {
 // --- Sharing ------------------------------------------------------------------------------------------------------
 
 struct shared_by_nobody {};
-struct shared_by_block {};  ///< The paper's section 4.3: each block a minimum in shared memory, joined at the end.
+struct shared_by_block {};  ///< The paper's section 4.3: a minimum per block in shared memory, joined at the end.
 struct shared_by_all {};    ///< The paper's Algorithm 3.
 
 // --- Traversals: the library's, and one for groups of eight lanes ---------------------------------------------------
 
-/// Eight lanes take one point down one tree: each tests a child, or a primitive of a leaf; nearest child first. All
-/// lanes of a group call together. What is pending lies in dynamic shared memory, 64 entries a group.
+/// Eight lanes walk one tree with one point: each tests a child, or a primitive of a leaf; nearest child first. All
+/// lanes of a group must call this together. Pending nodes are in dynamic shared memory, 64 entries per group.
 struct cooperative {
   static constexpr unsigned lanes = 8;
   static constexpr unsigned entries = 64;
@@ -63,7 +63,7 @@ struct cooperative {
         real bound = clearance::infinity;
         if (lane < size) bound = traits::lower_bound(tree.volume(tree.child(top.node, lane)), p);
         const bool passes = lane < size && bound <= reach;
-        unsigned at = count;  // and one for each that passes and is farther
+        unsigned at = count;  // one slot for each that passes and is farther
         for (unsigned k = 0; k < lanes; ++k) {
           const real other = __shfl_sync(group, passes ? bound : -clearance::infinity, k, lanes);
           at += other > bound || (other == bound && k > lane);
@@ -85,8 +85,7 @@ constexpr unsigned lanes_of() {
     return 1;
 }
 
-// --- Transforms
-// -------------------------------------------------------------------------------------------------------
+// --- Transforms ----------------------------------------------------------------------------------------------------
 
 /// The paper's choice: each point into each part's frame.
 struct points_into_parts {
@@ -96,7 +95,7 @@ struct points_into_parts {
   }
 };
 
-/// Ours: a ball around the part in the cloud's frame first, and only survivors into the part's frame.
+/// Ours: first a ball around the part in the cloud's frame; only survivors go into the part's frame.
 struct survivors_into_parts {
   template <class View, class F>
   static CLEARANCE_HD void meet(const part_at<View>& part, clearance::vec3 p, real reach, F walk) {
@@ -105,7 +104,7 @@ struct survivors_into_parts {
   }
 };
 
-/// The tree was moved into the cloud's frame before (moved.cuh).
+/// The tree has been moved into the cloud's frame before (moved.cuh).
 struct trees_beforehand {
   template <class View, class F>
   static CLEARANCE_HD void meet(const part_at<View>& part, clearance::vec3 p, real, F walk) {
@@ -113,16 +112,16 @@ struct trees_beforehand {
   }
 };
 
-/// A volume and a primitive of a part, as they stand in the cloud's frame.
+/// A volume and a primitive of a part, in the cloud's frame.
 CLEARANCE_HD inline clearance::sphere moved(const clearance::rigid_transform& t, const clearance::sphere& s) {
-  return {t(s.center), s.radius + 1e-6f};  // more than the float transform can be off within a few metres
+  return {t(s.center), s.radius + 1e-6f};  // the float transform's error is smaller within a few metres
 }
 CLEARANCE_HD inline clearance::inner_sphere moved(const clearance::rigid_transform& t,
                                                   const clearance::inner_sphere& s) {
   return {t(s.center), s.radius};
 }
 
-/// What the paper calls extremely inefficient: each volume that is looked at is moved to the point.
+/// What the paper calls extremely inefficient: moves each volume that is read to the point's frame.
 struct volumes_in_walk {
   template <class H>
   struct moving : H {

@@ -12,12 +12,12 @@
 
 namespace bench::paper {
 
-/// Small clouds and few runs, each against a plain loop over all points and primitives: to see that all is right
-/// (CLEARANCE_QUICK=1).
+/// A check that everything is right (CLEARANCE_QUICK=1): small clouds and few runs, each compared with a plain loop
+/// over all points and primitives.
 inline const bool quick = std::getenv("CLEARANCE_QUICK") != nullptr;
 inline constexpr std::size_t quick_points = 5'003;
 
-/// The CSV, one value a line: axis, scene, points, x (where the axis has one), variant, metric, value.
+/// The CSV, one value per line: axis, scene, points, x (if the axis has one), variant, metric, value.
 class report {
  public:
   report(const char* path, const std::string& stamp) : file_(path == nullptr ? stdout : std::fopen(path, "w")) {
@@ -38,7 +38,7 @@ class report {
                  metric, value);
     std::fflush(file_);
   }
-  /// Median, and the 10th and 90th percentile.
+  /// Median, 10th and 90th percentile.
   void times(const std::string& variant, std::vector<double> microseconds) {
     std::sort(microseconds.begin(), microseconds.end());
     const auto at = [&](double part) {
@@ -49,7 +49,7 @@ class report {
     row(variant, "us_p90", at(0.9));
   }
 
-  /// Every variant must give the minimum that min_distance gives, to the bit unless a tolerance is said.
+  /// Every variant must give the minimum of min_distance, to the bit unless there is a tolerance.
   void expect(const std::string& variant, double distance, double reference, double tolerance = 0) {
     if (std::abs(distance - reference) <= tolerance) return;
     std::fprintf(stderr, "WRONG: %s, %s, %zu points, %s: %.9g instead of %.9g\n", axis_.c_str(), scene_.c_str(),
@@ -66,8 +66,8 @@ class report {
   int faults_ = 0;
 };
 
-/// Runs `once` (which returns microseconds) for about `budget` seconds, at least `least` times, at most 300; and for a
-/// third of that before, uncounted, so that clocks and caches have settled.
+/// Runs `once` (which returns microseconds) for about `budget` seconds, at least `least` and at most 300 times. Before
+/// that, a third as long uncounted, so that clocks and caches settle.
 template <class F>
 std::vector<double> repeat(F once, double budget, int least = 3) {
   for (double spent = 0; spent < budget / 3 * 1e6;) spent += once();

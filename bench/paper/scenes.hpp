@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The paper's two scenarios (its section 5), and a recorded motion of all seven joints in each: the robot before a
-// table that a Kinect has seen, clouds merged to a larger one; and an artificial room whose points are far away and
-// evenly spread.
+// The paper's two scenarios (its section 5), with a recorded motion of all seven joints in each: the robot in front of
+// a table that a Kinect saw, clouds merged to a larger one; and an artificial room with far, evenly spread points.
 
 #include "../min_distance/scene.hpp"
 
@@ -20,14 +19,13 @@ struct scenario {
   Eigen::Isometry3d world_from_cloud = Eigen::Isometry3d::Identity();
   std::vector<std::size_t> sizes = {};
   std::size_t along_motion = 600'000;
-  double cell = 0.05;  ///< Metres, of the octree: the best of those tried.
+  double cell = 0.05;  ///< The octree's, in metres: the best of those tried.
   std::function<std::vector<clearance::vec3>(std::size_t)> points = {};
   std::function<std::vector<Eigen::Isometry3d>(double)> poses =
       {};  ///< 0 <= t <= 1 along the motion; the paper's scene is at 0.
 };
 
-/// All recorded frames, one after another. Fewer points: an even choice from the first. More: again, with 2 mm of
-/// noise.
+/// All recorded frames in turn. For fewer points, an even choice from the first; for more, repeats with 2 mm of noise.
 inline std::vector<clearance::vec3> merged(const std::vector<clearance::vec3>& frames, std::size_t one_frame,
                                            std::size_t count) {
   std::vector<clearance::vec3> points;
@@ -45,8 +43,8 @@ inline std::vector<clearance::vec3> merged(const std::vector<clearance::vec3>& f
   return points;
 }
 
-/// A room of 9 x 8 x 5.3 m around the robot, which stands on a column, with cupboards along its walls: every surface
-/// covered by an even sequence, one surface after another.
+/// A room of 9 x 8 x 5.3 m around the robot, which stands on a column, with cupboards along the walls. An even sequence
+/// covers one surface after another.
 inline std::vector<clearance::vec3> room(std::size_t count) {
   struct patch {
     Eigen::Vector3d corner, a, b;
@@ -83,19 +81,19 @@ inline std::vector<clearance::vec3> room(std::size_t count) {
   return points;
 }
 
-/// The whole robot carried along, as by the paper's mobile platform.
+/// The whole robot carried along, as on the paper's mobile platform.
 inline std::vector<Eigen::Isometry3d> carried(const std::vector<Eigen::Isometry3d>& poses, Eigen::Vector3d by) {
   std::vector<Eigen::Isometry3d> moved;
   for (const auto& pose : poses) moved.push_back(Eigen::Translation3d(by) * pose);
   return moved;
 }
 
-/// The path of path.csv, which make-path made: seconds, and the angle of each joint.
+/// The path in path.csv, made by make-path: seconds, and the angle of each joint.
 inline constexpr std::array<double, 8> path[] = {
 #include "path.inc"
 };
 
-/// Poses of the arm along the path, or nothing of another robot.
+/// Poses of the arm along the path, or nothing for another robot.
 inline std::function<std::vector<Eigen::Isometry3d>(double)> along_path(const scene& robot) {
   if (robot.name != "kuka") return {};
   const auto arm = std::make_shared<const clearance::io::robot>(clearance::io::load_robot(
@@ -121,14 +119,14 @@ inline std::vector<scenario> scenarios(const scene& robot) {
                  .cell = 0.03};
   table.points = [frames, one = robot.cloud.size()](std::size_t n) { return merged(frames, one, n); };
   table.poses = along_path(robot);
-  if (!table.poses)  // a robot without a path: back from the table and up, and down to it again
+  if (!table.poses)  // a robot without a path: up and away from the table, and down again
     table.poses = [start = robot.poses](double t) {
       const double away = 0.5 - 0.5 * std::cos(2 * 3.14159265358979 * t);
       return carried(start, {-1.2 * away, 0.2 * away, 0.5 * away});
     };
   scenario hall{.name = "room", .sizes = {307'200, 1'000'000, 2'500'000, 5'000'000}, .cell = 0.1};
   hall.points = room;
-  // Its platform drives towards the wall, while the arm moves.
+  // Its platform drives towards the wall while the arm moves.
   hall.poses = [start = robot.poses, arm = along_path(robot)](double t) {
     return carried(arm ? arm(t) : start, {1.6 + 1.8 * t, 0.6 * t, 0});
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The paper's competitor on the CPU: Algorithm 1, one part after another, one point after another, one bound.
+// The paper's competitor on the CPU: Algorithm 1, part by part, point by point, one bound.
 
 #include "bounds.hpp"
 
@@ -33,7 +33,7 @@ real sequential(clearance::model_view<PartView> model, const clearance::frames::
   return bound.best;
 }
 
-/// Every point against every primitive: what nobody's tree and nobody's bound can change.
+/// Compares every point with every primitive, without tree or bound.
 template <class Model, clearance::point_source Source>
 real brute_force(const Model& model, const clearance::frames::cloud_frame& frame, const Source& cloud) {
   real least = clearance::infinity;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The competitor of the paper's Fig. 9, Algorithm 1 on a CPU "hand optimized to support modern SIMD", as it is written
-// today for AVX2 and FMA: eight points against a volume, one point against eight children, or both, each where it
-// suits. Vectors compute bounds alone, which `slack` makes conservative; what is within reach is asked by the library's
-// own formula, so that all bits are right.
+// The competitor in the paper's Fig. 9, Algorithm 1 on a CPU "hand optimized to support modern SIMD", as one would
+// write it today for AVX2 and FMA: eight points at a volume, one point at eight children, or each where it suits.
+// Vectors only compute bounds, which `slack` makes conservative. For what is within reach the library's formula is
+// used, so all bits are right.
 
 #include "bounds.hpp"
 
@@ -25,7 +25,7 @@ namespace bench::paper {
 
 using clearance::vec3;
 
-/// What all threads share.
+/// The bound that all threads share.
 class shared_least {
  public:
   real reach() const { return least_.load(std::memory_order_relaxed); }
@@ -52,7 +52,7 @@ struct eight {
 inline eight splat(vec3 p) { return {_mm256_set1_ps(p.x), _mm256_set1_ps(p.y), _mm256_set1_ps(p.z)}; }
 inline eight operator-(const eight& a, const eight& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 
-/// 24 floats, x y z by turns, taken apart by shuffles.
+/// 24 floats (x y z, x y z, ...), separated by shuffles.
 inline eight load_eight(const real* f) {
   const auto halves = [](const real* low, const real* high) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(low)), _mm_loadu_ps(high), 1);
@@ -63,7 +63,7 @@ inline eight load_eight(const real* f) {
   return {_mm256_shuffle_ps(a, xy, _MM_SHUFFLE(2, 0, 3, 0)), _mm256_shuffle_ps(yz, xy, _MM_SHUFFLE(3, 1, 2, 0)),
           _mm256_shuffle_ps(yz, c, _MM_SHUFFLE(3, 0, 3, 1))};
 }
-/// Points 8n .. 8n + 7, NaN beyond the last.
+/// Points 8n .. 8n + 7; NaN beyond the last.
 inline eight load_eight(const clearance::point_span& cloud, std::size_t n) {
   const auto* from = reinterpret_cast<const real*>(cloud.points) + 24 * n;
   if (8 * n + 8 <= cloud.size()) return load_eight(from);
@@ -73,7 +73,7 @@ inline eight load_eight(const clearance::point_span& cloud, std::size_t n) {
   return load_eight(few);
 }
 
-/// As rigid_transform does it, and with its bits.
+/// The same as rigid_transform, to the bit.
 inline eight transformed(const clearance::rigid_transform& t, const eight& p) {
   const auto row = [&](vec3 r, real at) {
     return _mm256_fmadd_ps(
@@ -85,11 +85,11 @@ inline eight transformed(const clearance::rigid_transform& t, const eight& p) {
 
 inline __m256 square(const eight& d) { return _mm256_fmadd_ps(d.x, d.x, _mm256_fmadd_ps(d.y, d.y, d.z * d.z)); }
 
-/// No distance to what is in these balls is less.
+/// No distance to the contents of these balls is less.
 inline __m256 lower_bounds(const eight& way, __m256 radius) {
   return _mm256_fmsub_ps(_mm256_sqrt_ps(square(way)), _mm256_set1_ps(1 - clearance::slack), radius);
 }
-/// The lanes that are not above; NaN is.
+/// The lanes that are not above `reach`; NaN counts as above.
 inline unsigned within(__m256 bounds, real reach) {
   return unsigned(_mm256_movemask_ps(_mm256_cmp_ps(bounds, _mm256_set1_ps(reach), _CMP_LE_OQ)));
 }
@@ -98,13 +98,13 @@ void for_lanes(unsigned lanes, F f) {
   for (; lanes != 0; lanes &= lanes - 1) f(std::countr_zero(lanes));
 }
 inline real least_of(__m256 bounds) {
-  const __m256 numbers = _mm256_min_ps(bounds, _mm256_set1_ps(clearance::infinity));  // which takes the second for NaN
+  const __m256 numbers = _mm256_min_ps(bounds, _mm256_set1_ps(clearance::infinity));  // takes the second for NaN
   __m128 m = _mm_min_ps(_mm256_castps256_ps128(numbers), _mm256_extractf128_ps(numbers, 1));
   m = _mm_min_ps(m, _mm_movehl_ps(m, m));
   return _mm_cvtss_f32(_mm_min_ss(m, _mm_movehdup_ps(m)));
 }
 
-/// Eight points down one tree together, near children first.
+/// Walks one tree with eight points together, near children first.
 template <class Tree>
 void walk_together(const Tree& tree, const eight& p, shared_least& best) {
   using entry = clearance::near_first::entry_of<Tree>;
@@ -132,7 +132,7 @@ void walk_together(const Tree& tree, const eight& p, shared_least& best) {
   }
 }
 
-/// What is below each node of a tree of up to eight children and primitives, so that one load has it.
+/// The contents of each node of a tree of up to eight children and primitives, so that one load gets all.
 template <class Tree>
 class wide_tree {
  public:
@@ -147,7 +147,7 @@ class wide_tree {
     }
   }
 
-  /// One point, whose root was asked.
+  /// One point; the root has been tested.
   void walk(vec3 p, shared_least& best) const {
     using entry = clearance::near_first::entry_of<Tree>;
     const eight point = splat(p);
@@ -179,7 +179,7 @@ class wide_tree {
   struct alignas(32) balls {
     real x[8] = {}, y[8] = {}, z[8] = {}, radius[8];
 
-    balls() { std::fill(radius, radius + 8, -clearance::infinity); }  // nothing: infinitely far
+    balls() { std::fill(radius, radius + 8, -clearance::infinity); }  // empty: infinitely far
     void put(std::uint32_t k, const auto& ball) {
       x[k] = ball.center.x, y[k] = ball.center.y, z[k] = ball.center.z, radius[k] = ball.radius;
     }
@@ -189,7 +189,7 @@ class wide_tree {
   std::vector<balls> below_;
 };
 
-/// Algorithm 1, eight points of the cloud at once.
+/// Algorithm 1 with eight points of the cloud at once.
 template <class PartView>
 real eight_points(const clearance::host& cpu, clearance::model_view<PartView> model,
                   const clearance::frames::cloud_frame& frame, const clearance::point_span& cloud) {
@@ -213,7 +213,7 @@ wide_trees<PartView> make_wide_trees(clearance::model_view<PartView> model) {
   return trees;
 }
 
-/// Algorithm 1, eight children at once.
+/// Algorithm 1 with eight children at once.
 template <class PartView>
 real eight_children(const clearance::host& cpu, clearance::model_view<PartView> model,
                     const wide_trees<PartView>& trees, const clearance::frames::cloud_frame& frame,
@@ -229,8 +229,7 @@ real eight_children(const clearance::host& cpu, clearance::model_view<PartView> 
   return best.reach();
 }
 
-/// Eight points against the ball of each part, where the cloud is; those that are left, one by one, against eight
-/// children.
+/// Eight points at the ball of each part, in the cloud's frame; survivors one by one at eight children.
 template <class PartView>
 real eight_of_each(const clearance::host& cpu, clearance::model_view<PartView> model, const wide_trees<PartView>& trees,
                    const clearance::frames::cloud_frame& frame, const clearance::point_span& cloud) {

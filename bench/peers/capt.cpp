@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // VAMP's CAPT on the same frame: is any sphere of a robot within a margin of any point, for 1,000 random
-// configurations? That is a boolean; ours says how near those are, and at which point of which part. CAPT is made for
-// each frame, for radii up to the robot's largest; VAMP thins clouds before. `hits` is how many each finds, `missed`
-// how many CAPT calls free though a point is within by more than rounding.
+// configurations? It answers yes or no; ours says how near, and at which point of which part. CAPT is built for each
+// frame, for radii up to the robot's largest; VAMP thins clouds before. `hits` is how many each finds; `missed` is how
+// many CAPT calls free although a point is within the margin by more than rounding.
 #include "min_distance/configurations.hpp"
 
 #include <clearance/min_distances.hpp>
@@ -21,7 +21,7 @@ using vamp::collision::CAPT;
 
 constexpr std::size_t configurations = 1000;
 
-/// `count` spheres a link: 40 or 2,048.
+/// `count` spheres per link: 40 or 2,048.
 const std::vector<clearance::packing>& packings(std::int64_t count) {
   static const auto few = clearance::pack(bench::the_scene().meshes, {.count = 40});
   return count == 40 ? few : bench::the_scene().packings;
@@ -31,7 +31,7 @@ const std::vector<Eigen::Isometry3d>& poses() {
   return all;
 }
 
-/// The links' spheres as the peer wants them, a vector of each coordinate, and what it has to know of all radii.
+/// The links' spheres as the peer needs them: a vector per coordinate, and the facts about all radii.
 class sphere_robot {
  public:
   sphere_robot(const std::vector<clearance::packing>& all, float margin) {
@@ -41,7 +41,7 @@ class sphere_robot {
         std::array<std::array<float, lanes::num_scalars>, 4> rows;
         for (std::size_t lane = 0; lane < lanes::num_scalars; ++lane) {
           const auto& s =
-              packing.spheres[std::min(k + lane, packing.spheres.size() - 1)];  // the last fills what is left
+              packing.spheres[std::min(k + lane, packing.spheres.size() - 1)];  // the last one fills up the vector
           rows[0][lane] = s.center.x, rows[1][lane] = s.center.y, rows[2][lane] = s.center.z,
           rows[3][lane] = s.radius + margin;
           largest = std::max(largest, s.radius + margin), least = std::min(least, s.radius + margin);
@@ -70,7 +70,7 @@ class sphere_robot {
   std::vector<std::vector<eight>> links_;
 };
 
-/// What a row asks.
+/// The question of a row.
 struct question {
   explicit question(const benchmark::State& state)
       : packings(::packings(state.range(0))),
@@ -78,7 +78,7 @@ struct question {
         apart(1e-3f * float(state.range(2))),
         threads(unsigned(state.range(3))) {}
   const std::vector<clearance::packing>& packings;
-  float margin, apart;  ///< Metres. Points nearer to one another than `apart` are thinned, before either is asked.
+  float margin, apart;  ///< Metres. Of points closer together than `apart` some are dropped, before either is asked.
   unsigned threads;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Embree's point query on the same frame, one thread: every point by itself, with the bound handed from point to point,
-// and with a seed from a sample before that. Embree has neither; they are what it costs to add them by hand.
+// Embree's point query on the same frame, one thread: every point by itself, with the bound passed from point to point,
+// and with a seed from a sample before that. Embree has neither; these show the cost of adding them by hand.
 #include "peers/ours.hpp"
 
 #include <embree3/rtcore.h>

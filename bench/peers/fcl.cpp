@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// FCL on the same frame. Exact: trees of the links' meshes against a dynamic tree of spheres of radius 0, its way to
-// ask for a cloud; the tree is of the frame, so it is made for each. Approximate: the links against an octree of the
-// cloud.
+// FCL on the same frame. Exact: trees of the links' meshes and a dynamic tree of spheres of radius 0, FCL's way to
+// query a cloud; that tree is made for each frame. Approximate: the links and an octree of the cloud.
 #include "peers/ours.hpp"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
@@ -49,7 +48,7 @@ class stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// The least distance from the robot to a manager or an object; the time is added to `query`.
+/// The least distance from the robot to a manager or an object; adds the time to `query`.
 template <class Cloud>
 double least(links& all, Cloud* cloud, double& query) {
   fcl::DefaultDistanceData<double> data;
@@ -85,7 +84,7 @@ void fcl_exact(benchmark::State& state) {
   say(state, distance, query);
 }
 
-/// Cells of 1 cm: short of the distance by up to half a cell's diagonal.
+/// Cells of 1 cm: too short by up to half a cell's diagonal.
 void fcl_octree(benchmark::State& state) {
   links all;
   double distance = 0, query = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Ours beside each peer, in the same run: the exact distance of one frame to all triangles, one thread.
+// Ours, to compare with each peer in the same run: the exact distance of one frame to all triangles, one thread.
 
 #include "min_distance/scene_files.hpp"
 
@@ -24,7 +24,7 @@ inline void ours(benchmark::State& state, bool cold) {
   }
   state.counters["distance_mm"] = r.distance * 1e3;
 }
-/// Every point's own distance, not only the least.
+/// Every point's own distance, not just the least.
 inline void ours_every_point(benchmark::State& state) {
   const auto model = bench::triangle_model<clearance::aabb>(scene());
   const clearance::placed<clearance::point_span> cloud{scene().cloud, scene().world_from_camera};

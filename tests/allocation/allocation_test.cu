@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// After its first calls a prepared question asks nobody for memory: every way to get some is counted, in the process
-// and on the device, and so is every wait of the driver's.
+// After its first calls a prepared question allocates nothing. Every way to get memory is counted, in the process and
+// on the device, and so is every wait by the driver.
 // wraps: cudaMalloc cudaMallocAsync cudaMallocHost cudaHostAlloc cudaMallocManaged cudaMallocFromPoolAsync cudaFree cudaFreeAsync
 // wraps: cudaDeviceSynchronize cudaStreamSynchronize _Znwm
 #include "support/product_device.cuh"

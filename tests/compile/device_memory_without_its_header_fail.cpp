@@ -5,7 +5,7 @@
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
-// As clearance::device is, so that a compiler without CUDA can be asked, too.
+// Like clearance::device, so that this also works with a compiler without CUDA.
 struct card : clearance::host {
   using own_scan = void;
 };

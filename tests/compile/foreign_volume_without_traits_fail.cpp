@@ -2,7 +2,7 @@
 // expected-error: a bounding volume V needs: static V fit(std::span<const ball>), as a member or in bounding_volume_traits<V>
 #include <clearance/concepts.hpp>
 
-// Somebody else's, that nobody has taught to the library yet.
+// A foreign volume that has not been taught to the library yet.
 struct their_box {
   float lower[3], upper[3];
 };

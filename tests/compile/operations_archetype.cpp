@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The least that a point source and an answer must offer to the operations, and the least part; and a backend that is
-// not ours.
+// The least that a point source, an answer and a part must offer to the operations; and a foreign backend.
 #include <clearance/backend/host.hpp>
 #include <clearance/bvh/build.hpp>
 #include <clearance/collect.hpp>

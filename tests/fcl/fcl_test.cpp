@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A second opinion from FCL, through those of its paths that are exact: radius-0 spheres against sphere shapes, point
-// by point and through its broad phase, and BVHModel<OBBRSS> of a mesh against one of points written as degenerate
-// triangles.
+// A second opinion from FCL, by those of its functions that are exact: spheres of radius 0 against sphere shapes, point
+// by point and by its broad phase; and BVHModel<OBBRSS> of a mesh against one of points as degenerate triangles.
 #include "support/brute_force.hpp"
 #include "support/scenes.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Damages a document in every way of a family, one at a time, and says what may come of it.
+// Damages a document in every way of a family, one at a time, and says which outcomes are allowed.
 
 #include "io/robot_folder.hpp"
 #include "support/catch.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a distance changes with joints: against differences through link_poses and distances that are asked anew.
+// How a distance changes with joints, compared with differences of distances that are asked anew at link_poses.
 #include "io/random_tree.hpp"
 #include "io/robot_folder.hpp"
 #include "support/laws.hpp"

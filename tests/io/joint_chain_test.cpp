@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Joint chains: the poses of link_poses, for many configurations, and refusals that say whose.
+// Joint chains give the poses of link_poses for many configurations, and their errors name the culprit.
 #include "io/random_tree.hpp"
 #include "support/laws.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Motions by joints: how far points of links get, and the clearance over the way, against dense samples.
+// Motions by joints: how far a link's points get, and the clearance on the way, compared with dense samples.
 #include "io/random_tree.hpp"
 #include "io/robot_folder.hpp"
 #include "support/laws.hpp"

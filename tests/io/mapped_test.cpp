@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clouds in mapped files have the answer of the same points in memory; what is wrong with a file is said in a sentence.
+// Clouds in mapped files give the same answer as their points in memory; a bad file is reported in a sentence.
 // wraps: madvise
 #include "scratch_file.hpp"
 #include "support/catch.hpp"

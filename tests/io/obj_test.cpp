@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an OBJ file's statements are, and which of them bring geometry.
+// The statements of an OBJ file, and which of them contain geometry.
 #include "io/robot_folder.hpp"
 #include "support/catch.hpp"
 

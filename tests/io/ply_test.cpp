@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PLY files made by a generator: every type, format and order, against the values that they were made of.
+// PLY files from a generator: every type, format and order, compared with the values they were made from.
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
 

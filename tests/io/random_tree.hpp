@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Trees of joints of every kind, some of which follow others.
+// Random trees with joints of every kind, some of which follow others.
 
 #include "support/random.hpp"
 

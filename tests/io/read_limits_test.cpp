@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a small compressed file may become.
+// How large a small compressed file may become.
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
 #include "tools/small_png.hpp"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-/// A folder of small files that is gone with the object.
+/// A folder of small files that is deleted with the object.
 struct robot_folder {
   std::filesystem::path path;
 

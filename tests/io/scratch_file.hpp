@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-/// A file that is gone with the object.
+/// A file that is deleted with the object.
 struct scratch_file {
   std::string path;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every text format, with every line end, from the same lines: the same content, the same line in a refusal.
+// Every text format with every line end, from the same lines: the content and the line in an error are the same.
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file that is being written has no name before it is whole.
+// A file has no name until it is completely written.
 #include "io/robot_folder.hpp"
 #include "support/catch.hpp"
 

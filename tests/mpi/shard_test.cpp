@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// As many ranks as mpirun starts say together, each of them, what one process says, in every bit.
+// With any number of ranks, each rank gets the answer of one process, in every bit.
 #include "support/product.hpp"
 #include "support/same_result.hpp"
 

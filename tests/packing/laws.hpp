@@ -9,7 +9,7 @@
 
 #include <random>
 
-/// What holds for every packing, whoever made it.
+/// Checks what holds for every packing, whoever made it.
 namespace packing_laws {
 
 using namespace clearance;

@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-/// What every packer must do, on whatever machine and in whatever order: `pack(mesh, options)` is one.
+/// Checks what every packer must do, on any machine and in any order: `pack(mesh, options)` is one.
 namespace packer_laws {
 
 using namespace packing_laws;

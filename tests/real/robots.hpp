@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Robots and depth frames as they come, from the data folder.
+// Robots and depth frames as found, from the data folder.
 
 #include "support/laws.hpp"
 #include "support/scenes.hpp"

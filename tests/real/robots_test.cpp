@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Real robots before real frames: both models and all volumes must agree within the bracket.
+// Real robots and real frames: both models and all volumes must agree within the bracket.
 #include "real/robots.hpp"
 #include "support/brute_force.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// So many points that a device reads them a round ahead, from every kind of source that fetches: the host's result in
+// With so many points that a device reads a round ahead, every kind of source that fetches gives the host's result in
 // every bit.
 #include "support/product_device.cuh"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a caller's streams, devices and memory may rely on.
+// What callers may rely on with their own streams, devices and memory.
 #include "support/held_stream.cuh"
 #include "support/linked_tree.hpp"
 #include "support/product_device.cuh"

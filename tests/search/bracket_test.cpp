@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is certain: lower, upper and state; and points inside triangle parts.
+// Certain facts: lower, upper and state; and points inside triangle parts.
 #include "support/brute_force.hpp"
 #include "support/scenes.hpp"
 

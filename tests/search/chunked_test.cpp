@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cloud that is read in chunks has the answer of the cloud in memory, in every bit, whatever it skips.
+// A cloud that is read in chunks gives the answer of the cloud in memory, in every bit, whatever is skipped.
 #include "support/chunked.hpp"
 #include "support/product.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clouds in chunks on a device: the host's answer about the whole, in every bit, wherever the points are and whatever
-// is skipped.
+// Clouds in chunks on a device give the host's answer about the whole cloud, in every bit, wherever the points are and
+// whatever is skipped.
 #include "support/chunked.hpp"
 #include "support/product_device.cuh"
 

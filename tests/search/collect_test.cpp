@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every pair within reach comes to an answer once: all points against all primitives, in every bit.
+// An answer gets every pair within reach once, as all points with all primitives say, in every bit.
 #include "support/product.hpp"
 #include "support/tallied.hpp"
 

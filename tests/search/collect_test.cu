@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The device gives an answer the pairs that the host gives it.
+// The device gives an answer the same pairs as the host.
 #include "support/product_device.cuh"
 #include "support/tallied.hpp"
 

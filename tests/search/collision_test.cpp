@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a point is within a margin, and which is the first, as all points and primitives say.
+// Is a point within a margin, and which is the first? As a loop over all points and primitives says.
 #include "support/brute_distances.hpp"
 #include "support/frames.hpp"
 

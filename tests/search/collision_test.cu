@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// On a device the point within a margin is the host's.
+// On a device, the point within a margin is the host's.
 #include "support/brute_pairs.hpp"
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is left of a cloud are its valid points, in their order.
+// A compacted cloud has the valid points of the cloud, in their order.
 #include "support/catch.hpp"
 #include "support/compacts.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// On a device what is left of a cloud is the host's, and goes into a graph.
+// On a device, a compacted cloud is the host's, and can be captured in a graph.
 #include "support/catch.hpp"
 #include "support/compacts.hpp"
 #include "support/held_stream.cuh"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several devices say together what the host says, in every bit. One GPU is named more than once, and so is several of
-// them; where there are two, both are asked, and the second alone.
+// Several devices together give the host's answer, in every bit. One GPU is named more than once, as are several of
+// them; if there are two, both are asked, and the second alone.
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"
 

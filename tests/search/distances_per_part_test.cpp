@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every part's distance to every point is that of a plain loop, and the least of them is the point's.
+// Every part's distance to every point is that of a plain loop, and the least of them is the point's distance.
 #include "support/brute_per_part.hpp"
 #include "support/frames.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a prepared question remembers changes no bit of what it says: cold, warm, moved, and after other clouds.
+// What a prepared question remembers changes no bit of its answer: cold, warm, moved, and after other clouds.
 #include "support/brute_distances.hpp"
 #include "support/product_device.cuh"
 

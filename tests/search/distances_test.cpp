@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every point's distance is that of all primitives of all parts, in every bit, with its part and primitive.
+// Every point's distance is the least over all primitives of all parts, in every bit, with its part and primitive.
 #include "support/brute_distances.hpp"
 #include "support/volumes.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Packets of points say on a device what every point says alone on the host, and both what brute force says.
+// Packets of points on a device give what each point alone gives on the host; both give what brute force gives.
 #include "support/brute_distances.hpp"
 #include "support/product_device.cuh"
 

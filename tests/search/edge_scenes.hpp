@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Robots and clouds of extreme numbers: of parts, of spheres in one part, of points, of metres between them.
+// Robots and clouds of extreme numbers: parts, spheres in one part, points, metres between them.
 
 #include "support/product.hpp"
 

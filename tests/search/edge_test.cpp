@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Extreme numbers on the host: brute force in every bit, the truth within the bracket.
+// Extreme numbers on the host: the answer of brute force in every bit, and the truth within the bracket.
 #include "search/edge_scenes.hpp"
 #include "support/product.hpp"
 

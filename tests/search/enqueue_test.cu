@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever is enqueued returns while its stream is held, and can be captured; several clouds too.
+// Everything enqueued returns while its stream is held, and can be captured; also with several clouds.
 #include "support/brute_distances.hpp"
 #include "support/brute_zones.hpp"
 #include "support/held_stream.cuh"

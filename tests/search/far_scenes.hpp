@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Robots before clouds most of whose points are far away, in every kind of source, and the truth in long double.
+// Robots and clouds with most points far away, in every kind of source, and the truth in long double.
 
 #include "support/laws.hpp"
 

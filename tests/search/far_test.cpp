@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bracket is true wherever most points, the origin of their floats, or the poses are.
+// The bracket is true wherever most points are, and the origin of their floats, and the poses.
 #include "search/far_scenes.hpp"
 
 #include <clearance/in_collision.hpp>

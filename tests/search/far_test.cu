@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// On a device the bracket is true wherever most points, the origin of their floats, or the poses are: plain, prepared,
-// by parts, of several clouds, and with poses in device memory.
+// On a device the bracket is true wherever most points are, and the origin of their floats, and the poses: plain,
+// prepared, by parts, for several clouds, and with poses in device memory.
 #pragma nv_diag_suppress 20208  // the truth is in long double, on the host
 #include "search/far_scenes.hpp"
 #include "support/product_device.cuh"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trees that are not ours in the kernel of a scan: linked, flat, deeper and wider than its stacks. They say what brute
-// force and the host say, in every bit, and so do more parts than a kernel takes.
+// Foreign trees in the kernel of a scan: linked, flat, deeper and wider than its stacks. They give the answer of brute
+// force and of the host, in every bit, and so do more parts than a kernel takes.
 #include "support/brute_distances.hpp"
 #include "support/linked_tree.hpp"
 #include "support/product_device.cuh"

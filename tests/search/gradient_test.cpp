@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a distance changes as parts move: against differences of distances that are asked anew.
+// How a distance changes as parts move, compared with differences of distances that are asked anew.
 #include "support/brute_pairs.hpp"
 #include "support/product.hpp"
 #include "support/same_result.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Joint vectors become the same poses on a device as on the host, to the bit: so do the answers about them.
+// Joint vectors give the same poses on a device as on the host, to the bit, and so the same answers.
 #include "io/random_tree.hpp"
 #include "support/same_result.hpp"
 #include "support/scenes.hpp"

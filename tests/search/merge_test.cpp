@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Answers about the pieces of a cloud, and about clouds apart, become the answer about all of them.
+// Answers about pieces of a cloud, and about separate clouds, merge into the answer about all of them.
 #include "support/product.hpp"
 
 #include <clearance/answer/merge.hpp>

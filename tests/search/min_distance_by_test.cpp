@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A least distance with a deadline: of all points if there is time, and else of those that were looked at.
+// A least distance with a deadline: over all points if there is time, otherwise over those that were looked at.
 #include "support/closed.hpp"
 #include "support/product.hpp"
 #include "support/same_result.hpp"

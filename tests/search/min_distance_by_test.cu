@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// On a device a least distance with a deadline is the host's, cut after the same pieces.
+// On a device, a least distance with a deadline is the host's, cut after the same pieces.
 #include "support/closed.hpp"
 #include "support/product_device.cuh"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The least distances of many configurations are those of one after another, in every bit.
+// The least distances of many configurations are those of one at a time, in every bit.
 #include "search/edge_scenes.hpp"
 #include "support/brute_pairs.hpp"
 #include "support/closed.hpp"

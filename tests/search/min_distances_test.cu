@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// On a device the least distances of many configurations are the host's, in every bit.
+// On a device, the least distances of many configurations are the host's, in every bit.
 #include "search/edge_scenes.hpp"
 #include "support/brute_pairs.hpp"
 #include "support/configurations.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The nearest confirmed point is the first of all, sorted, that has enough others around it.
+// The nearest confirmed point is the first, after sorting, with enough others around it.
 #include "solid/shapes.hpp"
 #include "support/brute_support.hpp"
 #include "support/frames.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the minimum over all parts and points promises beside its bits: truth, witness, several clouds, any tree,
+// What the minimum over all parts and points promises besides its bits: truth, witness, several clouds, any tree,
 // inside.
 #include "support/linked_tree.hpp"
 #include "support/product.hpp"

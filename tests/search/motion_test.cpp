@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The clearance over a motion: never above what a dense sampling finds, and near it.
+// The clearance over a motion is never above what dense sampling finds, and near it.
 #include "support/brute_pairs.hpp"
 #include "support/product.hpp"
 

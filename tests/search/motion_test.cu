@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A device says of motions and of every part's witness what the host says, to the bit.
+// A device gives the host's answers about motions and every part's witness, to the bit.
 #include "support/brute_pairs.hpp"
 #include "support/product.hpp"
 #include "support/same_result.hpp"

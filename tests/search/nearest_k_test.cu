@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// On a device the k nearest points of each part are the host's.
+// On a device, the k nearest points of each part are the host's.
 #include "support/brute_nearest.hpp"
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known of a part is made of lengths: what is less than 0, or no number, is refused by every door, and frees
-// nobody who gets it past them.
+// The facts of a part are lengths. Every entry refuses a negative one and NaN; if one gets in anyway, nothing becomes
+// free by it.
 #include "solid/shapes.hpp"
 #include "support/catch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where every part's least distance is: on a device in every frame what the host says, and in a graph after the minima.
+// On a device, the witnesses of the parts' least distances are the host's: in every frame, and in a graph.
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 #include "support/same_result.hpp"

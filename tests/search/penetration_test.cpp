@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a negative distance to inner spheres is: how deep the deepest point is in some sphere. Never more than the exact
-// depth; equal to it at a sphere's centre that touches the surface; and less wherever the spheres leave room.
+// A negative distance to inner spheres is how deep the deepest point is in some sphere. It is never more than the exact
+// depth; equal at the centre of a sphere that touches the surface; less wherever the spheres leave room.
 #include "solid/shapes.hpp"
 #include "support/laws.hpp"
 #include "support/random.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The prepared query on the host, and the tiles that every search there reads points by: the answer of brute force in
-// every bit, cold, warm, and after anything has moved; and no memory asked for once it has run.
+// The prepared query on the host, and the tiles by which every search there reads points: the answer of brute force in
+// every bit, cold, warm, and after anything has moved; and no allocation once it has run.
 #include "support/product.hpp"
 
 #include <clearance/min_distance_query.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The prepared query says what the plain one says, in every bit: cold, warm, and after anything has moved.
+// The prepared query gives the plain one's answer, in every bit: cold, warm, and after anything has moved.
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The robot's own points are those that a plain loop over all points and primitives finds, and the rest is asked about
-// as if they were not there.
+// The robot's own points are those that a plain loop over all points and primitives finds. Questions about the rest
+// give the answers of clouds without them.
 #include "support/brute_own.hpp"
 
 #include <clearance/make_model.hpp>

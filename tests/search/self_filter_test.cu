@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// On a device the robot's own points and the minimum of the rest are the host's, and both go into a graph.
+// On a device, the robot's own points and the minimum of the rest are the host's; both can be captured in a graph.
 #include "support/brute_own.hpp"
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"

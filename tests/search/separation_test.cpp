@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How fast gaps close, and how wide they have to be.
+// How fast gaps close, and how wide they must be.
 #include "support/laws.hpp"
 
 #include <clearance/separation.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pieces side by side are the cloud again, and a slice needs no more bytes than its points.
+// Pieces side by side make up the cloud again, and a slice needs no more bytes than its points.
 #include "support/product.hpp"
 
 #include <clearance/make_model.hpp>

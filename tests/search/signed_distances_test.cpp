@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every point's signed distance to closed meshes is that of all triangles and a ray's crossings, in every bit; and the
-// depth in truth.
+// Every point's signed distance to closed meshes is that of all triangles and a ray's crossings, in every bit; and it
+// is the true depth.
 #include "support/brute_signed.hpp"
 
 #include <clearance/make_model.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// On a device every point's signed distance to closed meshes is the host's, and brute force's.
+// On a device, every point's signed distance to closed meshes is the host's, and brute force's.
 #include "support/brute_signed.hpp"
 #include "support/product_device.cuh"
 

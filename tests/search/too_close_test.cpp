@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a sensor saw nearer than it can measure is counted, and nothing is free then.
+// Points too close for the sensor to measure are counted, and then nothing is free.
 #include "support/catch.hpp"
 #include "support/laws.hpp"
 #include "support/too_close_frame.hpp"

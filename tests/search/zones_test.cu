@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// On a device points in zones are the host's.
+// On a device, points in zones are the host's.
 #include "support/brute_zones.hpp"
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"

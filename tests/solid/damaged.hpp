@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Solids as files have them: a clean one, and what may be wrong with it. What is inside is known from the clean one.
+// Solids as found in files: a clean one, and versions with damage. The clean one tells what is inside.
 
 #include "solid/shapes.hpp"
 #include "support/random.hpp"

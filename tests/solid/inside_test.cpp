@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The law of the inside: whatever is wrong with a mesh, a point that is deeper inside than the damage is never free,
-// and one that is farther outside never in collision. CLEARANCE_INSIDE_RUNS sets how many damaged solids are tried
+// The law of the inside: whatever is wrong with a mesh, a point deeper inside than the damage is never free, and one
+// farther outside is never in collision. CLEARANCE_INSIDE_RUNS sets the number of damaged solids to try
 // (scripts/inside-law).
 #include "solid/damaged.hpp"
 #include "support/catch.hpp"

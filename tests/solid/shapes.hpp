@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Meshes made in code, for tests of solids and packings.
+// Meshes built by code, for tests of solids and packings.
 
 #include <clearance/solid/triangle_mesh.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Every point's distance by the definition, and what differs from it.
+// Every point's distance by definition, and how a result differs from it.
 
 #include "support/brute_pairs.hpp"
 #include "support/product.hpp"
@@ -9,7 +9,7 @@
 
 namespace testing {
 
-/// All points of a source against all primitives of all parts. `inside(k, q)`: is q in part k's solid?
+/// Compares all points of a source with all primitives of all parts. `inside(k, q)`: is q in part k's solid?
 template <class P, class Source, class Inside>
 clearance::point_distances brute_distances(const scene<P>& s, const Source& source, const Eigen::Isometry3d& pose,
                                            real d_max, Inside inside) {
@@ -34,7 +34,7 @@ inline bool same_counts(const clearance::point_counts& a, const clearance::point
   return a.seen == b.seen && a.valid == b.valid && std::ranges::equal(a.dropped, b.dropped);
 }
 
-/// Appends to what is expected of one cloud that of the next.
+/// Appends the expected result of the next cloud to that of the others.
 inline void append(clearance::point_distances& all, const clearance::point_distances& next) {
   all.distance.insert(all.distance.end(), next.distance.begin(), next.distance.end());
   all.part.insert(all.part.end(), next.part.begin(), next.part.end());

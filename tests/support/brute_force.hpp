@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The answer without a tree, a bound or a thread: one obvious loop over clouds, points, parts and primitives. It shares
-// the leaf formulas and the float transforms with the library, so that equal means equal bits; the oracle checks those.
+// The answer without a tree, a bound or a thread: one obvious loop over clouds, points, parts and primitives. It uses
+// the library's leaf formulas and float transforms, so that equal means equal bits; the oracle checks those.
 
 #include "support/laws.hpp"
 
@@ -68,7 +68,7 @@ brute_answer brute_force(const std::vector<brute_part<P, Interior>>& parts, cons
   return a;
 }
 
-/// Distance by its bits, all numbers of the witness, and the counts.
+/// Compares the distance by its bits, all numbers of the witness, and the counts.
 inline void require_equal(const clearance::min_distance_result& r, const brute_answer& a, verdict& v,
                           const std::string& what) {
   v.require(

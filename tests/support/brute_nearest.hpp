@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The k nearest points of each part by the definition, and what differs from it.
+// The k nearest points of each part by definition, and how a result differs from it.
 
 #include "support/brute_within.hpp"
 

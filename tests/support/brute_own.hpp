@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Which points are the robot's by the definition, and what differs from it.
+// Which points are the robot's own by definition, and how a result differs from it.
 
 #include "support/brute_distances.hpp"
 #include "support/brute_pairs.hpp"
@@ -9,7 +9,7 @@
 
 namespace testing {
 
-/// All points against all primitives, what is uncertain of a distance worked out in long double.
+/// Compares all points with all primitives; a distance's uncertainty is computed in long double.
 template <class P>
 clearance::self_filter_result brute_own(const scene<P>& s, const clouds& all, const std::vector<double>& padding) {
   using clearance::point_label;
@@ -52,7 +52,7 @@ inline void require_same(const clearance::self_filter_result& found, const clear
             what, ": counts of points");
 }
 
-/// The clouds with every hidden point made none, in memory that `kept` holds.
+/// The clouds with every hidden point made invalid, in memory that `kept` holds.
 inline clouds without(const clouds& all, const clearance::self_filter_result& hidden,
                       std::vector<std::vector<vec3>>& kept) {
   clouds rest;
@@ -67,7 +67,7 @@ inline clouds without(const clouds& all, const clearance::self_filter_result& hi
   return rest;
 }
 
-/// Of the rest: all that a result says but for the reasons of what is dropped.
+/// Compares the rest: everything in a result but the reasons why points were dropped.
 inline void require_rest(const clearance::filtered_distance& found, clearance::min_distance_result expected, verdict& v,
                          const std::string& what) {
   using clearance::drop_reason;

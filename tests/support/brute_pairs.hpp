@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Every pair of a point and a part by the definition: all points against all primitives.
+// Every pair of a point and a part by definition: all points with all primitives.
 
 #include "support/scenes.hpp"
 
@@ -47,7 +47,7 @@ void for_each_pair(const scene<P>& s, const clouds& all, F f) {
   for (std::uint32_t c = 0; c < all.size(); ++c) for_each_pair(s, all[c].source, all[c].pose, c, nothing_inside, f);
 }
 
-/// What a distance can be off, over all clouds.
+/// The possible error of a distance, over all clouds.
 template <class P>
 clearance::frames::float_error error_of(const scene<P>& s, const clouds& all) {
   clearance::frames::float_error error;
@@ -55,7 +55,7 @@ clearance::frames::float_error error_of(const scene<P>& s, const clouds& all) {
   return error;
 }
 
-/// A scene's cloud, and half of it elsewhere.
+/// A scene's cloud, and half of it in another place.
 template <class P>
 clouds two_clouds(const scene<P>& s) {
   using clearance::point_span;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Every part's distance to every point by the definition, and what differs from it.
+// Every part's distance to every point by definition, and how a result differs from it.
 
 #include "support/brute_distances.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Every point's signed distance by the definition: the nearest of all triangles, and a ray's crossings for the sign.
+// Every point's signed distance by definition: the nearest of all triangles, with the sign from a ray's crossings.
 
 #include "support/brute_distances.hpp"
 #include "support/closed.hpp"
@@ -29,7 +29,7 @@ clearance::point_distances brute_signed(const closed_parts& parts, const Source&
   const scene<triangle> s = triangles_of(parts);
   std::vector<clearance::winding<>> solids;
   for (const auto& mesh : parts.meshes) solids.push_back(clearance::make_winding(mesh));
-  auto all = brute_distances(s, source, pose, -1, nothing_inside);  // counts, and nothing else
+  auto all = brute_distances(s, source, pose, -1, nothing_inside);  // only counts
   bool in = false;
   const auto inside = [&](std::uint32_t k, vec3 q) { return in = solids[k].view().inside(q), false; };
   for_each_pair(s, source, pose, 0, inside, [&](const clearance::pair_distance& pair) {

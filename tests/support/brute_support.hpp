@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The nearest point that others confirm by the definition, and what differs from it.
+// The nearest point that others confirm, by definition, and how a result differs from it.
 
 #include "support/brute_pairs.hpp"
 #include "support/product.hpp"
@@ -14,7 +14,7 @@ namespace testing {
 template <class P>
 clearance::supported_distance brute_support(const scene<P>& s, const clouds& all,
                                             const clearance::support_options& options) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, clearance::pair_distance> nearest;  // of each point
+  std::map<std::pair<std::uint32_t, std::uint32_t>, clearance::pair_distance> nearest;  // by point
   for_each_pair(s, all, [&](const clearance::pair_distance& pair) {
     const auto [its, fresh] = nearest.try_emplace({pair.cloud, pair.point}, pair);
     if (!fresh && pair.distance < its->second.distance) its->second = pair;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Points within a distance by the definition, and what differs from it.
+// Points within a distance by definition, and how a result differs from it.
 
 #include "support/brute_distances.hpp"
 
@@ -34,7 +34,7 @@ inline void require_same(const clearance::within_result& found, const clearance:
   v.require(same, what, ": some pair differs");
 }
 
-/// The same of a list in any order, of which `count` are told.
+/// The same for a list in any order that claims `count` pairs.
 inline void require_listed(std::vector<clearance::pair_distance> pairs, unsigned long long count,
                            clearance::within_result expected, verdict& v, const std::string& what) {
   v.require(count == expected.pairs.size() && pairs.size() == count, what, ": ", count, " pairs and not ",

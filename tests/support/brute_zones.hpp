@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Points in zones by the definition, and what differs from it.
+// Points in zones by definition, and how a result differs from it.
 
 #include "support/brute_distances.hpp"
 
@@ -8,8 +8,8 @@
 
 namespace testing {
 
-/// All points of clouds against all primitives: those whose computed distance is at most the threshold and what is
-/// uncertain of it, worked out in long double.
+/// Compares all points of clouds with all primitives. A point counts if its computed distance is at most the threshold
+/// plus the distance's uncertainty, which is computed in long double.
 template <class P>
 clearance::zones_result brute_zones(const scene<P>& s, const clouds& all,
                                     const std::vector<std::vector<double>>& thresholds) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What clouds in chunks are asked, on any backend.
+// Questions about clouds in chunks, on any backend.
 
 #include "support/random.hpp"
 #include "support/same_result.hpp"
@@ -17,7 +17,7 @@ inline bool same_minimum(const clearance::part_minimum& a, const clearance::part
   return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
 }
 
-/// Asks all at first, then what was not skipped; from poses near and far. `source` is the same points in host memory.
+/// Asks about everything, then about what was not skipped, from near and far. `source`: the same points on the host.
 template <class On, class Model, class C, class S>
 void ask_often(const On& on, const Model& on_host, std::vector<Eigen::Isometry3d> poses, clearance::chunked<C>& cloud,
                const S& source, const Eigen::Isometry3d& pose, verdict& v, const std::string& what) {
@@ -38,7 +38,7 @@ void ask_often(const On& on, const Model& on_host, std::vector<Eigen::Isometry3d
   }
 }
 
-/// Neighbours in order are neighbours in space, so that there is something to skip.
+/// Points that follow one another are near one another, so there is something to skip.
 inline std::vector<vec3> wall(std::size_t points) {
   dice d(5);
   std::vector<vec3> all;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Closed meshes in their poses: boxes in one another, a globe, a ring, and one that is inside out.
+// Closed meshes in their poses: nested boxes, a globe, a ring, and one that is inside out.
 
 #include "solid/shapes.hpp"
 #include "support/random.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Clouds of some kinds and sizes, and the valid points of each by the definition.
+// Clouds of several kinds and sizes, each with its valid points by definition.
 
 #include "support/laws.hpp"
 #include "support/random.hpp"
@@ -11,7 +11,7 @@
 
 namespace testing {
 
-/// Calls `each(source, points, numbers, what)`.
+/// Calls `each(source, points, numbers, what)` for each of them.
 template <class F>
 void for_each_compacted(const F& each) {
   const auto of = [&](const auto& source, const std::string& what) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Many configurations of a scene's robot, and what their least distances must be: those of one at a time.
+// Many configurations of a scene's robot; their least distances must be those of one at a time.
 
 #include "support/product.hpp"
 #include "support/same_result.hpp"
@@ -11,8 +11,8 @@ namespace testing {
 
 using configurations = std::vector<Eigen::Isometry3d>;
 
-/// The scene's own poses, exact shifts of them (ties stay ties), and what turns all parts together or each by itself;
-/// far away too.
+/// The scene's own poses, exact shifts of them (so that ties stay ties), and turns of all parts together or of each by
+/// itself; some are far away.
 template <class P>
 configurations configurations_of(const scene<P>& s, dice& d, std::size_t count = 9) {
   configurations all;
@@ -25,7 +25,7 @@ configurations configurations_of(const scene<P>& s, dice& d, std::size_t count =
   return all;
 }
 
-/// `one(poses)` is min_distance of one configuration.
+/// `one(poses)` is min_distance for one configuration.
 template <class One>
 void require_same(const clearance::min_distances_result& found, const configurations& poses, std::size_t parts,
                   real d_max, One one, verdict& v, const std::string& what) {
@@ -43,7 +43,7 @@ void require_same(const clearance::min_distances_result& found, const configurat
               what, ", configuration", c, ": beyond d_max there is", r.distance);
     v.require(r.lower >= 0 && r.lower <= std::max(d_max, real(0)) && r.lower <= expected.lower, what, ", configuration",
               c, ": lower is", r.lower);
-    // What an end of the bracket costs hardly depends on the distance.
+    // The width of the bracket hardly depends on the distance.
     v.require(r.lower >= expected.lower - (expected.distance - d_max) * 1.001f - 1e-6f * expected.distance, what,
               ", configuration", c, ": lower is", r.lower, ", too little");
     v.require(r.state == (r.lower > 0 ? clearance::state::free : clearance::state::possible), what, ", configuration",

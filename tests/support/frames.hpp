@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What a prepared question is asked, frame after frame.
+// Frames for a prepared question, one after another.
 
 #include "support/brute_pairs.hpp"
 #include "support/product.hpp"
@@ -9,7 +9,7 @@
 
 namespace testing {
 
-/// A robot that moves among clouds that grow and shrink; some frames have more clouds, one has no point.
+/// A robot moves among clouds that grow and shrink. Some frames have more clouds, one has no point.
 struct moving_frames {
   static constexpr std::size_t count = 6;
   static constexpr std::size_t sizes[count] = {3000, 20000, 0, 500, 30000, 17};
@@ -33,7 +33,7 @@ struct moving_frames {
     s.poses[number % s.poses.size()] = d.pose(1);
     see(sizes[number]);
   }
-  /// Clouds of so many points, half as many, and in every other frame of a few more.
+  /// Makes a cloud of `n` points, one of half as many, and in every other frame one of a few more.
   void see(std::size_t n) {
     points = {d.points(n, 1.5), d.points(n / 2, 1.5)};
     if (number % 2 == 1) points.push_back(d.points(10, 1.5));

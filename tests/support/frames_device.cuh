@@ -8,7 +8,7 @@
 
 namespace testing {
 
-/// A frame's points there.
+/// A frame's points in the device's memory.
 struct frame_there {
   std::vector<clearance::device_buffer<vec3>> points;
   clouds all;
@@ -21,20 +21,20 @@ struct frame_there {
   }
 };
 
-/// One value that a device writes.
+/// Room for `n` values that a device writes.
 template <class T>
 clearance::device_buffer<T> room_on(const clearance::device& gpu, std::size_t n) {
   return gpu.copy_in(std::span<const T>(std::vector<T>(n)));
 }
 
-/// Captures what `enqueue(clouds there)` enqueues, and launches that with other points in the same memory, again and
-/// again: `look(what)`.
+/// Captures what `enqueue(clouds there)` enqueues. Then it launches that again and again with other points in the same
+/// memory, and calls `look(what)`.
 template <class Enqueue, class Look>
 void replay(const own_stream& stream, const clearance::device& gpu, moving_frames& f, const Enqueue& enqueue,
             const Look& look) {
   f.see(5000);
   const frame_there there(gpu, f);
-  enqueue(there.all);  // once, as memory is not for a graph
+  enqueue(there.all);  // once before: a graph cannot allocate
   gpu.wait();
   const captured_graph graph(stream.handle, [&] { enqueue(there.all); });
   for (int launch = 0; launch < 3; ++launch) {

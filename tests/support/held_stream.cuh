@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Streams of one's own, and what holds them.
+// CUDA streams for tests, and a gate that holds them.
 
 #include <clearance/backend/cuda_error.cuh>
 
@@ -12,7 +12,7 @@ namespace testing {
 
 inline void check(cudaError_t status) { clearance::check_cuda(status, "a call of the test"); }
 
-/// A stream of its own, on the current device.
+/// A new stream on the current device.
 struct own_stream {
   cudaStream_t handle = nullptr;
   own_stream() { check(cudaStreamCreateWithFlags(&handle, cudaStreamNonBlocking)); }
@@ -20,7 +20,7 @@ struct own_stream {
   own_stream(const own_stream&) = delete;
 };
 
-/// What `enqueue` puts into a stream, as a graph.
+/// What `enqueue` puts into a stream, captured as a graph.
 class captured_graph {
  public:
   template <class F>
@@ -41,8 +41,8 @@ class captured_graph {
   cudaGraphExec_t ready_ = nullptr;
 };
 
-/// Holds a stream until it is released, and releases it in any case. Kernels must have run once before: loading them
-/// may wait for everything.
+/// Holds a stream until it is released, at the latest by the destructor. Kernels must have run once before, because
+/// loading one may wait for everything.
 class gate {
  public:
   explicit gate(cudaStream_t stream) : stream_(stream) {

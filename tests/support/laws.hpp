@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The laws of the concepts, as checks. A new model is tested by naming it.
+// The laws of the concepts as checks. To test a new model, name it.
 
 #include "support/catch.hpp"
 #include "support/oracle.hpp"
@@ -16,7 +16,7 @@ namespace testing {
 using clearance::infinity;
 using oracle::wide, oracle::wider;
 
-/// Counts violations and keeps the first, because millions of REQUIRE would be slow.
+/// Counts violations and keeps the first; millions of REQUIRE would be slow.
 class verdict {
  public:
   template <class... Words>
@@ -53,7 +53,7 @@ bool same_bytes(const T& a, const T& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-/// Where volumes are tried: near the balls, on their surfaces, at their centres, and far away.
+/// Points to try volumes at: near the balls, on their surfaces, at their centres, and far away.
 inline std::vector<vec3> probes(dice& d, const std::vector<ball>& balls, double size) {
   std::vector<vec3> all;
   for (const double half : {0.3, 1.0, 3.0, 100.0, 1e5})
@@ -67,7 +67,7 @@ inline std::vector<vec3> probes(dice& d, const std::vector<ball>& balls, double 
   return all;
 }
 
-/// What is computed to be `distance` away is not ruled out.
+/// Something whose computed distance is `distance` must not be ruled out.
 template <clearance::bounding_volume V>
 void check_reach(const V& volume, vec3 q, real distance, verdict& v) {
   if constexpr (clearance::rootless_volume<V>)
@@ -75,8 +75,8 @@ void check_reach(const V& volume, vec3 q, real distance, verdict& v) {
               distance, " away");
 }
 
-/// No lower bound exceeds the signed distance to an enclosed ball, nor to a primitive as computed, and it is negative
-/// at every centre.
+/// No lower bound exceeds the signed distance to an enclosed ball, or to a primitive as computed. At every centre it is
+/// negative.
 template <clearance::bounding_volume V>
 void check_bounds(dice& d, const std::vector<ball>& balls, double size, verdict& v) {
   using traits = clearance::bounding_volume_traits<V>;
@@ -116,7 +116,7 @@ void check_volume_laws() {
       verdict v;
       dice d(unsigned(size * 7 + offset.x));
       for (const std::size_t n : {1, 2, 3, 8, 60}) {
-        for (const double thickness : {0.0, 0.1, 1.0}) {  // points, small balls, balls that overlap
+        for (const double thickness : {0.0, 0.1, 1.0}) {  // points, small balls, overlapping balls
           std::vector<ball> balls(n);
           for (ball& b : balls) b = {d.point(size, offset), d.number(0, thickness * size)};
           check_bounds<V>(d, balls, size, v);
@@ -128,7 +128,7 @@ void check_volume_laws() {
           check_bounds<V>(d, balls, size, v);
         }
       }
-      // One giant among dwarfs.
+      // One giant among small ones.
       std::vector<ball> balls(20);
       for (ball& b : balls) b = {d.point(size, offset), real(1e-4 * size)};
       balls[7].radius = real(50 * size);
@@ -163,7 +163,7 @@ void check_visitor_laws(const Q& start, Same same) {
   }
 }
 
-/// Reading is pure, a valid sample is finite, and a copy of the bytes elsewhere gives the same samples.
+/// Reading has no effects, a valid sample is finite, and a copy of the bytes gives the same samples.
 template <clearance::point_source S>
 void check_point_source_laws(const S& source) {
   static_assert(clearance::explain_point_source<S>());
@@ -181,7 +181,7 @@ void check_point_source_laws(const S& source) {
   }
 }
 
-/// Every primitive is below the root exactly once, every volume bounds all below it, and depth and width are true.
+/// Every primitive is below the root exactly once, volumes bound everything below them, and depth and width are right.
 template <clearance::hierarchy H>
 class hierarchy_check {
  public:

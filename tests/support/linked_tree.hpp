@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Somebody else's tree: binary, linked by pointers, one primitive a leaf, halved as the input comes.
+// A foreign tree: binary, linked by pointers, one primitive per leaf, halved in the order of the input.
 
 #include <clearance/concepts.hpp>
 
@@ -35,8 +35,8 @@ struct linked_view {
   CLEARANCE_HD std::uint32_t width() const { return levels == 0 ? 1 : 2; }
 };
 
-/// Owns the nodes, in one array that may be copied elsewhere. `lopsided` cuts off one primitive at a time: as deep as a
-/// tree can be.
+/// Owns the nodes, in one array that may be copied elsewhere. `lopsided` splits off one primitive at a time, which
+/// makes the tree as deep as possible.
 template <clearance::bounding_volume V, clearance::primitive P>
 class linked_tree {
  public:
@@ -48,7 +48,7 @@ class linked_tree {
   }
   linked_view<V, P> view() const { return {nodes_.data(), depth_}; }
 
-  /// The nodes as they must be if they lie at `base`.
+  /// The nodes with pointers as they must be at address `base`.
   std::vector<node> placed_at(const node* base) const {
     std::vector<node> moved = nodes_;
     for (node& n : moved)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Leaf formulas, rigid transform and deprojection once more, in long double and by other routes than the library's, so
-// that brute force and query cannot share an error. It includes nothing of the library.
+// Leaf formulas, rigid transform and deprojection again, in long double and by other ways than the library's, so that
+// brute force and query cannot share an error. It includes nothing of the library.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ struct vec {
   friend vec operator*(wide s, vec a) { return {s * a.x, s * a.y, s * a.z}; }
 };
 
-/// From anything with x, y and z.
+/// Widens anything with x, y and z.
 template <class T>
 vec wider(const T& p) {
   return {wide(p.x), wide(p.y), wide(p.z)};
@@ -38,8 +38,8 @@ inline wide to_segment(vec q, vec a, vec b) {
   return between(q, a + t * edge);
 }
 
-/// The least distance to the segments parallel to bc that make up the triangle: a convex function of their height, so a
-/// golden section finds its minimum. Uses no normal, no plane and no region, so no triangle is special.
+/// The least distance to segments parallel to bc that make up the triangle. It is a convex function of their height, so
+/// a golden section finds its minimum. Without a normal, plane or region, no triangle is special.
 inline wide to_triangle(vec q, vec a, vec b, vec c) {
   const auto at = [&](wide t) { return to_segment(q, a + t * (b - a), a + t * (c - a)); };
   constexpr wide golden = 0.618033988749894848204586834365638118L;
@@ -56,7 +56,7 @@ inline wide to_triangle(vec q, vec a, vec b, vec c) {
   return std::min({at_left, at_right, at(low), at(high), at(0), at(1)});
 }
 
-/// Row-major world-from-something, as given by any matrix with (row, column).
+/// Row-major world-from-something; any matrix with (row, column).
 template <class Pose>
 vec moved(const Pose& m, vec p) {
   const auto row = [&](int k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Every width x fit x traversal x point source for one primitive and one volume, against brute force, bit for bit.
+// Every width x fit x traversal x point source for one primitive and one volume, compared with brute force bit for bit.
 
 #include "support/brute_force.hpp"
 #include "support/scenes.hpp"
@@ -29,7 +29,7 @@ auto make_model(const scene<P>& s, const clearance::build_options& options, Fit 
   return clearance::model(std::move(parts));
 }
 
-/// One answer with the shared bound and one with a bound a part.
+/// Asks once with the shared bound and once with a bound per part.
 template <class On, class Model, class S>
 void check_query(const On& on, const Model& model, const std::vector<Eigen::Isometry3d>& poses,
                  const clearance::placed<S>& cloud, const brute_answer& expected, verdict& v, const std::string& what) {
@@ -39,7 +39,7 @@ void check_query(const On& on, const Model& model, const std::vector<Eigen::Isom
   require_equal(minima, expected, v, what);
 }
 
-/// `each(use)` calls use(source, pose, name) for the point sources that are wanted.
+/// `each(use)` calls use(source, pose, name) for each wanted point source.
 template <class V, class P, class Each, class Fit>
 void check_trees(const scene<P>& s, Each each, Fit fit, const char* fit_name, verdict& v) {
   const auto parts = brute_parts(s);

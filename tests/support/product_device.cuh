@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The product on a GPU. Width and fit vary in full; of primitive, volume, traversal and point source each pair occurs
-// (kernels are slow to compile, and the host has the whole product).
+// The product on a GPU. All widths and fits occur; of primitive, volume, traversal and point source, each pair occurs
+// (kernels compile slowly, and the host has the whole product).
 
 #include "support/product.hpp"
 #include "support/same_result.hpp"
@@ -24,7 +24,7 @@ class deep_stack {
   std::size_t before_ = 0;
 };
 
-/// One primitive, volume, traversal and kind of source on the device: brute force, and the host's result in every bit.
+/// One primitive, volume, traversal and kind of source on the device: brute force's answer, and all bits of the host's.
 template <class P, class V, class Walk, class Pick>
 void check_on_device(Pick pick) {
   const clearance::device gpu;

@@ -12,7 +12,7 @@ namespace testing {
 
 using clearance::ball, clearance::inner_sphere, clearance::real, clearance::triangle, clearance::vec3;
 
-/// Random geometry, the same on every run and every standard library.
+/// Random geometry, the same in every run and with every standard library.
 class dice {
  public:
   explicit dice(unsigned seed) : engine_(seed) {}
@@ -20,7 +20,7 @@ class dice {
   double uniform(double low, double high) { return low + (high - low) * (double(engine_()) / 4294967296.0); }
   unsigned below(unsigned n) { return unsigned(uniform(0, n)); }
   real number(double low, double high) { return real(uniform(low, high)); }
-  /// In a cube of that half edge around `center`.
+  /// In a cube around `center` with this half edge.
   vec3 point(double half, vec3 center = {0, 0, 0}) {
     return {number(-half, half) + center.x, number(-half, half) + center.y, number(-half, half) + center.z};
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Linked into every program that needs a GPU. Before main, it leaves with 77, which CTest reports as "skipped", on a
-// machine without a usable one; so a device test can never pass by not running. With CLEARANCE_REQUIRE_DEVICE set in
-// the environment that is a failure instead.
+// Linked into every program that needs a GPU. On a machine without a usable one it exits before main with 77, which
+// CTest reports as "skipped", so a device test never passes by not running. With CLEARANCE_REQUIRE_DEVICE set in the
+// environment that is a failure instead.
 
 #include <cuda_runtime.h>
 

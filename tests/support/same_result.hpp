@@ -9,7 +9,7 @@
 
 namespace testing {
 
-/// Everything that a result says, by its bits where it is a number.
+/// Compares everything in a result, numbers by their bits.
 inline bool same_result(const clearance::min_distance_result& a, const clearance::min_distance_result& b) {
   return a.state == b.state && same_bits(a.distance, b.distance) && same_bits(a.lower, b.lower) &&
          same_bits(a.upper, b.upper) && a.cloud == b.cloud && a.point == b.point && a.part == b.part &&
@@ -18,7 +18,7 @@ inline bool same_result(const clearance::min_distance_result& a, const clearance
          std::equal(a.dropped, a.dropped + clearance::drop_reasons, b.dropped);
 }
 
-/// And everything that a part's witness says.
+/// Compares everything in a part's witness.
 inline bool same_witness(const clearance::part_witness& a, const clearance::part_witness& b) {
   return a.part == b.part && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive &&
          same_bits(a.distance, b.distance) && same_bytes(a.at, b.at) && same_bytes(a.nearest, b.nearest) &&

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Robots before points where something may go wrong: ties, duplicates, points inside, in gaps and on surfaces, far from
+// Robots near points where something may go wrong: ties, duplicates, points inside, in gaps and on surfaces, far from
 // the origin, and with nothing valid at all.
 
 #include "support/random.hpp"
@@ -21,7 +21,7 @@ struct scene {
   std::vector<Eigen::Isometry3d> poses;
   std::vector<vec3> points;
   Eigen::Isometry3d cloud_pose = Eigen::Isometry3d::Identity();
-  double size = 1;  ///< Of the robot, for the depth images.
+  double size = 1;  ///< Of the robot; for the depth images.
 };
 
 inline Eigen::Isometry3d shifted(double x, double y, double z) {
@@ -30,7 +30,7 @@ inline Eigen::Isometry3d shifted(double x, double y, double z) {
   return pose;
 }
 
-/// On a lattice, with exact numbers only, so that mirrored points are equally far to the bit.
+/// A lattice of exact numbers, so that mirrored points are equally far to the bit.
 inline std::vector<inner_sphere> lattice(const inner_sphere*) {
   std::vector<inner_sphere> all;
   for (int k = 0; k < 27; ++k) all.push_back({{real(k % 3 - 1), real(k / 3 % 3 - 1), real(k / 9 - 1)}, 0.25f});
@@ -142,13 +142,13 @@ std::vector<scene<P>> scenes() {
     holes(s.points);
     all.push_back(s);
   }
-  {  // every distance many times over, in whatever order threads and samples come to them
+  {  // every distance many times, in any order for threads and samples
     scene<P> s{"many ties", {lattice(static_cast<const P*>(nullptr))}, {shifted(0, 0, 0)}, {}};
     const auto seven = d.points(7, 2);
     for (int k = 0; k < 5001; ++k) s.points.push_back(seven[(k + 3) % 7]);
     all.push_back(s);
   }
-  {  // each point a little nearer than the one before, to what touches the part's own ball
+  {  // each point a little nearer than the one before, until one touches the part's own ball
     scene<P> s{"creeping nearer", {random_primitives<P>(d, 1, 1, 0.5)}, {shifted(0, 0, 0)}, {}};
     const auto balls = s.parts[0][0].balls();
     vec3 outward = balls.size() == 1
@@ -168,7 +168,7 @@ std::vector<scene<P>> scenes() {
   return all;
 }
 
-/// The points of a scene as every kind of source, and depth images before its robot; owns the memory.
+/// The points of a scene as every kind of source, and depth images of its robot; owns the memory.
 template <class P>
 class sources {
  public:
@@ -198,7 +198,7 @@ class sources {
     raw = {raw_.data(), width, height, camera, 0.001 * s.size};
     metres = {metres_.data(), width, height, camera};
     metres.farthest = real(2.9 * s.size);
-    // Before the first part, looking at it.
+    // In front of the first part, looking at it.
     camera_pose = s.poses[0] * shifted(0, 0, -1.5 * s.size);
   }
   sources(const sources&) = delete;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// An answer that tells any two sets of pairs apart, whatever order they come in.
+// An answer that distinguishes any two sets of pairs, in whatever order they come.
 
 #include "support/brute_pairs.hpp"
 
@@ -15,10 +15,10 @@ CLEARANCE_HD inline unsigned long long mixed(unsigned long long h) {
   return h ^ h >> 33;
 }
 
-/// Sums of hashes of the pairs that are within reach; odd parts reach half as far.
+/// Sums hashes of the pairs within reach; odd parts reach half as far.
 struct tallied {
   real farthest;
-  unsigned long long* words;  ///< Two: how many pairs, and the sum of their hashes.
+  unsigned long long* words;  ///< Two: the number of pairs, and the sum of their hashes.
 
   CLEARANCE_HD real reach(std::uint32_t part) const { return part % 2 == 0 ? farthest : farthest / 2; }
   CLEARANCE_HD void take(const clearance::pair_distance& p) const {
@@ -34,7 +34,7 @@ struct tally_of_pairs {
   friend bool operator==(const tally_of_pairs&, const tally_of_pairs&) = default;
 };
 
-/// All points against all primitives of all parts, by the definition. `inside(k, q)`: is q in part k's solid?
+/// All points with all primitives of all parts, by definition. `inside(k, q)`: is q in part k's solid?
 template <class P, class Inside>
 void brute_tally(const scene<P>& s, const std::vector<vec3>& points, const Eigen::Isometry3d& pose, std::uint32_t cloud,
                  real farthest, Inside inside, tally_of_pairs& all) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A ball before a wall, in a depth image in which some pixels can be -inf.
+// A ball in front of a wall, as a depth image in which some pixels can be -inf.
 
 #include "support/random.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Two volumes that the library does not know: one of its concept by members, one of a type that nobody can change.
+// Two volumes that the library does not know: one fits its concept by members, one is a type that nobody can change.
 
 #include <clearance/concepts.hpp>
 
@@ -59,7 +59,7 @@ static_assert(clearance::bounding_volume<kdop14>);
 /// A foreign type, taught to the library from outside.
 template <>
 struct clearance::bounding_volume_traits<Eigen::AlignedBox3f> {
-  /// Eigen declares copy constructors, but a copy of the bytes is a copy.
+  /// Eigen declares copy constructors, but copying the bytes works.
   static constexpr bool bitwise_copyable = true;
 
   static Eigen::AlignedBox3f fit(std::span<const ball> balls) {

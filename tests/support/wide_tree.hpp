@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A tree as wide as it can be: a root, and a leaf for each primitive. Its nodes are no integers.
+// The widest possible tree: a root, and a leaf for each primitive. Its nodes are not integers.
 
 #include <clearance/concepts.hpp>
 
@@ -29,7 +29,7 @@ struct wide_view {
   CLEARANCE_HD std::uint32_t width() const { return count; }
 };
 
-/// Of the root and of each primitive.
+/// The volumes of the root and of each primitive.
 template <clearance::bounding_volume V, clearance::primitive P>
 std::vector<V> wide_volumes(const std::vector<P>& primitives) {
   std::vector<clearance::ball> all;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs the built command as a user does.
+// Runs the built command as a user would.
 #include "io/scratch_file.hpp"
 #include "tools/run_command.hpp"
 #include "tools/small_png.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points that are far away, by every file that holds doubles, alone and merged.
+// Points far away, from every file format that holds doubles, alone and merged.
 #include "tools/run_command.hpp"
 
 namespace far_test {

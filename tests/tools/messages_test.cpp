@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever names and words a file has: messages are one short, printable line that names the file, and answers are
+// Whatever names and words a file contains, a message is one short, printable line that names the file, and answers are
 // UTF-8.
 #include "io/scratch_file.hpp"
 #include "tools/run_command.hpp"

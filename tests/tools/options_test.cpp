@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every option of every subcommand, as its own --help lists them: one that is given has a value, or is refused.
+// Every option of every subcommand, as its --help lists them: if given, it has a value or is refused.
 #include "io/scratch_file.hpp"
 #include "tools/run_command.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Packings as files and in the cache, as a user of the command meets them.
+// Packings in files and in the cache, as a user of the command sees them.
 #include "io/robot_folder.hpp"
 #include "io/scratch_file.hpp"
 #include "tools/run_command.hpp"

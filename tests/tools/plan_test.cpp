@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `clearance plan`, and the plan of `clearance run`: many configurations, against `clearance query` about each alone.
+// `clearance plan`, and the plan of `clearance run`: many configurations, compared with `clearance query` about each.
 #include "io/scratch_file.hpp"
 #include "tools/run_command.hpp"
 #include "tools/small_png.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `clearance query` asks beside the least distance, and what a robot holds by `--attach`.
+// What `clearance query` answers besides the least distance, and what a robot holds by `--attach`.
 #include "io/scratch_file.hpp"
 #include "tools/run_command.hpp"
 #include "tools/small_png.hpp"

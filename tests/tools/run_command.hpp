@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Runs the built command as a user does.
+// Runs the built command as a user would.
 
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `clearance run`: a recording, frame after frame, against `clearance query` on each frame alone.
+// `clearance run`: a recording, frame by frame, compared with `clearance query` on each frame.
 #include "tools/run_command.hpp"
 #include "io/scratch_file.hpp"
 #include "tools/small_png.hpp"

@@ -11,7 +11,7 @@ inline std::string chunk(const std::string& name, const std::string& data) {
   return big(std::uint32_t(data.size())) + name + data + big(clearance::io::png_crc(name + data));
 }
 
-/// 2 x 1 pixels of the given depths; `depth_bits` 16, or 8 for what must be refused.
+/// 2 x 1 pixels with these depths; `depth_bits` is 16, or 8 for what must be refused.
 inline std::string png(std::uint16_t left, std::uint16_t right, int depth_bits = 16) {
   std::string row(1, '\0');
   for (const auto d : {left, right})

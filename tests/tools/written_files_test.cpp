@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the command writes is whole or not there, and never one of its inputs.
+// The command's output files are complete or absent, and never one of its inputs.
 #include "io/scratch_file.hpp"
 #include "tools/run_command.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The least distance, with trees of every volume: what they cost is the question there. And by a deadline.
+// The least distance, with trees of every volume, because there their cost is the question; and with a deadline.
 
 #include "trees.hpp"
 
@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-/// Over a model that somebody else keeps, or that `keeps` does.
+/// For a model that is kept elsewhere, or in `keeps`.
 template <class Backend, class Model>
 class query_of final : public prepared_query {
  public:
@@ -82,9 +82,9 @@ template <class Backend>
 reply robot_on_backend<Backend>::least_by(poses_of poses, double deadline) {
   double seconds = 0;
   reply out = with_usual_trees([&](const auto& trees) {
-    clearance::min_distance_query asked(on_, trees);  // prepared before the time runs
+    clearance::min_distance_query asked(on_, trees);  // prepared before the clock starts
     stopwatch clock;
-    // With every part's, as `least_per_part`: a complete answer is the same, with its lower end.
+    // With every part's, as in `least_per_part`: a complete answer then has the same lower end.
     const auto known =
         clearance::min_distance_by(asked, poses, clouds_, std::chrono::duration<double>(deadline), {.per_part = true});
     seconds = clock.lap();

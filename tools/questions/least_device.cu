@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/min_distance_by.cuh>  // with the device's own prepared query
+#include <clearance/min_distance_by.cuh>  // the device's own prepared query
 
 #include "least.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-/// Over a model that somebody else keeps. Poses go to the backend when they are new.
+/// For a model that is kept elsewhere. Poses go to the backend only if they are new.
 template <class Backend, class Model>
 class plan_of final : public prepared_plan {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// From plain data to the library's templates, for whichever backend includes this: what all questions share.
+// From plain data to the library's templates, for the backend that includes this: what all questions share.
 
 #include "../backends.hpp"
 #include "../stopwatch.hpp"
@@ -15,11 +15,11 @@
 
 #include <variant>
 
-/// A cloud as the library takes it.
+/// A cloud in the library's terms.
 using placed_points =
     std::variant<clearance::placed<clearance::point_span>, clearance::placed<clearance::depth_image<std::uint16_t>>>;
 
-/// The prepared query of a model, whichever its trees are.
+/// The prepared query of a model, whatever its trees.
 struct prepared_query {
   virtual ~prepared_query() = default;
   virtual clearance::min_distance_result least(poses_of poses, const std::vector<placed_points>& clouds) = 0;
@@ -28,7 +28,7 @@ struct prepared_query {
   virtual void forget() = 0;
 };
 
-/// The prepared query of many configurations.
+/// The prepared query for many configurations.
 struct prepared_plan {
   virtual ~prepared_plan() = default;
   virtual const clearance::min_distances_result& ask(poses_of poses, const std::vector<placed_points>& clouds,
@@ -78,7 +78,7 @@ class robot_on_backend final : public backend_robot {
 
   using trees = std::variant<std::monostate, sphere_trees, triangle_trees>;
 
-  /// The trees that are the quickest for the model that is asked for; they are built once, in trees.hpp.
+  /// The fastest trees for the chosen model; built once, in trees.hpp.
   const trees& usual_trees();
 
   template <class Use>
@@ -91,7 +91,7 @@ class robot_on_backend final : public backend_robot {
     return answer;
   }
 
-  /// `make(bodies)`, a model, where the backend reads it.
+  /// Makes a model by `make(bodies)`, where the backend reads it.
   template <class Make>
   auto moved(Make make) {
     stopwatch clock;

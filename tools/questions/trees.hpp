@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// From bodies to trees.
+// Builds trees from bodies.
 
 #include "robot_on.hpp"
 
@@ -8,7 +8,7 @@
 
 #include <ranges>
 
-/// Of all bodies, in host memory.
+/// The trees of all bodies, in host memory.
 template <class V>
 auto trees_of_spheres(const std::vector<body>& bodies) {
   return clearance::make_model<V>(bodies | std::views::transform(&body::packed), [&](std::size_t k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What is asked of pairs: which points are near, whose they are, and which confirm one another.
+// Questions about pairs: which points are near, to whom they belong, and which confirm one another.
 
 #include "robot_on.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Numbers as bytes, the lowest first, whatever the machine's own order is.
+// Numbers as bytes, lowest byte first, whatever the byte order of the machine.
 
 #include <clearance/io/error.hpp>
 
@@ -33,7 +33,7 @@ class byte_writer {
   std::string bytes_;
 };
 
-/// Takes numbers off the front; refuses, in the file's name, what is not there any more.
+/// Takes numbers off the front. Where too few bytes are left, it refuses with the file's name.
 class byte_reader {
  public:
   byte_reader(std::string_view bytes, const std::string& file) : rest_(bytes), file_(&file) {}

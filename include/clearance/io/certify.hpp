@@ -9,8 +9,8 @@
 
 namespace clearance::io {
 
-/// Certified: no point of a sphere is farther from the solid than this, metres; 0 if all lie inside. No surface is
-/// nearer to a centre than its distance, so what leaves the solid is at most as far out as the radius is larger.
+/// Certified: no point of a sphere is farther from the solid than this, metres; 0 if all lie inside. The surface is
+/// no nearer to a centre than `distance`: a sphere sticks out by its radius less that, or plus that if centred outside.
 template <solid S>
 double excess(const S& s, std::span<const inner_sphere> spheres) {
   std::vector<double> out(spheres.size());
@@ -24,17 +24,17 @@ double excess(const S& s, std::span<const inner_sphere> spheres) {
   return most;
 }
 
-/// Spheres from elsewhere against the mesh that they stand for.
+/// Spheres from elsewhere, compared with the mesh that they stand for.
 struct certified_spheres {
-  packing spheres;    ///< As they were, with the gap to this solid.
-  double excess = 0;  ///< How far they stick out of it.
+  packing spheres;    ///< The spheres unchanged, with their gap to this solid.
+  double excess = 0;  ///< How far they stick out of it, metres.
 
-  /// For make_part: the distance to the spheres may be above that to the solid by `gap`, and below it by `excess`. A
-  /// part's tolerance holds either way, so the gap is what is missing above it.
+  /// For make_part: the distance to the spheres may exceed that to the solid by `gap`, and fall below it by `excess`. A
+  /// part's tolerance covers both directions, so the gap is what is missing above it.
   double part_gap() const { return std::max(0.0, spheres.gap - excess); }
 };
 
-/// Proves for spheres from a file what is true of them with this solid: gap, fill, excess.
+/// Proves the figures of spheres from a file against this solid: gap, fill, excess.
 template <solid S>
 certified_spheres certify(const S& s, packing spheres, double gap_tolerance = 0.01) {
   const gap_report gap = measure_gap(s, std::span<const inner_sphere>(spheres.spheres), gap_tolerance);

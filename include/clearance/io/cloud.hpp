@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A point cloud in memory that keeps the numbering and the precision of its file.
+// A point cloud in memory that keeps its file's numbering and precision.
 
 #include <clearance/frame/clouds.hpp>
 #include <clearance/frame/frame.hpp>
@@ -12,20 +12,20 @@
 
 namespace clearance::io {
 
-/// The sensor's pose in the cloud's frame as a file states it; nothing is applied, normalised or checked.
+/// The sensor's pose in the cloud's frame as a file states it: not applied, not normalised, not checked.
 struct viewpoint {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
 };
 
-/// A cloud as a query reads it: floats less an origin. Point i is at `pose * points[i]` in the world, to within `off`.
+/// A cloud as a query reads it: floats relative to an origin. In the world point i is `pose * points[i]`, within `off`.
 struct float_cloud {
   std::vector<vec3> points;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< In the cloud's frame.
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   position_error off;
 
-  /// What min_distance takes; this object must stay.
+  /// What min_distance takes; this object must outlive it.
   placed<point_span> view() const {
     point_span source(points);
     source.filter.sensor = {-real(origin.x()), -real(origin.y()), -real(origin.z())};
@@ -34,31 +34,30 @@ struct float_cloud {
   }
 };
 
-/// Points in the file's order, one for each of its records, with the file's coordinates (metres); an invalid record
-/// stays in its place as NaN. A query wants floats: `min_distance(on, model, poses, cloud.near(poses,
-/// world_from_cloud).view())`.
+/// Points in the file's order, one per record, with the file's coordinates (metres). An invalid record stays in its
+/// place as NaN. A query needs floats: `min_distance(on, model, poses, cloud.near(poses, world_from_cloud).view())`.
 struct cloud {
   std::string name;
   std::vector<Eigen::Vector3d> points;
   std::optional<io::viewpoint> viewpoint;
-  std::size_t width = 0;  // an organised cloud has height rows of width points; any other has height 1
+  std::size_t width = 0;  // an organised cloud has `height` rows of `width` points; any other has height 1
   std::size_t height = 1;
 
-  /// Floats less any origin, a position in the cloud's frame: exact where they can be, else off by 2^-24 of their
-  /// length, which the bracket carries. So it is tight for a robot near the origin, and true for any. Throws if the
+  /// Floats relative to `origin`, a position in the cloud's frame. They are exact where possible, else off by 2^-24 of
+  /// their length; the bracket covers that. So it is tight for a robot near the origin, and true for any. Throws if the
   /// pose is not rigid.
   float_cloud relative_to(const Eigen::Vector3d& origin,
                           const Eigen::Isometry3d& world_from_cloud = Eigen::Isometry3d::Identity()) const;
 
-  /// Floats for a robot whose parts have these poses (world-from-part): relative to 0, if that is within 32 m of their
-  /// middle, so that a file's floats stay what they are; else to the middle, in whole metres.
+  /// Floats for a robot whose parts have these poses (world-from-part). They are relative to 0 if the parts' middle is
+  /// within 32 m of it, so a file's floats stay as they are; else to the middle, rounded to metres.
   float_cloud near(std::span<const Eigen::Isometry3d> poses,
                    const Eigen::Isometry3d& world_from_cloud = Eigen::Isometry3d::Identity()) const;
 };
 
 inline float_cloud cloud::relative_to(const Eigen::Vector3d& origin, const Eigen::Isometry3d& world_from_cloud) const {
   float_cloud made{.points = {}, .origin = origin, .pose = rigid(world_from_cloud, "cloud"), .off = {}};
-  if (!origin.isZero(0)) {  // what moving the frame costs, since nobody sees it later
+  if (!origin.isZero(0)) {  // the error of moving the frame; nobody can see it later
     made.off.absolute = frames::pose_error * (made.pose.translation().norm() + origin.norm());
     made.pose.translation() = made.pose * origin;
   }

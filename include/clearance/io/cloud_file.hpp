@@ -10,7 +10,7 @@
 
 namespace clearance::io {
 
-/// The end of a file's name in small letters, with its dot.
+/// The ending of a file's name in small letters, with its dot.
 inline std::string extension(const std::string& file) {
   std::string end = std::filesystem::path(file).extension().string();
   std::transform(end.begin(), end.end(), end.begin(),
@@ -18,7 +18,7 @@ inline std::string extension(const std::string& file) {
   return end;
 }
 
-/// Reads a point cloud by the end of its name: .pcd, .ply, .xyz or .txt. Throws std::runtime_error.
+/// Reads a point cloud by the ending of its name: .pcd, .ply, .xyz or .txt. Throws std::runtime_error.
 inline cloud load_cloud(const std::string& file, const read_limits& limits = {}) {
   const std::string end = extension(file);
   if (end == ".pcd") return within_memory(file, [&] { return load_pcd(file, limits); });

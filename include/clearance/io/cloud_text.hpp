@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Lines, words and numbers of a text file, without locale and without copies.
+// Lines, words and numbers of a text file, without a locale and without copies.
 
 #include <clearance/io/sentence.hpp>
 
@@ -17,7 +17,7 @@
 
 namespace clearance::io {
 
-/// Takes the next line off `rest`, without its end: \n, \r\n or \r alone.
+/// Takes the next line off `rest`, without its line end: \n, \r\n or \r alone.
 inline std::string_view take_line(std::string_view& rest) {
   std::size_t end = 0;
   while (end < rest.size() && rest[end] != '\n' && rest[end] != '\r') ++end;
@@ -26,8 +26,8 @@ inline std::string_view take_line(std::string_view& rest) {
   return line;
 }
 
-/// The binary data after a text header, of which the last line was just taken off `all`, so that `rest` was left. Where
-/// the header's lines end by \r alone, a \n after the last one is data.
+/// The binary data after a text header. The header's last line was just taken off `all`, which left `rest`. If the
+/// header's lines end with \r alone, a \n after the last one belongs to the data.
 inline std::string_view data_after(std::string_view all, std::string_view rest) {
   const std::string_view first = all.substr(std::min(all.find_first_of("\r\n"), all.size()));
   const std::size_t taken = all.size() - rest.size();
@@ -35,13 +35,13 @@ inline std::string_view data_after(std::string_view all, std::string_view rest) 
   return returns && all.substr(0, taken).ends_with("\r\n") ? all.substr(taken - 1) : rest;
 }
 
-/// Without the byte order mark that some editors put first.
+/// Drops the byte order mark that some editors put first.
 inline std::string_view without_mark(std::string_view bytes) {
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
   return bytes;
 }
 
-/// Takes the next word off `line`; empty at its end. Any of `separators` ends a word.
+/// Takes the next word off `line`; empty at the line's end. Any of `separators` ends a word.
 inline std::string_view take_word(std::string_view& line, std::string_view separators = " \t\r\v\f") {
   line.remove_prefix(std::min(line.find_first_not_of(separators), line.size()));
   const std::string_view word = line.substr(0, line.find_first_of(separators));
@@ -49,7 +49,7 @@ inline std::string_view take_word(std::string_view& line, std::string_view separ
   return word;
 }
 
-/// The line without its comment, which begins with a # at the start of a word: "1.#QNAN" has none, and is no number.
+/// The line without its comment. A # at the start of a word begins one: "1.#QNAN" has none, and is no number.
 inline std::string_view without_comment(std::string_view line, std::string_view separators = " \t\r\v\f") {
   for (std::size_t at = line.find('#'); at != line.npos; at = line.find('#', at + 1))
     if (at == 0 || separators.find(line[at - 1]) != separators.npos) return line.substr(0, at);
@@ -62,7 +62,7 @@ inline std::vector<std::string_view> words(std::string_view line) {
   return all;
 }
 
-/// Whether the number that `word` spells, which no double holds, is too small rather than too large.
+/// `word` spells a number that no double holds: is it too small (and not too large)?
 inline bool spells_tiny(std::string_view word) {
   const std::size_t e = std::min(word.find_first_of("eE"), word.size());
   const std::size_t point = std::min(word.find('.'), e), first = word.find_first_of("123456789");
@@ -76,8 +76,8 @@ inline bool spells_tiny(std::string_view word) {
   return first > point ? exponent < (long long)(first - point) : exponent + (long long)(point - first) < 0;
 }
 
-/// The number that the whole word spells ("nan" and "inf" too), or nothing, as for one too large for its type. One too
-/// small for it is 0.
+/// The number that the whole word spells ("nan" and "inf" too). A number too small for its type is 0; one too large,
+/// and anything else, is nothing.
 template <class T>
 std::optional<T> number(std::string_view word) {
   if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);  // from_chars knows no plus

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The <geometry> of a COLLADA file. All lists must have exactly as many numbers as the file says.
+// The <geometry> of a COLLADA file. Every list must have exactly as many numbers as the file says.
 
 #include <clearance/io/mesh_polygons.hpp>
 #include <clearance/io/xml.hpp>
@@ -17,7 +17,7 @@
 
 namespace clearance::io {
 
-/// The numbers in an element's text, exactly `count` if that is given.
+/// The numbers in an element's text; exactly `count` of them if it is given.
 template <class T>
 std::vector<T> dae_numbers(const xml_place& at, const std::uint64_t* count = nullptr) {
   if (!at.element.children.empty()) at.in(at.element.children.front()).refuse("is inside a list of numbers");
@@ -61,7 +61,7 @@ class dae_ids {
     for (const xml_element* each : elements) add(*each);
   }
 
-  /// The one that the attribute means ("#id"); anything but exactly one is an error.
+  /// The element that the attribute refers to ("#id"); none, or more than one, is an error.
   const xml_element& find(const xml_place& from, std::string_view attribute) const {
     const std::string& url = from.attribute(attribute);
     if (!url.starts_with('#')) from.refuse("names " + io::quoted(url) + ", which is not in this file");
@@ -72,10 +72,10 @@ class dae_ids {
   }
 
  private:
-  std::map<std::string, const xml_element*, std::less<>> by_id_;  // null: there are two
+  std::map<std::string, const xml_element*, std::less<>> by_id_;  // null: two elements have this id
 };
 
-/// The positions of a <mesh>: what its <vertices> name.
+/// The positions of a <mesh>: those that its <vertices> refer to.
 inline std::vector<Eigen::Vector3d> dae_positions(const xml_place& mesh, const xml_place& vertices) {
   vertices.only({"id", "name"}, {"input", "extra"});
   const xml_element* input = nullptr;
@@ -109,7 +109,7 @@ inline std::vector<Eigen::Vector3d> dae_positions(const xml_place& mesh, const x
   return made;
 }
 
-/// Where a list's indices of vertices are: every `stride`-th, from `first` on.
+/// Where a list holds its vertex indices: every `stride`-th number, from `first` on.
 struct dae_indices {
   std::uint64_t stride = 1, first = 0;
 };
@@ -132,7 +132,7 @@ inline dae_indices dae_layout(const xml_place& list, const std::string& vertices
   return made;
 }
 
-/// The vertices that a list <p> names.
+/// The vertices that a list <p> refers to.
 inline std::vector<std::uint32_t> dae_corners(const xml_place& at, const dae_indices& layout, std::size_t vertices) {
   const auto all = dae_numbers<std::int64_t>(at);
   if (all.size() % layout.stride)
@@ -158,7 +158,7 @@ inline void dae_strip(const xml_place& at, bool fan, const std::vector<std::uint
   }
 }
 
-/// Adds faces of these sizes, which all corners belong to.
+/// Adds faces with these numbers of corners; together they must use all corners.
 inline void dae_polygons(const xml_place& at, const std::vector<std::uint64_t>& sizes,
                          const std::vector<std::uint32_t>& corners, polygon_mesh& mesh) {
   std::uint64_t taken = 0;
@@ -203,7 +203,7 @@ inline void dae_faces(const xml_place& list, const std::string& vertices, polygo
   }
 }
 
-/// The faces of a <geometry>; its lines have no surface, and are passed over.
+/// The faces of a <geometry>; lines have no surface and are skipped.
 inline polygon_mesh dae_geometry(const xml_place& geometry) {
   geometry.only({"id", "name"}, {"asset", "mesh", "extra"});
   const xml_element* element = geometry.child("mesh");

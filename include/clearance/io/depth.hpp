@@ -8,7 +8,7 @@
 
 namespace clearance::io {
 
-/// Raw 16-bit depths row by row, as the sensor's file has them; unit and invalid values are the reader's business.
+/// Raw 16-bit depths row by row, as in the sensor's file; unit and invalid values are up to the reader.
 struct depth_frame {
   std::string name;
   std::vector<std::uint16_t> pixels;

@@ -11,8 +11,8 @@
 
 namespace clearance::io {
 
-/// A fingerprint: 128 bits of XXH3. Equal content has equal digests; different content has not, except by a chance of
-/// about 2^-128 (nobody is expected to forge it). All zeros: not known.
+/// A fingerprint: 128 bits of XXH3. Equal content has equal digests; different content has equal ones by a chance of
+/// about 2^-128. It does not protect against forgery. All zeros: not known.
 struct digest {
   std::array<std::uint8_t, 16> bytes{};
 
@@ -34,8 +34,8 @@ inline digest digest_of(std::string_view bytes) {
   return made;
 }
 
-/// Of all that decides which points are inside: corners, triangles with their caps, which of them count, and what a
-/// flood found.
+/// Covers everything that decides which points are inside: corners, triangles with their caps, which triangles count,
+/// and the result of a flood.
 inline digest digest_of(const closed_mesh& mesh) {
   byte_writer out;
   const auto& vertices = mesh.surface.vertices;

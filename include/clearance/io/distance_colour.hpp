@@ -5,8 +5,8 @@
 
 namespace clearance::io {
 
-/// The colour of a distance in metres: red at 0 and inside, by way of yellow, green (half way) and cyan to blue at
-/// `far` and beyond.
+/// The colour of a distance in metres: red at 0 and inside, then yellow, green (half way) and cyan, and blue from `far`
+/// on.
 inline colour distance_colour(double distance, double far) {
   const double along = std::clamp(4 * distance / far, 0.0, 4.0);
   const auto part = [](double value) { return float(std::clamp(value, 0.0, 1.0)); };

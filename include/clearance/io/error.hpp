@@ -16,13 +16,13 @@
 
 namespace clearance::io {
 
-/// Ends the reading of a file with one sentence of at most 380 bytes that starts with its name (and line, counted from
-/// 1; 0 for none). Long names lose their middle.
+/// Stops reading a file, with one sentence of at most 380 bytes. It starts with the file's name and the line, counted
+/// from 1 (0: no line). Long names lose their middle.
 [[noreturn]] inline void refuse(const std::string& file, const std::string& why, std::size_t line = 0) {
   throw std::runtime_error(sentence_about(sentence(file, 200) + (line ? ":" + std::to_string(line) : ""), why));
 }
 
-/// What `read()` returns; where it needs more memory than there is, a sentence that names the file.
+/// What `read()` returns. If it needs more memory than there is, the error is a sentence that names the file.
 template <class Read>
 auto within_memory(const std::string& file, Read read) {
   try {
@@ -33,9 +33,9 @@ auto within_memory(const std::string& file, Read read) {
   refuse(file, "there is not enough memory to read it");
 }
 
-/// How much a file may become. Both are said in the sentence that refuses one.
+/// How large a file may become. A sentence that refuses one names the limit.
 struct read_limits {
-  /// Bytes of memory that the points or pixels of a compressed file may take. A few megabytes can hold gigabytes.
+  /// Bytes of memory for the points or pixels of a compressed file. A few megabytes can hold gigabytes.
   std::uint64_t unfolded = std::uint64_t(1) << 30;
   /// Bytes that come from a pipe, which may never end.
   std::uint64_t piped = std::uint64_t(1) << 32;
@@ -44,14 +44,14 @@ struct read_limits {
 /// "1024 MiB", for sentences.
 inline std::string mebibytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
-/// Which file it is, whatever name it goes by.
+/// Identifies a file, whatever its name.
 struct file_identity {
   ::dev_t device = 0;
   ::ino_t number = 0;
   friend bool operator==(const file_identity&, const file_identity&) = default;
 };
 
-/// While one lives, it knows the files that its thread reads: so that what is written is none of them.
+/// While one exists, it records the files that its thread reads, so that none of them is overwritten.
 class files_read {
  public:
   files_read() : above_(innermost()) { innermost() = this; }
@@ -74,8 +74,8 @@ class files_read {
   std::vector<file_identity> seen_;
 };
 
-/// The whole file, or what a pipe gives until it ends, as bytes. A missing, unreadable or empty one (0 bytes), a folder
-/// and a device are errors that name it.
+/// The whole file as bytes, or what a pipe gives until it ends. An error names a file that is missing, unreadable,
+/// empty (0 bytes), a folder or a device.
 inline std::string read_bytes(const std::string& file, const read_limits& limits = {}) {
   struct ::stat status{};
   // A NUL would end the name for the system, but not for us.

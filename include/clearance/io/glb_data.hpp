@@ -44,7 +44,7 @@ class glb_data {
  public:
   glb_data(const gltf_value& root, std::string_view data) : root_(root), data_(data) {}
 
-  /// The faces of one mesh. Points and lines are refused, and so is what moves vertices.
+  /// The faces of one mesh. Points, lines, and everything that moves vertices are refused.
   polygon_mesh mesh(const gltf_value& from) const {
     from.only({"primitives", "weights", "name", "extensions", "extras"});
     polygon_mesh made;
@@ -90,8 +90,8 @@ class glb_data {
     std::size_t count, stride;
   };
 
-  /// The bytes of an accessor whose elements have this size, inside its buffer. glTF wants each component aligned to
-  /// its own size; an offset that is not is a damaged one.
+  /// The bytes of an accessor whose elements have this size, inside its buffer. glTF aligns each component to its own
+  /// size, so an offset that is not aligned is damaged.
   view open(const gltf_value& accessor, std::size_t size, std::size_t component) const {
     accessor.only({"bufferView", "byteOffset", "componentType", "normalized", "count", "type", "max", "min", "sparse",
                    "name", "extensions", "extras"});
@@ -109,7 +109,7 @@ class glb_data {
                         length = from["byteLength"].integer(), offset = accessor.integer("byteOffset", 0),
                         count = accessor["count"].integer(), stride = from.integer("byteStride", size);
     if (whole > data_.size()) buffer.refuse("is longer than the data in the file");
-    if (data_.size() - whole > 3) buffer.refuse("is shorter than the data in the file");  // which are padded to fours
+    if (data_.size() - whole > 3) buffer.refuse("is shorter than the data in the file");  // padded to multiples of 4
     if (at > whole || length > whole - at) from.refuse("is not inside its buffer");
     if (count == 0) accessor.refuse("has the count 0");
     if (stride < size || stride > 252) from.refuse("has the stride " + std::to_string(stride));

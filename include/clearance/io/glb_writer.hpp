@@ -17,18 +17,18 @@
 
 namespace clearance::io {
 
-/// Makes a binary glTF file: one node for each mesh, below one that turns z up to y up.
+/// Makes a binary glTF file: one node per mesh, below a node that turns z up into y up.
 class glb_writer {
  public:
   explicit glb_writer(const std::string& file) : file_(file) {}
 
-  /// Adds a mesh where `pose` puts it; meshes with the name of a group are below a node of that name.
+  /// Adds a mesh at `pose`; meshes with the name of a group are below a node of that name.
   void add(const std::string& name, const drawn_mesh& mesh, const Eigen::Isometry3d& pose, colour paint,
            const std::string& group) {
     if (!pose.matrix().allFinite()) refuse(file_, "the pose of a part of the scene is not finite");
     json primitive = {{"material", materials_.size()}, {"attributes", {{"POSITION", positions(mesh.positions)}}}};
     if (mesh.corners.empty()) {
-      primitive["mode"] = 0;  // points; their colour is written with each vertex, which is where viewers look for it
+      primitive["mode"] = 0;  // points; each vertex carries its colour, because viewers look for it there
       std::vector<float> colours;
       for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         const colour& c = mesh.colours.empty() ? paint : mesh.colours[i];
@@ -60,7 +60,7 @@ class glb_writer {
     nodes_.push_back(std::move(node));
   }
 
-  /// The whole file. A scene without anything in it, or beyond 4 GiB, is refused.
+  /// The whole file. An empty scene, and one beyond 4 GiB, is refused.
   std::string bytes() const {
     if (nodes_.empty()) refuse(file_, "there is nothing to draw");
     json nodes = nodes_, below = top_;
@@ -80,7 +80,7 @@ class glb_writer {
                       {"accessors", accessors_},
                       {"bufferViews", views_},
                       {"buffers", json::array({{{"byteLength", data_.bytes().size()}}})}};
-    std::string text = all.dump(-1, ' ', false, json::error_handler_t::replace);  // what is no UTF-8 becomes U+FFFD
+    std::string text = all.dump(-1, ' ', false, json::error_handler_t::replace);  // what is not UTF-8 becomes U+FFFD
     text.resize((text.size() + 3) / 4 * 4, ' ');
     const std::uint64_t size = 28 + text.size() + data_.bytes().size();
     if (size > UINT32_MAX) refuse(file_, "a scene of more than 4 GiB cannot be written as glTF");
@@ -98,7 +98,7 @@ class glb_writer {
 
  private:
   using json = nlohmann::json;
-  static constexpr int vertex_data = 34962, index_data = 34963;  // glTF's numbers of them
+  static constexpr int vertex_data = 34962, index_data = 34963;  // glTF's numbers for them
 
   static std::vector<float> flat(const std::vector<vec3>& values) {
     std::vector<float> made;
@@ -136,7 +136,7 @@ class glb_writer {
   byte_writer data_;
   json meshes_ = json::array(), materials_ = json::array(), nodes_ = json::array(), accessors_ = json::array(),
        views_ = json::array(), top_ = json::array();
-  std::vector<std::pair<std::string, json>> groups_;  // names, and the numbers of their nodes
+  std::vector<std::pair<std::string, json>> groups_;  // names, and the numbers of their member nodes
 };
 
 }  // namespace clearance::io

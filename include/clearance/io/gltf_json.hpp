@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The JSON of a glTF file, read strictly: members that are not known, there twice, or of another kind are refused by
-// name.
+// The JSON of a glTF file, read strictly: members that are unknown, duplicate or of a wrong kind are refused by name.
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
@@ -21,7 +20,7 @@
 
 namespace clearance::io {
 
-/// Looks through JSON before it is made a tree: its size, its depth, and members that are there twice.
+/// Checks JSON before a tree is made of it: its size, its depth, and members that are there twice.
 class json_check final : public nlohmann::json_sax<nlohmann::json> {
  public:
   json_check(const std::string& file, const mesh_limits& limits) : file_(file), limits_(limits) {}
@@ -64,17 +63,17 @@ class json_check final : public nlohmann::json_sax<nlohmann::json> {
 
   const std::string& file_;
   const mesh_limits& limits_;
-  std::vector<std::set<std::string>> keys_;  // of what is open
+  std::vector<std::set<std::string>> keys_;  // of the objects that are open
   std::uint64_t values_ = 0;
 };
 
 inline nlohmann::json read_json(std::string_view text, const std::string& file, const mesh_limits& limits = {}) {
   json_check check(file, limits);
-  nlohmann::json::sax_parse(text, &check);  // nlohmann's callbacks would take a time that grows with the square
+  nlohmann::json::sax_parse(text, &check);  // with nlohmann's callbacks the time would grow with the square
   return nlohmann::json::parse(text);
 }
 
-/// A value with its name for sentences, such as: nodes[3].children.
+/// A value with its name for error sentences, such as nodes[3].children.
 struct gltf_value {
   const nlohmann::json& value;
   const std::string& file;
@@ -99,7 +98,7 @@ struct gltf_value {
   }
   gltf_value operator[](std::size_t i) const { return {value[i], file, name + "[" + std::to_string(i) + "]"}; }
 
-  /// How many values a list has; 0 if it is not there.
+  /// How many values a list has; 0 if there is no list.
   std::size_t size(const char* key) const { return has(key) ? (*this)[key].size() : 0; }
   std::size_t size() const {
     if (!value.is_array()) refuse("is no list");
@@ -118,7 +117,7 @@ struct gltf_value {
   std::uint64_t integer(const char* key, std::uint64_t otherwise) const {
     return has(key) ? (*this)[key].integer() : otherwise;
   }
-  /// The number of one of `count` things.
+  /// The value as the number of one of `count` things.
   std::size_t index(std::size_t count) const {
     const std::uint64_t i = integer();
     if (i >= count) refuse("is " + std::to_string(i) + ", of " + std::to_string(count));

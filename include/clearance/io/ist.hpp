@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The .ist file: packings with everything that is known of them. Bytes: docs/packing.md#the-ist-format-version-1.
+// The .ist file: packings with all that is known about them. Bytes: docs/packing.md#the-ist-format-version-1.
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/packed_part.hpp>
@@ -12,17 +12,17 @@
 
 namespace clearance::io {
 
-inline constexpr std::string_view ist_magic = "\x89IST\r\n\x1a\n";  // damaged by whatever takes the file for text
+inline constexpr std::string_view ist_magic = "\x89IST\r\n\x1a\n";  // a transfer as text would damage it
 inline constexpr std::uint32_t ist_version = 1;
 
 namespace detail {
 
-/// Every member of a packing, in the file's order: `visit` is called with each. A member more than there are names here
-/// does not compile: then it belongs into the file as well, and ist_version goes up.
+/// Calls `visit` with every member of a packing, in the file's order. If a packing gains a member, this does not
+/// compile: write the new member to the file as well, and raise ist_version.
 template <class Packing, class Visit>
 void for_each_member(Packing& p, Visit visit) {
   auto& [spheres, gap, tolerance, gap_mean, gap_p95, fill, radius_min, radius_max, room, stopped_by, seconds] = p;
-  static_cast<void>(tolerance);  // is in the part's
+  static_cast<void>(tolerance);  // is written with the part
   visit(gap), visit(gap_mean), visit(gap_p95), visit(fill), visit(radius_min), visit(radius_max), visit(room),
       visit(seconds);
   visit(stopped_by);
@@ -99,7 +99,7 @@ inline std::string ist_bytes(std::span<const packed_part> parts) {
   return out.bytes();
 }
 
-/// What `ist_bytes` made; `file` is named in refusals.
+/// Parses what `ist_bytes` made; error sentences name `file`.
 inline std::vector<packed_part> read_ist(std::string_view bytes, const std::string& file) {
   if (!bytes.starts_with(ist_magic)) refuse(file, "is not an .ist file");
   if (bytes.size() < 28) refuse(file, "is cut short: " + std::to_string(bytes.size()) + " bytes hold no header");

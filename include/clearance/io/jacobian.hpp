@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// From how a distance changes with a part's pose to how it changes with a robot's joints.
+// Turns the change of a distance with a part's pose into its change with a robot's joints.
 
 #include <clearance/gradient.hpp>
 #include <clearance/io/kinematics.hpp>
@@ -9,10 +9,10 @@
 
 namespace clearance::io {
 
-/// What each value of the configuration does to a link, in the frame of `at`: 6 x tree.size(), of which a column is the
-/// velocity of the link's point that is at `at` now (3) and the link's angular velocity (3), for each metre or radian a
-/// second. Mimic joints count for the value that they follow. `link_poses` are those of all links, as link_poses gives
-/// them or moved together. Throws std::invalid_argument if there are more or fewer, or the tree has no such link.
+/// What each value of the configuration does to a link, in the frame of `at`: 6 x tree.size(). A column is the velocity
+/// of the link's point that is now at `at` (3), then the link's angular velocity (3), per metre or radian. Mimic joints
+/// count for the value that they follow. `link_poses` are those of all links, from link_poses or moved together. Throws
+/// std::invalid_argument if their number is wrong, or the tree has no such link.
 inline Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const kinematic_tree& tree,
                                                          std::span<const Eigen::Isometry3d> link_poses,
                                                          std::size_t link, const Eigen::Vector3d& at) {
@@ -26,7 +26,7 @@ inline Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const kinematic_tree& t
     if (by.kind == joint_kind::fixed) continue;
     const joint_drive& drive = tree.drive(j);
     const Eigen::Vector3d axis =
-        drive.factor * (link_poses[link].linear() * by.axis);  // a turn about it, or a shift along it, leaves it
+        drive.factor * (link_poses[link].linear() * by.axis);  // motion about or along it leaves it unchanged
     auto column = all.col(Eigen::Index(drive.value));
     if (by.kind == joint_kind::prismatic) {
       column.head<3>() += axis;
@@ -38,8 +38,8 @@ inline Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const kinematic_tree& t
   return all;
 }
 
-/// The gradient of a distance with respect to the configuration: metres for each metre or radian of its values; nothing
-/// if that with respect to the link's pose is not known. `g` and `link_poses` are in the same frame. Throws as
+/// The gradient of a distance with respect to the configuration: metres per metre or radian of its values. No value if
+/// the gradient with respect to the link's pose is not known. `g` and `link_poses` are in one frame. Throws as
 /// jacobian.
 inline std::optional<Eigen::VectorXd> joint_gradient(const kinematic_tree& tree,
                                                      std::span<const Eigen::Isometry3d> link_poses, std::size_t link,
@@ -51,8 +51,8 @@ inline std::optional<Eigen::VectorXd> joint_gradient(const kinematic_tree& tree,
   return Eigen::VectorXd(moved.transpose() * by);
 }
 
-/// Of a part of a robot in its configuration `q`, whose base is at `base`. Throws as kinematic_tree::link_poses, or if
-/// there is no such part.
+/// The same for a part of a robot in configuration `q`, whose base is at `base`. Throws as kinematic_tree::link_poses,
+/// or if there is no such part.
 template <class Robot>
   requires requires(const Robot& r) { r.kinematics().link_poses({}), r.parts()[0].link; }
 std::optional<Eigen::VectorXd> joint_gradient(const Robot& robot, std::span<const double> q, std::uint32_t part,

@@ -6,9 +6,9 @@
 
 namespace clearance::io {
 
-/// A kinematic tree's links for many configurations at once, on any backend. Part k is link `links[k]`, and the base is
-/// at `base`. Poses agree with kinematic_tree::link_poses to double's rounding; those of a chain are the same
-/// everywhere. Throws std::invalid_argument if there is no such link, no joint moves, or `base` is not rigid.
+/// A kinematic tree's links for many configurations at once, on any backend. Part k is link `links[k]`; the base is at
+/// `base`. Poses agree with kinematic_tree::link_poses up to double's rounding; a chain gives the same poses on every
+/// backend. Throws std::invalid_argument if a link does not exist, no joint moves, or `base` is not rigid.
 inline joint_chain<> joint_chain_of(const kinematic_tree& tree, std::span<const std::size_t> links,
                                     joint_options options = {},
                                     const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity()) {
@@ -39,7 +39,7 @@ inline joint_chain<> joint_chain_of(const kinematic_tree& tree, std::span<const 
                                                 : joint_range{tree.movable(i).lower, tree.movable(i).upper}});
   return joint_chain<>(std::move(all), std::move(of_part), std::move(values), base);
 }
-/// Of a robot with its parts.
+/// The same for a robot with its parts.
 template <class Robot>
   requires requires(const Robot& r) { r.kinematics().joints(), r.parts()[0].link; }
 joint_chain<> joint_chain_of(const Robot& robot, joint_options options = {},

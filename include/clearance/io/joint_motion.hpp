@@ -6,12 +6,12 @@
 
 namespace clearance::io {
 
-/// A robot whose every joint goes from one value to another at constant speed; a mimic joint as what it follows. The
-/// tree must stay.
+/// Every joint of a robot goes from one value to another at constant speed; a mimic joint follows its own. The tree
+/// must outlive the object.
 class joint_motion {
  public:
-  /// Part k is link `links[k]`, and the base is at `base`. Throws std::invalid_argument as kinematic_tree::link_poses
-  /// of either configuration, or if there is no such link, or `base` is not rigid.
+  /// Part k is link `links[k]`; the base is at `base`. Throws std::invalid_argument as kinematic_tree::link_poses for
+  /// either configuration, or if a link does not exist, or `base` is not rigid.
   joint_motion(const kinematic_tree& tree, std::vector<std::size_t> links, std::span<const double> from,
                std::span<const double> to, joint_options options = {},
                const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity())
@@ -26,14 +26,14 @@ class joint_motion {
         throw std::invalid_argument("the robot has " + std::to_string(tree.links().size()) +
                                     " links, and none of number " + std::to_string(link));
   }
-  /// Of a robot with its parts.
+  /// The same for a robot with its parts.
   template <class Robot>
     requires requires(const Robot& r) { r.kinematics().joints(), r.parts()[0].link; }
   joint_motion(const Robot& robot, std::span<const double> from, std::span<const double> to, joint_options options = {},
                const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity())
       : joint_motion(robot.kinematics(), links_of(robot), from, to, options, base) {}
 
-  /// Throws std::invalid_argument if there are not as many parts as links.
+  /// Throws std::invalid_argument if the numbers of parts and links differ.
   moment at(double t, std::span<const part_facts> parts) const {
     if (parts.size() != links_.size())
       throw std::invalid_argument("clearance: there are " + std::to_string(parts.size()) + " parts, but a motion of " +
@@ -41,7 +41,7 @@ class joint_motion {
     std::vector<double> q;
     for (std::size_t i = 0; i < from_.size(); ++i) q.push_back(std::lerp(from_[i], to_[i], t));
     std::vector<Eigen::Isometry3d> poses =
-        tree_->link_poses(q, {.ignore_limits = true});  // between two that were asked about
+        tree_->link_poses(q, {.ignore_limits = true});  // between two that were checked
     for (Eigen::Isometry3d& pose : poses) pose = base_ * pose;
     moment now;
     for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -59,8 +59,8 @@ class joint_motion {
     return all;
   }
 
-  /// Up the chain, joint by joint. Of each: how far the solid is from its axis now, how far it may ever be from where
-  /// the axis is (the ways between frames add up), and how fast the joints below can change that.
+  /// Goes up the chain, joint by joint. For each joint: how far the solid is from its axis now, how far it can ever be
+  /// from there (the lengths between frames add up), and how fast the joints below can change that.
   part_travel travel(const std::vector<Eigen::Isometry3d>& poses, std::size_t link, const part_facts& facts) const {
     const double radius = solid_radius(facts);
     const Eigen::Vector3d center = poses[link] * center_of(facts);
@@ -83,7 +83,7 @@ class joint_motion {
           below += rate * far;
         }
       }
-      // What values and origins are rounded by, as a turn: a prismatic joint's value is in `far` as well.
+      // The rounding of values and origins, as a turn; `far` contains a prismatic joint's value as well.
       rough += frames::pose_error * (2 + most) + 4 * skew(world_transform(by.origin));
       far += by.origin.translation().norm() + (by.kind == joint_kind::prismatic ? most : 0);
     }

@@ -26,7 +26,7 @@ struct mimic {
   double multiplier = 1, offset = 0;
 };
 
-/// parent-from-child is origin, then the motion by the joint's value (radians, metres) about or along the axis.
+/// parent-from-child is `origin`, then the motion by the joint's value (radians, metres) about or along `axis`.
 struct joint {
   std::string name;
   joint_kind kind = joint_kind::fixed;
@@ -39,8 +39,8 @@ struct joint {
   bool movable() const { return kind != joint_kind::fixed && !follows; }
 };
 
-/// How a joint follows the configuration: through all that it follows, its value is `factor` times value number `value`
-/// plus `offset`, which is a sum of numbers that are at most `offsets` together. A fixed joint follows none.
+/// How a joint follows the configuration, directly or through others: its value is `factor` times value number `value`
+/// plus `offset`, a sum of numbers whose magnitudes add up to `offsets`. Fixed joints follow nothing.
 struct joint_drive {
   std::size_t value = std::size_t(-1);
   double factor = 0, offset = 0, offsets = 0;
@@ -50,8 +50,8 @@ struct joint_options {
   bool ignore_limits = false;
 };
 
-/// `outer` * `inner`, such as a base and a link of it. Throws std::invalid_argument if their ways are so long, and
-/// cancel so well, that double loses what no bracket covers; `who` is what is put there.
+/// `outer` * `inner`, such as a base and its link. Throws std::invalid_argument if both are so long, and cancel so
+/// well, that double loses more than a bracket covers; `who` names what is placed there.
 inline Eigen::Isometry3d carried(const Eigen::Isometry3d& outer, const Eigen::Isometry3d& inner,
                                  const std::string& who) {
   const Eigen::Isometry3d made = outer * inner;
@@ -64,8 +64,8 @@ inline Eigen::Isometry3d carried(const Eigen::Isometry3d& outer, const Eigen::Is
   return made;
 }
 
-/// Links joined to a tree. A configuration is one value for each movable joint that follows no other, in the order in
-/// which the joints were given. Joints that follow another do so beyond their own limits too.
+/// Links joined to a tree. A configuration is one value per movable joint that follows no other, in the order of the
+/// joints as given. Joints that follow another do so even beyond their own limits.
 class kinematic_tree {
  public:
   kinematic_tree() = default;
@@ -99,16 +99,16 @@ class kinematic_tree {
   const std::vector<joint>& joints() const { return joints_; }
   std::size_t base() const { return base_; }
 
-  /// How many values a configuration has, and whose they are.
+  /// The number of values in a configuration, and the joint of each.
   std::size_t size() const { return movable_.size(); }
   const joint& movable(std::size_t i) const { return joints_[movable_[i]]; }
 
-  /// The number of the joint above a link, or `none` above the base; and what moves a joint.
+  /// The number of the joint above a link (`none` for the base), and what drives a joint.
   static constexpr std::size_t none = std::size_t(-1);
   std::size_t joint_above(std::size_t link) const { return above_[link]; }
   const joint_drive& drive(std::size_t joint) const { return drives_[joint]; }
 
-  /// The number of a link; std::invalid_argument if there is none of that name.
+  /// The number of a link. Throws std::invalid_argument if no link has this name.
   std::size_t link(const std::string& name) const {
     const auto at = link_at_.find(name);
     if (at == link_at_.end()) throw std::invalid_argument("the robot has no link \"" + name + '"');
@@ -122,7 +122,7 @@ class kinematic_tree {
     return q;
   }
 
-  /// The configuration in which the joints named have these values and the others are at rest.
+  /// The configuration in which the named joints have these values and the others are at rest.
   std::vector<double> configuration(const std::map<std::string, double>& values, joint_options options = {}) const {
     std::vector<double> q = rest();
     for (const auto& [name, value] : values) {
@@ -133,9 +133,9 @@ class kinematic_tree {
     return q;
   }
 
-  /// base-from-link for every link, composed in double. Throws std::invalid_argument if there are too many or too few
-  /// values, or if one is not finite or beyond its limits, or puts a link where no number can say, or by ways that are
-  /// so long and cancel so well that double loses what no bracket covers.
+  /// base-from-link for every link, composed in double. Throws std::invalid_argument if the number of values is wrong,
+  /// if a value is not finite or beyond its limits, if a link's place is not finite, or if the ways to it are so long
+  /// and cancel so well that double loses more than a bracket covers.
   std::vector<Eigen::Isometry3d> link_poses(std::span<const double> q, joint_options options = {}) const {
     if (q.size() != size())
       throw std::invalid_argument("the robot has " + std::to_string(size()) + " movable joints, here are " +
@@ -229,7 +229,7 @@ class kinematic_tree {
       throw std::invalid_argument("some joints make a ring, apart from the base link");
   }
 
-  /// Leaders before those that follow them.
+  /// Puts leaders before those that follow them.
   void order_values() {
     drives_.resize(joints_.size());
     for (std::size_t i = 0; i < movable_.size(); ++i) drives_[movable_[i]] = {i, 1, 0, 0};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Clouds in files that are larger than memory may be: what `chunked` takes.
+// Clouds in files that may be larger than memory, for `chunked`.
 
 #include <clearance/io/mapped_file.hpp>
 #include <clearance/io/pcd.hpp>
@@ -12,7 +12,7 @@
 
 namespace clearance::io {
 
-/// A `loaded_cloud`: a source whose bytes are in a mapped file, which is kept open.
+/// A `loaded_cloud`: its source points into a mapped file, which it keeps open.
 template <point_source S>
 struct mapped_cloud {
   std::shared_ptr<const mapped_file> file;
@@ -29,8 +29,8 @@ struct mapped_cloud {
   }
 };
 
-/// Records of x, y, z in floats (12 bytes each), `header` bytes after the file's beginning. Throws std::runtime_error
-/// if the file is cut short in one, or a header puts floats where a processor cannot read them.
+/// Records of x, y, z in floats (12 bytes each), starting `header` bytes into the file. Throws std::runtime_error if
+/// the file ends within a record, or if `header` is no multiple of 4, so that floats are not aligned.
 inline mapped_cloud<point_span> map_points(const std::string& file, std::size_t header = 0) {
   const auto mapped = std::make_shared<const mapped_file>(file);
   const std::size_t bytes = mapped->bytes().size();
@@ -71,22 +71,22 @@ mapped_cloud<strided_points<Scalar>> records_of(const std::shared_ptr<const mapp
 
 }  // namespace detail
 
-/// Records as `layout` says: its step, offsets, origin and filter. Its `count` is what the file has, if it is 0.
+/// Records as `layout` describes them: step, offsets, origin, filter. If its `count` is 0, all records of the file.
 template <class Scalar>
 mapped_cloud<strided_points<Scalar>> map_records(const std::string& file, const strided_points<Scalar>& layout,
                                                  std::size_t header = 0) {
   return detail::records_of(std::make_shared<const mapped_file>(file), layout, header);
 }
 
-/// A PCD file with DATA binary, whose x, y, z are Scalars. Throws std::runtime_error as load_pcd, and if it is another
+/// A PCD file with DATA binary, whose x, y, z are Scalars. Throws std::runtime_error as load_pcd, and for any other
 /// kind of PCD file.
 template <class Scalar = float>
 mapped_cloud<strided_points<Scalar>> map_pcd(const std::string& file) {
-  // Opened once: by the time that its header is read there may be another file of that name.
+  // Opens the file once: by the time that its header is read, the name may belong to another file.
   const auto mapped = std::make_shared<const mapped_file>(file);
   const std::span<const std::byte> all = mapped->bytes();
   const std::span<const std::byte> start =
-      all.first(std::min<std::size_t>(all.size(), 1 << 20));  // no more is looked through for a header
+      all.first(std::min<std::size_t>(all.size(), 1 << 20));  // a header must be within this
   mapped->bring(start);
   std::string_view rest(reinterpret_cast<const char*>(start.data()), start.size());
   const pcd_header header = take_pcd_header(rest, file);

@@ -13,8 +13,8 @@
 
 namespace clearance::io {
 
-/// A file as memory, read when it is looked at. Whoever looks calls `bring` first: it tells in a sentence what would
-/// otherwise end the process by a signal. (A file that becomes shorter between that and the look still does.)
+/// A file as memory, read on access. Call `bring` before you access it: it throws a sentence where the access would
+/// otherwise end the process by a signal. (A file that shrinks between the two still does.)
 class mapped_file {
  public:
   /// Throws std::runtime_error if there is no such file, or it is empty, a folder or a device, or cannot be mapped.
@@ -50,8 +50,8 @@ class mapped_file {
   const std::string& name() const { return file_; }
   std::span<const std::byte> bytes() const { return {data_, size_}; }
 
-  /// Reads some of its bytes to memory, if they are not there. Throws std::runtime_error if the file has another size
-  /// than when it was opened, or cannot be read.
+  /// Reads some of its bytes into memory, if they are not there. Throws std::runtime_error if the file's size has
+  /// changed since it was opened, or if it cannot be read.
   void bring(std::span<const std::byte> some) const {
     struct ::stat status{};
     if (::fstat(descriptor_, &status) != 0) refuse(file_, std::string("cannot be read: ") + std::strerror(errno));
@@ -62,9 +62,8 @@ class mapped_file {
     const auto page = std::uintptr_t(::sysconf(_SC_PAGESIZE)), first = reinterpret_cast<std::uintptr_t>(some.data());
     const std::uintptr_t begin = first / page * page, length = first + some.size() - begin;
     ::madvise(reinterpret_cast<void*>(begin), length,
-              MADV_WILLNEED);  // all of it at once, where it is not in memory yet
-    constexpr int populate_read =
-        22;  // MADV_POPULATE_READ, of Linux 5.14; an older one says EINVAL, and reads at the look
+              MADV_WILLNEED);          // all that is missing, at once
+    constexpr int populate_read = 22;  // MADV_POPULATE_READ of Linux 5.14; before it: EINVAL, and access reads
     if (::madvise(reinterpret_cast<void*>(begin), length, populate_read) != 0 && errno != EINVAL)
       refuse(file_, "cannot be read at byte " + std::to_string(some.data() - data_) + ": " +
                         (errno == EFAULT ? "Input/output error" : std::strerror(errno)));

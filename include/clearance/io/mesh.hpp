@@ -29,10 +29,10 @@ inline std::string mesh_format(const std::filesystem::path& path, std::string_vi
   return "stl";
 }
 
-/// Reads a mesh file: all its meshes, with the transforms of its scene graph, its faces in their order as triangles.
-/// Metres, except that a COLLADA file's unit is honoured. Throws std::runtime_error with a sentence that names the file
-/// if it is missing, no regular file, damaged, beyond a limit, has indices out of range, coordinates that are not
-/// finite, or meshes that its scene does not place, or has no triangle.
+/// Reads a mesh file: all its meshes, placed by its scene graph, its faces as triangles in their order. In metres; a
+/// COLLADA file's unit is honoured. Throws std::runtime_error with a sentence that names the file if it is missing, not
+/// a regular file, damaged, beyond a limit or without triangles, if an index is out of range or a coordinate not
+/// finite, or if its scene does not place a mesh.
 inline triangle_mesh load_mesh(const std::filesystem::path& path, const mesh_limits& limits = {}) {
   const std::string file = path.string();
   return within_memory(file, [&] {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// COLLADA as robot descriptions use it. What would change the shape and is not understood (skins, morphs, splines,
-// other files) is refused by name; what has no shape (materials, lights, cameras, physics, animations) is passed over.
+// COLLADA as robot descriptions use it. Anything not understood that would change the shape (skins, morphs, splines,
+// other files) is refused by name. Anything without shape (materials, lights, cameras, physics, animations) is skipped.
 
 #include <clearance/io/dae_mesh.hpp>
 #include <clearance/io/mesh_scene.hpp>
@@ -84,7 +84,7 @@ class dae_reader {
   }
 
  private:
-  /// Metres of the unit that an element's <asset> states.
+  /// The unit in an element's <asset>, in metres.
   static double unit(const xml_place& of, double otherwise) {
     const xml_element* asset = of.child("asset");
     if (!asset) return otherwise;
@@ -98,7 +98,7 @@ class dae_reader {
     return metres;
   }
 
-  /// Where "up" is, by an element's <asset>.
+  /// The up axis in an element's <asset>.
   static std::string up(const xml_place& of, const std::string& otherwise) {
     const xml_element* asset = of.child("asset");
     const xml_element* axis = asset ? of.in(*asset).child("up_axis") : nullptr;
@@ -107,7 +107,7 @@ class dae_reader {
     return std::string(take_word(rest, " \t\r\n"));
   }
 
-  /// Refuses a unit or an up axis that holds for a part of the file alone: other readers take the file's for all of it.
+  /// Refuses a unit or up axis for only a part of the file: other readers apply the file's own to everything.
   static void check_assets(const xml_place& of, double metres, const std::string& axis) {
     if (const double own = unit(of, metres); own != metres)
       of.refuse("has a unit of " + spelt(own) + " m of its own, the file's is " + spelt(metres) + " m");
@@ -186,10 +186,10 @@ class dae_reader {
   const xml_place root_;
   mesh_scene scene_;
   dae_ids geometries_, scenes_, nodes_;
-  std::map<const xml_element*, std::optional<polygon_mesh>> meshes_;  // of each geometry, once it has a place
+  std::map<const xml_element*, std::optional<polygon_mesh>> meshes_;  // by geometry, once one is placed
 };
 
-/// All meshes of a COLLADA file's scene, each at every place where the scene has it. The file's unit counts and its up
+/// All meshes of a COLLADA file's scene, once for each place that the scene gives them. The file's unit counts; its up
 /// axis does not, as in ROS tools.
 inline polygon_mesh read_dae(std::string_view bytes, const std::string& file, const mesh_limits& limits = {}) {
   const xml_element root = read_xml(bytes, file, limits);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Binary glTF as robot descriptions use it. What would change the shape and is not understood (skins, morph targets,
-// sparse or compressed data, other files) is refused by name; materials, cameras and animations are passed over.
+// Binary glTF as robot descriptions use it. Anything not understood that would change the shape (skins, morph targets,
+// sparse or compressed data, other files) is refused by name; materials, cameras and animations are skipped.
 
 #include <clearance/io/glb_data.hpp>
 #include <clearance/io/mesh_scene.hpp>
@@ -14,7 +14,7 @@
 
 namespace clearance::io {
 
-/// node-above-from-node: a matrix, or translation, rotation and scale.
+/// parent-from-node: a matrix, or translation, rotation and scale.
 inline Eigen::Affine3d glb_transform(const gltf_value& node) {
   Eigen::Affine3d made = Eigen::Affine3d::Identity();
   if (node.has("matrix")) {
@@ -42,7 +42,7 @@ inline Eigen::Affine3d glb_transform(const gltf_value& node) {
   return made;
 }
 
-/// Extensions that say how things look, not where they are.
+/// Allows only extensions about how things look, not about where they are.
 inline void check_gltf_extensions(const gltf_value& root) {
   for (std::size_t i = 0; i < root.size("extensionsRequired"); ++i) {
     const gltf_value each = root["extensionsRequired"][i];
@@ -54,7 +54,7 @@ inline void check_gltf_extensions(const gltf_value& root) {
   }
 }
 
-/// All meshes of a binary glTF file's scene, each at every place where the scene has it.
+/// All meshes of a binary glTF file's scene, once for each place that the scene gives them.
 inline polygon_mesh read_glb(std::string_view bytes, const std::string& file, const mesh_limits& limits = {}) {
   const glb_chunks chunks = read_glb_chunks(bytes, file);
   const nlohmann::json json = read_json(chunks.json, file, limits);
@@ -78,7 +78,7 @@ inline polygon_mesh read_glb(std::string_view bytes, const std::string& file, co
   std::vector<pending> stack;
   std::vector<bool> seen(nodes);
   const auto push = [&](const gltf_value& list, std::size_t depth, const Eigen::Affine3d& above) {
-    for (std::size_t i = list.size(); i-- > 0;) {  // the first is the next
+    for (std::size_t i = list.size(); i-- > 0;) {  // so the first comes next
       const std::size_t node = list[i].index(nodes);
       if (seen[node]) list[i].refuse("is a node that is elsewhere too: nodes make a tree");
       seen[node] = true;

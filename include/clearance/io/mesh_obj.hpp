@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Mesh readers are our own: assimp 5.2 loses triangle order among materials, refuses ".8e-1", reads "1.#IND" as 1,
-// drops what it does not understand, and hangs or crashes on damaged files. These keep doubles too.
+// The mesh readers are our own: assimp 5.2 loses triangle order among materials, refuses ".8e-1", reads "1.#IND" as 1,
+// drops what it does not understand, and hangs or crashes on damaged files. Ours also keep doubles.
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
@@ -16,7 +16,7 @@
 
 namespace clearance::io {
 
-/// Reads x, y and z from the words of a line, or ends with a sentence.
+/// Reads x, y and z from the words of a line; throws if it cannot.
 inline Eigen::Vector3d take_vertex(std::string_view& line, const std::string& file, std::size_t at) {
   Eigen::Vector3d v;
   for (double& x : v) {
@@ -30,12 +30,12 @@ inline Eigen::Vector3d take_vertex(std::string_view& line, const std::string& fi
   return v;
 }
 
-/// How many words are left of a line, up to a comment. All must be numbers, "nan" too, or it ends with a sentence.
+/// The number of words left in a line, up to a comment. Throws unless all are numbers ("nan" is one).
 inline std::size_t numbers_left(std::string_view line, const std::string& file, std::size_t at) {
   std::size_t count = 0;
   for (auto word = take_word(line); !word.empty() && word.front() != '#'; word = take_word(line)) {
     ++count;
-    const std::size_t comment = word.find('#');  // of a colour "0.5#red"; that in "1.#IND" is part of what is no number
+    const std::size_t comment = word.find('#');  // as in a colour "0.5#red"; in "1.#IND" it is no comment
     const bool ends = comment != word.npos && std::isdigit(static_cast<unsigned char>(word[comment - 1]));
     if (!number<double>(ends ? word.substr(0, comment) : word)) refuse(file, quoted(word) + " is not a number", at);
     if (ends) break;
@@ -43,7 +43,7 @@ inline std::size_t numbers_left(std::string_view line, const std::string& file, 
   return count;
 }
 
-/// Is this the first word of an OBJ statement? Of all that the format has, and skin weights, which some tools add.
+/// Does this word begin an OBJ statement? Includes skin weights, which some tools add to the format.
 inline bool obj_statement(std::string_view word) {
   for (const std::string_view known :
        {"v",          "vt",        "vn",     "vp",     "vw",     "f",      "l",     "p",     "g",        "o",
@@ -55,10 +55,10 @@ inline bool obj_statement(std::string_view word) {
   return false;
 }
 
-/// The vertex of a face's corner "1", "1/2", "1//3" or "1/2/3"; nothing if that is not what it is.
+/// The vertex of a face's corner "1", "1/2", "1//3" or "1/2/3"; nothing if the word is none of these.
 inline std::optional<std::int64_t> obj_corner(std::string_view word) {
   std::optional<std::int64_t> vertex;
-  for (int k = 0; k < 3; ++k) {  // its texture and its normal are passed over
+  for (int k = 0; k < 3; ++k) {  // texture and normal are skipped
     const std::size_t end = std::min(word.find('/'), word.size());
     const std::string_view one = word.substr(0, end);
     const auto value = number<std::int64_t>(one);
@@ -70,27 +70,27 @@ inline std::optional<std::int64_t> obj_corner(std::string_view word) {
   return std::nullopt;
 }
 
-/// One that is passed over and holds no name. If another begins in its line, a line end was lost.
+/// A statement that is skipped and holds no name. If another begins in its line, a line end was lost.
 inline bool obj_of_numbers(std::string_view key) {
   return key == "vn" || key == "vt" || key == "vp" || key == "s" || key == "l" || key == "p";
 }
 
-/// One whose words are names or paths, which may end in a backslash.
+/// A statement of names or paths, which may end in a backslash.
 inline bool obj_of_names(std::string_view key) {
   for (const std::string_view known : {"g", "o", "usemtl", "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj"})
     if (key == known) return true;
   return false;
 }
 
-/// One that brings geometry which this reader would pass over: free-form curves and surfaces, and other files.
+/// A statement with geometry that this reader would skip: free-form curves and surfaces, and other files.
 inline bool obj_of_more(std::string_view key) {
   for (const std::string_view known : {"surf", "curv", "curv2", "bsp", "bzp", "cdc", "cdp", "call", "csh"})
     if (key == known) return true;
   return false;
 }
 
-/// Takes the next statement off `rest`: a line, and those that a backslash at the end joins to it, by way of `joined`.
-/// In a comment a backslash joins nothing, and after a name only what begins no statement. `at` counts lines.
+/// Takes the next statement off `rest`: a line, and lines that a backslash at the end joins to it (into `joined`). A
+/// backslash joins nothing in a comment; after a name, only a line that begins no statement. `at` counts lines.
 inline std::string_view take_obj_statement(std::string_view& rest, std::string& joined, std::size_t& at) {
   std::string_view line = take_line(rest), start = line;
   ++at;
@@ -108,12 +108,12 @@ inline std::string_view take_obj_statement(std::string_view& rest, std::string& 
   return joined.append(line);
 }
 
-/// What an OBJ file says so far.
+/// Collects the contents of an OBJ file.
 class obj_reader {
  public:
   explicit obj_reader(const std::string& file) : file_(file) {}
 
-  /// A statement that begins in line `at`; `last`: nothing follows, not even a line end.
+  /// A statement that begins in line `at`. If `last`, nothing follows it, not even a line end.
   void take(std::string_view line, std::size_t at, bool last) {
     const std::string_view key = take_word(line);
     if (key == "v") {
@@ -163,7 +163,7 @@ class obj_reader {
     if (corners == 0 || (corners < 3 && last)) refuse(file_, "a face has fewer than three vertices", at);
     any_ = any_ || corners > 2;
     if (corners < 3) short_at_ = at;
-    // Modellers write edges as faces of two: a triangle without area is the same.
+    // Modellers write an edge as a face of two corners; as a triangle without area it means the same.
     made_.corners.resize(begin + std::max<std::size_t>(corners, 3), made_.corners.back());
     made_.ends.push_back(made_.corners.size());
   }
@@ -175,9 +175,9 @@ class obj_reader {
   bool any_ = false;                           // a face of three corners or more
 };
 
-/// Vertices and faces of a Wavefront OBJ file; normals, materials, groups, lines and points are passed over, and so are
-/// counts before the first vertex. A face of one or two corners is a triangle without area. A line that is no statement
-/// may be what is left of a face: an error, as are free-form surfaces.
+/// Vertices and faces of a Wavefront OBJ file. Normals, materials, groups, lines, points, and counts before the first
+/// vertex are skipped. A face of one or two corners becomes a triangle without area. A line that is no statement may be
+/// the rest of a face, so it is an error; so are free-form surfaces.
 inline polygon_mesh read_obj(std::string_view rest, const std::string& file) {
   if (rest.find('\0') != rest.npos) refuse(file, "is not an OBJ file: it has zero bytes, so it is not plain text");
   obj_reader reader(file);

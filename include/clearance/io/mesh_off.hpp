@@ -10,13 +10,13 @@
 
 namespace clearance::io {
 
-/// The lines of an OFF file, without comments and blank ones.
+/// The lines of an OFF file, without comments and blank lines.
 struct off_lines {
   std::string_view rest;
   const std::string& file;
-  std::size_t at = 0;  ///< The last line's number.
+  std::size_t at = 0;  ///< The number of the last line taken.
 
-  /// Nothing at the end of the file.
+  /// No value at the end of the file.
   std::optional<std::string_view> next() {
     while (!rest.empty()) {
       const std::string_view line = without_comment(take_line(rest));
@@ -37,7 +37,7 @@ struct off_lines {
   }
 };
 
-/// What comes before OFF: nothing, C, N or ST; `line` is what follows it.
+/// The word before OFF: nothing, C, N or ST. `line` becomes what follows OFF.
 inline std::string_view take_off_keyword(off_lines& lines, std::string_view& line) {
   line = lines.next("header");
   const std::size_t keyword = line.find("OFF");
@@ -56,7 +56,7 @@ inline void take_off_vertices(off_lines& lines, std::string_view prefix, std::ui
     const std::size_t more = numbers_left(line, lines.file, lines.at);
     if (more < least || more > most)
       lines.refuse("a vertex of " + std::to_string(3 + more) + " numbers; the file is " + std::string(prefix) + "OFF");
-    least = most = more;  // all colours have an alpha, or none
+    least = most = more;  // either all colours have an alpha, or none
   }
 }
 
@@ -76,14 +76,14 @@ inline void take_off_face(off_lines& lines, polygon_mesh& mesh) {
 }
 
 /// Vertices and faces of an OFF file. Colours (COFF, and of faces), normals (NOFF) and texture coordinates (STOFF) are
-/// passed over; a line with any other number of numbers may be two, and is refused.
+/// skipped. A line with another number of numbers may be two lines in one, so it is refused.
 inline polygon_mesh read_off(std::string_view rest, const std::string& file) {
   off_lines lines{rest, file};
   std::string_view line;
   const std::string_view prefix = take_off_keyword(lines, line);
   if (line.find_first_not_of(" \t\r\v\f") == line.npos) line = lines.next("counts");
   const std::uint64_t vertices = lines.count(line, "vertices"), faces = lines.count(line, "faces");
-  if (numbers_left(line, file, lines.at) > 1) lines.refuse("has more than three counts");  // the third is of edges
+  if (numbers_left(line, file, lines.at) > 1) lines.refuse("has more than three counts");  // the third counts edges
   if (vertices > lines.rest.size() || faces > lines.rest.size() || vertices > UINT32_MAX)
     lines.refuse("the header says " + std::to_string(vertices) + " vertices and " + std::to_string(faces) +
                  " faces, more than the file holds");

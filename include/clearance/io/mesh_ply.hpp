@@ -13,7 +13,7 @@ inline bool names_vertices(const ply_property& p) {
 }
 inline bool holds_faces(const ply_element& element) { return element.name == "face" || element.name == "tristrips"; }
 
-/// Refuses faces without corners, and geometry that this reader would pass over.
+/// Refuses faces without corners, and geometry that this reader would skip.
 inline void check_ply_faces(const ply_header& header, const std::string& file) {
   for (const auto& element : header.elements) {
     const auto list = std::ranges::find_if(element.properties, names_vertices);
@@ -26,8 +26,8 @@ inline void check_ply_faces(const ply_header& header, const std::string& file) {
   }
 }
 
-/// Adds the faces of triangle strips; -1 ends one. Every second triangle of a strip is turned round. False if a strip
-/// has one vertex or two.
+/// Adds the faces of triangle strips; -1 ends a strip. Every second triangle of a strip is turned round. Returns false
+/// if a strip has only one or two vertices.
 inline bool add_strips(polygon_mesh& mesh, const std::vector<double>& listed) {
   std::size_t begin = 0;  // of the strip
   for (std::size_t i = 0; i <= listed.size(); ++i) {
@@ -45,8 +45,8 @@ inline bool add_strips(polygon_mesh& mesh, const std::vector<double>& listed) {
 
 }  // namespace detail
 
-/// Vertices, in double, and faces of a PLY file, of which triangle strips are some; other elements and properties are
-/// checked and passed over.
+/// Vertices, in double, and faces of a PLY file, including triangle strips. Other elements and properties are checked
+/// and skipped.
 inline polygon_mesh read_ply_mesh(std::string_view rest, const std::string& file) {
   const ply_header header = take_ply_header(rest, file);
   detail::check_ply_faces(header, file);

@@ -12,26 +12,26 @@
 
 namespace clearance::io {
 
-/// What mesh files hold: vertices, and faces of three or more corners, in the file's order.
+/// The content of a mesh file: vertices, and faces of three or more corners, in the file's order.
 struct polygon_mesh {
   std::vector<Eigen::Vector3d> vertices;
-  std::vector<std::uint32_t> corners;  // of all faces, one after another
+  std::vector<std::uint32_t> corners;  // of all faces in turn
   std::vector<std::size_t> ends;       // where in `corners` each face ends
 };
 
-/// Cuts one flat polygon into triangles by clipping ears. One that crosses itself, or has no area, becomes a fan: its
-/// boundary stays the same, and so do the winding numbers around it.
+/// Cuts one flat polygon into triangles by clipping ears. A polygon that crosses itself, or has no area, becomes a fan:
+/// that keeps its boundary, and so the winding numbers around it.
 inline void clip_ears(const std::vector<Eigen::Vector3d>& vertices, std::span<const std::uint32_t> face,
                       std::vector<std::array<std::uint32_t, 3>>& triangles) {
   std::vector<std::uint32_t> left(face.begin(), face.end());
-  const Eigen::Vector3d base = vertices[face[0]];  // so that a face far from the origin keeps its digits
+  const Eigen::Vector3d base = vertices[face[0]];  // a face far from the origin keeps its digits
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (std::size_t i = 1; i + 1 < face.size(); ++i)
     normal += (vertices[face[i]] - base).cross(vertices[face[i + 1]] - base);
   const auto turn = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     return normal.dot((vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]));
   };
-  std::size_t patience = 1000 * face.size();  // the search is quadratic; a hostile file shall not make it cubic
+  std::size_t patience = 1000 * face.size();  // the search is quadratic; this keeps a hostile file from making it cubic
   std::size_t tried = 0;
   for (std::size_t i = 1; left.size() > 3 && tried < left.size() && patience > 0;) {
     const std::size_t n = left.size();

@@ -14,12 +14,12 @@
 
 namespace clearance::io {
 
-/// All places of a scene graph's meshes as one mesh, within limits.
+/// Joins all places of a scene graph's meshes into one mesh, within limits.
 class mesh_scene {
  public:
   mesh_scene(const std::string& file, const mesh_limits& limits) : file_(file), limits_(limits) {}
 
-  /// Adds a mesh where `here` puts it. A mirrored place turns its faces round, so that they face out.
+  /// Adds a mesh at `here`. A mirroring transform turns the faces round, so that they still face out.
   void place(const polygon_mesh& mesh, const Eigen::Affine3d& here) {
     check(here);
     const std::size_t first = made_.vertices.size();
@@ -41,7 +41,7 @@ class mesh_scene {
     }
   }
 
-  /// Counts a node that is `depth` nodes down.
+  /// Counts a node at this depth.
   void visit(std::size_t depth) {
     if (depth > limits_.depth)
       refuse(file_,

@@ -17,7 +17,7 @@ inline polygon_mesh read_ascii_stl(std::string_view rest, const std::string& fil
   polygon_mesh mesh;
   std::size_t at = 0;
   std::string_view line;
-  const auto next = [&] {  // the next word in small letters, empty at the end of the file
+  const auto next = [&] {  // the next word in small letters; empty at the file's end
     std::string_view word;
     while ((word = take_word(line)).empty() && !rest.empty()) line = take_line(rest), ++at;
     std::string small(word);
@@ -70,7 +70,7 @@ inline polygon_mesh read_ascii_stl(std::string_view rest, const std::string& fil
   return mesh;
 }
 
-/// Of `count` triangles, after the header.
+/// `count` triangles after the header.
 inline polygon_mesh read_binary_stl(std::string_view bytes, std::uint64_t count, const std::string& file) {
   polygon_mesh mesh;
   if (count > UINT32_MAX / 3) refuse(file, "has more vertices than can be counted");
@@ -91,7 +91,7 @@ inline polygon_mesh read_binary_stl(std::string_view bytes, std::uint64_t count,
   return mesh;
 }
 
-/// All triangles of an STL file of either kind, which must be whole.
+/// All triangles of an ASCII or binary STL file, which must be complete.
 inline polygon_mesh read_stl(std::string_view bytes, const std::string& file) {
   const std::string_view text = without_mark(bytes);
   const std::string_view start = text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));

@@ -16,7 +16,7 @@ inline std::string lower_case(std::string_view word) {
   return made;
 }
 
-/// How many letters are to be put in, left out, changed, or swapped with their neighbour to make one word the other.
+/// The number of letters to insert, drop, change, or swap with their neighbour to make one word the other.
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i)
@@ -32,8 +32,8 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return d[a.size()][b.size()];
 }
 
-/// Whether a word may be another one misspelt: two letters are wrong, one in a word of four letters or fewer; capitals
-/// do not count.
+/// May a word be a misspelling of another? Yes with up to two wrong letters, or one if the known word has four letters
+/// or fewer; case does not matter.
 inline bool near_word(std::string_view word, std::string_view known) {
   const std::size_t wrong = known.size() > 4 ? 2 : 1;
   return word.size() <= known.size() + wrong && known.size() <= word.size() + wrong &&

@@ -10,13 +10,13 @@
 
 namespace clearance::io {
 
-/// What a reader passes over or makes of a file, for a user to see: one sentence a kind, however often it happened.
+/// What a reader skips or assumes about a file, to show to a user: one sentence per kind, however often it happened.
 class note_tally {
  public:
-  /// `file` is named where a note is refused: if `strict`, each is, by a std::runtime_error that is the note.
+  /// If `strict`, every note is thrown as a std::runtime_error that names `file`.
   explicit note_tally(std::string file = {}, bool strict = false) : file_(std::move(file)), strict_(strict) {}
 
-  /// `who`: such as link "arm", where it happened; `what` goes on: "has no collision geometry".
+  /// `who`: where it happened, such as link "arm". `what`: the rest, such as "has no collision geometry".
   void add(const std::string& what, const std::string& who, std::size_t line = 0) {
     if (strict_) refuse(file_, who + ": " + what, line);
     const auto known = std::ranges::find(kinds_, what, &kind::what);
@@ -28,7 +28,7 @@ class note_tally {
     if (++it.count <= shown) it.who.push_back(who);
   }
 
-  /// In the order in which they happened first.
+  /// In the order of their first occurrence.
   std::vector<std::string> sentences() const {
     std::vector<std::string> all;
     for (const kind& each : kinds_) {

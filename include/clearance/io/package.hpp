@@ -13,7 +13,7 @@
 
 namespace clearance::io {
 
-/// Whether a folder has a package.xml that names this package.
+/// Does a folder have a package.xml with this package name?
 inline bool is_package(const std::filesystem::path& folder, std::string_view name) {
   std::error_code failed;
   const auto file = folder / "package.xml";
@@ -24,13 +24,13 @@ inline bool is_package(const std::filesystem::path& folder, std::string_view nam
       std::string_view found = child.text;
       if (root.name == "package" && child.name == "name" && take_word(found, " \t\r\n") == name) return true;
     }
-  } catch (const std::runtime_error&) {  // a package that cannot be read is none; if it was needed, that will be said
+  } catch (const std::runtime_error&) {  // unreadable counts as absent; if the package was needed, that is reported
   }
   return false;
 }
 
-/// Where a package may be, the likeliest first: as given, the folders above `urdf` (one of that name, or whose
-/// package.xml has it, or one beside), ROS_PACKAGE_PATH, and share/<name> in AMENT_PREFIX_PATH.
+/// Folders where a package may be, the likeliest first: as given, then folders above `urdf` (with that name, a
+/// package.xml with it, or one beside), ROS_PACKAGE_PATH, and share/<name> in AMENT_PREFIX_PATH.
 inline std::vector<std::filesystem::path> find_package(const std::string& name, const std::filesystem::path& urdf,
                                                        const std::map<std::string, std::filesystem::path>& given) {
   namespace fs = std::filesystem;
@@ -67,7 +67,7 @@ inline std::vector<std::filesystem::path> find_package(const std::string& name, 
   return found;
 }
 
-/// The folder at, above or beside a URDF that has this path in it, as the package would; empty if there is none.
+/// A folder at, above or beside a URDF that contains this path, as the package would; empty if there is none.
 inline std::filesystem::path guess_package(const std::filesystem::path& inside, const std::filesystem::path& urdf) {
   namespace fs = std::filesystem;
   std::error_code failed;
@@ -81,9 +81,9 @@ inline std::filesystem::path guess_package(const std::filesystem::path& inside, 
   return {};
 }
 
-/// The file that a URDF means by package://name/path, model://name/path (the same, by the name of a simulator),
-/// file:///path, or a path from the URDF's own folder. Throws std::runtime_error if the package is nowhere, or if the
-/// scheme is another.
+/// The file that a URDF means by package://name/path, model://name/path (a simulator's name for the same),
+/// file:///path, or a path relative to the URDF's folder. Throws std::runtime_error if the package is not found, or for
+/// another scheme.
 inline std::filesystem::path resolve_uri(const std::string& uri, const std::filesystem::path& urdf,
                                          const std::map<std::string, std::filesystem::path>& packages) {
   const std::size_t scheme = uri.find("://");
@@ -94,7 +94,7 @@ inline std::filesystem::path resolve_uri(const std::string& uri, const std::file
     refuse(urdf.string(),
            io::quoted(uri) + " is none of package://name/path, model://name/path, file:///path and a relative path");
   std::string_view rest = std::string_view(uri).substr(scheme + 3);
-  rest.remove_prefix(std::min(rest.find_first_not_of('/'), rest.size()));  // package:///name is meant as package://name
+  rest.remove_prefix(std::min(rest.find_first_not_of('/'), rest.size()));  // package:///name means package://name
   const std::string name(rest.substr(0, rest.find('/')));
   const std::string inside(rest.substr(std::min(name.size() + 1, rest.size())));
   if (name.empty() || inside.empty()) refuse(urdf.string(), io::quoted(uri) + " names no file in a package");
@@ -102,7 +102,7 @@ inline std::filesystem::path resolve_uri(const std::string& uri, const std::file
   std::error_code failed;
   for (const auto& folder : folders)
     if (std::filesystem::exists(folder / inside, failed)) return folder / inside;
-  if (!folders.empty()) return folders.front() / inside;  // whoever opens it says that it is missing
+  if (!folders.empty()) return folders.front() / inside;  // the reader that opens it reports that it is missing
   const std::string likely = guess_package(inside, urdf).string();
   refuse(urdf.string(),
          "the package " + io::quoted(name) + " is not found: --package " + sentence(name, 60) + "=" +

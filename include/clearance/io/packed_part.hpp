@@ -10,17 +10,17 @@
 
 namespace clearance::io {
 
-/// One part of a robot as a file of spheres holds it.
+/// One part of a robot, as a file of spheres holds it.
 struct packed_part {
   std::string name;      ///< The link; may be empty.
   packing spheres;       ///< In the part's frame. Without a certificate the gap is infinite.
-  double tolerance = 0;  ///< How far the packed mesh may differ from the true surface, metres (tessellation); read from
-                         ///< a file, the spheres' own is in it.
-  digest solid;          ///< Of the mesh that the certificate is about.
-  digest recipe;         ///< Of that mesh and the options of `pack`; see packing_key.
+  double tolerance = 0;  ///< How far the packed mesh may differ from the true surface, metres (tessellation). If read
+                         ///< from a file, it includes the spheres' own tolerance.
+  digest solid;          ///< Digest of the certified mesh.
+  digest recipe;         ///< Digest of that mesh and the options of `pack`; see packing_key.
 };
 
-/// A packing of which nothing is known but its spheres, in the order given.
+/// A packing of which only the spheres are known, in the order given.
 inline packing uncertified(std::vector<inner_sphere> spheres) {
   constexpr double unknown = std::numeric_limits<double>::infinity();
   packing made;
@@ -34,7 +34,7 @@ inline packing uncertified(std::vector<inner_sphere> spheres) {
   return made;
 }
 
-/// The sphere, or a refusal: finite, up to 1e18 m, and of a radius above 0.
+/// Returns the sphere, or refuses it: it must be finite, up to 1e18 m, with a radius above 0.
 inline inner_sphere checked_sphere(vec3 center, real radius, const std::string& file, const std::string& which,
                                    std::size_t line = 0) {
   if (!is_finite(center)) refuse(file, which + " has a centre that is not finite", line);
@@ -43,7 +43,7 @@ inline inner_sphere checked_sphere(vec3 center, real radius, const std::string& 
   return {center, radius};
 }
 
-/// The fewest digits that bring the float back exactly, in no locale.
+/// The fewest digits that restore the float exactly, whatever the locale.
 inline std::string shortest(float value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};

@@ -10,12 +10,12 @@
 
 namespace clearance::io {
 
-/// To be raised whenever `pack` makes other spheres of the same solid and options.
+/// Raise this whenever `pack` makes other spheres from the same solid and options.
 inline constexpr std::uint32_t packing_recipe = 3;
 
-/// Of all that decides what packing makes: the mesh, the options, the algorithm. `maker` tells algorithms apart.
+/// Covers everything that decides a packing: mesh, options, algorithm. `maker` names the algorithm.
 inline digest packing_key(const closed_mesh& mesh, const pack_options& options, std::string_view maker = "host") {
-  // An option more than there are names here does not compile: does it change the spheres?
+  // If pack_options gains a member, this does not compile: does the new one change the spheres?
   const auto& [count, smallest_radius, gap_target, seconds, seed, threads, gap_per_radius, allow_overlap, gap_tolerance,
                progress, cancelled] = options;
   byte_writer out;
@@ -28,20 +28,20 @@ inline digest packing_key(const closed_mesh& mesh, const pack_options& options, 
   for (const std::uint64_t number : {std::uint64_t(count), std::uint64_t(seed), std::uint64_t(allow_overlap)})
     out.put(number);
   for (const double number : {smallest_radius, gap_target, gap_per_radius, gap_tolerance}) out.put(number);
-  (void)seconds, (void)threads, (void)progress, (void)cancelled;  // whatever is stopped by these is not kept
+  (void)seconds, (void)threads, (void)progress, (void)cancelled;  // a packing that one of these stopped is not kept
   return digest_of(out.bytes());
 }
 
-/// A folder of packings by packing_key, each an .ist file. Any number of programs may use it at once: a file appears
-/// under its name only when it is complete. One that is damaged, or is about something else, is as good as none. It may
-/// be emptied at any time.
+/// A folder of packings by packing_key, each an .ist file. Any number of programs may use it at once: a file gets its
+/// name only when it is complete. A file that is damaged, or made for another key, counts as absent. You may empty the
+/// folder at any time.
 class packing_cache {
  public:
-  packing_cache() = default;  ///< Keeps nothing, and finds nothing.
+  packing_cache() = default;  ///< Keeps and finds nothing.
   explicit packing_cache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// $CLEARANCE_CACHE (if that is set and empty, none), else $XDG_CACHE_HOME/clearance, else ~/.cache/clearance, else
-  /// none.
+  /// $CLEARANCE_CACHE (set but empty: no cache), else $XDG_CACHE_HOME/clearance, else ~/.cache/clearance, else no
+  /// cache.
   static std::filesystem::path usual_folder() {
     if (const char* own = std::getenv("CLEARANCE_CACHE")) return own;
     const auto below = [](const char* variable, const char* path) {
@@ -67,7 +67,7 @@ class packing_cache {
     return {};
   }
 
-  /// Whether it is there now; not being able to write is no error.
+  /// Returns whether it is kept; a failure to write is no error.
   bool keep(const digest& key, const digest& solid, const packing& made) const {
     if (folder_.empty() || made.spheres.empty()) return false;
     std::error_code failed;
@@ -87,19 +87,19 @@ class packing_cache {
 
 struct cached_packing {
   packing made;
-  bool found = false;  ///< It was made before, and `pack` did not run.
+  bool found = false;  ///< Taken from the cache; `pack` did not run.
 };
 
-/// `make(mesh_solid(mesh), options)`, once for each mesh and options: then from the cache, the same to the bit
-/// (`seconds` is how long it took when it was made). What a time limit or a person cut short is not kept. `maker` names
-/// the algorithm, for one on a device makes other spheres than the host's. Throws as `make` does.
+/// Calls `make(mesh_solid(mesh), options)` once per mesh and options. Afterwards the packing comes from the cache, the
+/// same to the bit (`seconds` is the time it took originally). A packing cut short by a time limit or a person is not
+/// kept. `maker` names the algorithm, because a device's makes other spheres than the host's. Throws as `make` does.
 template <class Make>
 cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options, const packing_cache& cache,
                            std::string_view maker, Make make) {
   if (cache.folder().empty()) return {make(mesh_solid(mesh), options)};
   const digest key = packing_key(mesh, options, maker);
   if (auto found = cache.find(key)) {
-    found->tolerance = mesh.tolerance;  // files keep it with the part's
+    found->tolerance = mesh.tolerance;  // files store it with the part
     return {std::move(*found), true};
   }
   cached_packing fresh{make(mesh_solid(mesh), options)};
@@ -108,8 +108,8 @@ cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options,
   return fresh;
 }
 
-/// Of several closed meshes, beside one another as by `pack`; each is kept as soon as it is done. `make` is called by
-/// several threads at once.
+/// The same for several closed meshes, side by side as by `pack`; each is kept as soon as it is done. Several threads
+/// call `make` at once.
 template <std::ranges::random_access_range R, class Make>
   requires std::same_as<std::ranges::range_value_t<R>, closed_mesh>
 std::vector<cached_packing> pack_cached(const R& meshes, const pack_options& options, const packing_cache& cache,
@@ -120,7 +120,7 @@ std::vector<cached_packing> pack_cached(const R& meshes, const pack_options& opt
   });
 }
 
-/// By `pack` on the host: a closed mesh, or several.
+/// Packs one closed mesh, or several, by `pack` on the host.
 template <class M>
 auto pack_cached(const M& meshes, const pack_options& options, const packing_cache& cache) {
   return pack_cached(meshes, options, cache, "host",

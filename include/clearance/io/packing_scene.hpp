@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A picture of packings for any glTF viewer: spheres inside the transparent mesh, and the levels of their tree.
+// A picture of packings for any glTF viewer: spheres in the transparent mesh, and the levels of their tree.
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/io/scene.hpp>
@@ -18,14 +18,14 @@ struct scene_packing {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // world-from-part
 };
 
-/// 0 to 1: from violet over green to yellow.
+/// A colour for 0 to 1: from violet over green to yellow.
 inline colour heat(double t) {
   const auto wave = [t](double at, double wide) { return float(std::exp(-std::pow((t - at) / wide, 2))); };
   return {0.25f * wave(0, 0.35) + 0.95f * wave(1.1, 0.45), 0.15f + 0.7f * wave(0.95, 0.6),
           0.15f + 0.5f * wave(0.2, 0.4), 1};
 }
 
-/// The volumes of a tree by their level, the root's first.
+/// The volumes of a tree by level, starting at the root.
 template <class View>
 std::vector<std::vector<ball>> levels_of(const View& tree) {
   std::vector<std::vector<ball>> levels(tree.depth() + 1);
@@ -39,8 +39,8 @@ std::vector<std::vector<ball>> levels_of(const View& tree) {
   return levels;
 }
 
-/// For each part a node with its name, and in it, to be switched on and off in a viewer: "mesh", transparent;
-/// "spheres", one node for each octave of radii; and one for each level of the tree that a query walks (Weller &
+/// Makes one node per part, with the part's name. In it are nodes that a viewer can switch on and off: "mesh",
+/// transparent; "spheres", one node per octave of radii; and one per level of the tree that a query walks (Weller &
 /// Zachmann 2009, figure 2).
 inline scene packing_scene(const std::vector<scene_packing>& parts) {
   scene made;

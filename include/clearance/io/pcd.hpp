@@ -12,7 +12,7 @@ namespace clearance::io {
 
 static_assert(std::endian::native == std::endian::little, "PCD files are little-endian; so must the reader be");
 
-/// One element of a record, whatever its type, as a double.
+/// One element of a record as a double, whatever its type.
 inline double pcd_value(const char* bytes, const pcd_field& field) {
   const auto as = [&]<class T>(T value) {
     std::memcpy(&value, bytes, sizeof value);
@@ -42,7 +42,7 @@ inline double pcd_value(const char* bytes, const pcd_field& field) {
   }
 }
 
-/// x, y, z of `points` records; value k of record i lies at offset[k] + i * step[k]. The caller has checked the size.
+/// x, y, z of `points` records; value k of record i is at offset[k] + i * step[k]. The caller has checked the size.
 inline std::vector<Eigen::Vector3d> pcd_records(const char* data, const pcd_header& header, bool by_field) {
   std::vector<Eigen::Vector3d> points(header.points);
   for (int axis = 0; axis < 3; ++axis) {
@@ -56,12 +56,12 @@ inline std::vector<Eigen::Vector3d> pcd_records(const char* data, const pcd_head
   return points;
 }
 
-/// The value that a word of a field spells; refuses one that is not of the field's type.
+/// The value that a word of a field spells. Refuses a word that does not fit the field's type.
 inline double pcd_spelt(std::string_view word, const pcd_field& field, const std::string& file, std::size_t line) {
   const auto value = number<double>(word);
   if (!value) refuse(file, quoted(word) + " is not a number", line);
   const double most =
-      std::exp2(8.0 * double(field.size) - (field.type == 'I' ? 1 : 0));  // the first beyond whole types
+      std::exp2(8.0 * double(field.size) - (field.type == 'I' ? 1 : 0));  // first value beyond an integer type
   const bool fits = field.type == 'F'
                         ? field.size > 4 || !std::isfinite(*value) || std::isfinite(float(*value))
                         : *value == std::floor(*value) && *value >= (field.type == 'I' ? -most : 0) && *value < most;
@@ -72,7 +72,7 @@ inline double pcd_spelt(std::string_view word, const pcd_field& field, const std
 
 inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_header& header,
                                               const std::string& file) {
-  if (header.points > rest.size() / 2 + 1)  // a record needs a digit and an end of line at least
+  if (header.points > rest.size() / 2 + 1)  // a record needs at least a digit and a line end
     refuse(file, "POINTS says " + std::to_string(header.points) + ", more than a file of this size can hold");
   std::vector<Eigen::Vector3d> points;
   points.reserve(header.points);
@@ -101,8 +101,8 @@ inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_h
   return points;
 }
 
-/// Refuses data that POINTS does not count: more than the zeros that some writers fill a page with, and a line end
-/// before or behind them.
+/// Refuses data beyond POINTS, except the zeros with which some writers fill a page, and a line end before or after
+/// them.
 inline void check_pcd_end(std::string_view rest, const pcd_header& header, const std::string& file) {
   std::string_view zeros = rest;
   for (const std::string_view end : {"\r\n", "\n"})
@@ -170,8 +170,8 @@ inline cloud read_pcd(std::string_view bytes, const std::string& file, const rea
   return made;
 }
 
-/// Reads a PCD file: ascii, binary or binary_compressed, fields in any order and of any type; other fields are skipped.
-/// Throws std::runtime_error naming file and line, also where POINTS is not what the data hold.
+/// Reads a PCD file: ascii, binary or binary_compressed; its fields in any order and of any type; others are skipped.
+/// Throws std::runtime_error naming file and line, also if POINTS does not match the data.
 inline cloud load_pcd(const std::string& file, const read_limits& limits = {}) {
   return read_pcd(read_bytes(file, limits), file, limits);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The header of a PCD file (versions .5 to .7), read strictly: what is not understood is an error that names the line.
+// The header of a PCD file (versions .5 to .7), read strictly: anything not understood is an error that names the line.
 
 #include <clearance/io/cloud.hpp>
 #include <clearance/io/cloud_text.hpp>
@@ -19,7 +19,7 @@ namespace clearance::io {
 
 struct pcd_field {
   std::string name;
-  std::uint64_t size = 4;  // bytes of one element
+  std::uint64_t size = 4;  // bytes per element
   char type = 'F';         // F float, I signed, U unsigned
   std::uint64_t count = 1;
   std::uint64_t offset = 0;  // bytes before it in a record
@@ -29,7 +29,7 @@ struct pcd_field {
 struct pcd_header {
   enum class encoding { ascii, binary, binary_compressed };
   std::vector<pcd_field> fields;
-  std::array<std::size_t, 3> xyz{};  // which fields
+  std::array<std::size_t, 3> xyz{};  // indices of these fields
   std::uint64_t record_bytes = 0, record_words = 0;
   std::uint64_t width = 0, height = 1, points = 0;
   std::optional<io::viewpoint> viewpoint;
@@ -37,7 +37,7 @@ struct pcd_header {
   std::size_t lines = 0;  // of the header
 };
 
-/// Fills in offsets and finds x, y and z. No number here can overflow: fields and counts are bounded.
+/// Fills in offsets and finds x, y and z. Fields and counts are bounded, so nothing overflows.
 inline void lay_out(pcd_header& header, const std::string& file) {
   std::array<int, 3> found{};
   for (std::size_t i = 0; i < header.fields.size(); ++i) {
@@ -68,7 +68,7 @@ class pcd_entries {
  public:
   explicit pcd_entries(const std::string& file) : file_(file) {}
 
-  /// One line; true once it was DATA, with which the header ends.
+  /// Takes one line. Returns true if it was DATA, which ends the header.
   bool take(std::string_view line) {
     ++made.lines;
     const std::string_view key = take_word(line);
@@ -87,12 +87,12 @@ class pcd_entries {
     return key == "DATA";
   }
 
-  /// After DATA: what the entries say together.
+  /// Checks, after DATA, that the entries fit together.
   void finish() {
     if (!has("FIELDS") || (made.data != pcd_header::encoding::ascii && !(has("SIZE") && has("TYPE"))))
       refuse(file_, "the PCD header lacks FIELDS, SIZE or TYPE");
     if (!has("WIDTH") && !has("POINTS")) refuse(file_, "the PCD header has neither WIDTH nor POINTS");
-    if (!has("WIDTH")) made.width = made.points;  // and HEIGHT as given, so that a contradiction shows below
+    if (!has("WIDTH")) made.width = made.points;  // HEIGHT stays as given, so a contradiction shows below
     if (!has("POINTS")) made.points = made.width * made.height;  // both are below 2^32
     if (made.width * made.height != made.points)
       refuse(file_, "WIDTH " + std::to_string(made.width) + " times HEIGHT " + std::to_string(made.height) +
@@ -123,7 +123,7 @@ class pcd_entries {
     if (std::ranges::find(known, key) == std::end(known))
       refuse(file_, quoted(key) + " is no PCD header entry", made.lines);
     if (values_.empty()) refuse(file_, std::string(key) + " has no value", made.lines);
-    const std::string_view name = key == "COLUMNS" ? "FIELDS" : key;  // as older files call them
+    const std::string_view name = key == "COLUMNS" ? "FIELDS" : key;  // older files say COLUMNS
     if (has(name)) refuse(file_, std::string(name) + " is given twice", made.lines);
     given_.push_back(name);
     constexpr std::string_view lists[] = {"FIELDS", "SIZE", "TYPE", "COUNT", "VIEWPOINT"};
@@ -188,7 +188,7 @@ class pcd_entries {
 
 }  // namespace detail
 
-/// Takes the header off `rest`; what is left is the data.
+/// Takes the header off `rest`, which leaves the data.
 inline pcd_header take_pcd_header(std::string_view& rest, const std::string& file) {
   detail::pcd_entries entries(file);
   const std::string_view all = rest = without_mark(rest);

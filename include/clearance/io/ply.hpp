@@ -17,9 +17,9 @@ inline cloud read_ply(std::string_view rest, const std::string& file) {
   return make_cloud(file, points, points.size(), 1);
 }
 
-/// Reads the vertices of a PLY file, ascii or binary, in the file's order, in double; all else is checked and passed
-/// over. Throws std::runtime_error with a sentence for a value that does not fit its type, and if the counts are not
-/// those of the data.
+/// Reads the vertices of a PLY file, ascii or binary, in the file's order, in double. Everything else is checked and
+/// skipped. Throws std::runtime_error with a sentence if a value does not fit its type, or a count does not fit the
+/// data.
 inline cloud load_ply(const std::string& file, const read_limits& limits = {}) {
   return read_ply(read_bytes(file, limits), file);
 }

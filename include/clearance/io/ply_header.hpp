@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The header of a PLY file, read strictly: what is not understood is an error that names the line.
+// The header of a PLY file, read strictly: anything not understood is an error that names the line.
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
@@ -48,7 +48,7 @@ struct ply_header {
   std::vector<ply_element> elements;
   std::size_t lines = 0;
 
-  /// The element of this name, or null.
+  /// The element with this name, or null.
   const ply_element* find(std::string_view name) const {
     for (const auto& each : elements)
       if (each.name == name) return &each;
@@ -81,7 +81,7 @@ inline void take_ply_property(ply_header& header, const std::vector<std::string_
 
 }  // namespace detail
 
-/// Takes the header off `rest`; what is left is the data.
+/// Takes the header off `rest`, which leaves the data.
 inline ply_header take_ply_header(std::string_view& rest, const std::string& file) {
   ply_header header;
   const std::string_view all = rest = without_mark(rest);
@@ -90,7 +90,7 @@ inline ply_header take_ply_header(std::string_view& rest, const std::string& fil
     const auto line = words(take_line(rest));
     ++header.lines;
     if (line.empty() || line[0] == "comment" || line[0] == "obj_info") continue;
-    if (line.size() > 1 && line[0] == "Created" && line[1] == "by") continue;  // an old Blender forgot the "comment"
+    if (line.size() > 1 && line[0] == "Created" && line[1] == "by") continue;  // an old Blender forgot "comment"
     if (line[0] == "format") {
       using enum ply_header::encoding;
       const std::string_view name = line.size() == 3 ? line[1] : "";

@@ -8,23 +8,23 @@
 
 namespace clearance::io {
 
-/// The values of a PLY file, one after another, each checked to be of its type. A number of any type is a double
-/// without loss.
+/// The values of a PLY file in turn, each checked against its type. A double holds a number of any PLY type without
+/// loss.
 class ply_values {
  public:
   ply_values(std::string_view rest, const ply_header& header, const std::string& file)
       : rest_(rest), file_(file), format_(header.format), at_(header.lines) {}
 
-  /// Refuses a count of records that the file cannot hold.
+  /// Refuses a count of records for which the file is too short.
   void expect(const ply_element& element) const {
-    std::size_t least = 0;  // bytes of a record
+    std::size_t least = 0;  // bytes per record
     for (const auto& p : element.properties) least += ascii() ? 2 : ply_size(p.count.value_or(p.type));
     if (least > 0 && element.count > (rest_.size() + 1) / least)
       refuse(file_, "the header says " + std::to_string(element.count) + " of " + io::quoted(element.name) +
                         ", more than the file holds (is it cut short?)");
   }
 
-  /// Goes to the record `number` of an element. In text each is a line of its own; lines without words do not count.
+  /// Goes to record `number` of an element. In text each record has its own line; blank lines do not count.
   void begin(const ply_element& element, std::uint64_t number) {
     element_ = &element, number_ = number;
     if (!ascii()) return;
@@ -42,7 +42,7 @@ class ply_values {
 
   double next(ply_type type) { return ascii() ? spelt(type) : packed(type); }
 
-  /// How many values the list has that comes next.
+  /// The number of values in the list that comes next.
   std::uint64_t list(const ply_property& p) {
     const double count = next(*p.count);
     if (!(count >= 0)) refuse(file_, record() + " has a list of " + std::to_string((long long)count), line());
@@ -51,7 +51,7 @@ class ply_values {
     return std::uint64_t(count);
   }
 
-  /// After the last element there is nothing more.
+  /// Refuses anything after the last element.
   void finish() const {
     if (ascii() ? !blank(rest_, " \t\r\n\v\f") : !rest_.empty())
       refuse(file_,
@@ -125,9 +125,9 @@ class ply_values {
   std::uint64_t number_ = 0;
 };
 
-/// Walks through all the values of a PLY file in their order: `vertex(values, position)` is called for each record of
-/// the element vertex, `list(element, property, values, listed)` for each list; `values` says where. Refuses what does
-/// not fit the header, data after its last element included.
+/// Goes through all values of a PLY file in their order. It calls `vertex(values, position)` for each record of the
+/// element vertex, and `list(element, property, values, listed)` for each list; `values` says where that is. Refuses
+/// what does not fit the header, including data after the last element.
 template <class Vertex, class List>
 void read_ply_values(std::string_view rest, const ply_header& header, const std::string& file, Vertex vertex,
                      List list) {
@@ -137,7 +137,7 @@ void read_ply_values(std::string_view rest, const ply_header& header, const std:
     if (element.properties.empty()) continue;
     values.expect(element);
     const bool is_vertex = element.name == "vertex";
-    std::vector<int> axes;  // of each property, -1 for none
+    std::vector<int> axes;  // by property; -1 for none
     for (const auto& p : element.properties)
       axes.push_back(is_vertex && !p.count && (p.name == "x" || p.name == "y" || p.name == "z") ? p.name[0] - 'x' : -1);
     if (is_vertex && std::ranges::count_if(axes, [](int a) { return a >= 0; }) != 3)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Points with numbers of one's own beside them, as any viewer of PLY files shows them.
+// Points with numbers of your own, in a form that every viewer of PLY files shows.
 
 #include <clearance/io/bytes.hpp>
 #include <clearance/io/write_file.hpp>
@@ -15,21 +15,21 @@
 
 namespace clearance::io {
 
-/// One number a point, by the name that a viewer shows. "red", "green" and "blue" of 8 bits are its colour.
+/// One number per point, under the name that a viewer shows. 8-bit "red", "green" and "blue" are its colour.
 struct ply_column {
   std::string name;
   std::variant<std::vector<float>, std::vector<std::uint8_t>, std::vector<std::int32_t>, std::vector<std::uint32_t>>
       values;
 };
 
-/// Points with their columns, of which a file is made one after another.
+/// Points with their columns; a file is written piece by piece.
 struct ply_piece {
   std::vector<Eigen::Vector3d> points;
   std::vector<ply_column> columns;
 };
 
-/// What stands before the records of `count` points with such columns. Throws std::invalid_argument if a column has a
-/// name that is no word.
+/// The file's header for `count` points with these columns. Throws std::invalid_argument if a column's name is not a
+/// word.
 inline std::string ply_header_text(std::size_t count, std::span<const ply_column> columns,
                                    const std::string& comment = {}) {
   constexpr const char* kinds[] = {"float", "uchar", "int", "uint"};
@@ -44,8 +44,8 @@ inline std::string ply_header_text(std::size_t count, std::span<const ply_column
   return out + "end_header\n";
 }
 
-/// The records of points: positions in double, then the columns in their order. Throws std::invalid_argument if a
-/// column has not one value a point.
+/// The records of the points: positions in double, then the columns in their order. Throws std::invalid_argument unless
+/// every column has one value per point.
 inline std::string ply_records(std::span<const Eigen::Vector3d> points, std::span<const ply_column> columns) {
   byte_writer out;
   std::size_t record = 3 * sizeof(double);
@@ -81,15 +81,15 @@ inline std::string ply_bytes(std::span<const Eigen::Vector3d> points, std::span<
   return ply_header_text(points.size(), columns, comment) + ply_records(points, columns);
 }
 
-/// Writes it, whole or not at all. Throws std::runtime_error naming the file.
+/// Writes ply_bytes to a file, completely or not at all. Throws as that, and std::runtime_error naming the file.
 inline void save_ply(const std::string& file, std::span<const Eigen::Vector3d> points,
                      std::span<const ply_column> columns, const std::string& comment = {}) {
   write_bytes(file, ply_bytes(points, columns, comment));
 }
 
-/// The same of `count` points that need not be in memory at once: `next()` gives a ply_piece, at least once, and as
-/// often as points are missing. All pieces have columns of the same names and kinds. Throws std::invalid_argument if a
-/// piece has none of the missing points, or more.
+/// The same for `count` points that need not be in memory at once. `next()` returns a ply_piece; it is called at least
+/// once, and until no point is missing. All pieces have the same column names and kinds. Throws std::invalid_argument
+/// if a piece is empty while points are missing, or has too many.
 template <class Next>
 void save_ply_pieces(const std::string& file, std::size_t count, Next next, const std::string& comment = {}) {
   std::size_t done = 0;

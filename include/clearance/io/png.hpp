@@ -6,7 +6,7 @@
 #include <clearance/io/depth.hpp>
 #include <clearance/io/png_rows.hpp>
 
-// What stb_image.h includes must have been included before it is put into a namespace.
+// Headers that stb_image.h includes come first, so that they do not end up in a namespace.
 #include <assert.h>
 #include <limits.h>
 #include <math.h>
@@ -43,7 +43,7 @@
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wold-style-cast"
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#if !defined(__clang__)  // which does not know them
+#if !defined(__clang__)  // clang does not know these
 #pragma GCC diagnostic ignored "-Wduplicated-branches"
 #pragma GCC diagnostic ignored "-Wuseless-cast"
 #endif
@@ -83,7 +83,7 @@ namespace clearance::io::stb {
 
 namespace clearance::io {
 
-// These are static because they call static functions: one definition in each translation unit.
+// Static, because they call static functions: each translation unit has its own.
 
 /// Reads a PNG file from memory; `file` is its name in the frame and in errors.
 [[maybe_unused]] static depth_frame read_png(std::string_view bytes, const std::string& file,
@@ -91,7 +91,7 @@ namespace clearance::io {
   const png_image image = check_depth_png(bytes, file, limits);
   const std::size_t size = png_raw_bytes(image);
   if (size > INT_MAX || image.packed.size() > INT_MAX) refuse(file, "is larger than 2 GiB");
-  std::string raw(size, '\0');  // and no more, whatever the data unfold to
+  std::string raw(size, '\0');  // no more, whatever the data unfold to
   int unpacked = -1;
   try {
     unpacked = stb::stbi_zlib_decode_buffer(raw.data(), int(size), image.packed.data(), int(image.packed.size()));
@@ -106,8 +106,8 @@ namespace clearance::io {
   return {file, png_pixels(image, raw, file), image.width, image.height};
 }
 
-/// Reads a depth frame from a 16-bit grey PNG; any other PNG, and a damaged or truncated one, is refused with a
-/// std::runtime_error.
+/// Reads a depth frame from a 16-bit grey PNG. Throws std::runtime_error for any other PNG, and for a damaged or
+/// truncated one.
 [[maybe_unused]] static depth_frame load_png(const std::string& file, const read_limits& limits = {}) {
   return within_memory(file, [&] { return read_png(read_bytes(file, limits), file, limits); });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What must hold of a PNG file before its data are unpacked.
+// Checks a PNG file before its data are unpacked.
 
 #include <clearance/io/error.hpp>
 
@@ -42,7 +42,7 @@ struct png_image {
   std::string packed;  // by zlib
 };
 
-/// Refuses anything but a complete, undamaged PNG of 16-bit grey pixels whose size its data can fill.
+/// Refuses anything but a complete, undamaged 16-bit grey PNG whose data suffice for its size.
 inline png_image check_depth_png(std::string_view bytes, const std::string& file, const read_limits& limits = {}) {
   using namespace std::string_view_literals;
   constexpr std::string_view signature = "\x89PNG\r\n\x1a\n"sv;
@@ -85,7 +85,7 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
     if (name == "IEND") break;
   }
   const std::uint64_t packed = image.packed.size();
-  // Deflate packs at most 1032 bytes into one.
+  // Deflate packs at most 1032 bytes into one byte.
   if (width > (1u << 24) || height > (1u << 24) || (2 * width + 1) * height > 1032 * packed)
     refuse(file, "the PNG image says " + std::to_string(width) + "x" + std::to_string(height) +
                      " pixels, more than its data can hold");

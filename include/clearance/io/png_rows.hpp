@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// From the unpacked data of a 16-bit grey PNG to its pixels. stb_image does this too, but compares neither the checksum
-// nor the length of what it unpacked, so damaged data would be depths that are wrong without a word.
+// Turns the unpacked data of a 16-bit grey PNG into pixels. stb_image could, but it checks neither the checksum nor the
+// length of the unpacked data, so damaged data would silently become wrong depths.
 
 #include <clearance/io/png_check.hpp>
 
@@ -15,11 +15,11 @@
 
 namespace clearance::io {
 
-/// zlib's checksum of what was packed.
+/// zlib's checksum of the unpacked data.
 constexpr std::uint32_t adler32(std::string_view bytes) {
   std::uint32_t a = 1, b = 0;
   while (!bytes.empty()) {
-    const std::string_view piece = bytes.substr(0, 5552);  // as many as do not overflow
+    const std::string_view piece = bytes.substr(0, 5552);  // as many as cannot overflow
     for (const char byte : piece) b += a += std::uint8_t(byte);
     a %= 65521, b %= 65521;
     bytes.remove_prefix(piece.size());
@@ -27,7 +27,7 @@ constexpr std::uint32_t adler32(std::string_view bytes) {
   return b << 16 | a;
 }
 
-/// The pixels of an image that one pass of its rows has: the first, and the steps between them.
+/// The pixels of an image in one interlacing pass: the first one, and the steps to the next.
 struct png_pass {
   std::size_t x, y, across, down;
 
@@ -37,7 +37,7 @@ struct png_pass {
   std::size_t height(const png_image& image) const {
     return y < image.height ? (image.height - y + down - 1) / down : 0;
   }
-  /// Each row has a byte that says its filter. A pass without pixels has no rows.
+  /// Every row begins with a byte for its filter. A pass without pixels has no rows.
   std::size_t bytes(const png_image& image) const { return width(image) ? height(image) * (2 * width(image) + 1) : 0; }
 };
 
@@ -52,7 +52,7 @@ inline std::size_t png_raw_bytes(const png_image& image) {
   return bytes;
 }
 
-/// Undoes the filter of a row, of which `row[-1]` says which it is. `above` is null for the first.
+/// Undoes the filter of a row; `row[-1]` names the filter. `above` is null for the first row.
 inline void png_unfilter(std::uint8_t* row, const std::uint8_t* above, std::size_t bytes, const std::string& file) {
   const auto each = [&](auto predicted) {
     for (std::size_t i = 0; i < bytes; ++i) {
@@ -80,7 +80,7 @@ inline void png_unfilter(std::uint8_t* row, const std::uint8_t* above, std::size
   }
 }
 
-/// The pixels row by row; `raw` has png_raw_bytes of them.
+/// The pixels row by row; `raw` holds png_raw_bytes bytes.
 inline std::vector<std::uint16_t> png_pixels(const png_image& image, std::string& raw, const std::string& file) {
   std::vector<std::uint16_t> pixels(image.width * image.height);
   auto* at = reinterpret_cast<std::uint8_t*>(raw.data());

@@ -20,7 +20,7 @@ class robot {
   const std::string& name() const { return name_; }
   const std::vector<robot_part>& parts() const { return parts_; }
   const kinematic_tree& kinematics() const { return tree_; }
-  /// Sentences that a user should see, such as which links gave their visual for want of a collision.
+  /// Sentences to show to a user, for example that a link without collision geometry uses its visual.
   const std::vector<std::string>& notes() const { return notes_; }
 
   /// base-from-part for each part; see kinematic_tree::link_poses.
@@ -44,7 +44,7 @@ class robot {
   std::vector<std::string> notes_;
 };
 
-/// Reads a URDF file and all its geometry; a part is a link that has some, in the file's order. Throws
+/// Reads a URDF file and all its geometry. A part is a link that has geometry; parts keep the file's order. Throws
 /// std::runtime_error if a file is damaged or missing, std::invalid_argument if a link to exclude does not exist.
 inline robot load_robot(const std::filesystem::path& urdf, const robot_options& options = {}) {
   if (!(options.tessellation > 0)) throw std::invalid_argument("the tessellation error must be above 0");

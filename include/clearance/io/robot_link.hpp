@@ -19,22 +19,21 @@ namespace clearance::io {
 enum class robot_geometry { collision, visual };
 
 struct robot_options {
-  robot_geometry geometry = robot_geometry::collision;      // a link that has none of it gives the other, with a note
-  std::map<std::string, std::filesystem::path> packages{};  // where package://name is
+  robot_geometry geometry = robot_geometry::collision;      // a link without this kind uses the other, with a note
+  std::map<std::string, std::filesystem::path> packages{};  // the folder of package://name
   std::vector<std::string> exclude_links{};
-  double tessellation = 1e-4;                   // metres; round shapes become meshes no farther from them,
-  std::uint32_t shape_triangles = 8000;         // except where one would need more triangles than this,
+  double tessellation = 1e-4;                   // metres: the error of meshes for round shapes,
+  std::uint32_t shape_triangles = 8000;         // unless a shape would need more triangles than this,
   std::uint32_t all_shape_triangles = 400'000;  // or more than its share of these
-  bool strict = false;                          // what would be noted is refused
-  mesh_limits limits{};                         // of the description and all its meshes together
+  bool strict = false;                          // refuse what would be noted
+  mesh_limits limits{};                         // for the description and all its meshes together
 };
 
-/// One link that has geometry: all its meshes and shapes as one mesh in the link's frame, triangles in the file's
-/// order.
+/// One link that has geometry: all its meshes and shapes as one mesh in the link's frame, in the file's order.
 struct robot_part {
   std::string name;
   triangle_mesh mesh;
-  double tessellation_error = 0;  // the link's shapes reach at most so far beyond the mesh, metres; 0 if all are meshes
+  double tessellation_error = 0;  // the link's shapes reach at most this far beyond the mesh, metres; 0 for meshes
   robot_geometry used = robot_geometry::collision;
   std::size_t link = 0;  // its number in the kinematic tree
 };
@@ -84,7 +83,7 @@ class robot_reader {
   }
 
  private:
-  /// Half the thickness of what has none, metres: a solid then, which is so much larger, and says so.
+  /// Half the thickness given to a flat shape, metres. It becomes a solid, and the growth is added to its error.
   static constexpr double least = 1e-6;
 
   static tessellation thick(tessellation made, std::ptrdiff_t ways) {
@@ -117,7 +116,7 @@ class robot_reader {
     tessellation made{load_mesh(file, left_), 0};
     left_.bytes -= std::min(left_.bytes, std::uint64_t(std::filesystem::file_size(file)));
     for (auto& v : made.mesh.vertices) v = v.cwiseProduct(mesh.scale);
-    if ((mesh.scale.array() < 0).count() % 2)  // a mirror image: turn the triangles, so that they face out again
+    if ((mesh.scale.array() < 0).count() % 2)  // mirrored: turn the triangles, so that they still face out
       for (auto& t : made.mesh.triangles) std::swap(t[1], t[2]);
     return made;
   }
@@ -126,7 +125,7 @@ class robot_reader {
   const std::string file_;
   const robot_options& options_;
   mesh_limits left_;
-  std::uint32_t each_;  // triangles of a round shape
+  std::uint32_t each_;  // triangles per round shape
 };
 
 }  // namespace clearance::io

@@ -19,15 +19,15 @@ struct scene_body {
   triangle_mesh mesh;                                      // in the body's frame
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // world-from-body
   colour paint = {0.75f, 0.75f, 0.78f, 1};
-  std::string group = {};  // the name of a node for all bodies and balls of one group; empty: none
+  std::string group = {};  // the name of a node for all bodies and balls of a group; empty: none
 };
 
 struct scene_points {
   std::string name;
-  std::vector<vec3> points;  // in the cloud's frame; those that are not finite are left out
+  std::vector<vec3> points;  // in the cloud's frame; those not finite are left out
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   colour paint = {0.25f, 0.45f, 0.85f, 1};
-  std::vector<colour> colours = {};  // one a point, or none: all have that paint
+  std::vector<colour> colours = {};  // one per point, or empty: all have `paint`
 };
 
 struct scene_balls {
@@ -45,7 +45,7 @@ struct scene_segment {
   colour paint = {0.9f, 0.1f, 0.1f, 1};
 };
 
-/// Metres, z up, in world coordinates; `origin` is subtracted from them, because a glTF file holds floats.
+/// Metres, z up, in world coordinates. `origin` is subtracted from them, because a glTF file holds floats.
 struct scene {
   std::vector<scene_body> bodies;
   std::vector<scene_points> clouds;
@@ -54,8 +54,8 @@ struct scene {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
 };
 
-/// The scene as a binary glTF file, in which y is up, so all is turned by -90 degrees about x; `file` is its name in
-/// errors.
+/// The scene as a binary glTF file. There y is up, so everything is turned by -90 degrees about x. Error sentences name
+/// `file`.
 inline std::string scene_bytes(const scene& world, const std::string& file) {
   glb_writer out(file);
   const auto add = [&](const std::string& name, const drawn_mesh& mesh, Eigen::Isometry3d pose, colour paint,
@@ -76,7 +76,7 @@ inline std::string scene_bytes(const scene& world, const std::string& file) {
   return out.bytes();
 }
 
-/// Writes a scene as a binary glTF file (.glb), whole or not at all. Names become printable UTF-8. Throws
+/// Writes a scene as a binary glTF file (.glb), completely or not at all. Names become printable UTF-8. Throws
 /// std::runtime_error.
 inline void save_scene(const scene& world, const std::string& file) { write_bytes(file, scene_bytes(world, file)); }
 

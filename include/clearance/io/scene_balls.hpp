@@ -9,7 +9,7 @@
 
 namespace clearance::io {
 
-/// A unit sphere: an icosahedron of which each triangle was cut into four, so many times.
+/// A unit sphere: an icosahedron whose triangles are each cut into four, `cuts` times.
 inline triangle_mesh icosphere(int cuts) {
   constexpr double g = 1.6180339887498949;
   triangle_mesh mesh;
@@ -45,7 +45,7 @@ inline triangle_mesh icosphere(int cuts) {
   return mesh;
 }
 
-/// Balls, smoothly shaded; only the largest are fine, because thousands of them must stay a file that viewers open.
+/// Smoothly shaded balls. Only the largest are fine, so that viewers can open a file with thousands of them.
 inline drawn_mesh faces_of(const std::vector<ball>& balls) {
   static const triangle_mesh shapes[4] = {icosphere(0), icosphere(1), icosphere(2), icosphere(3)};
   std::vector<std::size_t> order(balls.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Shapes of a scene as glTF has them.
+// Shapes of a scene, in glTF's terms.
 
 #include <clearance/ground/math.hpp>
 #include <clearance/io/sentence.hpp>
@@ -21,14 +21,14 @@ struct colour {
   float red, green, blue, alpha;
 };
 
-/// A name as a glTF file may hold it, in valid UTF-8, and not too long for a viewer.
+/// A name as glTF may hold it: valid UTF-8, and not too long for a viewer.
 inline std::string scene_name(const std::string& name) { return shortened(printable(name), 1000); }
 
 /// Triangles with a normal at each vertex, or points.
 struct drawn_mesh {
   std::vector<vec3> positions, normals;
-  std::vector<std::uint32_t> corners;  // three for each triangle; none: they are points
-  std::vector<colour> colours = {};    // of points: one each, or none
+  std::vector<std::uint32_t> corners;  // three per triangle; empty: these are points
+  std::vector<colour> colours = {};    // one per point, or empty
 };
 
 inline vec3 to_vec3(const Eigen::Vector3d& v) { return {float(v.x()), float(v.y()), float(v.z())}; }
@@ -49,7 +49,7 @@ inline drawn_mesh faces_of(const triangle_mesh& mesh) {
   return out;
 }
 
-/// Those that are finite; `colours`: one a point, or none.
+/// The finite points; `colours`: one per point, or empty.
 inline drawn_mesh points_of(const std::vector<vec3>& points, const std::vector<colour>& colours = {}) {
   drawn_mesh out;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -60,7 +60,7 @@ inline drawn_mesh points_of(const std::vector<vec3>& points, const std::vector<c
   return out;
 }
 
-/// A square rod along `v`, 1 % as thick as long and 1 to 10 mm: lines of one pixel are overlooked.
+/// A square rod along `v`, because lines of one pixel are overlooked. Its width is 1 % of its length, but 1 to 10 mm.
 inline triangle_mesh rod(const Eigen::Vector3d& v) {
   const double thick = std::min(0.01, std::max(0.001, 0.01 * v.norm())) / 2;
   const Eigen::Vector3d along = v.norm() > 0 ? Eigen::Vector3d(v.normalized()) : Eigen::Vector3d::UnitZ();

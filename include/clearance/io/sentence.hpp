@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What a sentence for people may hold, whatever names and words a file has put into it.
+// Makes text safe for messages, whatever names and words a file contains.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace clearance::io {
 
-/// Bytes of the UTF-8 character that `text` begins with; 0 if it begins with none (cut short, overlong, a surrogate).
-/// `code` becomes its number.
+/// Bytes of the first UTF-8 character of `text`, and its number in `code`; 0 if there is none (cut short, overlong, a
+/// surrogate).
 inline std::size_t utf8_character(std::string_view text, std::uint32_t& code) {
   const auto byte = [&](std::size_t i) { return std::uint32_t(std::uint8_t(text[i])); };
   if (text.empty()) return 0;
@@ -26,13 +26,13 @@ inline std::size_t utf8_character(std::string_view text, std::uint32_t& code) {
   return code < least[size] || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000) ? 0 : size;
 }
 
-/// Does it control a terminal, end a line, or turn the direction of writing?
+/// Does this character control a terminal, end a line, or change the direction of writing?
 constexpr bool controls(std::uint32_t code) {
   return code < 0x20 || (code >= 0x7F && code < 0xA0) || code == 0x61C || code == 0x200E || code == 0x200F ||
          (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069) || code == 0xFEFF;
 }
 
-/// Valid UTF-8 on one line: bytes that are none, and characters that control something, become \xNN, byte by byte.
+/// Valid UTF-8 on one line. Invalid bytes and control characters become \xNN, byte by byte.
 inline std::string printable(std::string_view text) {
   std::string out;
   while (!text.empty()) {
@@ -52,7 +52,7 @@ inline std::string printable(std::string_view text) {
   return out;
 }
 
-/// At most `most` bytes (at least 8) of UTF-8: of a longer text the beginning and the end, with "..." for the middle.
+/// At most `most` bytes (at least 8) of UTF-8. A longer text keeps its beginning and end, with "..." between them.
 inline std::string shortened(std::string_view text, std::size_t most) {
   if (text.size() <= most) return std::string(text);
   const auto continues = [&](std::size_t at) { return std::uint8_t(text[at]) >> 6 == 2; };
@@ -62,10 +62,10 @@ inline std::string shortened(std::string_view text, std::size_t most) {
   return std::string(text.substr(0, head)) + "..." + std::string(text.substr(tail));
 }
 
-/// What any message is at most, in bytes.
+/// The most bytes that a message may have.
 inline constexpr std::size_t longest_sentence = 400;
 
-/// A message as it may be shown: printable, and at most `most` bytes. A text of megabytes costs no more than its ends.
+/// A message ready to show: printable, at most `most` bytes. Only the ends of a long text are looked at.
 inline std::string sentence(std::string_view text, std::size_t most = longest_sentence) {
   if (text.size() > 4 * longest_sentence)
     return shortened(
@@ -74,13 +74,13 @@ inline std::string sentence(std::string_view text, std::size_t most = longest_se
   return shortened(printable(text), most);
 }
 
-/// "place: why" as one sentence that leaves room for a word before it. Neither may push the other out.
+/// "place: why" as one sentence, short enough for a word before it. Neither half can push out the other.
 inline std::string sentence_about(std::string_view place, std::string_view why) {
   const std::string where = sentence(place, 220) + ": ";
   return where + sentence(why, longest_sentence - 20 - where.size());
 }
 
-/// The beginning of a word or name as a sentence may quote it.
+/// The beginning of a word or name, quoted for a sentence.
 inline std::string quoted(std::string_view word) { return '"' + sentence(word, 60) + '"'; }
 
 }  // namespace clearance::io

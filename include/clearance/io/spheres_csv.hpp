@@ -9,8 +9,8 @@
 
 namespace clearance::io {
 
-/// Reads spheres from a text file: a header x,y,z,r, which may be missing, then four numbers a line, metres; # starts a
-/// comment. In the file's order, and without a certificate. Throws std::runtime_error naming file and line.
+/// Reads spheres from a text file: an optional header x,y,z,r, then four numbers per line, metres; # begins a comment.
+/// They keep the file's order and have no certificate. Throws std::runtime_error naming file and line.
 inline packing load_spheres_csv(const std::string& file) {
   constexpr std::string_view separators = " \t\r\v\f,;";
   const std::string bytes = read_bytes(file);
@@ -46,7 +46,7 @@ inline packing load_spheres_csv(const std::string& file) {
   return uncertified(std::move(spheres));
 }
 
-/// Saves x,y,z,r, every float exactly; the certificate is lost.
+/// Saves x,y,z,r with every float exact; the certificate is lost.
 inline void save_spheres_csv(std::span<const inner_sphere> spheres, const std::string& file) {
   std::string text = "x,y,z,r\n";
   for (const inner_sphere& s : spheres)

@@ -9,14 +9,14 @@
 
 namespace clearance::io {
 
-/// "ist", "csv" or "yaml" by the end of the file's name, or nothing.
+/// "ist", "csv" or "yaml" by the ending of the file's name, or empty.
 inline std::string spheres_format(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   for (char& c : ending) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
   return ending == ".ist" ? "ist" : ending == ".csv" ? "csv" : ending == ".yaml" || ending == ".yml" ? "yaml" : "";
 }
 
-/// Reads any file of spheres; the one part of a CSV file is named as the file. Throws std::runtime_error.
+/// Reads any file of spheres; the part of a CSV file is named after the file. Throws std::runtime_error.
 inline std::vector<packed_part> load_spheres(const std::string& file) {
   const std::string format = spheres_format(file);
   if (format == "ist") return load_ist(file);
@@ -28,7 +28,7 @@ inline std::vector<packed_part> load_spheres(const std::string& file) {
   return parts;
 }
 
-/// Writes what the end of the name says. Only .ist keeps certificates; a CSV file holds one part. Throws
+/// Writes the format of the name's ending. Only .ist keeps certificates; a CSV file holds one part. Throws
 /// std::runtime_error.
 inline void save_spheres(std::span<const packed_part> parts, const std::string& file) {
   const std::string format = spheres_format(file);

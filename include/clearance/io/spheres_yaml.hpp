@@ -52,7 +52,7 @@ inline packed_part yaml_link(const YAML::Node& key, const YAML::Node& list, cons
 
 }  // namespace detail
 
-/// Reads the spheres of each link, in the file's order: `collision_spheres` at the top, or where a cuRobo robot
+/// Reads each link's spheres in the file's order. `collision_spheres` is at the top, or where a cuRobo robot
 /// description has it (robot_cfg: kinematics:). They have no certificate. Throws std::runtime_error naming file and
 /// line.
 inline std::vector<packed_part> load_spheres_yaml(const std::string& file) {
@@ -75,7 +75,7 @@ inline std::vector<packed_part> load_spheres_yaml(const std::string& file) {
       if (!names.insert(name).second) refuse(file, "has link " + io::quoted(name) + " twice");
       parts.push_back(detail::yaml_link(link.first, link.second, file));
       spheres += parts.back().spheres.spheres.size();
-      if (spheres > bytes.size() / 8)  // {center: [0,0,0], radius: 1}; only aliases make more of less
+      if (spheres > bytes.size() / 8)  // {center: [0,0,0], radius: 1}; only aliases could pack them tighter
         refuse(file, "repeats its spheres by aliases, more than its size allows");
     }
   } catch (const YAML::Exception& error) {
@@ -84,7 +84,7 @@ inline std::vector<packed_part> load_spheres_yaml(const std::string& file) {
   return parts;
 }
 
-/// Saves the spheres of each link, every float exactly; the certificates are lost.
+/// Saves each link's spheres with every float exact; the certificates are lost.
 inline void save_spheres_yaml(std::span<const packed_part> parts, const std::string& file) {
   YAML::Emitter out;
   out << YAML::BeginMap << YAML::Key << "collision_spheres" << YAML::Value << YAML::BeginMap;

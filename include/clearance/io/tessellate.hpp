@@ -14,20 +14,20 @@
 
 namespace clearance::io {
 
-/// A closed mesh that faces out, with its vertices on the shape's surface: it is inscribed, so that the shape reaches
-/// nowhere farther than `error` metres beyond it, and nowhere less far.
+/// A closed mesh that faces out. It is inscribed: its vertices are on the shape's surface, which is at most `error`
+/// metres beyond the mesh, and nowhere inside it.
 struct tessellation {
   triangle_mesh mesh;
   double error = 0;
 };
 
-/// How far a ball around the origin reaches beyond the plane of a triangle.
+/// How far a ball around the origin reaches beyond a triangle's plane.
 inline double beyond(const triangle_mesh& mesh, const std::array<std::uint32_t, 3>& t, double radius) {
   const Eigen::Vector3d& p = mesh.vertices[t[0]];
   return radius - (mesh.vertices[t[1]] - p).cross(mesh.vertices[t[2]] - p).normalized().dot(p);
 }
 
-/// Twelve triangles; exact.
+/// Twelve triangles, exact.
 inline tessellation tessellate_box(const Eigen::Vector3d& size) {
   tessellation made;
   for (int i = 0; i < 8; ++i)
@@ -38,12 +38,12 @@ inline tessellation tessellate_box(const Eigen::Vector3d& size) {
   return made;
 }
 
-/// How many triangles one shape becomes at most, if its maker is not told otherwise: a sphere of 14 cm needs as many
-/// for an error of 0.1 mm, and one of 1 m is off by 0.73 mm.
+/// The default limit of triangles for one shape. A sphere of 14 cm needs this many for an error of 0.1 mm; one of 1 m
+/// is then off by 0.73 mm.
 inline constexpr std::uint32_t most_triangles = 8000;
 
-/// Along z, its middle at the origin. As many sides as keep the error below `tolerance`, though at least 12, and at
-/// most `triangles` triangles.
+/// A cylinder along z with its middle at the origin. It gets enough sides to keep the error below `tolerance`, but at
+/// least 12, and at most `triangles` triangles.
 inline tessellation tessellate_cylinder(double radius, double length, double tolerance = 1e-4,
                                         std::uint32_t triangles = most_triangles) {
   using std::numbers::pi;
@@ -51,7 +51,7 @@ inline tessellation tessellate_cylinder(double radius, double length, double tol
   const auto n = std::uint32_t(
       std::clamp(std::ceil(pi / std::max(half_angle, 1e-9)), 12.0, std::max(12.0, std::floor(triangles / 4.0))));
   tessellation made;
-  made.error = radius * (1 - std::cos(pi / n)) + 1e-15 * (radius + length);  // the second for rounding
+  made.error = radius * (1 - std::cos(pi / n)) + 1e-15 * (radius + length);  // 1e-15: rounding
   made.mesh.vertices = {{0, 0, -0.5 * length}, {0, 0, 0.5 * length}};
   for (std::uint32_t i = 0; i < n; ++i) {
     const double x = radius * std::cos(2 * pi * i / n), y = radius * std::sin(2 * pi * i / n);
@@ -64,8 +64,8 @@ inline tessellation tessellate_cylinder(double radius, double length, double tol
   return made;
 }
 
-/// Around the origin: an icosahedron, its faces split evenly until the error is below `tolerance`, though into at least
-/// 80 and at most `triangles` triangles.
+/// A sphere around the origin: an icosahedron, its faces split evenly until the error is below `tolerance`, but into at
+/// least 80 and at most `triangles` triangles.
 inline tessellation tessellate_sphere(double radius, double tolerance = 1e-4,
                                       std::uint32_t triangles = most_triangles) {
   const double g = std::numbers::phi;
@@ -85,11 +85,11 @@ inline tessellation tessellate_sphere(double radius, double tolerance = 1e-4,
                                           {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
                                           {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
                                           {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
-  // In the middle of a face, where triangles are largest, the error is 0.292 radius / n^2.
+  // Triangles are largest in the middle of a face; there the error is 0.292 radius / n^2.
   const double most = std::max(2.0, std::floor(std::sqrt(triangles / 20.0)));
   const auto n = std::uint32_t(std::clamp(std::ceil(std::sqrt(0.292 * radius / tolerance)), 2.0, most));
   tessellation made;
-  // Faces share the vertices on their edges: a vertex is known by its corners and their weights.
+  // Faces share the vertices on their edges, so a vertex is identified by its corners and their weights.
   std::map<std::array<std::uint32_t, 6>, std::uint32_t> known;
   for (const auto& face : faces) {
     const auto vertex = [&](std::uint32_t i, std::uint32_t j) {
@@ -117,18 +117,18 @@ inline tessellation tessellate_sphere(double radius, double tolerance = 1e-4,
   return made;
 }
 
-/// Along z, its middle at the origin: half a ball on either end of a cylinder of this length. At least 64 and at most
-/// `triangles` triangles, otherwise as many as keep the error below `tolerance`.
+/// A capsule along z with its middle at the origin: a cylinder of this length with half a ball on either end. It gets
+/// enough triangles to keep the error below `tolerance`, but at least 64 and at most `triangles`.
 inline tessellation tessellate_capsule(double radius, double length, double tolerance = 1e-4,
                                        std::uint32_t triangles = most_triangles) {
   using std::numbers::pi;
-  // Patches of pi / 2 / rings either way: in the middle of one the error is (pi / 4 / rings)^2 radius.
+  // Patches are pi / 2 / rings wide either way; in the middle of one the error is (pi / 4 / rings)^2 radius.
   const double most = std::max(2.0, std::floor(std::sqrt(triangles / 16.0)));
   const auto rings = std::uint32_t(std::clamp(std::ceil(pi / 4 * std::sqrt(radius / tolerance)), 2.0, most));
   const std::uint32_t n = 4 * rings;  // sides: 4 n rings triangles
   tessellation made;
   made.mesh.vertices = {{0, 0, 0.5 * length + radius}, {0, 0, -0.5 * length - radius}};
-  for (std::uint32_t k = 1; k <= 2 * rings; ++k) {  // rings from the upper pole down; the equator is there twice
+  for (std::uint32_t k = 1; k <= 2 * rings; ++k) {  // from the upper pole down; the equator is there twice
     const double up = k <= rings ? 0.5 : -0.5, at = pi / 2 * (k <= rings ? k : k - 1) / rings;
     for (std::uint32_t i = 0; i < n; ++i)
       made.mesh.vertices.emplace_back(radius * std::sin(at) * std::cos(2 * pi * i / n),
@@ -144,8 +144,7 @@ inline tessellation tessellate_capsule(double radius, double length, double tole
     }
     made.mesh.triangles.push_back({1, vertex(2 * rings, i + 1), vertex(2 * rings, i)});
   }
-  triangle_mesh ball =
-      made.mesh;  // without the cylinder, whose sides are as far in as the corners of a ring leave them
+  triangle_mesh ball = made.mesh;  // without the cylinder; the corners of a ring bound the error of its sides
   for (std::uint32_t v = 0; v < ball.vertices.size(); ++v)
     ball.vertices[v].z() += (v == 0 || (v > 1 && v < 2 + rings * n) ? -0.5 : 0.5) * length;
   const auto upper = [&](std::uint32_t v) { return v >= 2 && v < 2 + rings * n; };

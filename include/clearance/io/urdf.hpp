@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A reader of URDF that takes every number or refuses the file: urdfdom logs what it cannot read, returns the link
+// A URDF reader that takes every number or refuses the file. urdfdom instead logs what it cannot read, returns the link
 // without it, and sorts links and joints by name.
 
 #include <clearance/io/kinematics.hpp>
@@ -14,7 +14,7 @@
 
 namespace clearance::io {
 
-/// The links of a file, in its order, its joints as a tree, and what was passed over.
+/// A file's links in its order, its joints as a tree, and notes about what was skipped.
 struct urdf_file {
   std::string name;
   std::vector<urdf_link> links;
@@ -54,7 +54,7 @@ inline joint read_urdf_joint(const xml_place& at, note_tally& notes) {
   if (made.kind == joint_kind::revolute || made.kind == joint_kind::prismatic) {
     if (!limit) here.refuse("has no <limit>, which a " + type + " joint needs");
     const xml_place at_limit = here.in(*limit);
-    made.lower = at_limit.number_or("lower", 0);  // what URDF says of one that is left out
+    made.lower = at_limit.number_or("lower", 0);  // URDF's default
     made.upper = at_limit.number_or("upper", 0);
     if (made.lower > made.upper) {
       notes.add("has a lower limit above its upper limit, and is taken to have none", owner, limit->line);
@@ -68,8 +68,8 @@ inline joint read_urdf_joint(const xml_place& at, note_tally& notes) {
   return made;
 }
 
-/// A joint that follows one of another file is one that moves by itself: where it is, that file says, and a user must.
-/// What is nearly the name of a joint here is that, misspelt.
+/// If a joint follows a joint of another file, this file does not say where it is, so it takes a value of its own. A
+/// name that nearly matches a joint here is a misspelling, and refused.
 inline void free_followers(std::vector<joint>& joints, const std::vector<const xml_element*>& at,
                            const std::string& file, note_tally& notes) {
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -88,15 +88,15 @@ inline void free_followers(std::vector<joint>& joints, const std::vector<const x
   }
 }
 
-/// Where the XML declaration begins, if blanks are before it; else 0. XML has nothing there, people have empty lines.
+/// Where the XML declaration begins, if blanks precede it; else 0. XML allows none, but people leave empty lines.
 inline std::size_t declaration_after_blanks(std::string_view text) {
   const std::size_t mark = text.size() - without_mark(text).size(), begin = text.find_first_not_of(" \t\r\n", mark);
   return begin != text.npos && begin > mark && text.substr(begin).starts_with("<?xml ") ? begin : 0;
 }
 
 /// Reads a URDF file; links and joints keep its order. Throws std::runtime_error with the file's name, the line, and
-/// the link or joint, if anything in it that says where geometry is cannot be read, is missing or is not known.
-/// `strict`: what would be noted is refused.
+/// the link or joint, if something that decides where geometry is cannot be read, is missing or is unknown. `strict`
+/// refuses what would be noted.
 inline urdf_file read_urdf(const std::string& file, const mesh_limits& limits = {}, bool strict = false) {
   const std::string text = read_bytes(file, {.piped = limits.bytes});
   if (text.size() > limits.bytes)

@@ -20,7 +20,7 @@ struct urdf_sphere {
 struct urdf_cylinder {
   double radius, length;
 };
-/// A cylinder along z with half a ball on either end, which its length does not count.
+/// A cylinder along z with half a ball on either end; `length` does not include them.
 struct urdf_capsule {
   double radius, length;
 };
@@ -34,9 +34,9 @@ using urdf_geometry = std::variant<urdf_box, urdf_sphere, urdf_cylinder, urdf_ca
 struct urdf_shape {
   urdf_geometry geometry;
   Eigen::Isometry3d origin;  // link-from-shape
-  std::size_t line;          // of its geometry
+  std::size_t line;          // where its geometry is in the file
 
-  /// A point, a segment or a plate: a side, radius or length is 0.
+  /// Is it a point, a segment or a plate? Then a side, radius or length is 0.
   bool flat() const {
     if (const auto* box = std::get_if<urdf_box>(&geometry)) return (box->size.array() == 0).any();
     if (const auto* sphere = std::get_if<urdf_sphere>(&geometry)) return sphere->radius == 0;
@@ -45,7 +45,7 @@ struct urdf_shape {
     const auto* capsule = std::get_if<urdf_capsule>(&geometry);
     return capsule && capsule->radius == 0;
   }
-  /// Becomes triangles that are not quite it.
+  /// Does it become triangles that only approximate it?
   bool round() const {
     return !std::holds_alternative<urdf_box>(geometry) && !std::holds_alternative<urdf_mesh>(geometry);
   }
@@ -68,7 +68,7 @@ inline std::string urdf_name(const xml_place& at, std::string_view attribute = "
   return name;
 }
 
-/// The pose that <origin> says: fixed axes, roll about x first, then pitch about y, then yaw about z.
+/// The pose in <origin>: fixed axes, roll about x first, then pitch about y, then yaw about z.
 inline Eigen::Isometry3d urdf_origin(const xml_place& around) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   const xml_element* element = around.child("origin");

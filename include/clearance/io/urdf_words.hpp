@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What may stand where in a URDF file, and what becomes of all else: refused is what may change the answer, noted what
-// cannot.
+// Decides what may stand where in a URDF file, and what happens to everything else. What may change the answer is
+// refused; what cannot is noted.
 
 #include <clearance/io/near_word.hpp>
 #include <clearance/io/note_tally.hpp>
@@ -14,16 +14,16 @@
 
 namespace clearance::io {
 
-/// What an element may hold. Words between blanks.
+/// What an element may hold: words separated by blanks.
 struct urdf_words {
   std::string_view element;
-  std::string_view attributes, attributes_unused;  ///< Read; defined, but of no use here.
-  std::string_view children, children_unused;      ///< The same of elements. No shape may be in those of no use.
-  /// Others that are often there, whatever they look like; a bare <geometry> may be in them.
+  std::string_view attributes, attributes_unused;  ///< Read; defined, but unused here.
+  std::string_view children, children_unused;      ///< The same for elements. The unused may not contain a shape.
+  /// Other elements that are common, whatever they resemble; a bare <geometry> may be in them.
   std::string_view children_noted = {};
-  /// Would change the answer if they meant what they say: refused, attribute or element.
+  /// Refused, as attribute or element: they would change the answer if they meant what they say.
   std::string_view watched = {};
-  bool places = false;  ///< It says where something is, or how large: nothing near its words passes.
+  bool places = false;  ///< It says where something is, or how large: refuses whatever resembles its words.
 };
 
 inline constexpr std::string_view placing =
@@ -52,11 +52,11 @@ inline constexpr urdf_words urdf_vocabulary[] = {
     {"limit", "lower upper", "effort velocity acceleration deceleration jerk power", "", ""},
     {"mimic", "joint multiplier offset", "", "", ""},
 };
-/// Refused where they do not belong, wherever that is.
+/// Refused wherever they do not belong.
 inline constexpr std::string_view urdf_parts = "link joint visual collision geometry";
-/// Of these an element has one.
+/// An element has at most one of these.
 inline constexpr std::string_view urdf_single = "origin geometry parent child axis limit mimic";
-/// An element whose name has one of these in it may hide geometry that is meant.
+/// An element with one of these in its name may hide geometry that is meant.
 inline constexpr std::string_view urdf_shapely = "visual collision geometry";
 
 /// The first of the words for which `holds`, or nothing.
@@ -72,19 +72,19 @@ inline bool has_word(std::string_view words, std::string_view wanted) {
 
 inline std::string_view local_name(std::string_view name) { return name.substr(name.find(':') + 1); }
 
-/// Which of the words a name may be, misspelt or with a prefix before it.
+/// The words that a name may be, misspelt or with a prefix.
 inline std::string_view meant_by(std::string_view name, std::string_view words) {
   return first_word(words,
                     [&](std::string_view word) { return near_word(name, word) || near_word(local_name(name), word); });
 }
 
-/// Whether there is an element of one of these names in another, at any depth.
+/// Is there an element with one of these names in another, at any depth?
 inline bool holds_any(const xml_element& element, std::string_view words) {
   return std::ranges::any_of(element.children, [&](const xml_element& child) {
     return has_word(words, local_name(child.name)) || holds_any(child, words);
   });
 }
-/// Whether a link or joint is in an element, and not only the name of one.
+/// Is there a link or joint in an element, and not only its name?
 inline bool holds_robot(const xml_element& element) {
   return std::ranges::any_of(element.children, [](const xml_element& child) {
     const auto has = [&](const char* name) {
@@ -94,7 +94,7 @@ inline bool holds_robot(const xml_element& element) {
   });
 }
 
-/// Judges a whole file by its words, before anything in it is read.
+/// Judges a whole file by its words, before anything else reads it.
 class urdf_judge {
  public:
   urdf_judge(const std::string& file, note_tally& notes) : file_(file), notes_(notes) {}
@@ -105,7 +105,7 @@ class urdf_judge {
   }
 
  private:
-  /// `known`: it stands where URDF has it.
+  /// `known`: URDF has this element in this place.
   void enter(const xml_place& at, bool known) {
     const auto words = std::ranges::find(urdf_vocabulary, at.element.name, &urdf_words::element);
     const bool judged = known && words != std::end(urdf_vocabulary);
@@ -122,7 +122,7 @@ class urdf_judge {
       const bool read = judged && element(at, inner, *words);
       if (read && has_word(urdf_single, child.name) &&
           std::any_of(at.element.children.data(), &child, [&](const auto& e) { return e.name == child.name; }))
-        note(inner, "is there twice, the same both times");  // else it is refused where it is read
+        note(inner, "is there twice, the same both times");  // if they differ, the reader refuses them
       enter(inner, read);
       open_.pop_back();
     }
@@ -133,7 +133,7 @@ class urdf_judge {
       if (has_word(words.attributes, name) || has_word(words.attributes_unused, name) || name == "xmlns" ||
           name.starts_with("xmlns:") || name.starts_with("xml:"))
         continue;
-      // What must be there is missed where it is misspelt.
+      // Not for name and type: their readers notice if one is missing.
       const auto matters = [](std::string_view word) { return word != "name" && word != "type"; };
       const std::string_view meant = first_word(words.attributes, [&](std::string_view word) {
         return matters(word) &&
@@ -147,7 +147,7 @@ class urdf_judge {
     }
   }
 
-  /// Whether a child is one to read; notes it, or refuses it, if it is not known.
+  /// Is this child to be read? If it is unknown, notes or refuses it.
   bool element(const xml_place& at, const xml_place& child, const urdf_words& words) {
     const std::string& name = child.element.name;
     if (has_word(words.children, name)) return true;
@@ -179,7 +179,7 @@ class urdf_judge {
     return false;
   }
 
-  /// Beside elements it is a remark, unless it was one of them.
+  /// Text beside elements is a remark, unless it looks like an element.
   void text(const xml_place& at, bool places) {
     const std::string& all = at.element.text;
     const auto begin = all.find_first_not_of(" \t\r\n");
@@ -198,14 +198,14 @@ class urdf_judge {
                at.owner.empty() ? "line " + std::to_string(at.element.line) : at.owner, at.element.line);
   }
 
-  /// The vocabulary that a name's prefix stands for: nothing if that is not declared.
+  /// The vocabulary of a name's prefix; no value if the prefix is not declared.
   std::optional<std::string_view> vocabulary(std::string_view name) const {
     const std::string declared = "xmlns:" + std::string(name.substr(0, name.find(':')));
     for (auto at = open_.rbegin(); at != open_.rend(); ++at)
       if (const std::string* found = (*at)->attribute(declared)) return *found;
     return {};
   }
-  /// A name of a vocabulary that is declared is not ours to judge.
+  /// Names of a declared other vocabulary are not ours to judge.
   bool of_others(std::string_view name) const { return name.find(':') != name.npos && vocabulary(name); }
 
   void refuse_xacro(const xml_element& element) const {
@@ -217,7 +217,7 @@ class urdf_judge {
 
   const std::string& file_;
   note_tally& notes_;
-  std::vector<const xml_element*> open_;  // from the root to where we are
+  std::vector<const xml_element*> open_;  // from the root to the current one
 };
 
 }  // namespace clearance::io

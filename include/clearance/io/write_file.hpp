@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The one way in which this library writes files: beside, then in place, so that a full disk or a crash costs nothing.
+// The only way in which this library writes files: beside, then in place, so a full disk or a crash does no damage.
 
 #include <clearance/io/error.hpp>
 
@@ -15,8 +15,8 @@
 
 namespace clearance::io {
 
-/// Refuses what may not be replaced by a new file: a folder, a device or pipe, a symbolic link (the file behind it is
-/// meant, or is it?). Returns what is there now.
+/// Refuses to replace a folder, device, pipe or symbolic link (should the file behind it be replaced?). Returns the
+/// status of the present file, if there is one.
 inline std::optional<struct ::stat> check_target(const std::string& file) {
   struct ::stat there{};
   if (file.empty() || file.find('\0') != file.npos) refuse(file, "is no name of a file");
@@ -32,8 +32,8 @@ inline std::optional<struct ::stat> check_target(const std::string& file) {
 
 namespace detail {
 
-/// A new file in the folder of `file`, without a name until it is put in place, so that whatever ends the program
-/// leaves nothing. Where the system has no such files, it has a name that nobody can foresee, and loses it at the end.
+/// A new file in the folder of `file`. It has no name until it is put in place, so nothing is left if the program ends
+/// early. Where the system has no such files, it gets an unpredictable name, and loses it at the end.
 class file_beside {
  public:
   file_beside(const std::string& file, ::mode_t mode) : file_(file) {
@@ -68,7 +68,7 @@ class file_beside {
   }
   void put_in_place() {
     if (::fsync(at_) != 0) fail("");
-    if (name_.empty() && !link_to(file_.c_str())) {  // there is an older one, which only a rename replaces
+    if (name_.empty() && !link_to(file_.c_str())) {  // only a rename replaces an older one
       if (errno != EEXIST) fail("the new file cannot take its place");
       under_new_name([&](const char* name) { return link_to(name); });
     }
@@ -76,7 +76,7 @@ class file_beside {
     if (!name_.empty() && ::rename(name_.c_str(), file_.c_str()) != 0) fail("the new file cannot take its place");
     name_.clear();
     if (const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); folder >= 0) {
-      ::fsync(folder);  // so that a crash now does not lose the name; not every file system can
+      ::fsync(folder);  // so the name survives a crash now; not every file system can
       ::close(folder);
     }
   }
@@ -87,7 +87,7 @@ class file_beside {
     return ::linkat(AT_FDCWD, itself().c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
   }
 
-  /// Makes it `name_`, one that is not taken.
+  /// Gives it a name that is not taken, kept in `name_`.
   template <class Make>
   void under_new_name(Make make) {
     std::random_device random;
@@ -108,13 +108,13 @@ class file_beside {
   }
 
   const std::string& file_;
-  std::string folder_, before_, name_;  // its name, while it has one that is not its place
+  std::string folder_, before_, name_;  // its temporary name, while it has one
   int at_ = -1;
 };
 
 }  // namespace detail
 
-/// As the next, of what `next()` gives until that is empty.
+/// The same as write_bytes, for what `next()` returns, until that is empty.
 template <class Next>
 void write_pieces(const std::string& file, Next next) {
   const auto there = check_target(file);
@@ -124,13 +124,13 @@ void write_pieces(const std::string& file, Next next) {
   made.put_in_place();
 }
 
-/// Replaces the file's content: all of it, or nothing. The bytes go to a new file beside it, reach the disk, and take
-/// its name (and its permissions). Throws std::runtime_error naming the file, which is then as it was.
+/// Replaces the file's content completely or not at all. The bytes go to a new file beside it, reach the disk, and then
+/// take its name and permissions. Throws std::runtime_error naming the file, which is then unchanged.
 inline void write_bytes(const std::string& file, std::string_view bytes) {
   write_pieces(file, [&] { return std::exchange(bytes, {}); });
 }
 
-/// As check_target, and refuses a file that `inputs` has seen.
+/// The same as check_target; also refuses a file that `inputs` has recorded.
 inline void check_output(const std::string& file, const files_read& inputs) {
   const auto there = check_target(file);
   if (there && inputs.has({there->st_dev, there->st_ino}))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// XML by expat, which accepts what the standard accepts and nothing else, as a tree that is read strictly: every reader
-// says which attributes and children it knows, and what it does not know is refused by name.
+// Parses XML by expat, which accepts exactly what the standard accepts, into a tree that is read strictly: every reader
+// lists the attributes and children it knows, and others are refused by name.
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
@@ -22,7 +22,7 @@
 namespace clearance::io {
 
 struct xml_element {
-  std::string name, text;  // text: what is directly in it, not in its children
+  std::string name, text;  // text: directly in it, not in its children
   std::vector<std::pair<std::string, std::string>> attributes;
   std::vector<xml_element> children;
   std::size_t line = 0;
@@ -32,19 +32,18 @@ struct xml_element {
       if (key == wanted) return &value;
     return nullptr;
   }
-  /// Of the same content, wherever it stands.
+  /// Is the content equal, wherever it stands?
   bool same(const xml_element& other) const {
     return name == other.name && text == other.text && attributes == other.attributes &&
            std::ranges::equal(children, other.children, [](const auto& a, const auto& b) { return a.same(b); });
   }
 };
 
-/// Whether a name may have a prefix that no xmlns declares. By the standard it may; other readers of a format may not
-/// mind.
+/// May a name have a prefix that no xmlns declares? The standard allows it; other readers of a format may accept it.
 enum class xml_prefixes { declared, any };
 
-/// Reads one document. What is not well-formed, declares a document type (and so entities), or goes beyond the limits
-/// is refused.
+/// Reads one document. Refuses one that is not well-formed, declares a document type (and so entities), or exceeds the
+/// limits.
 class xml_reader {
  public:
   xml_reader(const std::string& file, const mesh_limits& limits, xml_prefixes prefixes)
@@ -82,7 +81,7 @@ class xml_reader {
  private:
   std::size_t line() const { return std::size_t(XML_GetCurrentLineNumber(parser_)); }
 
-  /// Nothing may be thrown through expat, which is C.
+  /// Catches what `act` throws: nothing may be thrown through expat, which is C.
   template <class Act>
   void guarded(Act act) {
     if (thrown_ || why_) return;
@@ -107,11 +106,11 @@ class xml_reader {
       check_prefix(made.name, made);
       for (const auto& [key, value] : made.attributes) check_prefix(key, made);
       if (++values_ > limits_.values) throw "has too many elements and attributes (mesh_limits::values)";
-      open_.push_back(&made);  // stays where it is while it is open: nothing is added beside it
+      open_.push_back(&made);  // stays valid while it is open: nothing is added beside it
     });
   }
 
-  /// Names of other vocabularies have a prefix that is declared; a damaged name has one by chance.
+  /// Prefixes of other vocabularies are declared; in a damaged name a prefix is an accident.
   void check_prefix(const std::string& name, const xml_element& here) const {
     const std::size_t colon = name.find(':');
     if (prefixes_ == xml_prefixes::any || colon == name.npos || name.starts_with("xml:") || name.starts_with("xmlns:"))
@@ -138,19 +137,19 @@ inline xml_element read_xml(std::string_view bytes, const std::string& file, con
   return xml_reader(file, limits, prefixes).read(bytes);
 }
 
-/// An element with what a sentence about it says: its file, and in which link, joint or geometry it is.
+/// An element with its context for error sentences: its file, and the link, joint or geometry that contains it.
 struct xml_place {
   const xml_element& element;
   const std::string& file;
-  std::string owner;  // such as: link "arm"
+  std::string owner;  // such as link "arm"
 
   [[noreturn]] void refuse(const std::string& why) const {
     io::refuse(file, (owner.empty() ? "" : owner + ": ") + "<" + element.name.substr(0, 60) + "> " + why, element.line);
   }
   xml_place in(const xml_element& child) const { return {child, file, owner}; }
 
-  /// Refuses attributes and children that are not listed, and text between children. Names with a colon are of other
-  /// vocabularies, and are not ours to judge.
+  /// Refuses attributes and children that are not listed, and text between children. Names with a colon belong to other
+  /// vocabularies, so they pass.
   void only(std::initializer_list<std::string_view> attributes,
             std::initializer_list<std::string_view> children) const {
     const auto known = [](auto& list, const std::string& name) {
@@ -167,7 +166,7 @@ struct xml_place {
       refuse("has text in it: " + io::quoted(std::string_view(element.text).substr(at, 40)));
   }
 
-  /// The child of that name, null if there is none; two that differ are an error.
+  /// The child with that name, or null; two that differ are an error.
   const xml_element* child(std::string_view name) const {
     const xml_element* found = nullptr;
     for (const auto& each : element.children) {
@@ -183,7 +182,7 @@ struct xml_place {
     return *value;
   }
 
-  /// As many finite numbers as the attribute must have, and nothing else in it.
+  /// Exactly N finite numbers from an attribute, and nothing else in it.
   template <std::size_t N>
   std::array<double, N> numbers(std::string_view name) const {
     std::string_view rest = attribute(name);

@@ -9,7 +9,7 @@ namespace clearance::io {
 
 namespace detail {
 
-/// Is this a number whose digits are in threes: 1,234 or 5,000,000.5?
+/// Are this number's digits grouped in threes, such as 1,234 or 5,000,000.5?
 inline bool in_thousands(std::string_view word) {
   if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
   for (std::size_t group = 0;; ++group) {
@@ -21,7 +21,7 @@ inline bool in_thousands(std::string_view word) {
   }
 }
 
-/// May a word with commas, beside others in its line, be one number? Not if it is two that both have points.
+/// May a word with commas, beside others in its line, be one number? Not if it is two numbers with a point each.
 inline bool comma_of_one_number(std::string_view word) {
   word.remove_prefix(std::min(word.find_first_not_of(','), word.size()));
   while (word.ends_with(',')) word.remove_suffix(1);
@@ -31,7 +31,7 @@ inline bool comma_of_one_number(std::string_view word) {
   return word.find('.') > first || word.rfind('.') < first;
 }
 
-/// Refuses a line of which the x, y and z depend on who reads it.
+/// Refuses a line whose x, y and z depend on how commas are read.
 inline void check_xyz_commas(std::string_view line, const std::string& file, std::size_t at) {
   constexpr std::string_view others = " \t\r\v\f;";
   std::size_t numbers = 0;
@@ -42,7 +42,7 @@ inline void check_xyz_commas(std::string_view line, const std::string& file, std
   }
 }
 
-/// Takes the next value of a line, which may be empty between commas or semicolons; nothing at the line's end.
+/// Takes the next value of a line; no value at the line's end. Between commas or semicolons it may be empty.
 inline std::optional<std::string_view> take_field(std::string_view& line) {
   constexpr std::string_view blanks = " \t\r\v\f";
   line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
@@ -56,15 +56,15 @@ inline std::optional<std::string_view> take_field(std::string_view& line) {
 
 }  // namespace detail
 
-/// Reads a text file with a point on each line: x y z in metres, then anything, in as many words on every line: two
-/// lines that became one are refused. Blanks, tabs, commas and semicolons separate; a word that starts with # starts a
-/// comment, and so does a line with //; "nan" keeps a record's place. Throws std::runtime_error naming file and line,
-/// also for decimal commas and for a coordinate that is empty.
+/// Reads a text file with one point per line: x y z in metres, then anything. Every line has the same number of words,
+/// so that two lines run together are refused. Blanks, tabs, commas and semicolons separate words. A # at the start of
+/// a word begins a comment, and so does // at the start of a line; "nan" keeps a record's place. Throws
+/// std::runtime_error naming file and line, also for decimal commas and empty coordinates.
 inline cloud load_xyz(const std::string& file, const read_limits& limits = {}) {
   const std::string bytes = read_bytes(file, limits);
   std::string_view rest = without_mark(bytes);
   std::vector<Eigen::Vector3d> points;
-  std::size_t usual = 0;  // words of a line
+  std::size_t usual = 0;  // words per line
   for (std::size_t at = 1; !rest.empty(); ++at) {
     std::string_view line = take_line(rest);
     line = without_comment(line, " \t\r\v\f,;");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What must hold of a YAML file before its nodes are made: yaml-cpp keeps the first of two equal keys, reads the first
-// of several documents, and knows no lines that end by \r alone.
+// Checks a YAML file before yaml-cpp makes nodes of it: yaml-cpp keeps the first of two equal keys, reads only the
+// first of several documents, and does not know \r as a line end.
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
@@ -17,7 +17,7 @@ namespace clearance::io {
 
 namespace detail {
 
-/// Refuses a map that has one key twice. It sees each event of the file once, however often an alias repeats it.
+/// Refuses a map with a duplicate key. It sees each event of the file once, even if an alias repeats it.
 class yaml_keys final : public YAML::EventHandler {
  public:
   explicit yaml_keys(const std::string& file) : file_(file) {}
@@ -65,7 +65,7 @@ class yaml_keys final : public YAML::EventHandler {
 
 }  // namespace detail
 
-/// The only document of a YAML file. Throws std::runtime_error, and YAML::Exception for what is none.
+/// The only document of a YAML file. Throws std::runtime_error, or YAML::Exception if it is not YAML.
 inline YAML::Node parse_yaml(std::string_view bytes, const std::string& file) {
   std::string text;
   for (std::string_view rest = without_mark(bytes); !rest.empty(); text += '\n') text += take_line(rest);

@@ -5,8 +5,9 @@
 
 namespace clearance {
 
-/// The room around a place, from the few spheres and pieces of the surface that are near: exact while it is below
-/// `reach` minus the way from the place, and never too large. Where they are too many, or are not known, all are asked.
+/// The room around a place, from the few spheres and surface pieces nearby. It is exact below `reach` minus the way
+/// from the place, and never too large. If there are too many, all are asked; a solid without pieces is asked as a
+/// whole.
 template <solid_view V, class Lanes>
 class local_list {
  public:
@@ -22,7 +23,7 @@ class local_list {
       if (all_.spheres[i].nearer(place_, best) < best) take(i);
       return best;
     };
-    lanes_.meet();  // all have read what was there
+    lanes_.meet();  // all have read the old list
     if constexpr (knows_pieces) all_.solid.near(place_, reach_, [this](std::uint32_t i) { take(i); });
     pieces_ = count_;
     all_.tree.nearest(place_, reach_, sphere);
@@ -56,11 +57,11 @@ class local_list {
   Lanes lanes_;
   vec3d place_;
   double reach_ = 0;
-  std::uint32_t pieces_ = 0, count_ = 0;  // of the surface, which come first; and all
+  std::uint32_t pieces_ = 0, count_ = 0;  // pieces of the surface, which come first; everything
 };
 
-/// Moves an inside sphere, which no other may touch, to a local maximum of the room, not farther than `farthest`. Each
-/// step stays in the ball that is known to be inside, so none can leave the solid through a thin wall.
+/// Moves an inside sphere that no other touches to a local maximum of the room, at most `farthest` away. Each step
+/// stays in the ball that is known to be inside, so none leaves the solid through a thin wall.
 template <solid_view V, class Lanes>
 CLEARANCE_HD solid_sphere climb(const room_view<V>& in, std::uint32_t* memory, const solid_sphere& from,
                                 double farthest, Lanes lanes) {
@@ -72,7 +73,7 @@ CLEARANCE_HD solid_sphere climb(const room_view<V>& in, std::uint32_t* memory, c
       });
 }
 
-/// Moves and grows an inside sphere, whatever spheres are in the way, while it covers the middle of what it was.
+/// Moves and grows an inside sphere, ignoring other spheres, as long as it covers its old middle.
 template <solid_view V, class Lanes>
 CLEARANCE_HD solid_sphere grow(const V& in, const solid_sphere& from, Lanes lanes) {
   return compass_search(

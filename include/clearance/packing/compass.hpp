@@ -10,7 +10,7 @@ struct solid_sphere {
   double radius;
 
   CLEARANCE_HD double distance(const vec3d& p) const { return (p - center).norm() - radius; }
-  /// The distance if it is below `best`, else `best`; a root is taken only of what is nearer.
+  /// The distance if it is below `best`, else `best`. Takes a root only for what is nearer.
   CLEARANCE_HD double nearer(const vec3d& p, double best) const {
     const vec3d way = p - center;
     const double square = way.dot(way), reach = best + radius;
@@ -20,7 +20,7 @@ struct solid_sphere {
   }
 };
 
-/// Who tries the directions of a climb: one lane tries all; several share them, and agree on the best.
+/// Who tries the directions of a climb: one lane tries all; several lanes share them and agree on the best.
 struct one_lane {
   CLEARANCE_HD int rank() const { return 0; }
   CLEARANCE_HD int lanes() const { return 1; }
@@ -38,9 +38,9 @@ CLEARANCE_HD inline vec3d compass(int k) {
   return {k & 1 ? c : -c, k & 2 ? c : -c, (k - 6) & 4 ? c : -c};
 }
 
-/// Compass search for a place worth more. `worth(p, most, least)` says what p is worth, which is at most `most`, or
-/// anything not above `least`; `prepare(now)` is called before each step. Ends: with each step what the place is worth
-/// rises by a 5e4th (and no place is worth more than the solid is large), or the step becomes half as long.
+/// Compass search for a place worth more. `worth(p, most, least)` is at most `most`; if the true worth is not above
+/// `least`, it may be anything not above `least`. `prepare(now)` runs before each step. The search ends: each step
+/// raises the worth by a 5e4th (and no place is worth more than the solid is large), or is halved.
 CLEARANCE_CALLS_ANYTHING
 template <class Lanes, class G, class F>
 CLEARANCE_HD solid_sphere compass_search(const solid_sphere& from, double precision, Lanes lanes, G prepare, F worth) {

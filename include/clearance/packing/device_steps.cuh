@@ -44,14 +44,14 @@ struct larger {
 
 }  // namespace detail
 
-/// What packing in rounds needs besides a backend, by CUB. Counts are waited for: the host decides what comes next.
+/// What packing in rounds needs besides a backend, by CUB. The host waits for counts, which decide what comes next.
 class device_steps {
  public:
   static constexpr std::size_t cells = 1u << 22;
 
   explicit device_steps(const device& on) : on_(on), temporary_(on), count_(1, on.id), most_(1, on.id) {}
 
-  /// All with 0.9 of the largest key at once: enough for thousands of threads.
+  /// Takes all keys from 0.9 of the largest at once: enough for thousands of threads.
   std::size_t next(const double* keys, std::size_t n, std::size_t most, std::uint32_t* out, double& least) {
     least = 0.9 * largest(n, rounds::key_of{keys});
     return least > 0 ? std::min(most, select(n, rounds::at_least{keys, least}, out)) : 0;

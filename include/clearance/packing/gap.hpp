@@ -10,7 +10,7 @@ namespace clearance {
 
 struct gap_report {
   double certified = 0;      ///< No point of the solid, surface and interior, is farther from the spheres. Metres.
-  double mean = 0, p95 = 0;  ///< Over the surface, from samples.
+  double mean = 0, p95 = 0;  ///< Over samples of the surface, metres.
 };
 
 namespace detail {
@@ -18,7 +18,7 @@ namespace detail {
 struct gap_cell {
   vec3d middle;
   double half;
-  double depth;  ///< Signed, of the cell it was cut from; its own once visited; 0 if not known.
+  double depth;  ///< Signed: the parent cell's until visited, then its own; 0 if unknown.
 };
 
 /// Bounds the gap over the solid's points in a cell.
@@ -27,8 +27,8 @@ struct gap_visit {
   room_view<V> in;
   gap_cell* cells;
   double* met;     ///< The gap at the middle, if that is in the solid.
-  double* open;    ///< An upper bound, if it is above `target` and can still be narrowed down,
-  double* closed;  ///< or if not.
+  double* open;    ///< An upper bound: if it is above `target` and can be narrowed down,
+  double* closed;  ///< or otherwise.
   double least, target, slack;
 
   CLEARANCE_HD void operator()(std::size_t i) const {
@@ -37,10 +37,10 @@ struct gap_visit {
     met[i] = open[i] = closed[i] = 0;
     const double gap = in.gap(c.middle, double(infinity), least - reach), bound = gap + reach;
     if (bound <= least) return;
-    c.depth = signed_depth(in.solid, c.middle, c.depth, reach);  // it lies as far from the middle of its parent
-    if (c.depth < -reach * (1 + 1e-12)) return;                  // no point of the solid here
+    c.depth = signed_depth(in.solid, c.middle, c.depth, reach);  // also the way to its parent's middle
+    if (c.depth < -reach * (1 + 1e-12)) return;                  // no point of the solid is here
     if (c.depth >= 0) met[i] = gap;
-    // The solid is less than `reach` away from the middle, so a small cell is too high by twice its reach at most.
+    // The solid is less than `reach` from the middle, so a small cell's bound is at most twice `reach` too high.
     (bound <= target || 4 * reach <= slack ? closed : open)[i] = bound;
   }
 };
@@ -89,10 +89,10 @@ struct is_above {
 
 }  // namespace detail
 
-/// The largest distance from any point of the solid to the nearest sphere, 0 if they cover it: a proven upper bound, by
-/// branch and bound in double rounded up, at most `tolerance` (relative) or 10 um or 1e-5 of the solid above the truth;
-/// more only where the search would take too long. All cells of one size at once: of the gap met so far they all know
-/// the same, so the result does not depend on their order.
+/// The largest distance from any point of the solid to the nearest sphere, 0 if they cover it. It is a proven upper
+/// bound, by branch and bound in double, rounded up. It exceeds the truth by at most `tolerance` (relative), 10 um or
+/// 1e-5 of the solid, or by more if the search would take too long. All cells of one size go at once and know the same
+/// gap so far, so the result does not depend on their order.
 template <backend B, class Steps, solid S, solid_view V>
 gap_report measure_gap(const B& on, Steps& steps, const S& s, const room_view<V>& in, double tolerance) {
   gap_report report;
@@ -100,7 +100,7 @@ gap_report measure_gap(const B& on, Steps& steps, const S& s, const room_view<V>
     report.certified = report.mean = report.p95 = double(infinity);
     return report;
   }
-  // Any gap that is met bounds the largest from below; the better that bound, the less is searched.
+  // Every gap found bounds the largest from below; a better bound shortens the search.
   std::vector<vec3d> points;
   if constexpr (requires { s.surface_points(std::size_t(1)); })
     for (const auto& p : s.surface_points(20000)) points.push_back(p);
@@ -129,7 +129,7 @@ gap_report measure_gap(const B& on, Steps& steps, const S& s, const room_view<V>
   std::size_t n = grid.size();
   steps.each(n, detail::gap_roots{grid, cells.reserve(n)});
   double upper = 0;
-  while (n > 0) {  // cells become half as large, until 4 * reach <= slack, which is at least `finest`
+  while (n > 0) {  // cells halve until 4 * reach <= slack, which is at least `finest`
     const double slack = std::max(least * tolerance, finest);
     steps.each(n, detail::gap_visit<V>{in, cells.data(), met.reserve(n), open.reserve(n), closed.reserve(n), least,
                                        least + slack, slack});
@@ -151,7 +151,7 @@ gap_report measure_gap(const B& on, Steps& steps, const S& s, const room_view<V>
   return report;
 }
 
-/// The same on the host, of spheres from anywhere.
+/// The same on the host, for spheres from anywhere.
 template <solid S>
 gap_report measure_gap(const S& s, std::span<const inner_sphere> spheres, double tolerance = 0.01) {
   const host on;

@@ -5,7 +5,7 @@
 
 namespace clearance {
 
-/// Half the way from corner to corner of a cube, rounded up.
+/// Half of a cube's diagonal, rounded up.
 CLEARANCE_HD constexpr double corner_reach(double half) { return half * 1.7320508075688774; }
 
 CLEARANCE_HD inline vec3d eighth_middle(const vec3d& middle, double half, std::uint32_t k) {
@@ -13,8 +13,8 @@ CLEARANCE_HD inline vec3d eighth_middle(const vec3d& middle, double half, std::u
   return middle + vec3d(k & 1 ? h : -h, k & 2 ? h : -h, k & 4 ? h : -h);
 }
 
-/// The signed distance, positive inside, where it is `known` to differ by at most `step` from that of another place;
-/// `known` is 0 if nothing is. No surface lies within |known| of the other place.
+/// The signed distance, positive inside. It differs by at most `step` from `known`, that of another place, which is 0
+/// if unknown. No surface is within |known| of that place.
 CLEARANCE_CALLS_ANYTHING
 template <solid_view V>
 CLEARANCE_HD double signed_depth(const V& in, const vec3d& p, double known, double step) {
@@ -25,7 +25,7 @@ CLEARANCE_HD double signed_depth(const V& in, const vec3d& p, double known, doub
   return inside ? d : -d;
 }
 
-/// Cubes of one size that cover a box, about `along` in a row of its longest side.
+/// Cubes of one size that cover a box, about `along` of them along its longest side.
 struct cube_grid {
   vec3d low;
   double half;

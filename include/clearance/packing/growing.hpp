@@ -18,14 +18,14 @@ struct copy_items {
 
 }  // namespace detail
 
-/// An array where backend B runs that can become longer; what it held is copied in stream order.
+/// An array in B's memory that can grow; its contents are copied in stream order.
 template <class T, backend B>
 class growing {
  public:
   explicit growing(const B& on) : on_(on), data_(on.template make_scratch<T>(0)) {}
 
   T* data() { return data_.data(); }
-  /// Room for `n`; the first `kept` stay what they are.
+  /// Makes room for `n` elements; the first `kept` keep their values.
   T* reserve(std::size_t n, std::size_t kept = 0) {
     if (n <= data_.size()) return data();
     auto larger = on_.template make_scratch<T>(std::max(n, 2 * data_.size()));

@@ -6,15 +6,15 @@
 
 namespace clearance {
 
-/// What packing in rounds needs of a host besides a backend. Which thread does what changes nothing.
+/// What packing in rounds needs from a host besides a backend. The result does not depend on threads.
 class host_steps {
  public:
   static constexpr std::size_t cells = 1u << 20;
 
   explicit host_steps(const host&) {}
 
-  /// A few of the largest keys at once, so that little is done in vain. They are kept in a heap, which is told of new
-  /// cells and of those whose turn it was by being asked again, and of all others by `forget`.
+  /// Takes only a few of the largest keys at once, so that little work is wasted. They are kept in a heap. Each call
+  /// adds the new cells, and those chosen last time; after any other change call `forget`.
   std::size_t next(const double* keys, std::size_t n, std::size_t most, std::uint32_t* out, double& least) {
     const bool afresh = known_ == 0;
     const auto add = [&](std::uint32_t i) {
@@ -27,7 +27,7 @@ class host_steps {
     if (afresh) std::make_heap(turns_.begin(), turns_.end());
     chosen_.clear();
     const double top = turns_.empty() ? 0 : turns_.front().key;
-    least = 0.93 * top;  // what lost little to a new sphere touches it: it comes before places far from all
+    least = 0.93 * top;  // a cell that lost little to a new sphere touches it: prefer it to places far from all
     while (!turns_.empty() && turns_.front().key >= 0.98 * top && chosen_.size() < std::min(most, batch)) {
       chosen_.push_back(turns_.front().cell);
       std::pop_heap(turns_.begin(), turns_.end());
@@ -63,14 +63,14 @@ class host_steps {
   static constexpr std::size_t batch = 256;
   struct turn {
     double key;
-    std::uint32_t number;  // of two with one key the one that came first
+    std::uint32_t number;  // of two equal keys the earlier one
     std::uint32_t cell;
 
     friend bool operator<(const turn& a, const turn& b) { return a.key != b.key ? a.key < b.key : a.number > b.number; }
   };
 
   std::vector<turn> turns_;            // a heap
-  std::vector<std::uint32_t> chosen_;  // the last time; they are not in it
+  std::vector<std::uint32_t> chosen_;  // chosen last time; not in the heap
   std::size_t known_ = 0;
   std::uint32_t numbers_ = 0;
 };

@@ -13,10 +13,10 @@
 
 namespace clearance {
 
-/// Lengths that follow from a solid's size and the options.
+/// Lengths that follow from a solid's size and the options, in metres.
 struct pack_limits {
-  double scale;       ///< Of rounding errors: no coordinate is larger.
-  double least_room;  ///< No smaller sphere is looked for, whatever is asked.
+  double scale;       ///< For rounding errors: no coordinate is larger.
+  double least_room;  ///< No smaller sphere is searched for, whatever the options say.
   double smallest;    ///< The least radius.
 
   /// Throws std::invalid_argument for options or bounds that make no sense.
@@ -37,8 +37,8 @@ struct pack_limits {
   pack_stop exhausted() const { return smallest > least_room ? pack_stop::smallest_radius : pack_stop::no_room; }
 };
 
-/// Asked between spheres: reports progress, and says why to stop, if there is a reason. The certified gap takes long,
-/// so it is only asked for when there are a quarter more spheres than the last time.
+/// Called between spheres: reports progress, and returns a reason to stop, if there is one. The certified gap is slow,
+/// so it is computed only after every quarter more spheres.
 class stop_check {
  public:
   explicit stop_check(const pack_options& options) : options_(options) {}
@@ -60,7 +60,7 @@ class stop_check {
   std::size_t gap_asked_at_ = 32;
 };
 
-/// Puts the spheres in order and sums them up.
+/// Sorts the spheres and computes the totals.
 inline void arrange(packing& p, double volume) {
   std::stable_sort(p.spheres.begin(), p.spheres.end(),
                    [](const auto& a, const auto& b) { return a.radius > b.radius; });

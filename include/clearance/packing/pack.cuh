@@ -7,9 +7,9 @@
 
 namespace clearance {
 
-/// Packs spheres into a solid on a GPU: a mesh solid, or another with `on(device)`. As on the host: spheres are proven
-/// inside and apart in double, the gap is certified, and the same options and seed give the same bits on every run.
-/// Throws what `pack` on the host throws, and cuda_error.
+/// Packs spheres into a solid on a GPU: a mesh solid, or another with `on(device)`. As on the host, spheres are proven
+/// inside and apart in double, the gap is certified, and the same options and seed give the same bits in every run.
+/// Throws as `pack` on the host, and cuda_error.
 template <solid_for<device> S>
 packing pack(const device& on, const S& s, const pack_options& options = {}) {
   const device_guard guard(on.id);
@@ -22,7 +22,7 @@ inline packing pack(const device& on, const triangle_mesh& mesh, const pack_opti
   return pack(on, mesh_solid(mesh), options);
 }
 
-/// Packs several beside one another, as on the host, each on a stream of its own; that of `on` is left alone.
+/// Packs several solids side by side, as on the host, each on its own stream; the stream of `on` is not used.
 template <class R>
   requires packable_range<const R>
 std::vector<packing> pack(const device& on, const R& solids, const pack_options& options = {}) {

@@ -9,8 +9,8 @@
 
 namespace clearance {
 
-/// Packs spheres into a solid. The same options and seed give the same packing, on any number of threads.
-/// Throws std::invalid_argument for options or bounds that make no sense.
+/// Packs spheres into a solid. The same options and seed give the same packing on any number of threads. Throws
+/// std::invalid_argument for options or bounds that make no sense.
 template <solid S>
 packing pack(const S& s, const pack_options& options = {}) {
   packing made;
@@ -27,13 +27,13 @@ inline packing pack(const triangle_mesh& mesh, const pack_options& options = {})
   return pack(mesh_solid(mesh), options);
 }
 
-/// A range of solids, or of meshes that solids are made of.
+/// A range of solids, or of meshes.
 template <class R>
 concept packable_range =
     std::ranges::random_access_range<R> && std::ranges::sized_range<R> &&
     (solid<std::ranges::range_value_t<R>> || std::constructible_from<mesh_solid, std::ranges::range_reference_t<R>>);
 
-/// `make(solid, options)` for each of several, or for the solids that meshes enclose, beside one another.
+/// Calls `make(solid, options)` for several solids, or for the solids in meshes, side by side.
 template <class R, class Make>
   requires packable_range<const R>
 std::vector<packing> pack_each(const R& solids, const pack_options& options, const Make& make) {
@@ -47,9 +47,9 @@ std::vector<packing> pack_each(const R& solids, const pack_options& options, con
   });
 }
 
-/// Packs several, such as the links of a robot, beside one another: the same packings as one by one, sooner. `seconds`
-/// is for each; `progress` counts all spheres. Each element is asked for once, from any thread. Throws solid_error for
-/// the first that is wrong.
+/// Packs several solids side by side, such as a robot's links: the same packings as one by one, sooner. `seconds`
+/// applies to each; `progress` counts all spheres. Each element is read once, from any thread. Throws solid_error for
+/// the first bad one.
 template <class R>
   requires packable_range<const R>
 std::vector<packing> pack(const R& solids, const pack_options& options = {}) {

@@ -11,16 +11,15 @@
 namespace clearance {
 
 /// Fills a solid with spheres, the largest first. The room at a point is its distance to the surface and to the spheres
-/// so far; it changes by no more than the way between two points, so a cube's room is at most that of its middle plus
-/// half its diagonal (branch and bound on ProtoSphere's field, Weller & Zachmann 2010). In rounds, for machines that do
-/// much at once: of all cubes with nearly the largest bound those that are small against their room are climbed from,
-/// of the spheres found those are taken that conflict with none larger, and the other cubes are divided.
+/// so far. Between two points it changes by at most their distance, so in a cube it is at most that of the middle plus
+/// half the diagonal (branch and bound on ProtoSphere's field, Weller & Zachmann 2010). It works in rounds, for
+/// machines that do much at once. A round takes all cubes with nearly the largest bound. It climbs from those that are
+/// small against their room, keeps those spheres that conflict with no larger one, and divides the other cubes.
 ///
-/// `Steps` are what a backend does not offer, and how much it does at once. each(n, f), where one f takes long;
-/// climbers(n, f), which calls f(i, lanes); select(n, f, out), numbers of those for which f holds, in order; largest(n,
-/// f), at least 0; next(keys, n, most, out, least), numbers of at most so many cells whose keys are positive and at
-/// least `least`, nearly the largest, none where there are none; forget(), after a change of keys of other cells than
-/// these; and `cells`, so many before they pile up.
+/// `Steps` adds what a backend does not offer: each(n, f), where one f takes long; climbers(n, f), which calls f(i,
+/// lanes); select(n, f, out), numbers for which f holds, in order; largest(n, f), at least 0; next(keys, n, most, out,
+/// least), at most `most` numbers of cells with nearly the largest keys, positive and at least `least`, none if there
+/// are none; forget(), after a change of other cells' keys; and `cells`, how many may exist before they pile up.
 template <backend B, class Steps, solid_for<B> S>
 class packer {
  public:
@@ -41,7 +40,7 @@ class packer {
     out.gap = gap.certified, out.gap_mean = gap.mean, out.gap_p95 = gap.p95;
     for (const solid_sphere& s : spheres_.here())
       out.spheres.push_back(
-          {{real(s.center.x), real(s.center.y), real(s.center.z)}, real(s.radius)});  // floats: see `fit`
+          {{real(s.center.x), real(s.center.y), real(s.center.z)}, real(s.radius)});  // floats, as `fit` made them
     if constexpr (requires { solid_.tolerance(); }) out.tolerance = solid_.tolerance();
     double volume = double(infinity);
     if constexpr (requires { solid_.volume(); }) volume = solid_.volume();
@@ -53,8 +52,8 @@ class packer {
  private:
   using view_type = decltype(std::declval<const solid_there<B, S>&>().view());
   static constexpr std::size_t most_climbers = 8192;
-  static constexpr std::size_t most_cells = 8 * Steps::cells;  // alive,
-  static constexpr std::size_t most_divided = Steps::cells;    // and between two spheres
+  static constexpr std::size_t most_cells = 8 * Steps::cells;  // that exist,
+  static constexpr std::size_t most_divided = Steps::cells;    // and are divided between two spheres
 
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
   rounds::field<view_type> field() { return {spheres_.room_in(there_.view()), rules_, limits_.scale}; }
@@ -63,10 +62,10 @@ class packer {
     return measure_gap(on_, steps_, solid_, field().in, options_.gap_tolerance);
   }
 
-  /// Ends, because each round does one of these to every cell whose turn it is, and none for ever: it is brought up to
-  /// date (once a cell and sphere), or divided or given up (half as large, down to `finest`), or offers a sphere; and
-  /// of those the largest is taken (at most `count` times). It does not take for ever either: of a plate that is
-  /// thinner than any sphere looked for there are 1e12 cells, so the search also ends where so many find no sphere.
+  /// Ends, because every round does something to each cell whose turn it is, and nothing happens forever. The cell is
+  /// updated (once per sphere), divided or given up (half as large, down to `finest`), or offers a sphere; the largest
+  /// offer is taken (at most `count` times). A plate thinner than any sphere searched for would have 1e12 cells, so the
+  /// search also ends after too many cells without a sphere.
   pack_stop fill() {
     std::mt19937_64 random(options_.seed);
     Eigen::Vector3d shift;
@@ -81,11 +80,11 @@ class packer {
         return *why;
       if (alive_ > std::min(tidy_at, pile_)) {
         tidy(), tidy_at = std::max(tidy_at, alive_ + alive_ / 2);
-        while (alive_ > pile_ - pile_ / 8) trust_less(), pile_ += pile_ / 2;  // less would soon be as many again
+        while (alive_ > pile_ - pile_ / 8) trust_less(), pile_ += pile_ / 2;  // if it removes fewer, they are soon back
       }
       if (alive_ > most_cells || divided_ > most_divided) return pack_stop::search_limit;
-      // All of a thin plate's cells have nearly one key. Before they pile up bounds shall be trusted less, and then
-      // some go deep.
+      // All cells of a thin plate have nearly one key. Before they pile up, bounds are trusted less, so some cells go
+      // deep.
       const std::size_t room = (pile_ - alive_) / 8 + most_climbers;
       double least;
       const std::size_t some = steps_.next(keys_.data(), alive_, room, some_.reserve(alive_), least);
@@ -121,7 +120,7 @@ class packer {
     steps_.each(climbers, rounds::judge{offers_.data(), climbers, limits_.scale, verdicts_.reserve(climbers)});
     std::size_t taken = steps_.select(climbers, rounds::is_taken{verdicts_.data()}, taken_.reserve(climbers));
     if (const std::size_t wanted = options_.count - spheres_.size();
-        taken > wanted) {  // the last round: whose turn came first
+        taken > wanted) {  // the last round: earlier turns first
       const auto offers = on_.copy_out(offers_.data(), climbers);
       auto which = on_.copy_out(taken_.data(), taken);
       std::stable_sort(which.begin(), which.end(), [&](auto i, auto j) { return offers[i].key > offers[j].key; });
@@ -154,14 +153,14 @@ class packer {
   pack_limits limits_;
   solid_there<B, S> there_;
   spheres_there<B> spheres_{on_};
-  growing<rounds::cell, B> cells_{on_}, other_cells_{on_};  // the others: where to put those that are kept
+  growing<rounds::cell, B> cells_{on_}, other_cells_{on_};  // others: for cells that are kept
   growing<double, B> keys_{on_}, other_keys_{on_};
   growing<std::uint32_t, B> some_{on_}, these_{on_}, taken_{on_}, memory_{on_};
   growing<rounds::deed, B> deeds_{on_};
   growing<rounds::offer, B> offers_{on_};
   growing<unsigned char, B> verdicts_{on_};
   std::size_t pile_ = Steps::cells;
-  std::size_t alive_ = 0, divided_ = 0;  // cells, and those divided since the last sphere
+  std::size_t alive_ = 0, divided_ = 0;  // cells; those divided since the last sphere
   pack_rules rules_;
 };
 

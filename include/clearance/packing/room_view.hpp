@@ -7,8 +7,7 @@
 
 namespace clearance {
 
-/// The room in a solid that spheres leave, in double, on host and device: a tree over most spheres, a list of the
-/// rest.
+/// The room that spheres leave in a solid, in double, on host and device: a tree over most spheres, a list of the rest.
 template <solid_view V>
 struct room_view {
   V solid;
@@ -16,12 +15,12 @@ struct room_view {
   std::uint32_t count;
   box_tree_view tree;  ///< Over the first `tree.items` spheres.
 
-  /// The distance to the spheres from number `first` on if it is below `within`, else `within`.
+  /// The distance to spheres `first` and later if it is below `within`, else `within`.
   CLEARANCE_HD double gap_from(std::uint32_t first, const vec3d& p, double within) const {
     for (std::uint32_t i = first; i < count; ++i) within = spheres[i].nearer(p, within);
     return within;
   }
-  /// The same for all; or, sooner, one that is no larger than `enough`.
+  /// The same for all spheres; stops early at any value of at most `enough`.
   CLEARANCE_HD double gap(const vec3d& p, double within, double enough = -double(infinity)) const {
     within = tree_gap(p, within, enough);
     return within <= enough ? within : gap_from(tree.items, p, within);

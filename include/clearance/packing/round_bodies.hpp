@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What one cell or one climber does in a round of packing, on host and device.
+// What a round of packing does to one cell or one climber, on host and device.
 
 #include <clearance/packing/climb.hpp>
 #include <clearance/packing/grid.hpp>
@@ -13,7 +13,7 @@ struct cell {
   vec3d middle;
   double half;
   double depth;  ///< The solid's signed distance at the middle, positive inside.
-  double gap;    ///< From the middle to the first `seen` spheres, or more than matters.
+  double gap;    ///< From the middle to the first `seen` spheres, or farther than matters.
   std::uint32_t seen;
 
   CLEARANCE_HD double reach() const { return corner_reach(half); }
@@ -23,10 +23,10 @@ struct cell {
 
 enum class deed : std::uint8_t { none, climb, divide };
 
-/// A sphere that one climber offers; radius 0 if it has none.
+/// The sphere that one climber offers; radius 0: none.
 struct offer {
-  solid_sphere found, grown;  ///< Where it climbed to; the same, or what it grew to if spheres may overlap.
-  double key;                 ///< Of the cell that it began in.
+  solid_sphere found, grown;  ///< Where it climbed to; the same, or grown if spheres may overlap.
+  double key;                 ///< That of the cell where it began.
 };
 
 template <solid_view V>
@@ -35,7 +35,7 @@ struct field {
   pack_rules rules;
   double scale;
 
-  /// 0: nothing fits. Of a cell that is given up the key is its bound, negative.
+  /// 0: nothing fits. A cell that was given up has its negative bound as key.
   CLEARANCE_HD double key(const cell& c) const {
     return c.bound() >= rules.smallest ? rules.key(c.depth, c.reach(), c.gap) : 0;
   }
@@ -54,7 +54,7 @@ struct cover {
   }
 };
 
-/// Brings a cell up to date, and says what is to be done with it if its key is still high.
+/// Updates a cell, and decides what to do with it if its key is still high.
 template <solid_view V>
 struct refresh {
   field<V> f;
@@ -80,7 +80,7 @@ struct divide {
   const std::uint32_t *some, *these;
   cell* cells;
   double* keys;
-  std::size_t first;  ///< Where eighths go.
+  std::size_t first;  ///< Where the eighths go.
   CLEARANCE_HD void operator()(std::size_t i) const {
     const std::uint32_t parent = some[these[i / 8]];
     const cell& from = cells[parent];
@@ -95,13 +95,13 @@ struct divide {
   }
 };
 
-/// The sphere with a float centre and radius that surely fits, or radius 0.
+/// The sphere with float centre and radius that certainly fits; radius 0: none.
 template <solid_view V>
 CLEARANCE_HD solid_sphere fit(const field<V>& f, const solid_sphere& wanted, bool overlap) {
   const vec3d c(to_float(wanted.center.x), to_float(wanted.center.y), to_float(wanted.center.z));
   if ((c - wanted.center).norm() > 0.5 * wanted.radius) return {c, 0};
   const double r = overlap ? f.in.solid.distance(c, 2 * wanted.radius, 0) : f.in.room(c, 2 * wanted.radius);
-  const double sure = r * (1 - 1e-12) - 1e-13 * f.scale;  // what rounding may have added
+  const double sure = r * (1 - 1e-12) - 1e-13 * f.scale;  // less what rounding may have added
   return {c, sure > 0 ? double(rounded_down(sure)) : 0};
 }
 
@@ -114,11 +114,11 @@ struct climb_cells {
   bool overlap;
   offer* offers;
   deed* deeds;
-  std::uint32_t* memory;  ///< `capacity` a climber.
+  std::uint32_t* memory;  ///< `capacity` per climber.
   template <class Lanes>
   CLEARANCE_HD void operator()(std::size_t i, Lanes lanes) const {
     const cell& c = cells[some[these[i]]];
-    // Taken before its turn: stay here, there is more room elsewhere.
+    // It is taken before its turn: stay near, although there is more room elsewhere.
     const double key = keys[some[these[i]]], farthest = key > c.bound() ? c.room() / 2 : double(infinity);
     solid_sphere found =
         climb(f.in, memory + i * local_list<V, Lanes>::capacity, {c.middle, c.room()}, farthest, lanes);
@@ -134,7 +134,7 @@ struct climb_cells {
   }
 };
 
-/// Is an offer the largest of those it is in conflict with? Then it is taken; the others come back in a later round.
+/// Is an offer the largest of those it conflicts with? Then it is taken; the others return in a later round.
 struct judge {
   const offer* offers;
   std::size_t count;
@@ -147,7 +147,7 @@ struct judge {
       const solid_sphere &theirs = offers[j].grown, &found = offers[j].found;
       if (!(found.radius > mine.radius || (found.radius == mine.radius && j < i))) continue;
       const vec3d way = theirs.center - mine.center;
-      const double reach = (theirs.radius + mine.radius) * (1 + 1e-12) + 1e-13 * scale;  // with what rounding may do
+      const double reach = (theirs.radius + mine.radius) * (1 + 1e-12) + 1e-13 * scale;  // with possible rounding
       yes = way.dot(way) >= reach * reach * (1 + 1e-12);
     }
     taken[i] = yes;

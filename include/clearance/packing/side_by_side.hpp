@@ -16,20 +16,20 @@
 
 namespace clearance {
 
-/// What is wrong with one of several solids, or its mesh: which one, counted from 0, and what() as if it were alone.
+/// Reports what is wrong with one of several solids or meshes: its index from 0, and what() as if it were alone.
 struct solid_error : std::invalid_argument {
   std::size_t index;
   solid_error(std::size_t i, const char* what) : std::invalid_argument(what), index(i) {}
 };
 
-/// Calls f(0) .. f(n-1) once each, on `threads` threads of TBB (0: as many as it likes); if n is 1, from this thread.
+/// Calls f(0) .. f(n-1) once each, on `threads` threads of TBB (0: TBB decides); for n = 1 from this thread.
 template <class F>
 void for_each_packing(std::size_t n, unsigned threads, const F& f) {
   const auto all = [&] {
-    // A context of their own: were the caller's tasks cancelled, loops within would do nothing, and a packing never
-    // end.
+    // They get their own context: if the caller's tasks were cancelled, loops inside would do nothing, and a packing
+    // would never end.
     tbb::task_group_context own(tbb::task_group_context::isolated);
-    // A thread that waits within a packing must not begin another: the first would stand still until that is done.
+    // A thread that waits in a packing must not begin another, which would hold up the first.
     const auto one = [&](std::size_t i) { tbb::this_task_arena::isolate([&] { f(i); }); };
     tbb::parallel_for(std::size_t(0), n, one, tbb::simple_partitioner{}, own);
   };
@@ -38,8 +38,8 @@ void for_each_packing(std::size_t n, unsigned threads, const F& f) {
   arena.execute(all);
 }
 
-/// One set of options for several packings at once: its functions are called by one thread at a time, progress is that
-/// of all together, and all are cancelled as one.
+/// One set of options for several packings at once. One thread at a time calls its functions, progress is the total,
+/// and cancelling cancels all.
 class shared_pack_options {
  public:
   shared_pack_options(const pack_options& options, std::size_t packings)
@@ -48,7 +48,7 @@ class shared_pack_options {
                                                                                : options.count * packings),
         done_(packings, 0) {}
 
-  /// For packing i. It uses the threads of where it runs.
+  /// Options for packing i. It uses the threads of the place where it runs.
   pack_options one(std::size_t i) {
     pack_options own = options_;
     own.threads = 0;
@@ -78,13 +78,13 @@ class shared_pack_options {
 
   const pack_options& options_;
   const std::size_t of_;
-  std::vector<std::size_t> done_;  // of each; all of them once it is finished, however many there are
+  std::vector<std::size_t> done_;  // by packing; `count` once it has finished, however few it made
   std::atomic<bool> stopped_ = false;
   std::mutex mutex_;
 };
 
-/// `make(i, options)` for i = 0 .. n-1, packings beside one another on `options.threads` threads in all. If some throw,
-/// the others are cancelled, and the error of the first in order is thrown: std::invalid_argument as solid_error.
+/// Calls `make(i, options)` for i = 0 .. n-1: packings side by side, on `options.threads` threads in all. If some
+/// throw, the others are cancelled, and the error of the lowest i is thrown, a std::invalid_argument as solid_error.
 template <class Make>
 auto side_by_side(std::size_t n, const pack_options& options, const Make& make) {
   std::vector<std::invoke_result_t<const Make&, std::size_t, const pack_options&>> made(n);

@@ -7,7 +7,7 @@
 
 namespace clearance {
 
-/// Spheres that become more, here and where B runs, and a tree over most of them.
+/// A growing list of spheres, here and in B's memory, and a tree over most of them.
 template <backend B>
 class spheres_there {
  public:
@@ -24,7 +24,7 @@ class spheres_there {
             {nodes_.data(), order_.data(), tree_.view().items, tree_.view().root}};
   }
 
-  /// Where `n` more may be written there; `add` makes them count.
+  /// Where `n` more can be written in B's memory; `add` makes them count.
   solid_sphere* reserve(std::size_t n) { return there_.reserve(size() + n, size()) + size(); }
   void add(std::span<const solid_sphere> written) { here_.insert(here_.end(), written.begin(), written.end()); }
   void insert(std::span<const solid_sphere> some) {
@@ -32,7 +32,7 @@ class spheres_there {
     add(some);
   }
 
-  /// Renews the tree once more than `most` are not in it.
+  /// Builds the tree anew once more than `most` spheres are not in it.
   void plant(std::size_t most) {
     if (size() - tree_.size() <= most) return;
     std::vector<Eigen::AlignedBox3d> boxes;

@@ -8,16 +8,16 @@
 
 namespace clearance {
 
-/// The connected surfaces of a mesh: triangles are joined by edges that exactly two of them have.
+/// The connected surfaces of a mesh. An edge joins two triangles if exactly these two have it.
 struct body_report {
-  std::vector<std::uint32_t> body;  ///< By triangle; those that do not count are in body 0.
-  std::vector<bool> one_sided;      ///< By body: it cannot be oriented, as a Moebius strip; then it is left as it is.
+  std::vector<std::uint32_t> body;  ///< By triangle; 0 for triangles that do not count.
+  std::vector<bool> one_sided;      ///< By body: it cannot be oriented (a Moebius strip), so it stays as loaded.
   std::uint32_t flipped = 0;        ///< Triangles that were turned.
   double one_sided_area = 0;        ///< Square metres.
 };
 
-/// Finds the bodies, and turns their triangles until neighbours agree, if asked to. Of a body's two orientations that
-/// is kept which most of its area has.
+/// Finds the bodies. If `orient`, turns their triangles until neighbours agree: of a body's two orientations, the one
+/// that covers more area stays.
 template <class Counts>
 body_report find_bodies(triangle_mesh& mesh, const Counts& counts, bool orient) {
   struct link {

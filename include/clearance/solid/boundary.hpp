@@ -8,13 +8,13 @@
 
 namespace clearance {
 
-/// How often a surface walks an edge from low to high more than back; never 0.
+/// How many more times a surface walks an edge from low to high than back; never 0.
 struct boundary_edge {
   std::uint32_t low, high;
   std::int32_t excess;
 };
 
-/// The edges where the signed sides of the triangles do not cancel. Without any, winding numbers are whole everywhere.
+/// The edges where the triangles' signed sides do not cancel. Without any, winding numbers are integers everywhere.
 inline std::vector<boundary_edge> boundary(std::span<const edge_use> uses) {
   std::vector<boundary_edge> edges;
   for_each_edge(uses, [&](std::span<const edge_use> edge) {
@@ -25,14 +25,14 @@ inline std::vector<boundary_edge> boundary(std::span<const edge_use> uses) {
   return edges;
 }
 
-/// The same of each body by itself, one body after another.
+/// The same for each body separately, one body after another.
 struct body_rim {
   std::uint32_t body;
   std::vector<boundary_edge> edges;
 };
 inline std::vector<body_rim> boundaries(std::span<const edge_use> uses, std::span<const std::uint32_t> body) {
   std::vector<std::pair<std::uint32_t, boundary_edge>> all;
-  std::vector<std::pair<std::uint32_t, std::int32_t>> signs;  // of one edge: bodies and the signs of their uses
+  std::vector<std::pair<std::uint32_t, std::int32_t>> signs;  // for one edge: bodies and the signs of their uses
   for_each_edge(uses, [&](std::span<const edge_use> edge) {
     signs.clear();
     for (const edge_use& u : edge) signs.emplace_back(body[u.triangle], u.sign);
@@ -53,8 +53,8 @@ inline std::vector<body_rim> boundaries(std::span<const edge_use> uses, std::spa
   return rims;
 }
 
-/// Closed walks without repeated vertices, which together go each boundary edge `excess` times *against* the surface,
-/// so that a patch over each walk closes it. They exist always: as many sides enter a vertex as leave it.
+/// Closed walks without repeated vertices. Together they walk each boundary edge `excess` times *against* the surface,
+/// so a patch over each walk closes it. They always exist: as many sides enter a vertex as leave it.
 inline std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const boundary_edge> edges) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> out;  // from, to
   for (const boundary_edge& e : edges)
@@ -80,7 +80,7 @@ inline std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const bo
       place[start] = 0;
       while (!path.empty()) {
         const std::uint32_t here = path.back();
-        if (next[here] == begin[here + 1]) {  // only ever the start, when all its walks are cut off
+        if (next[here] == begin[here + 1]) {  // happens only at the start, when all its walks are cut off
           place[here] = absent;
           path.pop_back();
           continue;
@@ -91,7 +91,7 @@ inline std::vector<std::vector<std::uint32_t>> boundary_loops(std::span<const bo
           path.push_back(to);
           continue;
         }
-        std::vector<std::uint32_t> loop;  // the walk met itself: cut the loop off
+        std::vector<std::uint32_t> loop;  // the walk meets itself: cut the loop off
         for (std::size_t i = place[to]; i < path.size(); ++i) loop.push_back(vertices[path[i]]);
         for (std::size_t i = place[to] + 1; i < path.size(); ++i) place[path[i]] = absent;
         path.resize(place[to] + 1);

@@ -14,8 +14,8 @@
 
 namespace clearance {
 
-/// A binary tree of boxes for exact nearest searches in double on the host, split by the surface-area heuristic.
-/// What the boxes enclose is known only to the caller.
+/// A binary tree of boxes for exact nearest searches in double on the host, split by the surface-area heuristic. Only
+/// the caller knows what the boxes enclose.
 class box_tree {
  public:
   box_tree() = default;

@@ -34,8 +34,8 @@ struct box_tree_view {
 
   static constexpr int stack_size = 96;
 
-  /// Calls `visit(item, best)` for each item whose box is within `best` of p, near ones first; it returns the new best,
-  /// never above the old. Returns the last, or the first that is no larger than `enough`.
+  /// Calls `visit(item, best)` for each item whose box is within `best` of p, near ones first. `visit` returns the new
+  /// best, never above the old. Returns the last best; stops early once that is at most `enough`.
   CLEARANCE_CALLS_ANYTHING
   template <class F>
   CLEARANCE_HD double nearest(const vec3d& p, double best, F visit, double enough = -double(infinity)) const {

@@ -9,8 +9,8 @@
 
 namespace clearance {
 
-/// Does a triangle, with an area or without, touch the cube of half side `half` around `middle`? By separating axes:
-/// the cube's, the triangle's normal, and all nine products of their edges (Akenine-Moeller 2001).
+/// Does a triangle, even one without area, touch the cube of half side `half` around `middle`? By separating axes:
+/// those of the cube, the triangle's normal, and the nine products of their edges (Akenine-Moeller 2001).
 inline bool box_meets_triangle(const Eigen::Vector3d& middle, double half,
                                const std::array<Eigen::Vector3d, 3>& corners) {
   const Eigen::Vector3d v[3] = {corners[0] - middle, corners[1] - middle, corners[2] - middle};

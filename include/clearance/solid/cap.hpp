@@ -20,7 +20,7 @@ inline void append_polygon(triangle_mesh& mesh, std::span<const std::uint32_t> l
     normal += a.cross(b);
     middle += a / double(n);
   }
-  std::vector<std::uint32_t> left(n);  // positions in the loop that are not cut off yet
+  std::vector<std::uint32_t> left(n);  // positions in the loop that are still there
   std::iota(left.begin(), left.end(), 0u);
   constexpr std::size_t longest = 4096;  // cutting ears takes quadratic time
   if (normal.squaredNorm() > 0 && n <= longest) {
@@ -50,7 +50,7 @@ inline void append_polygon(triangle_mesh& mesh, std::span<const std::uint32_t> l
         left.erase(left.begin() + std::ptrdiff_t(at));
         failures = 0;
         at = at % left.size();
-        at = (at + 1) % left.size();  // leaping one makes fatter ears than going round
+        at = (at + 1) % left.size();  // skipping one makes fatter ears than going round in order
       } else {
         at = after;
         ++failures;
@@ -71,10 +71,10 @@ inline void append_polygon(triangle_mesh& mesh, std::span<const std::uint32_t> l
     mesh.triangles.push_back({hub, loop[left[i]], loop[left[(i + 1) % left.size()]]});
 }
 
-/// Triangles whose sides are those of the loop, in its direction, once all sides inside have cancelled: ears cut in the
-/// loop's mean plane, and where there is no ear (the loop crosses itself, or is very long), a fan around the middle.
-/// May append one vertex. The same loop the other way round gets the same triangles, turned: two bodies that meet in a
-/// loop leave nothing between their caps.
+/// Triangles over a loop: after inner sides cancel, their sides are the loop's, in its direction. Ears are cut in the
+/// loop's mean plane. Without an ear (the loop crosses itself, or is very long) the rest becomes a fan around the
+/// middle, which may append one vertex. The reversed loop gets the same triangles, turned, so that two bodies that meet
+/// in a loop leave nothing between their caps.
 inline void append_cap(triangle_mesh& mesh, std::span<const std::uint32_t> given) {
   const std::size_t n = given.size(), start = std::size_t(std::min_element(given.begin(), given.end()) - given.begin());
   std::vector<std::uint32_t> loop(n);

@@ -8,7 +8,7 @@ namespace clearance {
 
 namespace detail {
 
-/// Closes the shapes of a part one by one, puts them together again, and judges what is then known of the inside.
+/// Closes a part's shapes one by one, joins them again, and judges how well the inside is then known.
 class mesh_closer {
  public:
   mesh_closer(const triangle_mesh& mesh, const close_options& options) : mesh_(mesh), options_(options) {}
@@ -33,7 +33,7 @@ class mesh_closer {
     }
     for (const shape_surface& s : shapes)
       out_.surface.vertices.insert(out_.surface.vertices.end(), s.mesh.vertices.begin(), s.mesh.vertices.end());
-    const std::size_t kept = out_.surface.vertices.size() - cap_vertices_;  // a vertex may be in several shapes
+    const std::size_t kept = out_.surface.vertices.size() - cap_vertices_;  // several shapes may use a vertex
     out_.welded = std::uint32_t(mesh_.vertices.size() - std::min(kept, mesh_.vertices.size()));
     measure();
     if (out_.closed) judge(std::uint32_t(shapes.size()));
@@ -57,7 +57,7 @@ class mesh_closer {
     return s;
   }
 
-  /// These triangles, and of the vertices no more than the stretch in which theirs lie.
+  /// These triangles, with the range of vertices that contains theirs.
   triangle_mesh part_of(std::uint32_t first, std::uint32_t last) const {
     std::uint32_t low = ~0u, high = 0;
     for (std::uint32_t i = first; i < last; ++i)
@@ -70,8 +70,8 @@ class mesh_closer {
     return part;
   }
 
-  /// Bodies face outwards for the winding number, whichever way they were loaded. What is so flat that rounding decides
-  /// is left.
+  /// Makes bodies face outwards for the winding number, however they were loaded. A body so flat that rounding decides
+  /// encloses nothing.
   void turn_out(shape_surface& s) {
     const std::vector<double> volumes = body_volumes(s);
     std::vector<double> areas(volumes.size(), 0);
@@ -100,7 +100,7 @@ class mesh_closer {
     return (m.vertices[t[1]] - m.vertices[t[0]]).cross(m.vertices[t[2]] - m.vertices[t[0]]).norm() / 2;
   }
 
-  /// Its triangles as loaded, or those of its caps.
+  /// Appends the shape's triangles as loaded, or those of its caps.
   void append(const shape_surface& s, std::uint32_t number, bool caps, std::uint32_t vertex, std::uint32_t body) {
     const std::size_t loaded = loaded_[number];
     for (std::size_t i = caps ? loaded : 0; i < (caps ? s.mesh.triangles.size() : loaded); ++i) {
@@ -121,8 +121,8 @@ class mesh_closer {
     }
   }
 
-  /// Winding numbers are trusted where bodies are clean; elsewhere a flood says what is inside besides, to its cubes'
-  /// size.
+  /// Trusts winding numbers where bodies are clean. Elsewhere a flood adds what else is inside, to within the size of
+  /// its cubes.
   void judge(std::uint32_t shapes) {
     std::vector<bool> unclean(shapes, false), capped(shapes, false);
     const second_opinion flooded(out_, shape_, shapes);
@@ -145,7 +145,7 @@ class mesh_closer {
     if (std::find(unclean.begin(), unclean.end(), true) == unclean.end()) return;
     out_.enclosed = flooded.enclosed(unclean);
     if (encloses || !out_.enclosed.bits.empty()) out_.inside = inside_by::flood;
-    // What is thinner than two cubes the flood does not see; and a region's cubes at its walls are not those that are
+    // The flood does not see anything thinner than two cubes, and the cubes at a region's walls do not count as
     // enclosed.
     out_.tolerance += 2 * std::sqrt(3.0) * out_.enclosed.cube;
   }
@@ -155,8 +155,7 @@ class mesh_closer {
       if (out_.counts[i] && bodies[out_.body[i]]) shapes[shape_[i]] = true;
   }
 
-  /// One sheet that lies in a plane encloses nothing, whatever bodies it lies beside: a shape that has no other is
-  /// clean.
+  /// A single flat sheet encloses nothing, whatever bodies are beside it. A shape with no other unclean body is clean.
   void forgive_one_flat_sheet(std::uint32_t shapes) {
     std::vector<std::vector<std::uint32_t>> sheets(shapes);
     std::vector<bool> seen(unclean_.size(), false);
@@ -188,7 +187,7 @@ class mesh_closer {
   const triangle_mesh& mesh_;
   const close_options& options_;
   closed_mesh out_;
-  std::vector<std::size_t> loaded_;     // by shape: triangles that are no caps
+  std::vector<std::size_t> loaded_;     // by shape: triangles that are not caps
   std::vector<std::uint32_t> shape_;    // by triangle
   std::vector<bool> unclean_, capped_;  // by body
   std::uint32_t cap_vertices_ = 0;
@@ -196,9 +195,9 @@ class mesh_closer {
 
 }  // namespace detail
 
-/// Closes a mesh as robots come with: open, badly oriented, not manifold, of several shells. Each connected body of
-/// each shape is closed by itself, and a point is inside if it is in any. Nothing is dropped; what was found is
-/// counted. Throws std::invalid_argument for what is no mesh at all (see check_mesh).
+/// Closes a mesh such as robots come with: open, badly oriented, not manifold, made of several shells. Each connected
+/// body of each shape is closed separately; a point is inside if it is in any of them. Nothing is dropped; what was
+/// found is counted. Throws std::invalid_argument if this is no mesh at all (see check_mesh).
 inline closed_mesh close_mesh(const triangle_mesh& mesh, const close_options& options = {}) {
   check_mesh(mesh);
   return detail::mesh_closer(mesh, options).close();

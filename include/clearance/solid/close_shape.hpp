@@ -10,17 +10,17 @@
 
 namespace clearance {
 
-/// One shape of a part, and how far its bodies are from closed.
+/// One shape of a part, and how open its bodies are.
 struct shape_surface {
   triangle_mesh mesh;
   std::vector<std::int8_t> counts;
   body_report bodies;
   std::vector<body_rim> rims;
-  double rim_length = 0;  ///< Metres; edges that several sides are missing at count as often.
-  double moved = 0;       ///< Metres that a corner was moved by at most.
+  double rim_length = 0;  ///< Metres; an edge where several sides are missing counts that often.
+  double moved = 0;       ///< The farthest that a corner was moved, metres.
 };
 
-/// Which triangles count, of which bodies they are, and where those are open.
+/// Finds which triangles count, to which bodies they belong, and where these are open.
 inline shape_surface open_surface(triangle_mesh mesh, const close_options& options) {
   shape_surface s{std::move(mesh), {}, {}, {}};
   s.counts = repeats(s.mesh.triangles).counts();
@@ -32,8 +32,8 @@ inline shape_surface open_surface(triangle_mesh mesh, const close_options& optio
   return s;
 }
 
-/// Faces that should meet often miss one another by rounding, or a little more. What is open is welded as far as that
-/// closes it, by 1e-9 of the shape's size, then by more, at most by 2e-4.
+/// Faces that should meet often miss one another by rounding, or a little more. Welds open edges while that closes
+/// them: first by 1e-9 of the shape's size, then by more, up to 2e-4.
 inline shape_surface weld_cracks(shape_surface as_loaded, const close_options& options) {
   Eigen::AlignedBox3d box;
   for (const auto& v : as_loaded.mesh.vertices) box.extend(v);
@@ -50,13 +50,13 @@ inline shape_surface weld_cracks(shape_surface as_loaded, const close_options& o
     const std::size_t moved = weld_near(mesh, open, reach);
     if (moved == 0) continue;
     shape_surface welded = open_surface(std::move(mesh), options);
-    // Edges that merely shrink to nothing close no crack.
+    // If edges merely shrink to nothing, no crack is closed.
     if (welded.rim_length + 4 * reach * double(moved) < best.rim_length) best = std::move(welded), best.moved = reach;
   }
   return best;
 }
 
-/// Caps over all that is open, behind the triangles; each belongs to the body that it closes.
+/// Adds caps over all open loops, after the triangles; each cap belongs to the body that it closes.
 inline std::uint32_t add_caps(shape_surface& s) {
   std::uint32_t loops = 0;
   for (const body_rim& rim : s.rims)
@@ -69,7 +69,7 @@ inline std::uint32_t add_caps(shape_surface& s) {
   return loops;
 }
 
-/// What each body encloses, with its sign, in cubic metres; those of open bodies mean nothing.
+/// The signed volume of each body, cubic metres; meaningless for open bodies.
 inline std::vector<double> body_volumes(const shape_surface& s) {
   std::vector<double> volumes(s.bodies.one_sided.size(), 0);
   std::vector<const Eigen::Vector3d*> about(volumes.size(), nullptr);

@@ -16,12 +16,12 @@ struct cap_report {
   double area = 0;  ///< Square metres.
 };
 
-/// How it is known what a part encloses: the least certain of its bodies decides.
+/// How the inside of a part is known; its least certain body decides.
 enum class inside_by : std::uint8_t {
-  nothing,  ///< Caps were declined, or nothing has a volume: there is no inside.
-  closed,   ///< Every body is closed as it was loaded.
+  nothing,  ///< Caps were declined, or nothing has a volume: no inside.
+  closed,   ///< Every body was closed as loaded.
   caps,     ///< Some body is closed by caps over its holes.
-  flood,    ///< Some body is no clean solid: what a flood of a grid from outside does not reach is inside as well.
+  flood,  ///< Some body is not a clean solid: what a flood of a grid from outside does not reach counts as inside, too.
 };
 
 inline const char* to_string(inside_by by) {
@@ -38,25 +38,25 @@ inline const char* to_string(inside_by by) {
   return "";
 }
 
-/// What a part's surface is: its triangles as loaded, with corners welded, and then its caps.
+/// A part's surface: its triangles as loaded, with welded corners, followed by its caps.
 struct closed_mesh {
   triangle_mesh surface;  ///< Triangle i < loaded is triangle i of the input (perhaps turned); the rest are caps.
   std::uint32_t loaded = 0;
-  /// By triangle: 1 as it is, -1 turned (its body faces inwards), 0 not at all (it repeats others) counts to the
-  /// winding number, which then is above 0 in every body.
+  /// By triangle, how it counts for the winding number: 1 as it is, -1 turned (its body faces inwards), 0 not at all
+  /// (it repeats others). The number is then above 0 in every body.
   std::vector<std::int8_t> counts;
-  std::vector<std::uint32_t> body;  ///< By triangle: of which connected surface it is a piece.
+  std::vector<std::uint32_t> body;  ///< By triangle: the connected surface to which it belongs.
   std::vector<bool> encloses;       ///< By body: does it enclose a volume?
-  bool closed = false;              ///< Winding numbers are whole everywhere.
+  bool closed = false;              ///< Winding numbers are integers everywhere.
   inside_by inside = inside_by::nothing;
-  double tolerance = 0;     ///< Metres from the surface within which it is not certain what is inside.
-  enclosure_grid enclosed;  ///< What the flood did not reach; empty where it was not needed.
+  double tolerance = 0;     ///< Within this distance of the surface, in metres, it is uncertain what is inside.
+  enclosure_grid enclosed;  ///< The cubes that the flood did not reach; empty if there was none.
   cap_report caps;
-  std::uint32_t welded = 0;      ///< Vertices that were made one with an earlier one, or that no triangle used.
+  std::uint32_t welded = 0;      ///< Vertices that were merged into an earlier one, or that no triangle used.
   std::uint32_t degenerate = 0;  ///< Triangles without area. Kept.
   std::uint32_t duplicate = 0;   ///< Triangles that lie on earlier ones. Kept.
   std::uint32_t flipped = 0;     ///< Triangles that were turned to agree with their neighbours.
-  double one_sided_area = 0;     ///< Area of bodies that have no two sides, such as a Moebius strip.
+  double one_sided_area = 0;     ///< Area of bodies with only one side, such as a Moebius strip. Square metres.
   double area = 0;               ///< Of all loaded triangles.
 };
 

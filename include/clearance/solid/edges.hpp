@@ -9,14 +9,14 @@
 
 namespace clearance {
 
-/// A triangle's side: between vertices low < high; `sign` is +1 where the triangle walks from low to high, else -1.
+/// A triangle's side between vertices low < high; `sign` is +1 if the triangle walks from low to high, else -1.
 struct edge_use {
   std::uint32_t low, high, triangle;
   std::int32_t sign;
 };
 
-/// All sides of the triangles that count (`counts[i]` is not 0), those of one edge side by side. Sides from a vertex to
-/// itself are left out.
+/// All sides of the triangles that count (`counts[i]` is not 0), those of one edge side by side. Leaves out sides from
+/// a vertex to itself.
 template <class Counts>
 std::vector<edge_use> edge_uses(std::span<const std::array<std::uint32_t, 3>> triangles, const Counts& counts) {
   std::vector<edge_use> uses;

@@ -13,7 +13,7 @@
 
 namespace clearance {
 
-/// Owns what an enclosure_head heads: cubes of `cube` metres from `low` on.
+/// Owns the data of an enclosure_head: cubes of `cube` metres, starting at `low`.
 struct enclosure_grid {
   Eigen::Vector3d low = Eigen::Vector3d::Zero();
   double cube = 0;
@@ -26,7 +26,7 @@ struct enclosure_grid {
     for (const std::uint32_t word : bits) sum += std::popcount(word);
     return sum * cube * cube * cube;
   }
-  /// Head and bits as an `enclosure_head<T>` finds them; nothing if nothing is enclosed.
+  /// Head and bits, laid out as an `enclosure_head<T>` expects them; empty if nothing is enclosed.
   template <class T>
   std::vector<std::uint32_t> packed() const {
     if (bits.empty()) return {};
@@ -38,8 +38,7 @@ struct enclosure_grid {
   }
 };
 
-/// A grid of at most about `cubes` cubes around a box, with a layer to spare on every side. Rows along x fill whole
-/// words.
+/// A grid of at most about `cubes` cubes around a box, with a spare layer on every side. Rows along x fill whole words.
 inline enclosure_grid grid_around(const Eigen::AlignedBox3d& box, double cubes) {
   enclosure_grid g;
   const Eigen::Vector3d extent = box.sizes();

@@ -7,16 +7,16 @@
 
 namespace clearance {
 
-/// Cubes of a grid that no way leads to from outside, a bit each in the words behind this head.
+/// The cubes of a grid that are cut off from outside: one bit each, in the words after this head.
 template <class T>
 struct enclosure_head {
   T low[3];
   T per_metre;
-  std::uint32_t size[4];  ///< Along x, y and z; one to spare.
+  std::uint32_t size[4];  ///< Along x, y and z; the last is spare.
 
   static constexpr std::size_t words = (4 * sizeof(T) + 16) / sizeof(std::uint32_t);
 
-  /// Is the point in such a cube? Not if it is beside the grid, or not finite.
+  /// Is the point in such a cube? False outside the grid, and for points that are not finite.
   CLEARANCE_HD bool contains(T x, T y, T z) const {
     const T at[3] = {(x - low[0]) * per_metre, (y - low[1]) * per_metre, (z - low[2]) * per_metre};
     for (int k = 0; k < 3; ++k)

@@ -9,13 +9,13 @@
 
 namespace clearance {
 
-/// Distances to one triangle in double, exact to rounding on slivers and degenerate ones too. Made on the host.
+/// Distances to one triangle in double, exact to rounding even on slivers and degenerate triangles. Made on the host.
 class exact_triangle {
  public:
   exact_triangle(const vec3d& a, const vec3d& b, const vec3d& c) : v_{a, b, c} {
     const vec3d n = (b - a).cross(c - a);
     const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    // Thinner than this, the normal loses digits: the segments alone are then within 1e-8 of an edge.
+    // On a thinner triangle the normal loses digits; its edges alone are then right to 1e-8 of an edge.
     if (n.norm() > 1e-8 * longest * longest) normal_ = (1 / n.norm()) * n;
     for (int k = 0; k < 3; ++k) {
       const vec3d edge = v_[(k + 1) % 3] - v_[k];
@@ -39,7 +39,7 @@ class exact_triangle {
     }
     double least = best * best;
     for (int k = 0; k < 3; ++k) {
-      if (well_shaped_ && !beyond[k]) continue;  // the nearest point lies on a side the projection is beyond
+      if (well_shaped_ && !beyond[k]) continue;  // the nearest point is on a side that the projection is beyond
       const vec3d edge = v_[(k + 1) % 3] - v_[k];
       const double along = q[k].dot(edge) * per_square_[k], t = along < 0 ? 0 : along > 1 ? 1 : along;
       const vec3d way = q[k] - t * edge;

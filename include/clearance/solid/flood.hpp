@@ -9,21 +9,21 @@
 
 namespace clearance {
 
-/// Floods a grid from its border through all cubes that no triangle touches, from face to face. It needs no
-/// orientation, and a gap that is narrower than a cube lets nothing through. 32 cubes of a row are a word.
+/// Floods a grid from its border, through the faces of cubes that no triangle touches. Orientation does not matter, and
+/// a gap narrower than a cube lets nothing through. A word holds 32 cubes of a row.
 class flood {
  public:
   explicit flood(const enclosure_grid& grid)
       : grid_(grid), words_(grid.size[0] / 32), open_(words_ * grid.size[1] * grid.size[2], ~0u) {}
 
-  /// A wall. Goes down from the whole grid in eighths, so that large triangles cost no more than their surface.
+  /// Adds a triangle as a wall. Divides the grid into eighths, so that a large triangle costs no more than its surface.
   void add(const std::array<Eigen::Vector3d, 3>& corners) {
     std::uint32_t side = 1;
     while (side < *std::max_element(grid_.size, grid_.size + 3)) side *= 2;
     wall(corners, {0, 0, 0}, side);
   }
 
-  /// The cubes that are neither walls nor reached, in the words of the grid.
+  /// The cubes that are neither wall nor reached, as words of the grid.
   std::vector<std::uint32_t> enclosed() const {
     const std::uint32_t ny = grid_.size[1], nz = grid_.size[2];
     std::vector<std::uint32_t> reached(open_.size(), 0);
@@ -68,7 +68,7 @@ class flood {
       wall(corners, {first[0] + (k & 1) * h, first[1] + (k >> 1 & 1) * h, first[2] + (k >> 2) * h}, h);
   }
 
-  /// From the four rows beside it into a row, and along it; does more of it become reached?
+  /// Spreads from the four neighbouring rows into a row, and along it. Returns whether it reached more.
   bool spread(std::uint32_t row, std::vector<std::uint32_t>& reached) const {
     const std::uint32_t ny = grid_.size[1], y = row % ny, z = row / ny;
     std::uint32_t* const here = reached.data() + row * words_;

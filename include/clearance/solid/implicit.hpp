@@ -8,8 +8,8 @@
 
 namespace clearance {
 
-/// The solid where a function is negative. It must change by no more than the distance between two points (as a signed
-/// distance does, exact or not), and be positive outside the bounds. Metres.
+/// The solid where a function is negative. Between two points the function must change by at most their distance (as a
+/// signed distance does, exact or not); outside the bounds it must be positive. Metres.
 template <class F>
 class implicit_solid {
  public:

@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-/// Owns what a mesh solid's view reads, in the memory of backend B.
+/// Owns what the view of a mesh solid reads, in the memory of backend B.
 template <backend B>
 struct mesh_solid_copy {
   template <class T>
@@ -26,12 +26,11 @@ struct mesh_solid_copy {
   mesh_solid_view view() const { return {{nodes.data(), order.data(), items, root}, triangles.data(), winding.view()}; }
 };
 
-/// The solid that a closed mesh encloses, in double: exact distances to its surface, caps included, and the inside as
-/// close_mesh found it. Surfaces inside overlapping shells are surface too, so that no sphere crosses one.
+/// The solid inside a closed mesh, in double: exact distances to its surface with caps, and the inside that close_mesh
+/// found. Surfaces inside overlapping shells count as surface, so no sphere crosses one.
 class mesh_solid {
  public:
-  /// Throws std::invalid_argument for a mesh that is not closed, and for one that has no inside: a single sheet, or a
-  /// Moebius strip.
+  /// Throws std::invalid_argument if the mesh is not closed, or has no inside, as a single sheet or a Moebius strip.
   explicit mesh_solid(closed_mesh mesh) : mesh_solid(std::move(mesh), surface_too{}) {
     if (mesh_.one_sided_area > 0.5 * mesh_.area)
       throw std::invalid_argument(
@@ -42,8 +41,7 @@ class mesh_solid {
   }
   explicit mesh_solid(const triangle_mesh& mesh) : mesh_solid(close_mesh(mesh)) {}
 
-  /// A mesh that encloses nothing is a solid, too: its surface. No sphere fits into it, but distances and gaps can be
-  /// asked.
+  /// A solid even if the mesh encloses nothing: its surface. No sphere fits into it, but distances and gaps work.
   static mesh_solid of_surface(closed_mesh mesh) { return mesh_solid(std::move(mesh), surface_too{}); }
 
  private:
@@ -67,12 +65,12 @@ class mesh_solid {
   Eigen::AlignedBox3d bounds() const { return bounds_; }
 
   double distance(const Eigen::Vector3d& p) const { return distance(p, std::numeric_limits<double>::infinity()); }
-  /// The distance if it is below `within`, else `within`: quicker when something is known.
+  /// The distance if it is below `within`, else `within`; that is faster.
   double distance(const Eigen::Vector3d& p, double within) const { return view().distance(p, within); }
   bool inside(const Eigen::Vector3d& p) const { return winding_.view().inside(p.x(), p.y(), p.z()); }
 
   mesh_solid_view view() const { return {tree_.view(), triangles_.data(), winding_.view()}; }
-  /// A copy of what searches read where `other` runs.
+  /// A copy of what searches read, where `other` runs.
   template <backend Other>
   mesh_solid_copy<Other> on(const Other& other) const {
     return {other.copy_in(tree_.nodes()),
@@ -85,12 +83,12 @@ class mesh_solid {
 
   double tolerance() const { return mesh_.tolerance; }
   double volume() const { return enclosed_.volume; }
-  /// Do shells overlap, so that some winding numbers are above 1?
+  /// Do shells overlap? Then some winding numbers are above 1.
   bool overlaps() const { return enclosed_.overlaps; }
 
   const std::vector<Eigen::Vector3d>& corners() const { return mesh_.surface.vertices; }
 
-  /// Evenly spread by area, the same on every call.
+  /// Points spread evenly by area, the same on every call.
   std::vector<Eigen::Vector3d> surface_points(std::size_t count) const {
     std::vector<double> until(triangles_.size());
     double sum = 0;
@@ -117,7 +115,7 @@ class mesh_solid {
   enclosed enclosed_;
 };
 
-/// Is there anything that inner spheres could fill?
+/// Is there an inside for inner spheres to fill?
 inline bool has_inside(const closed_mesh& mesh) {
   return mesh.inside != inside_by::nothing && mesh.one_sided_area <= 0.5 * mesh.area;
 }

@@ -7,13 +7,13 @@
 
 namespace clearance {
 
-/// The searches of a mesh solid, on host and device.
+/// Searches in a mesh solid, on host and device.
 struct mesh_solid_view {
   box_tree_view tree;
   const exact_triangle* triangles;
   basic_winding_view<double> winding;
 
-  /// The distance to the surface if it is below `within`, else `within`; or, sooner, one that is no larger than
+  /// The distance to the surface if it is below `within`, else `within`. Stops early at any upper bound of at most
   /// `enough`.
   CLEARANCE_HD double distance(const vec3d& p, double within, double enough = 0) const {
     return tree.nearest(

@@ -9,7 +9,7 @@
 
 namespace clearance {
 
-/// Which triangles lie on others: meshes store faces once for each side, in any order, and quads along either diagonal.
+/// Finds triangles that lie on others: meshes store faces once per side, in any order, and quads along either diagonal.
 class repeats {
  public:
   using triangle = std::array<std::uint32_t, 3>;
@@ -42,12 +42,11 @@ class repeats {
       counts_[i] = !corner_twice(triangles_[i]) && known.insert(sorted(triangles_[i])).second;
   }
 
-  /// Two triangles on either side of a diagonal cover the quad; others on three of its corners, along the other
-  /// diagonal, do not count. All other sides must be sides of further triangles: so a tetrahedron, which looks alike,
-  /// stays.
+  /// Two triangles beside a diagonal cover a quad. Others on three of its corners, along the other diagonal, do not
+  /// count. All other sides must belong to further triangles as well, so a tetrahedron, which looks alike, stays.
   void quads() {
     const std::vector<edge_use> uses = edge_uses(triangles_, counts_);
-    std::vector<std::uint8_t> free_sides(triangles_.size(), 0);  // with one use or two
+    std::vector<std::uint8_t> free_sides(triangles_.size(), 0);  // with one or two uses
     for_each_edge(uses, [&](std::span<const edge_use> edge) {
       if (edge.size() <= 2)
         for (const edge_use& u : edge) ++free_sides[u.triangle];

@@ -7,13 +7,13 @@
 
 namespace clearance {
 
-/// Bodies in which some winding number is below 0: they cross themselves in such a way that another body's could cancel
-/// it. Rays see them if they are no smaller than a hundredth of the part.
+/// Bodies with a winding number below 0 somewhere: they cross themselves, and another body's number could cancel
+/// theirs. Rays find them if they are at least a hundredth of the part.
 inline std::vector<bool> cancelling_bodies(const closed_mesh& mesh, const basic_winding<double>& w,
                                            std::span<const std::uint32_t> body) {
   std::vector<bool> cancels(mesh.encloses.size(), false);
   std::vector<std::int32_t> number(cancels.size(), 0);
-  std::vector<std::uint32_t> below;  // bodies whose number is below 0 here
+  std::vector<std::uint32_t> below;  // bodies whose number is now below 0
   for_each_ray(w, 128, [&](std::span<const ray_hit> hits) {
     for (std::size_t k = 0; k < hits.size(); ++k) {
       const std::uint32_t its = body[hits[k].triangle];
@@ -30,17 +30,17 @@ inline std::vector<bool> cancelling_bodies(const closed_mesh& mesh, const basic_
   return cancels;
 }
 
-/// What of a mesh's shapes a flood from outside does not reach.
+/// What a flood from outside does not reach in a mesh's shapes.
 class second_opinion {
  public:
-  /// `shape` of each triangle, caps too.
+  /// `shape`: the shape of each triangle, caps included.
   second_opinion(const closed_mesh& mesh, std::span<const std::uint32_t> shape, std::uint32_t shapes)
       : mesh_(mesh), triangles_of_(shapes) {
     for (std::uint32_t i = 0; i < shape.size(); ++i) triangles_of_[shape[i]].push_back(i);
   }
 
-  /// Is a cube that a flood around this shape does not reach outside by the winding numbers? Coarse: it is for what
-  /// caps closed.
+  /// Is there a cube that a flood around this shape does not reach, but that is outside by the winding numbers? Coarse,
+  /// because it only checks what caps closed.
   bool contradicts(std::uint32_t shape, const basic_winding<double>& w) const {
     Eigen::AlignedBox3d box;
     extend(box, shape);
@@ -56,8 +56,7 @@ class second_opinion {
     return false;
   }
 
-  /// All cubes that floods around each of these shapes do not reach; `cube` says how fine it is, also if nothing is
-  /// enclosed.
+  /// All cubes that floods around each of these shapes do not reach. `cube` is set even if nothing is enclosed.
   enclosure_grid enclosed(const std::vector<bool>& shapes) const {
     Eigen::AlignedBox3d box;
     for (std::uint32_t s = 0; s < shapes.size(); ++s)
@@ -76,8 +75,8 @@ class second_opinion {
   }
 
  private:
-  // 50 and 200 along each side of a cube. A fine flood takes a twentieth of a second; of many shapes they are less
-  // fine.
+  // 50 and 200 cubes along each side of a cube. A fine flood takes a twentieth of a second; for many shapes they are
+  // coarser.
   static constexpr double coarse_cubes = 1 << 17, fine_cubes = 1 << 23, most_fine = 16;
 
   std::array<Eigen::Vector3d, 3> corners(std::uint32_t i) const {

@@ -7,26 +7,25 @@
 
 namespace clearance {
 
-/// A solid as packing asks it: a view that is copied as bytes to where packing runs.
+/// A solid as packing reads it: a view that is copied as bytes to where packing runs.
 ///
-/// Law: `distance(p, within, enough)` is the solid's distance if that is below `within`, else `within`; or, sooner, an
-/// upper bound of it that is no larger than `enough`. `inside(p)` is the solid's.
+/// Law: `distance(p, within, enough)` is the solid's distance if that is below `within`, else `within`; it may stop
+/// early with any upper bound of at most `enough`. `inside(p)` is the solid's.
 ///
-/// Optional: `near(p, reach, take)` calls take(i) for the number of each piece of the surface that is closer to p than
-/// `reach`, and `nearer(i, p, best)` is the distance to that piece if it is below `best`, else `best`: climbs are
-/// quicker then.
+/// Optional, for faster climbs: `near(p, reach, take)` calls take(i) with the number of each piece of the surface
+/// closer to p than `reach`; `nearer(i, p, best)` is the distance to that piece if below `best`, else `best`.
 template <class V>
 concept solid_view = std::is_trivially_copyable_v<V> && requires(const V v, vec3d p, double d) {
   { v.distance(p, d, d) } -> std::same_as<double>;
   { v.inside(p) } -> std::same_as<bool>;
 };
 
-/// Any solid where it lies, for a host.
+/// A reference to any solid, for a host.
 template <solid S>
 struct solid_reference {
   const S* of;
 
-  /// What is not a number stays so, and no room is found there.
+  /// NaN stays NaN, and no room is found there.
   CLEARANCE_CALLS_ANYTHING
   CLEARANCE_HD double distance(const vec3d& p, double within, double = 0) const {
     if constexpr (requires {
@@ -42,7 +41,7 @@ struct solid_reference {
   CLEARANCE_HD bool inside(const vec3d& p) const { return of->inside(p); }
 };
 
-/// Can it be packed there? On a host any solid can, elsewhere one of which `on(backend)` makes a copy with a `view()`.
+/// Can S be packed on B? On a host every solid can; elsewhere `on(backend)` must return a copy with a `view()`.
 template <class S, class B>
 concept solid_for = solid<S> && (std::same_as<B, host> || requires(const S s, const B on) {
                       { s.on(on).view() } -> solid_view;

@@ -9,8 +9,7 @@
 
 namespace clearance {
 
-/// A point in double that device code may use, which cannot be said of Eigen's; it comes from those and turns into
-/// them.
+/// A point in double that device code may use, unlike Eigen's; converts from those and to them.
 struct vec3d {
   double x = 0, y = 0, z = 0;
 

@@ -12,8 +12,8 @@ struct ray_hit {
   std::uint32_t triangle;  ///< Its number in the winding.
 };
 
-/// Calls `visit(hits)` for rays along +x through the middles of a grid of `rays` by `rays` over (y, z): their hits from
-/// low to high x. Returns how much of the (y, z) plane each ray stands for, square metres.
+/// Calls `visit(hits)` for rays along +x through the cell middles of a grid of `rays` by `rays` over (y, z), with the
+/// hits from low to high x. Returns the (y, z) area that each ray stands for, square metres.
 template <class F>
 double for_each_ray(const basic_winding<double>& w, int rays, F visit) {
   const basic_winding_view<double> g = w.view();
@@ -21,7 +21,7 @@ double for_each_ray(const basic_winding<double>& w, int rays, F visit) {
   std::vector<ray_hit> hits;
   for (int i = 0; i < rays; ++i)
     for (int j = 0; j < rays; ++j) {
-      // Slightly off the middle, so that symmetric meshes are not met in their seams.
+      // Slightly off the middle, so that rays do not run in the seams of symmetric meshes.
       const double py = g.low[1] + y * ((i + 0.4987) / rays), pz = g.low[2] + z * ((j + 0.5021) / rays);
       const std::uint32_t cell = g.row(pz) * g.columns + g.column(py);
       hits.clear();
@@ -42,19 +42,18 @@ double for_each_ray(const basic_winding<double>& w, int rays, F visit) {
   return (y / rays) * (z / rays);
 }
 
-/// Touching surfaces, met in the wrong order by rounding, are no overlap: a piece of a ray shorter than this is none.
-/// Metres.
+/// Rounding can swap two touching surfaces along a ray. That is no overlap, so shorter pieces are ignored. Metres.
 inline double least_piece(const basic_winding<double>& w) { return 1e-9 * (w.grid.high[0] - w.grid.low[0]); }
 
 /// What a closed surface encloses.
 struct enclosed {
-  double volume = 0;      ///< Cubic metres where the winding number is not zero.
+  double volume = 0;      ///< Cubic metres where the winding number is not 0.
   bool exact = true;      ///< From the divergence theorem; otherwise from rays, to about 0.1 %.
-  bool overlaps = false;  ///< Somewhere the winding number is not 0 and 1, or 0 and -1.
+  bool overlaps = false;  ///< Some winding numbers are other than 0 and 1, or 0 and -1.
 };
 
-/// Rays see which winding numbers there are. If they are only 0 and 1, the signed volume is the volume; else the rays'
-/// lengths inside are summed.
+/// Rays find the winding numbers that occur. If these are only 0 and 1, or 0 and -1, the signed volume is the answer;
+/// otherwise the lengths of rays inside are summed.
 inline enclosed enclosed_volume(const basic_winding<double>& w) {
   int lowest = 0, highest = 0;
   const auto sum_of_rays = [&](int rays) {
@@ -62,7 +61,7 @@ inline enclosed enclosed_volume(const basic_winding<double>& w) {
     const double each = for_each_ray(w, rays, [&](std::span<const ray_hit> hits) {
       int number = 0;
       for (std::size_t k = 0; k + 1 < hits.size(); ++k) {
-        number -= hits[k].sign;  // a ray leaves through +1
+        number -= hits[k].sign;  // +1: the ray leaves
         const double span = hits[k + 1].x - hits[k].x;
         if (number != 0) length += span;
         if (span > least_piece(w)) lowest = std::min(lowest, number), highest = std::max(highest, number);

@@ -15,7 +15,7 @@
 
 namespace clearance {
 
-/// Throws std::invalid_argument, with the number of the vertex or triangle, if this is no mesh: no triangles, an index
+/// Throws std::invalid_argument with the number of the vertex or triangle, if this is no mesh: no triangles, an index
 /// out of range, a coordinate that is not finite or beyond 1e15, or no triangle with an area.
 inline void check_mesh(const triangle_mesh& mesh) {
   const auto refuse = [](const std::string& why) { throw std::invalid_argument("clearance: the mesh " + why); };
@@ -39,8 +39,8 @@ inline void check_mesh(const triangle_mesh& mesh) {
   if (!area) refuse("is degenerate: none of its " + std::to_string(mesh.triangles.size()) + " triangles has an area");
 }
 
-/// Vertices with equal coordinates become one, the first of them; 0 and -0 are equal. Vertices keep their order, and
-/// those that no triangle uses are left out.
+/// Merges vertices with equal coordinates into the first of them; 0 and -0 are equal. Keeps their order, and drops
+/// vertices that no triangle uses.
 inline triangle_mesh weld(const triangle_mesh& mesh) {
   struct hash {
     std::size_t operator()(const Eigen::Vector3d& v) const {
@@ -69,8 +69,8 @@ inline triangle_mesh weld(const triangle_mesh& mesh) {
   return welded;
 }
 
-/// Of these vertices those within `reach` metres of an earlier one become that one; returns how many. Each is compared
-/// with the first of its group, so that a row of close ones does not shrink to a point.
+/// Merges those of these vertices that are within `reach` metres of an earlier one; returns how many. Each is compared
+/// with the first of its group, so a row of close ones does not shrink to a point.
 inline std::size_t weld_near(triangle_mesh& mesh, std::span<const std::uint32_t> vertices, double reach) {
   struct cell_hash {
     std::size_t operator()(const std::array<std::int64_t, 3>& cell) const {

@@ -9,16 +9,16 @@
 
 namespace clearance {
 
-/// Owns what a winding view reads, in the memory of backend B. Immutable once made.
+/// Owns what a winding view reads, in the memory of backend B. Never changes once made.
 template <class T, backend B = host>
 struct basic_winding {
   template <class U>
   using buffer = typename B::template buffer<U>;
 
   buffer<crossing_triangle<T>> triangles;
-  buffer<std::uint32_t> cells;  ///< First of each cell's list, and the end of the last.
+  buffer<std::uint32_t> cells;  ///< Start of each cell's list, and the end of the last.
   buffer<std::uint32_t> lists;
-  buffer<std::uint32_t> enclosed;   ///< The cubes that a flood did not reach; nothing where none was needed.
+  buffer<std::uint32_t> enclosed;   ///< The cubes that a flood did not reach; empty if there was none.
   basic_winding_view<T> grid = {};  ///< Its pointers are set by `view()`.
 
   basic_winding_view<T> view() const {
@@ -28,7 +28,7 @@ struct basic_winding {
     return v;
   }
 
-  /// A copy of a host owner where `other` runs.
+  /// A copy of a host owner, where `other` runs.
   template <backend Other>
   basic_winding<T, Other> on(const Other& other) const {
     return {other.copy_in(std::span<const crossing_triangle<T>>(triangles)),
@@ -43,7 +43,7 @@ using winding = basic_winding<real, B>;
 
 namespace detail {
 
-/// The grid over (y, z) of a winding test, and which triangles lie over each of its cells.
+/// The grid over (y, z) of a winding test, with the triangles over each cell.
 template <class T>
 class winding_grid {
  public:
@@ -58,8 +58,8 @@ class winding_grid {
     std::uint32_t left, right, below, above;
   };
 
-  /// About as many cells as triangles, nearly square ones; flat extents get one row or column. Fewer where large
-  /// triangles, one over another, would fill the lists.
+  /// About as many cells as triangles, nearly square. A flat extent gets one row or column. Fewer cells if large
+  /// triangles above one another would fill the lists.
   void choose_cells() {
     for (double wanted = std::clamp(double(w_.triangles.size()), 1.0, 65536.0); wanted >= 1; wanted /= 4) {
       divide_into(wanted);
@@ -78,8 +78,7 @@ class winding_grid {
     };
     const auto per = [](double count, double extent) {
       const double p = extent > 0 ? count / extent : 0;
-      return T(p <= double(std::numeric_limits<T>::max()) ? p
-                                                          : 0);  // an extent near the smallest number: one cell is used
+      return T(p <= double(std::numeric_limits<T>::max()) ? p : 0);  // near the smallest number: one cell
     };
     g_.columns = std::uint32_t(along(y_, z_)), g_.rows = std::uint32_t(along(z_, y_));
     g_.per_y = per(g_.columns, y_), g_.per_z = per(g_.rows, z_);
@@ -90,7 +89,7 @@ class winding_grid {
                      g_.row(std::min({v[0][2], v[1][2], v[2][2]})), g_.row(std::max({v[0][2], v[1][2], v[2][2]}))};
   }
 
-  /// A cell that lies beyond one side of a triangle is left out; inflated, since a point's cell is computed in T.
+  /// Is the cell beyond one side of the triangle? It is inflated first, because a point's cell is computed in T.
   bool misses(const crossing_triangle<T>& t, std::uint32_t column, std::uint32_t row) const {
     const double cell_y = y_ / g_.columns, cell_z = z_ / g_.rows;
     const double half_y = cell_y / 2 + 8 * double(std::numeric_limits<T>::epsilon()) * y_;
@@ -137,8 +136,8 @@ class winding_grid {
 
 }  // namespace detail
 
-/// Makes the test for points inside a mesh. Coordinates are rounded to T, which is all that is lost. `bodies`, if
-/// given, gets the body of each of its triangles. Throws std::invalid_argument if the mesh is not closed.
+/// Makes the test for points inside a mesh. The only loss is that coordinates are rounded to T. `bodies`, if given,
+/// receives the body of each of its triangles. Throws std::invalid_argument if the mesh is not closed.
 template <class T = real>
 basic_winding<T> make_winding(const closed_mesh& mesh, std::vector<std::uint32_t>* bodies = nullptr) {
   if (!mesh.closed) throw std::invalid_argument("clearance: an open mesh has no inside; close it with caps");

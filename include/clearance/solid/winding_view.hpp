@@ -7,17 +7,17 @@
 
 namespace clearance {
 
-/// Winding numbers of a closed surface on host and device, with the same answer on both: the signed crossings of a ray
-/// towards +x, found through a grid over (y, z). A point closer to the surface than rounding may count to either side.
+/// Winding numbers of a closed surface, the same on host and device: the signed crossings of a ray towards +x, found by
+/// a grid over (y, z). A point closer to the surface than rounding may count to either side.
 template <class T>
 struct basic_winding_view {
   const crossing_triangle<T>* triangles;
   const std::uint32_t* begin;         ///< rows * columns + 1 positions in `lists`.
-  const std::uint32_t* lists;         ///< Triangles over each cell, those that reach farthest along +x first.
+  const std::uint32_t* lists;         ///< Triangles over each cell, the farthest-reaching along +x first.
   T low[3], high[3];                  ///< Bounds of the surface.
-  T per_y, per_z;                     ///< Cells a metre.
+  T per_y, per_z;                     ///< Cells per metre.
   std::uint32_t columns, rows;        ///< Along y and z.
-  const enclosure_head<T>* enclosed;  ///< What is inside as well, although no winding number says so; or null.
+  const enclosure_head<T>* enclosed;  ///< What is inside by a flood, although not by winding number; or null.
 
   /// 0 outside and for points that are not finite.
   CLEARANCE_HD int winding(T x, T y, T z) const {
@@ -33,13 +33,13 @@ struct basic_winding_view {
   }
   CLEARANCE_HD int winding(vec3 p) const { return winding(T(p.x), T(p.y), T(p.z)); }
 
-  /// Is the winding number not zero, or the point where a flood from outside does not come?
+  /// Is the winding number not 0, or the point out of reach of a flood from outside?
   CLEARANCE_HD bool inside(T x, T y, T z) const {
     return winding(x, y, z) != 0 || (enclosed != nullptr && enclosed->contains(x, y, z));
   }
   CLEARANCE_HD bool inside(vec3 p) const { return inside(T(p.x), T(p.y), T(p.z)); }
 
-  /// Never decreasing in their argument, in rounded arithmetic too: so a triangle lies over all cells from that of its
+  /// They never decrease as their argument grows, even when rounded. So a triangle lies over all cells from that of its
   /// lowest corner to that of its highest.
   CLEARANCE_HD std::uint32_t column(T y) const { return cell(y - low[1], per_y, columns); }
   CLEARANCE_HD std::uint32_t row(T z) const { return cell(z - low[2], per_z, rows); }

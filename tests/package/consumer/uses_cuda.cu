@@ -4,7 +4,7 @@
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/obb.hpp>
 
-// Not called: where this is built there need be no GPU.
+// Not called: the machine that builds this need not have a GPU.
 float distance_on_device(const clearance::device& gpu, const std::vector<clearance::inner_sphere>& spheres,
                          const std::vector<clearance::vec3>& cloud) {
   const auto part = clearance::make_part(clearance::build<clearance::obb>(spheres)).on(gpu);

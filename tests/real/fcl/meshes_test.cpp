@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A real robot before a real frame, against FCL's mesh distance (BVHModel<OBBRSS>, points as degenerate triangles).
+// A real robot and a real frame, compared with FCL's mesh distance (BVHModel<OBBRSS>, points as degenerate triangles).
 #include "real/robots.hpp"
 
 #include <clearance/io/robot.hpp>
