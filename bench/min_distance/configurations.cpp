@@ -11,6 +11,7 @@
 
 #include <benchmark/benchmark.h>
 
+namespace configurations_bench {
 namespace {
 
 using clearance::placed, clearance::point_span;
@@ -92,6 +93,7 @@ BENCHMARK(monitor) TIMES(500);
 BENCHMARK(each) TIMES(100);
 
 }  // namespace
+}  // namespace configurations_bench
 
 #undef TIMES
 

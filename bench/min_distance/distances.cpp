@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <random>
 
+namespace distances_bench {
 namespace {
 
 enum order { as_it_comes, random_order };
@@ -79,5 +80,6 @@ const int rows = [] {
 }();
 
 }  // namespace
+}  // namespace distances_bench
 
 BENCHMARK_MAIN();

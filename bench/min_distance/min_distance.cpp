@@ -10,6 +10,7 @@
 
 #include <benchmark/benchmark.h>
 
+namespace min_distance_bench {
 namespace {
 
 enum kind { warm, cold, plain, parts };
@@ -101,5 +102,6 @@ BENCHMARK(crowd<bench::one_large_part, warm>) ON_THREADS;
 BENCHMARK(crowd<bench::one_large_part, cold>) ON_THREADS;
 
 }  // namespace
+}  // namespace min_distance_bench
 
 BENCHMARK_MAIN();

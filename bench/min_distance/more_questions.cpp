@@ -4,6 +4,7 @@
 
 #include <clearance/volume/sphere.hpp>
 
+namespace more_questions_bench {
 namespace {
 
 const int rows = [] {
@@ -27,5 +28,6 @@ const int rows = [] {
 }();
 
 }  // namespace
+}  // namespace more_questions_bench
 
 BENCHMARK_MAIN();
