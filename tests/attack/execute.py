@@ -12,7 +12,7 @@ import time
 from dataclasses import dataclass
 
 MEMORY = 2 << 30
-OUTPUT = 1 << 20
+OUTPUT = 8 << 20
 ASLEEP = 20  # times as long by the clock: a run that waits for nothing hangs too
 _ticks = os.sysconf("SC_CLK_TCK")
 
@@ -109,7 +109,7 @@ def _wait(process, made, seconds, streams):
         pause = min(pause * 1.3, 0.02)
         made.memory = max(made.memory, _resident(process.pid))
         late = _processor(process.pid) > seconds or time.monotonic() - began > ASLEEP * seconds
-        if late or made.memory > MEMORY or any(os.path.getsize(name) > 64 * OUTPUT for name in streams):
+        if late or made.memory > MEMORY or any(os.path.getsize(name) > 8 * OUTPUT for name in streams):
             made.hung = late
             os.killpg(process.pid, signal.SIGKILL)
             _, status, used = os.wait4(process.pid, 0)

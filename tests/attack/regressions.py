@@ -116,7 +116,7 @@ def _questions():
     camera = [["--intrinsics", "525,525,319.5,239.5"], ["--camera-pose", "0.3,0.3,-0.5,0,0,0,1"]]
     query = [["--robot", "r.urdf"], ["--cloud", "c.png"], *camera, ["--spheres", "50"], ["--no-cache", None], ["--threads", "1"], ["--json", None]]
     files = {"r.urdf": _many(46), "c.png": frame}
-    for name, more in (("nearest-50", ["--nearest", "50"]), ("nearest-many", ["--nearest", "200"]), ("support-above-all", ["--min-support", "1000000@10"]),
+    for name, more in (("nearest-50", ["--nearest", "50"]), ("support-above-all", ["--min-support", "1000000@10"]),
                        ("support-nearly-all", ["--min-support", "300000@10"]), ("support-part", ["--min-support", "200000@0.4"])):
         yield name, Case("regression", "query", query + [more], files, "")
     rows = b"s\n" + b"".join(f"{k / 400}\n".encode() for k in range(200))
