@@ -85,10 +85,11 @@ class flood {
     };
     for (std::size_t w = 0; w < words_; ++w) {
       std::uint32_t beside = 0;
-      if (y > 0) beside |= here[w - words_];
-      if (y + 1 < ny) beside |= here[w + words_];
-      if (z > 0) beside |= *(here + w - words_ * ny);
-      if (z + 1 < grid_.size[2]) beside |= here[w + words_ * ny];
+      const std::size_t at = row * words_ + w;
+      if (y > 0) beside |= reached[at - words_];
+      if (y + 1 < ny) beside |= reached[at + words_];
+      if (z > 0) beside |= reached[at - words_ * ny];
+      if (z + 1 < grid_.size[2]) beside |= reached[at + words_ * ny];
       grow(w, beside | (w > 0 ? here[w - 1] >> 31 : 0));
     }
     for (std::size_t w = words_; w-- > 1;) grow(w - 1, here[w] << 31);
