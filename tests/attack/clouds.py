@@ -74,14 +74,14 @@ def _unpack_lzf(data, size):
 def read_pcd(data):
     data = without_mark(data)
     known = ("VERSION", "FIELDS", "COLUMNS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "POINTS", "VIEWPOINT", "DATA")
-    header, rest = {}, data
+    header, rest, ends = {}, data, set()
     while "DATA" not in header:
         demand(rest, "no DATA")
-        line, _, rest = rest.partition(b"\n")
-        if b"\r" in line.rstrip(b"\r"):  # lines that end in \r alone: only where all is text
-            demand(b"\n" not in data, "lines by several endings")
-            return read_pcd(data.replace(b"\r", b"\n"))
-        words = words_of(line.rstrip(b"\r").decode("latin-1"))
+        end = re.search(rb"\r*\n|\r", rest)
+        line, rest = (rest[: end.start()], rest[end.end() :]) if end else (rest, b"")
+        ends.add(end and end[0] == b"\r")
+        demand(len(ends) == 1, "lines by several endings")
+        words = words_of(line.decode("latin-1"))
         if not words or words[0].startswith("#"):
             continue
         key = "FIELDS" if words[0] == "COLUMNS" else words[0]

@@ -64,19 +64,21 @@ def _plan_answers(text):
     return [_json_answer(json.dumps(dict(json.loads(row, object_pairs_hook=_once), points=points))) for row in rows]
 
 
-def _text_answer(text):
+def _text_answer(text, zones):
     state = re.search(r"^state     (collision|possible|free|no data)", text, re.M)[1].replace(" ", "_")
     bracket = re.search(r"certainly (\S+) to (\S+) m$", text, re.M)
     low, high = (float(bracket[1]), float(bracket[2])) if bracket else (math.inf, math.inf)
     seen = re.search(r"^points    (\d+) seen, (\d+) valid", text, re.M)
-    return Answer(state, low, high, int(seen[1]), int(seen[2]), None)
+    within = re.search(r"^zones     the innermost is within (\S+) m$", text, re.M)
+    first = [f"{float(z):g}" for z in zones.split(",")].index(within[1]) if within else None
+    return Answer(state, low, high, int(seen[1]), int(seen[2]), None, innermost=first)
 
 
 def answers(case, outcome):
     """What the command printed, or None for the commands that answer something else."""
     text = outcome.out.decode("utf-8")
     if case.command == "query":
-        return [_json_answer(text) if ["--json", None] in case.options else _text_answer(text)]
+        return [_json_answer(text) if ["--json", None] in case.options else _text_answer(text, _option(case, "--zones") or "")]
     if case.command == "plan":
         return None if ["--csv", None] in case.options else _plan_answers(text)
     if case.command == "run":

@@ -58,7 +58,7 @@ def read_obj(data):
                 parts = word.split("/")
                 demand(len(parts) <= 3 and parts[0], "a damaged corner")
                 for part in parts[1:]:
-                    part == "" or whole(part, -(2**32), 2**32)
+                    part == "" or whole(part, -(2**63), 2**63)
                 index = whole(parts[0], -(2**32), 2**32)
                 face.append(index - 1 if index > 0 else len(vertices) + index)
                 demand(index != 0 and face[-1] >= 0, "an index before the first")

@@ -41,8 +41,11 @@ class _Collada:
         self.root = xml_tree.parse(data)
         demand(self.root.name == "COLLADA", "no COLLADA file")
         self.ids, self.made = {}, []
+        normals = {i.attributes.get("source", "")[1:] for i in self.root.walk() if i.attributes.get("semantic") == "NORMAL"}
         for element in self.root.walk():
             allowed = _inside.get(element.name)
+            if element.name == "source" and element.attributes.get("id") in normals:
+                continue  # nobody reads it
             for child in element.children if allowed else ():
                 demand(child.name in allowed.split(), f"<{child.name}> in <{element.name}>")
             if "id" in element.attributes:

@@ -368,6 +368,13 @@ TEST_CASE("what a small file unfolds to has limits, which a sentence names and a
   CHECK(dae(dae_with("</accessor>", params + "</accessor>")).answer == dae(seed).answer);
   CHECK(says(dae(dae_with("url=\"#g\"", "url=\"#missing\"")).refusal, "does not exist"));
   CHECK(says(dae(dae_with("url=\"#g\"", "url=\"other.dae#g\"")).refusal, "not in this file"));
+  // A count alone must not decide how much memory is taken.
+  CHECK(
+      says(dae(dae_with("<triangles count=\"2\"", "<triangles count=\"4294967295\"")).refusal, "4294967295 triangles"));
+  CHECK(says(dae(dae_with("</vertices>",
+                          "</vertices><vertices id=\"w\"><input semantic=\"POSITION\" source=\"#n\"/></vertices>"))
+                 .refusal,
+             "more than one <vertices>"));
   CHECK(says(
       dae(dae_with("<instance_geometry url=\"#g\">", "<instance_controller url=\"#g\"/><instance_geometry url=\"#g\">"))
           .refusal,

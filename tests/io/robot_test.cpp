@@ -259,6 +259,7 @@ TEST_CASE("package names are looked up where given, then above the URDF, then in
   CHECK(says(sentence([&] { load_robot(folder.path / "ws/tau/urdf/r.urdf"); }),
              "--package tau_description=" + (folder.path / "ws/tau").string() + " would do"));
   CHECK(corner(urdf("x/f.urdf", "file://" + (folder.path / "ros/gamma/t.obj").string())) == 4);
+  CHECK(corner(urdf("x/g.urdf", "file://../ros/gamma/t.obj")) == 4);  // no URL, and still plain
   CHECK(corner(urdf("x/a.urdf", (folder.path / "ros/gamma/t.obj").string())) == 4);
   CHECK(corner(urdf("x/p.urdf", "../ros/gamma/t.obj")) == 4);
   CHECK(says(sentence([&] { load_robot(urdf("x/h.urdf", "http://example.org/t.obj")); }), "http://"));

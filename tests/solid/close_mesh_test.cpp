@@ -156,6 +156,8 @@ TEST_CASE("what is no mesh is refused with a reason") {
   bad = cube;
   for (auto& v : bad.vertices) v.y() = v.z() = v.x();
   CHECK(reason(bad).find("degenerate") != std::string::npos);
+  bad = {{{0, 0, 0}, {0, 1e-3, 0}, {1e12, 0, 0}}, {{0, 1, 2}, {1, 0, 2}}};  // so long that its near corners are one
+  CHECK(reason(bad).find("degenerate") != std::string::npos);
 }
 
 }  // namespace close_mesh_test

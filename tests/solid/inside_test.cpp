@@ -69,7 +69,7 @@ void runs(unsigned first, unsigned count, const std::vector<clearance::triangle_
     const std::string what = "run " + std::to_string(k) + " (" + s.history + ")";
     const clearance::closed_mesh closed = clearance::close_mesh(s.mesh);
     law(clearance::make_part<clearance::aabb>(closed), s, what + ", triangles", points, triangles, v);
-    if (k % one_packed_of != 0) continue;
+    if (k % one_packed_of != 0 || closed.inside == clearance::inside_by::nothing) continue;
     const clearance::packing packed = clearance::pack(clearance::mesh_solid(closed), {.count = 40});
     law(clearance::make_part<clearance::sphere>(packed), s, what + ", spheres", points, spheres, v);
   }

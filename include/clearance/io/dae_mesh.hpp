@@ -197,7 +197,10 @@ inline void dae_faces(const xml_place& list, const std::string& vertices, polygo
       dae_strip(at, kind == "trifans", corners, mesh);
       continue;
     }
-    if (kind == "triangles") sizes.assign(count, 3);
+    if (kind == "triangles" && corners.size() != 3 * count)
+      at.refuse("has " + std::to_string(corners.size()) + " corners, and its list says " + std::to_string(count) +
+                " triangles");
+    if (kind == "triangles") sizes.assign(corners.size() / 3, 3);
     if (kind == "polygons") sizes.assign(1, corners.size());
     dae_polygons(at, sizes, corners, mesh);
   }
@@ -211,11 +214,11 @@ inline polygon_mesh dae_geometry(const xml_place& geometry) {
   const auto mesh = geometry.in(*element);
   mesh.only({}, {"source", "vertices", "triangles", "polylist", "polygons", "tristrips", "trifans", "lines",
                  "linestrips", "extra"});
-  const xml_element* vertices = mesh.child("vertices");
-  if (!vertices) mesh.refuse("has no vertices");
-  const std::string& id = mesh.in(*vertices).attribute("id");
+  const auto vertices = dae_children(*element, "vertices");
+  if (vertices.size() != 1) mesh.refuse(vertices.empty() ? "has no vertices" : "has more than one <vertices>");
+  const std::string& id = mesh.in(*vertices.front()).attribute("id");
   polygon_mesh made;
-  made.vertices = dae_positions(mesh, mesh.in(*vertices));
+  made.vertices = dae_positions(mesh, mesh.in(*vertices.front()));
   for (const auto& child : element->children)
     if (child.name == "triangles" || child.name == "polylist" || child.name == "polygons" ||
         child.name == "tristrips" || child.name == "trifans")

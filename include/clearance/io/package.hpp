@@ -82,14 +82,14 @@ inline std::filesystem::path guess_package(const std::filesystem::path& inside, 
 }
 
 /// The file that a URDF means by package://name/path, model://name/path (a simulator's name for the same),
-/// file:///path, or a path relative to the URDF's folder. Throws std::runtime_error if the package is not found, or for
-/// another scheme.
+/// file:///path, or a path relative to the URDF's folder (file://path too). Throws std::runtime_error if the package is
+/// not found, or for another scheme.
 inline std::filesystem::path resolve_uri(const std::string& uri, const std::filesystem::path& urdf,
                                          const std::map<std::string, std::filesystem::path>& packages) {
   const std::size_t scheme = uri.find("://");
   if (uri.empty()) refuse(urdf.string(), "a mesh has an empty file name");
   if (scheme == uri.npos) return urdf.parent_path() / uri;
-  if (uri.starts_with("file:///")) return uri.substr(7);
+  if (uri.starts_with("file://")) return urdf.parent_path() / uri.substr(7);  // "file://a/b" is how some say a/b
   if (!uri.starts_with("package://") && !uri.starts_with("model://"))
     refuse(urdf.string(),
            io::quoted(uri) + " is none of package://name/path, model://name/path, file:///path and a relative path");

@@ -36,6 +36,9 @@ class mesh_closer {
     const std::size_t kept = out_.surface.vertices.size() - cap_vertices_;  // several shapes may use a vertex
     out_.welded = std::uint32_t(mesh_.vertices.size() - std::min(kept, mesh_.vertices.size()));
     measure();
+    if (!(out_.area > 0))
+      throw std::invalid_argument(
+          "clearance: the mesh is degenerate: none of its triangles keeps an area once near vertices are one");
     if (out_.closed) judge(std::uint32_t(shapes.size()));
     return std::move(out_);
   }
