@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // first.cpp on a GPU: three lines differ.
 #include <clearance/bvh/build.hpp>
-#include <clearance/min_distance.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -13,7 +14,7 @@ int main() {
   // [device]
   const clearance::device gpu{.id = 0};  // and .stream, if it is to be one of yours
   const auto part = clearance::make_part(clearance::build<clearance::sphere>(link)).on(gpu);
-  const auto r = clearance::min_distance(gpu, part, pose, cloud);
+  const auto r = clearance::ask(gpu, part, pose, cloud, clearance::min_distance{});
   // [device]
   return r.point == 1 && r.lower > 0.149f && r.upper < 0.151f ? 0 : 1;
 }

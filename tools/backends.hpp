@@ -19,13 +19,13 @@
 #include <vector>
 
 namespace clearance {
-struct zones_options;
+struct zones;
 struct zones_result;
 struct point_distances;
 struct min_distances_result;
 struct nearest_k_result;
 struct self_filter_result;
-struct support_options;
+struct min_distance_supported;
 struct supported_distance;
 struct motion_clearance_options;
 struct motion_clearance_result;
@@ -85,14 +85,14 @@ class backend_robot {
   // The next ones use trees of one volume per model, because their answers do not depend on it.
   /// The least distance as far as it is known after this many seconds; nothing about single parts.
   virtual reply least_by(poses_of poses, double deadline) = 0;
-  virtual clearance::zones_result zones(poses_of poses, const clearance::zones_options& options) = 0;
+  virtual clearance::zones_result zones(poses_of poses, const clearance::zones& options) = 0;
   /// `is_signed`: negative inside closed meshes; for triangles only.
   virtual clearance::point_distances distances(poses_of poses, double d_max, bool is_signed) = 0;
   /// The k nearest points of each part.
   virtual clearance::nearest_k_result nearest(poses_of poses, std::size_t k, double d_max) = 0;
   /// Which points belong to the robot itself, within `padding` metres of it?
   virtual clearance::self_filter_result own_points(poses_of poses, double padding) = 0;
-  virtual clearance::supported_distance supported(poses_of poses, const clearance::support_options& options) = 0;
+  virtual clearance::supported_distance supported(poses_of poses, const clearance::min_distance_supported& options) = 0;
   /// The witnesses of the minima of least_per_part.
   virtual std::vector<clearance::part_witness> witnesses(poses_of poses,
                                                          std::span<const clearance::part_minimum> minima) = 0;

@@ -4,7 +4,7 @@
 
 #include "asked_clouds.hpp"
 
-#include <clearance/distances.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/io/scene.hpp>
 
 /// The contents of a file of distances.

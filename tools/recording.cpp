@@ -6,7 +6,7 @@
 #include <clearance/io/cloud_file.hpp>
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
-#include <clearance/min_distances.hpp>
+#include <clearance/questions/min_distances.hpp>
 
 #include <algorithm>
 #include <filesystem>

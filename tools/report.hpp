@@ -8,12 +8,12 @@
 #include "robot_bodies.hpp"
 
 #include <clearance/gradient.hpp>
-#include <clearance/min_distances.hpp>
-#include <clearance/min_support.hpp>
+#include <clearance/questions/min_distances.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
 #include <clearance/motion_clearance.hpp>
-#include <clearance/nearest_k.hpp>
-#include <clearance/self_filter.hpp>
-#include <clearance/zones.hpp>
+#include <clearance/questions/nearest_k.hpp>
+#include <clearance/questions/self_filter.hpp>
+#include <clearance/questions/zones.hpp>
 
 /// How a part's least distance changes with its twist, and with the robot's joints (unknown if the first is).
 struct part_gradient {

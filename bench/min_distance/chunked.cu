@@ -5,7 +5,8 @@
 #include "device.cuh"
 #include "shell.hpp"
 
-#include <clearance/chunked_query.cuh>
+#include <clearance/chunked_query.hpp>
+#include <clearance/device.cuh>
 #include <clearance/io/mapped_cloud.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -47,8 +48,7 @@ void same_bits(benchmark::State& state, const clearance::min_distance_result& r)
   const auto at = known.find(state.range(0));
   const auto e = at != known.end()
                      ? at->second
-                     : clearance::min_distance(host{}, robot(), s.poses, point_span(cloud(std::size_t(state.range(0)))),
-                                               s.world_from_camera);
+                     : clearance::ask(host{}, robot(), s.poses, point_span(cloud(std::size_t(state.range(0)))), s.world_from_camera, clearance::min_distance{});
   known[state.range(0)] = e;
   const auto equal = [](const auto& a, const auto& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
   if (!(r.state == e.state && equal(r.distance, e.distance) && equal(r.lower, e.lower) && equal(r.upper, e.upper) &&
@@ -120,7 +120,7 @@ void on_host(benchmark::State& state, bool next) {
 /// The whole cloud without chunks; nothing about it is kept.
 void host_whole(benchmark::State& state) {
   const point_span points(cloud(std::size_t(state.range(0))));
-  clearance::min_distance_query query(host{}, robot());
+  clearance::query query(host{}, robot(), clearance::min_distance{});
   const scene& s = the_scene();
   clearance::min_distance_result r;
   percentiles(

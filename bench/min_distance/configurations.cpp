@@ -4,8 +4,8 @@
 // after another.
 #include "configurations.hpp"
 
-#include <clearance/min_distance_query.hpp>
-#include <clearance/min_distances_per_part.hpp>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -38,7 +38,7 @@ void random(benchmark::State& state, const Model& (*model)(), float d_max) {
   const auto poses = bench::random_configurations(std::size_t(state.range(1)));
   const placed cloud{point_span(s.cloud), s.world_from_camera};
   clearance::min_distances_result found;
-  for (auto _ : state) found = clearance::min_distances(cpu, model(), poses, cloud, {d_max});
+  for (auto _ : state) found = clearance::ask(cpu, model(), poses, cloud, clearance::min_distances{d_max});
   report(state, found);
 }
 
@@ -49,7 +49,7 @@ void each_part(benchmark::State& state) {
   clearance::min_distances_result found;
   for (auto _ : state)
     found.of =
-        clearance::min_distances_per_part(cpu, spheres(), poses, placed{point_span(s.cloud), s.world_from_camera}).all;
+        clearance::ask(cpu, spheres(), poses, placed{point_span(s.cloud), s.world_from_camera}, clearance::min_distances_per_part{}).all;
   report(state, found);
 }
 
@@ -58,7 +58,7 @@ void monitor(benchmark::State& state) {
   const clearance::host cpu{.threads = unsigned(state.range(0))};
   const auto poses = bench::trajectory(std::size_t(state.range(1)));
   const std::vector<clearance::vec3> frames[] = {bench::next_frame(s.cloud, 1), bench::next_frame(s.cloud, 2)};
-  clearance::min_distances_query query(cpu, spheres());
+  clearance::query query(cpu, spheres(), clearance::min_distances{});
   std::size_t n = 0;
   const clearance::min_distances_result* found = &query(poses, placed{point_span(frames[1]), s.world_from_camera});
   for (auto _ : state) found = &query(poses, placed{point_span(frames[n++ % 2]), s.world_from_camera});
@@ -69,7 +69,7 @@ void each(benchmark::State& state) {
   const bench::scene& s = bench::the_scene();
   const clearance::host cpu{.threads = unsigned(state.range(0))};
   const auto poses = bench::random_configurations(std::size_t(state.range(1)));
-  clearance::min_distance_query query(cpu, spheres());
+  clearance::query query(cpu, spheres(), clearance::min_distance{});
   clearance::min_distances_result found;
   const std::size_t parts = s.poses.size();
   for (auto _ : state) {

@@ -7,8 +7,9 @@
 #include "device.cuh"
 
 #include <clearance/backend/own_stream.cuh>
-#include <clearance/in_collisions.cuh>
-#include <clearance/min_distances_per_part.cuh>
+#include <clearance/questions/in_collisions.hpp>
+#include <clearance/device.cuh>
+#include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -93,7 +94,7 @@ void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::I
          const std::vector<std::vector<vec3>>& frames, float d_max, bool warm) {
   const clearance::own_stream stream(0);
   const device gpu = stream.on();
-  clearance::min_distances_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distances{});
   ask(state, gpu, query, poses, frames, warm,
       [d_max](auto& its, const auto& cloud) { return its.enqueue(cloud, {d_max}); });
 }
@@ -111,7 +112,7 @@ void states(benchmark::State& state, Make make, double margin) {
   const clearance::own_stream stream(0);
   const device gpu = stream.on();
   const auto model = make(s);
-  clearance::in_collisions_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::in_collisions{});
   ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
       [margin](auto& its, const auto& cloud) { return its.enqueue(cloud, margin); });
 }
@@ -163,14 +164,14 @@ void waited(benchmark::State& state, Ask ask) {
 }
 void call(benchmark::State& state) {
   waited(state, [](const device& gpu, const auto& model) {
-    return [&](const auto& poses, const auto& cloud) { return clearance::min_distances(gpu, model, poses, cloud).of; };
+    return [&](const auto& poses, const auto& cloud) { return clearance::ask(gpu, model, poses, cloud, clearance::min_distances{}).of; };
   });
 }
 /// Each part's least distances, to compare with `call`'s one for all parts.
 void each_part(benchmark::State& state) {
   waited(state, [](const device& gpu, const auto& model) {
     return [&](const auto& poses, const auto& cloud) {
-      return clearance::min_distances_per_part(gpu, model, poses, cloud).all;
+      return clearance::ask(gpu, model, poses, cloud, clearance::min_distances_per_part{}).all;
     };
   });
 }

@@ -3,7 +3,9 @@
 // and how late it is, by the host's clock. A deadline of 0 us means none: the time for all pieces.
 #include "device.cuh"
 
-#include <clearance/min_distance_by.cuh>
+#include <clearance/deadline.hpp>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 #include <clearance/volume/aabb.hpp>
 
 namespace deadline_bench {
@@ -20,12 +22,12 @@ void ask(benchmark::State& state, const On& on, const Model& model, const cleara
   const clearance::placed cloud{points, s.world_from_camera};
   const double us = double(state.range(1));
   const std::chrono::duration<double> deadline{us == 0 ? clearance::infinity : us * 1e-6};
-  clearance::min_distance_query query(on, model);
+  clearance::query query(on, model, clearance::min_distance{});
   std::vector<double> late, seen, took;
   for (auto _ : state) {
     for (int k = 0; k < 320; ++k) {
       const auto start = std::chrono::steady_clock::now();
-      const auto r = clearance::min_distance_by(query, s.poses, cloud, deadline);
+      const auto r = clearance::ask_by(query, s.poses, cloud, deadline, clearance::min_distance{});
       const double its = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
       if (k < 20) continue;
       took.push_back(its), late.push_back(its - us), seen.push_back(double(r.seen) / double(r.seen + r.unseen));

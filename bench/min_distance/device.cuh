@@ -4,7 +4,8 @@
 #include "device_clock.cuh"
 #include "scene.hpp"
 
-#include <clearance/min_distance_query.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 
 #include <benchmark/benchmark.h>
 

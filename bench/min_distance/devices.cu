@@ -6,7 +6,7 @@
 #include "device.cuh"
 #include "shell.hpp"
 
-#include <clearance/min_distance_devices.cuh>
+#include <clearance/device.cuh>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstring>
@@ -102,7 +102,7 @@ void stays(benchmark::State& state, which w, bool warm) {
   const auto count = std::size_t(state.range(0));
   const resident cloud(*on, count);
   const auto model = robot().on(*on);
-  clearance::min_distance_query query(*on, model);
+  clearance::query query(*on, model, clearance::min_distance{});
   const scene& s = the_scene();
   clearance::min_distance_result r;
   percentiles(
@@ -120,7 +120,7 @@ void one_device(benchmark::State& state, bool prepared) {
   const device gpu;
   const auto there = made(gpu, 0, count);
   const auto model = robot().on(gpu);
-  clearance::min_distance_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distance{});
   const scene& s = the_scene();
   clearance::min_distance_result r;
   percentiles(
@@ -128,7 +128,7 @@ void one_device(benchmark::State& state, bool prepared) {
       [&](std::size_t) {
         const point_span cloud(there.data(), count);
         r = prepared ? query(s.poses, cloud, s.world_from_camera)
-                     : clearance::min_distance(gpu, model, s.poses, cloud, s.world_from_camera);
+                     : clearance::ask(gpu, model, s.poses, cloud, s.world_from_camera, clearance::min_distance{});
       },
       [] {});
   same_bits(state, r);
@@ -143,7 +143,7 @@ void one_call(benchmark::State& state, which w) {
   clearance::min_distance_result r;
   percentiles(
       state, 300, 20,
-      [&](std::size_t) { r = clearance::min_distance(*on, model, s.poses, *cloud.view, s.world_from_camera); }, [] {});
+      [&](std::size_t) { r = clearance::ask(*on, model, s.poses, *cloud.view, s.world_from_camera, clearance::min_distance{}); }, [] {});
   same_bits(state, r);
 }
 
@@ -182,7 +182,7 @@ void comes(benchmark::State& state, which w, from where) {
   }
   const point_span cloud(where == from::first_device ? there.data() : pinned.data(), count);
   const auto model = robot().on(*on);
-  clearance::min_distance_query query(*on, model);
+  clearance::query query(*on, model, clearance::min_distance{});
   const scene& s = the_scene();
   const auto few = count > 20000000 ? 20 : 1000;
   clearance::min_distance_result r;

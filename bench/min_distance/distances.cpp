@@ -3,7 +3,7 @@
 // random order, and with part and primitive.
 #include "scene.hpp"
 
-#include <clearance/distances.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -30,7 +30,7 @@ void ask(benchmark::State& state, const Model& model, float d_max, bool which, o
   const clearance::distances_out out{distance.data(), which ? part.data() : nullptr,
                                      which ? primitive.data() : nullptr};
   clearance::point_counts counts;
-  for (auto _ : state) clearance::distances_async(cpu, model, s.poses, cloud, out, &counts, d_max);
+  for (auto _ : state) clearance::enqueue(cpu, model, s.poses, cloud, clearance::distances{d_max}, {out, &counts});
   double sum = 0;
   std::size_t near = 0;
   for (const float d : distance)

@@ -4,7 +4,8 @@
 #include "device.cuh"
 #include "shell.hpp"
 
-#include <clearance/distances_query.cuh>
+#include <clearance/questions/distances.hpp>
+#include <clearance/device.cuh>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -24,7 +25,7 @@ void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::I
          const Eigen::Isometry3d& pose, const Source& first, const Source& second, float d_max, bool warm) {
   const device gpu;
   const auto there = model.on(gpu);
-  clearance::distances_query query(gpu, there);
+  clearance::query query(gpu, there, clearance::distances{});
   clearance::pointwise::device_points<typename decltype(there)::view_type> once(gpu, there.view());
   const clearance::device_buffer<float> out(first.size(), gpu.id);
   const clearance::device_buffer<clearance::point_counts> counts(1, gpu.id);

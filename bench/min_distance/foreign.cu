@@ -22,7 +22,7 @@ const auto& ours() {
 template <class Robot, class Source>
 void ask(benchmark::State& state, const Robot& robot, const Source& source, bool cold) {
   const device gpu;
-  clearance::min_distance_query query(gpu, robot);
+  clearance::query query(gpu, robot, clearance::min_distance{});
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
   const device_clock clock(true);
   const clearance::placed cloud{source, the_scene().world_from_camera};

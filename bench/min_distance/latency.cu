@@ -26,7 +26,7 @@ void from_pinned(benchmark::State& state, const std::vector<T>& data, way by, st
   const scene& s = the_scene();
   const device gpu;
   const auto model = robot().on(gpu);
-  clearance::min_distance_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distance{});
   const auto source = pinned(data, gpu);
   const clearance::device_buffer<T> there(data.size(), gpu.id);
   clearance::min_distance_result r;
@@ -69,7 +69,7 @@ void new_pose(benchmark::State& state) {
   const scene& s = the_scene();
   const device gpu;
   const auto model = robot().on(gpu);
-  clearance::min_distance_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distance{});
   const auto there = gpu.copy_in(std::span<const vec3>(s.cloud));
   const clearance::point_span view(there.data(), s.cloud.size());
   auto poses = s.poses;
@@ -87,7 +87,7 @@ void back_to_back(benchmark::State& state) {
   const scene& s = the_scene();
   const device gpu;
   const auto model = robot().on(gpu);
-  clearance::min_distance_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distance{});
   const auto& points = repeated(s.cloud, std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const vec3>(points));
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
@@ -107,7 +107,7 @@ void shell(benchmark::State& state, bool cold) {
   const scene& s = the_scene();
   const device gpu;
   const auto model = robot().on(gpu);
-  clearance::min_distance_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distance{});
   const clearance::device_buffer<vec3> there(static_cast<std::size_t>(state.range(0)), gpu.id);
   put_shell(gpu, model, s.poses, 0.3f, there.data(), there.size());
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);

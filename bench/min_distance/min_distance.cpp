@@ -3,7 +3,7 @@
 // remembers the last frame, *cold* one that does not, *plain* min_distance, *parts* warm with every part's minimum.
 #include "crowds.hpp"
 
-#include <clearance/min_distance_query.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -20,12 +20,12 @@ void ask(benchmark::State& state, const Model& model, const Source& source, kind
          const bench::scene& s = bench::the_scene()) {
   const clearance::host cpu{.threads = unsigned(state.range(0))};
   const clearance::placed<Source> cloud{source, s.world_from_camera};
-  clearance::min_distance_query query(cpu, model);
+  clearance::query query(cpu, model, clearance::min_distance{});
   std::vector<clearance::part_minimum> minima(how == parts ? model.size() : 0);
   clearance::min_distance_result r;
   for (auto _ : state) {
     if (how == cold) query.forget();
-    r = how == plain   ? clearance::min_distance(cpu, model, s.poses, cloud)
+    r = how == plain   ? clearance::ask(cpu, model, s.poses, cloud, clearance::min_distance{})
         : how == parts ? query.per_part(s.poses, cloud, minima)
                        : query(s.poses, cloud);
   }

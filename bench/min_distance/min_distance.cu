@@ -67,7 +67,7 @@ void ask(benchmark::State& state, const bench::scene& s, const Model& model, man
   const auto there = gpu.copy_in(std::span<const clearance::vec3>(points));
   const clearance::point_span view(there.data(), points.size());
   const auto placed_there = model.on(gpu);
-  clearance::min_distance_query query(gpu, placed_there);
+  clearance::query query(gpu, placed_there, clearance::min_distance{});
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
   const clearance::device_buffer<clearance::part_minimum> minima(s.poses.size(), gpu.id);
   const device_clock clock(how.queued);
@@ -75,10 +75,9 @@ void ask(benchmark::State& state, const bench::scene& s, const Model& model, man
   const clearance::placed cloud{view, s.world_from_camera};
   const auto frame = [&] {
     if (how.plain)
-      clearance::min_distance_async(clearance::plain{gpu, clearance::near_first{}}, placed_there, s.poses, cloud,
-                                    result.data());
+      clearance::enqueue(clearance::plain{gpu, clearance::near_first{}}, placed_there, s.poses, cloud, clearance::min_distance{}, result.data());
     else if (how.once)
-      clearance::min_distance_async(gpu, placed_there, s.poses, cloud, result.data());
+      clearance::enqueue(gpu, placed_there, s.poses, cloud, clearance::min_distance{}, result.data());
     else if (how.each)
       query.enqueue_per_part(s.poses, cloud, result.data(), minima.data());
     else

@@ -6,17 +6,18 @@
 #include "more_questions.hpp"
 
 #include <clearance/compacted.cuh>
-#include <clearance/distances_per_part.cuh>
-#include <clearance/in_collision.cuh>
+#include <clearance/questions/distances_per_part.hpp>
+#include <clearance/device.cuh>
+#include <clearance/questions/in_collision.hpp>
 #include <clearance/io/joint_chain.hpp>
-#include <clearance/min_distances.cuh>
-#include <clearance/min_support.cuh>
-#include <clearance/motion_clearance.cuh>
-#include <clearance/part_witnesses.cuh>
-#include <clearance/signed_distances.cuh>
+#include <clearance/questions/min_distances.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
+#include <clearance/motion_clearance.hpp>
+#include <clearance/questions/part_witnesses.hpp>
+#include <clearance/questions/signed_distances.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/within.cuh>
-#include <clearance/zones.cuh>
+#include <clearance/questions/within.hpp>
+#include <clearance/questions/zones.hpp>
 
 namespace more_questions_bench {
 namespace {
@@ -50,14 +51,14 @@ struct question {
 void zones(benchmark::State& state, bool prepared) {
   if (no_device(state)) return;
   question q(std::size_t(state.range(0)));
-  const clearance::zones_options options{.thresholds = {0.1, 0.2, 0.4}};
+  const clearance::zones options{.thresholds = {0.1, 0.2, 0.4}};
   const device_buffer<clearance::zone> found(3 * q.model.size(), q.gpu.id);
-  clearance::zones_query query(q.gpu, q.model);
+  clearance::query query(q.gpu, q.model, clearance::zones{});
   q.time(state, [&] {
     if (prepared)
       query.enqueue(q.s.poses, q.cloud, options, found.data(), q.counts.data());
     else
-      clearance::zones_async(q.gpu, q.model, q.s.poses, q.cloud, options, found.data(), q.counts.data());
+      clearance::enqueue(q.gpu, q.model, q.s.poses, q.cloud, options, {found.data(), q.counts.data()});
   });
 }
 
@@ -67,7 +68,7 @@ void within(benchmark::State& state, bool prepared) {
   const device_buffer<clearance::pair_distance> pairs(q.points.size(), q.gpu.id);
   const device_buffer<unsigned long long> count(1, q.gpu.id);
   const auto reaches = q.gpu.copy_in(std::span<const float>(std::vector<float>(q.model.size(), 0.1f)));
-  clearance::within_query query(q.gpu, q.model);
+  clearance::query query(q.gpu, q.model, clearance::within{});
   q.time(state, [&] {
     if (prepared) {
       query.enqueue(q.s.poses, q.cloud, 0.1f, pairs.data(), pairs.size(), count.data(), q.counts.data());
@@ -85,12 +86,12 @@ void in_collision(benchmark::State& state, bool prepared) {
   question q(std::size_t(state.range(0)));
   const device_buffer<clearance::collision_result> found(1, q.gpu.id);
   const std::vector margin{0.05};
-  clearance::in_collision_query query(q.gpu, q.model);
+  clearance::query query(q.gpu, q.model, clearance::in_collision{});
   q.time(state, [&] {
     if (prepared)
       query.enqueue(q.s.poses, q.cloud, margin, found.data());
     else
-      clearance::in_collision_async(q.gpu, q.model, q.s.poses, q.cloud, margin, found.data());
+      clearance::enqueue(q.gpu, q.model, q.s.poses, q.cloud, clearance::in_collision{{margin}}, found.data());
   });
 }
 
@@ -98,7 +99,7 @@ void per_part(benchmark::State& state, float d_max) {
   if (no_device(state)) return;
   question q(std::size_t(state.range(0)));
   const device_buffer<float> distance(q.points.size() * q.model.size(), q.gpu.id);
-  clearance::distances_per_part_query query(q.gpu, q.model);
+  clearance::query query(q.gpu, q.model, clearance::distances_per_part{});
   q.time(state, [&] { query.enqueue(q.s.poses, q.cloud, distance.data(), q.counts.data(), d_max); });
 }
 
@@ -111,9 +112,9 @@ void to_triangles(benchmark::State& state, bool is_signed) {
   const clearance::distances_out out{.distance = distance.data()};
   q.time(state, [&] {
     if (is_signed)
-      clearance::signed_distances_async(q.gpu, triangles, q.s.poses, q.cloud, out, q.counts.data(), 0.1f);
+      clearance::enqueue(q.gpu, triangles, q.s.poses, q.cloud, clearance::signed_distances{0.1f}, {out, q.counts.data()});
     else
-      clearance::distances_async(q.gpu, triangles, q.s.poses, q.cloud, out, q.counts.data(), 0.1f);
+      clearance::enqueue(q.gpu, triangles, q.s.poses, q.cloud, clearance::distances{0.1f}, {out, q.counts.data()});
   });
 }
 
@@ -154,7 +155,7 @@ void placed(benchmark::State& state) {
   const question of(1);
   const auto chain = seven_joints().on(of.gpu);
   const auto q = of.gpu.copy_in(std::span<const double>(joint_vectors(std::size_t(state.range(0)))));
-  clearance::min_distances_query query(of.gpu, of.model);
+  clearance::query query(of.gpu, of.model, clearance::min_distances{});
   of.time(state, [&] { query.place(chain, q.data(), std::size_t(state.range(0))); });
 }
 /// Turns joint vectors on the host into poses, by the host's clock. *there*: the GPU makes the poses, else the host
@@ -165,7 +166,7 @@ void placed_call(benchmark::State& state, bool there) {
   const auto chain = seven_joints();
   const auto on_gpu = chain.on(of.gpu);
   const auto q = joint_vectors(std::size_t(state.range(0)));
-  clearance::min_distances_query query(of.gpu, of.model);
+  clearance::query query(of.gpu, of.model, clearance::min_distances{});
   ask_often(state, [&] {
     if (there)
       query.place(on_gpu, q);

@@ -5,20 +5,20 @@
 #include "configurations.hpp"
 
 #include <clearance/compacted.hpp>
-#include <clearance/distances_per_part.hpp>
+#include <clearance/questions/distances_per_part.hpp>
 #include <clearance/gradient.hpp>
-#include <clearance/in_collision.hpp>
+#include <clearance/questions/in_collision.hpp>
 #include <clearance/io/jacobian.hpp>
-#include <clearance/min_distance_query.hpp>
-#include <clearance/min_support.hpp>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
 #include <clearance/motion_clearance.hpp>
-#include <clearance/part_witnesses.hpp>
+#include <clearance/questions/part_witnesses.hpp>
 #include <clearance/robot/attached.hpp>
-#include <clearance/signed_distances.hpp>
+#include <clearance/questions/signed_distances.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/within.hpp>
-#include <clearance/zones.hpp>
+#include <clearance/questions/within.hpp>
+#include <clearance/questions/zones.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -47,12 +47,12 @@ inline Eigen::Vector3d origin_of(std::size_t part) { return the_scene().poses[pa
 template <class Add>
 void for_each_gradient(const Add& add) {
   add("min_distance, prepared", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-    clearance::min_distance_query query(on, model);
+    clearance::query query(on, model, clearance::min_distance{});
     state.counters["mm"] = 1e3 * double(ask_often(state, [&] { return query(the_scene().poses, cloud); }).distance);
   });
   add("min_distance and its gradient, prepared",
       [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-        clearance::min_distance_query query(on, model);
+        clearance::query query(on, model, clearance::min_distance{});
         const auto found = ask_often(state, [&] {
           const auto least = query(the_scene().poses, cloud);
           return clearance::gradient(least, origin_of(least.part));
@@ -63,7 +63,7 @@ void for_each_gradient(const Add& add) {
       [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
         if (the_scene().name != "kuka") return state.SkipWithError("no joints without the real data");
         const auto robot = load_kuka(CLEARANCE_TEST_DATA);
-        clearance::min_distance_query query(on, model);
+        clearance::query query(on, model, clearance::min_distance{});
         const auto found = ask_often(state, [&] {
           const auto least = query(the_scene().poses, cloud);
           return clearance::io::joint_gradient(robot, kuka_joints, least.part,
@@ -73,15 +73,15 @@ void for_each_gradient(const Add& add) {
       });
   add("min_distance_per_part, prepared",
       [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-        clearance::min_distance_query query(on, model);
+        clearance::query query(on, model, clearance::min_distance{});
         std::vector<clearance::part_minimum> minima(model.size());
         state.counters["mm"] =
             1e3 * double(ask_often(state, [&] { return query.per_part(the_scene().poses, cloud, minima); }).distance);
       });
   add("min_distance_per_part and every part's gradient, prepared",
       [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-        clearance::min_distance_query query(on, model);
-        clearance::part_witnesses_query where(on, model);
+        clearance::query query(on, model, clearance::min_distance{});
+        clearance::query where(on, model, clearance::part_witnesses{});
         std::vector<clearance::part_minimum> minima(model.size());
         const auto found = ask_often(state, [&] {
           query.per_part(the_scene().poses, cloud, minima);
@@ -110,7 +110,7 @@ void for_each_attached(const Add& add) {
         const auto holding = clearance::attach(on, model, object);
         auto poses = the_scene().poses;
         poses.push_back(poses.back() * Eigen::Translation3d(0, 0, 0.1));
-        clearance::min_distance_query query(on, holding);
+        clearance::query query(on, holding, clearance::min_distance{});
         state.counters["mm"] = 1e3 * double(ask_often(state, [&] { return query(poses, cloud); }).distance);
       });
 }
@@ -139,7 +139,7 @@ void for_each_question(const Add& add) {
           points += found.of(k, found.per_part - 1).points;
         return points;
       },
-      clearance::zones_options{.thresholds = {0.1, 0.2, 0.4}});
+      clearance::zones{.thresholds = {0.1, 0.2, 0.4}});
   both(
       "within 10 cm", [](const auto& on, const auto& model) { return clearance::within_query(on, model); },
       [](const auto&... all) { return clearance::within(all...); },
@@ -165,9 +165,9 @@ void for_each_question(const Add& add) {
       "min_distance_supported",
       [](const auto& on, const auto& model) { return clearance::min_distance_supported_query(on, model); },
       [](const auto&... all) { return clearance::min_distance_supported(all...); },
-      [](const auto& found) { return found.isolated; }, clearance::support_options{});
+      [](const auto& found) { return found.isolated; }, clearance::min_distance_supported{});
   add("motion_clearance", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-    clearance::min_distance_query query(on, model);
+    clearance::query query(on, model, clearance::min_distance{});
     const auto motion = some_motion();
     const auto found = ask_often(state, [&] { return clearance::motion_clearance(query, model, motion, cloud); });
     state.counters["queries"] = double(found.queries), state.counters["lower_mm"] = 1e3 * found.lower;
@@ -179,7 +179,7 @@ void for_each_question(const Add& add) {
     add(name, [=](benchmark::State& state, const auto& on, const auto&, const auto& cloud) {
       const auto triangles = triangle_model<clearance::aabb>(the_scene()).on(on);
       const auto found = ask_often(state, [&] {
-        return ask(on, triangles, the_scene().poses, cloud, clearance::distances_options{.d_max = 0.1f});
+        return ask(on, triangles, the_scene().poses, cloud, clearance::distances{.d_max = 0.1f});
       });
       state.counters["inside"] = double(std::ranges::count_if(found.distance, [](float d) { return d < 0; }));
     });

@@ -4,12 +4,13 @@
 // other work.
 #include "device.cuh"
 
-#include <clearance/in_collision.cuh>
+#include <clearance/questions/in_collision.hpp>
+#include <clearance/device.cuh>
 #include <clearance/primitive/inner_sphere.hpp>
-#include <clearance/self_filter.cuh>
+#include <clearance/questions/self_filter.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/within.cuh>
-#include <clearance/zones.cuh>
+#include <clearance/questions/within.hpp>
+#include <clearance/questions/zones.hpp>
 
 namespace questions_bench {
 namespace {
@@ -100,7 +101,7 @@ void in_collision(benchmark::State& state, float margin) {
 void every_part(benchmark::State& state) {
   if (no_device(state)) return;
   question q(state);
-  clearance::min_distance_query query(q.gpu, q.model);
+  clearance::query query(q.gpu, q.model, clearance::min_distance{});
   const clearance::device_buffer<clearance::min_distance_result> result(1, q.gpu.id);
   const clearance::device_buffer<clearance::part_minimum> minima(q.model.size(), q.gpu.id);
   const auto frame = [&] { query.enqueue_per_part(q.s.poses, q.cloud, result.data(), minima.data()); };
@@ -112,18 +113,17 @@ void every_part(benchmark::State& state) {
 void own(benchmark::State& state, bool minimum, bool prepared) {
   if (no_device(state)) return;
   question q(state, true);
-  clearance::min_distance_query query(q.gpu, q.model);
+  clearance::query query(q.gpu, q.model, clearance::min_distance{});
   const clearance::device_buffer<clearance::point_label> labels(q.points.size(), q.gpu.id);
   const clearance::device_buffer<clearance::self_filter_counts> counts(1, q.gpu.id);
   const clearance::device_buffer<clearance::min_distance_result> result(1, q.gpu.id);
   const auto rest = clearance::masked_clouds(q.cloud, labels.data());
-  clearance::self_filter_query filter(q.gpu, q.model);
+  clearance::query filter(q.gpu, q.model, clearance::self_filter{});
   const auto frame = [&] {
     if (prepared)
       filter.enqueue(q.s.poses, q.cloud, {.padding = {0.05}}, labels.data(), counts.data());
     else
-      clearance::self_filter_async(q.gpu, q.model, q.s.poses, q.cloud, {.padding = {0.05}}, labels.data(),
-                                   counts.data());
+      clearance::enqueue(q.gpu, q.model, q.s.poses, q.cloud, clearance::self_filter{.padding = {0.05}}, {labels.data(), counts.data()});
     if (minimum) query.enqueue(q.s.poses, rest, result.data());
   };
   frame();
@@ -134,7 +134,7 @@ void own(benchmark::State& state, bool minimum, bool prepared) {
 void one_minimum(benchmark::State& state) {
   if (no_device(state)) return;
   question q(state, true);
-  clearance::min_distance_query query(q.gpu, q.model);
+  clearance::query query(q.gpu, q.model, clearance::min_distance{});
   const clearance::device_buffer<clearance::min_distance_result> result(1, q.gpu.id);
   const auto frame = [&] { query.enqueue(q.s.poses, q.cloud, result.data()); };
   frame();

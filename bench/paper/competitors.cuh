@@ -92,7 +92,7 @@ void device_competitors(lab& l, const HostModel& on_host, const Model& model, co
   l.out.times("copy from pageable memory",
               repeat([&] { return l.clock.microseconds([&] { all.copy(l.points.data()); }); }, budget));
   l.time_method("the paper's kernels", paper_method{}, l.parts(binary), reference);
-  clearance::min_distance_query query(l.gpu, model);
+  clearance::query query(l.gpu, model, clearance::min_distance{});
   l.time_ours("our kernel, cold", query, l.cloud(), true, reference);
   l.time_ours("our kernel, warm", query, l.cloud(), false, reference);
 

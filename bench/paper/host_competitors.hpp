@@ -9,7 +9,7 @@
 #include "sequential.hpp"
 #include "simd.hpp"
 
-#include <clearance/min_distance_query.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/traversal/recursive.hpp>
 
 #include <thread>
@@ -27,7 +27,7 @@ void host_competitors(report& out, const scenario& scene, std::size_t count, con
   const clearance::placed<clearance::point_span> placed{cloud, scene.world_from_cloud};
   const auto view = model.view();
   const clearance::frames::cloud_frame frame(view.facts, poses, scene.world_from_cloud);
-  const double reference = clearance::min_distance(clearance::host{.threads = 1}, model, poses, placed).distance;
+  const double reference = clearance::ask(clearance::host{.threads = 1}, model, poses, placed, clearance::min_distance{}).distance;
 
   out.begin("competitors", scene.name, count);
   if (quick) out.expect("brute force", brute_force(model, frame, cloud), reference);
@@ -46,7 +46,7 @@ void host_competitors(report& out, const scenario& scene, std::size_t count, con
     const clearance::host cpu{.threads = threads};
     const std::string how =
         " (" + (threads == 0 ? std::string("all") : std::to_string(threads)) + " thread" + (threads == 1 ? ")" : "s)");
-    clearance::min_distance_query query(cpu, model);
+    clearance::query query(cpu, model, clearance::min_distance{});
     query(poses, placed);
     measure("CPU ours" + how, [&] { return query(poses, placed).distance; });
 #ifdef CLEARANCE_BENCH_SIMD
@@ -79,11 +79,11 @@ void host_along_motion(report& out, const scenario& scene, std::size_t count, co
                        int passes) {
   const auto points = scene.points(count);
   const clearance::placed<clearance::point_span> placed{clearance::point_span(points), scene.world_from_cloud};
-  clearance::min_distance_query query(clearance::host{.threads = 1}, model);
+  clearance::query query(clearance::host{.threads = 1}, model, clearance::min_distance{});
   for (int step = 0; step < steps; ++step) {
     const auto poses = scene.poses(double(step) / (steps - 1));
     out.begin("motion", scene.name, count, step);
-    const double reference = clearance::min_distance(clearance::host{}, model, poses, placed).distance;
+    const double reference = clearance::ask(clearance::host{}, model, poses, placed, clearance::min_distance{}).distance;
     out.row("distance", "m", reference);
     if (quick) {
       const clearance::frames::cloud_frame frame(model.view().facts, poses, scene.world_from_cloud);

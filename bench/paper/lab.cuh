@@ -8,7 +8,8 @@
 #include "scenes.hpp"
 #include "sequential.hpp"
 
-#include <clearance/min_distance_query.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 #include <clearance/traversal/recursive.hpp>
 #include <clearance/traversal/stack.hpp>
 
@@ -49,7 +50,7 @@ class lab {
   template <class Model>
   double reference(const Model& model) const {
     const clearance::placed<clearance::point_span> placed{points, scene->world_from_cloud};
-    const double least = clearance::min_distance(clearance::host{}, model, poses, placed).distance;
+    const double least = clearance::ask(clearance::host{}, model, poses, placed, clearance::min_distance{}).distance;
     if (quick)
       out.expect("brute force",
                  brute_force(model, clearance::frames::cloud_frame(model.view().facts, poses, scene->world_from_cloud),

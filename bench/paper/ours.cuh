@@ -35,11 +35,11 @@ std::size_t headline(lab& l, const Models& models, double reference) {
                   method<shared_by_all, clearance::near_first>{.order = schedule::fused}, l.parts(models[k]),
                   reference);
     if (t < least) least = t, best = k;
-    clearance::min_distance_query query(l.gpu, models[k]);
+    clearance::query query(l.gpu, models[k], clearance::min_distance{});
     l.time_ours("ours cold; " + name_of(shapes[k]), query, l.cloud(), true, reference);
   }
   l.out.begin("headline", l.scene->name, l.points.size());
-  clearance::min_distance_query query(l.gpu, models.back());
+  clearance::query query(l.gpu, models.back(), clearance::min_distance{});
   const double cold = l.time_ours("ours cold", query, l.cloud(), true, reference);
   const double warm = l.time_ours("ours warm", query, l.cloud(), false, reference);
   l.out.row("the paper's; " + name_of(shapes[best]), "us", least);
@@ -56,7 +56,7 @@ void volume_of(lab& l, const std::string& name, const Model& on_host) {
   l.time_method("the paper's; " + name, paper_method{}, parts, reference);
   l.time_method("near first fused; " + name, method<shared_by_all, clearance::near_first>{.order = schedule::fused},
                 parts, reference);
-  clearance::min_distance_query query(l.gpu, model);
+  clearance::query query(l.gpu, model, clearance::min_distance{});
   l.time_ours("ours cold; " + name, query, l.cloud(), true, reference);
   l.time_ours("ours warm; " + name, query, l.cloud(), false, reference);
 }
@@ -138,7 +138,7 @@ void layouts(lab& l, const Model& on_host) {
   l.out.begin("layout", l.scene->name, l.points.size());
   const double reference = l.reference(on_host);
   const auto model = on_host.on(l.gpu);
-  clearance::min_distance_query query(l.gpu, model);
+  clearance::query query(l.gpu, model, clearance::min_distance{});
   const std::size_t n = l.points.size();
   std::vector<float> wide(n * 8), apart(n * 3);
   for (std::size_t i = 0; i < n; ++i) {
@@ -161,7 +161,7 @@ void layouts(lab& l, const Model& on_host) {
     depth[i] = clearance::is_finite(l.points[i]) ? std::uint16_t(std::lround(1000 * l.points[i].z)) : 0;
   clearance::depth_image image(depth.data(), 640, 480, {525, 525, 320, 240});
   const clearance::placed<clearance::depth_image<std::uint16_t>> placed{image, l.scene->world_from_cloud};
-  const double same = clearance::min_distance(clearance::host{}, on_host, l.poses, placed).distance;
+  const double same = clearance::ask(clearance::host{}, on_host, l.poses, placed, clearance::min_distance{}).distance;
   const auto pixels = l.gpu.copy_in(std::span<const std::uint16_t>(depth));
   layout_of(l, query, "16-bit depth", image.at(reinterpret_cast<const std::byte*>(pixels.data())), 2, same);
 }

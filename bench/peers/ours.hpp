@@ -4,9 +4,9 @@
 
 #include "min_distance/scene_files.hpp"
 
-#include <clearance/distances.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/io/robot.hpp>
-#include <clearance/min_distance_query.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 
 namespace peers {
@@ -16,7 +16,7 @@ inline const bench::scene& scene() { return bench::the_scene<false>(); }
 inline void ours(benchmark::State& state, bool cold) {
   const auto model = bench::triangle_model<clearance::aabb>(scene());
   const clearance::placed<clearance::point_span> cloud{scene().cloud, scene().world_from_camera};
-  clearance::min_distance_query query(clearance::host{.threads = 1}, model);
+  clearance::query query(clearance::host{.threads = 1}, model, clearance::min_distance{});
   clearance::min_distance_result r = query(scene().poses, cloud);
   for (auto _ : state) {
     if (cold) query.forget();
@@ -31,7 +31,7 @@ inline void ours_every_point(benchmark::State& state) {
   std::vector<clearance::real> distance(scene().cloud.size());
   clearance::point_counts counts;
   for (auto _ : state)
-    clearance::distances_async(clearance::host{.threads = 1}, model, scene().poses, cloud, {distance.data()}, &counts);
+    clearance::enqueue(clearance::host{.threads = 1}, model, scene().poses, cloud, clearance::distances{}, {{distance.data()}, &counts});
   clearance::real least = clearance::infinity;
   for (const clearance::real d : distance) least = clearance::min(least, d);
   state.counters["distance_mm"] = least * 1e3;

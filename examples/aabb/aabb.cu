@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aabb.hpp"
 
-#include <clearance/min_distance.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 
 int main() { return example(clearance::device{.id = 0}); }

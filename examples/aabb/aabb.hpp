@@ -3,7 +3,7 @@
 // Triangles in axis-aligned boxes: how near does a depth image come to a cube? The same source on CPU and GPU.
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/solid/close_mesh.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -31,13 +31,13 @@ int example(const Backend& on) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() << 0.1, 0, 0.8;  // world from part
 
-  const clearance::min_distance_result r = clearance::min_distance(on, part, pose, image);
+  const clearance::min_distance_result r = clearance::ask(on, part, pose, image, clearance::min_distance{});
   std::printf("%.6f m to pixel (%u, %u), of %u that are valid\n", r.distance, r.point % 64, r.point / 64,
               unsigned(r.valid));
   // The finger is nearest, and straight in front of the cube's front face, which is at z = 0.9.
   const bool right = std::abs(r.distance - 0.3f) < 1e-6f && r.point == 20 * 64 + 40 && r.valid == 64 * 48 - 1;
 
   pose.translation().z() = 1.2;  // now the finger is inside: the cube is closed, so that is noticed
-  const bool noticed = clearance::min_distance(on, part, pose, image).state == clearance::state::collision;
+  const bool noticed = clearance::ask(on, part, pose, image, clearance::min_distance{}).state == clearance::state::collision;
   return right && noticed && r.state == clearance::state::free ? 0 : 1;
 }

@@ -5,7 +5,7 @@
 #include <clearance/chunked_query.hpp>
 #include <clearance/io/mapped_cloud.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -60,7 +60,7 @@ int main(int count, char** arguments) {
                   static_cast<unsigned long long>(ask.loaded()), seconds);
       // [ask]
       wrong += points <= 10000000 &&
-               r.point != clearance::min_distance(clearance::host{}, arm, poses, street.cloud().source).point;
+               r.point != clearance::ask(clearance::host{}, arm, poses, street.cloud().source, clearance::min_distance{}).point;
     }
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());

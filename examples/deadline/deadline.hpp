@@ -3,7 +3,8 @@
 // An answer in time: what is known of a large cloud when the control cycle is over, and how much of it that is about.
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance_by.hpp>
+#include <clearance/deadline.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -23,17 +24,17 @@ int example(const Backend& on) {
   // [deadline]
   using namespace std::chrono_literals;
   const auto arm = clearance::make_model<clearance::sphere>(links).on(on);
-  const auto all = clearance::min_distance(on, arm, poses, hall);
+  const auto all = clearance::ask(on, arm, poses, hall, clearance::min_distance{});
   bool right = true;
   for (const std::chrono::duration<double> deadline : {0us, 1000us, 5000us, 10000000us}) {
-    const auto r = clearance::min_distance_by(on, arm, poses, hall, deadline);
+    const auto r = clearance::ask_by(on, arm, poses, hall, deadline, clearance::min_distance{});
     std::printf("%8.1f ms: %3.0f %% of the points, %s, %.3f m; certainly at least %.3f m\n", 1e3 * deadline.count(),
                 100 * double(r.seen) / double(r.seen + r.unseen), to_string(r.state), double(r.distance),
                 double(r.lower));
     right = right && r.lower <= all.lower && all.upper <= r.upper && (r.unseen == 0 || !(r.lower > 0));
   }
   // [deadline]
-  const auto patient = clearance::min_distance_by(on, arm, poses, hall, 10s);
+  const auto patient = clearance::ask_by(on, arm, poses, hall, 10s, clearance::min_distance{});
   return right && patient.unseen == 0 && patient.distance == all.distance && patient.point == all.point &&
                  patient.lower == all.lower
              ? 0

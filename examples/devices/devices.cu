@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/min_distance_devices.cuh>
+#include <clearance/device.cuh>
 
 #include "devices.hpp"
 

@@ -3,7 +3,7 @@
 // A cloud too large for one GPU to be quick about, before an arm: the same lines on CPU threads, one GPU, or several.
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance_query.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -33,13 +33,13 @@ int example(const Backend& on, const Cloud& cloud) {
   int wrong = 0;
   // [ask]
   const auto arm = on_host.on(on);  // devices: on each of them
-  clearance::min_distance_query ask(on, arm);
+  clearance::query ask(on, arm, clearance::min_distance{});
   for (const double angle : {1.5, 1.0, 0.5, 0.0}) {
     const clearance::min_distance_result r = ask(poses_at(angle), cloud);
     std::printf("%.1f rad: %.3f m, certainly more than %.3f m, to point %u of %llu\n", angle, double(r.distance),
                 double(r.lower), r.point, static_cast<unsigned long long>(r.seen));
     // [ask]
-    const auto same = clearance::min_distance(clearance::host{}, on_host, poses_at(angle), wall());
+    const auto same = clearance::ask(clearance::host{}, on_host, poses_at(angle), wall(), clearance::min_distance{});
     wrong += r.distance != same.distance || r.lower != same.lower || r.point != same.point ||
              r.primitive != same.primitive || r.valid != same.valid;
   }

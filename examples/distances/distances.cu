@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/distances.cuh>  // a device's scan
-#include <clearance/distances_per_part.cuh>
+#include <clearance/questions/distances.hpp>
+#include <clearance/device.cuh>
+#include <clearance/questions/distances_per_part.hpp>
 
 #include "distances.hpp"
 

@@ -2,7 +2,7 @@
 // A type that cannot be changed as a bounding volume: Eigen's own box, taught to the library from outside.
 #include <clearance/backend/host.hpp>
 #include <clearance/bvh/build.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/aabb.hpp>
 
@@ -54,8 +54,8 @@ int main() {
 
   const auto eigens = clearance::make_part(clearance::build<Eigen::AlignedBox3f>(spheres));
   const auto ours = clearance::make_part(clearance::build<clearance::aabb>(spheres));
-  const auto a = clearance::min_distance(here, eigens, pose, cloud);
-  const auto b = clearance::min_distance(here, ours, pose, cloud);
+  const auto a = clearance::ask(here, eigens, pose, cloud, clearance::min_distance{});
+  const auto b = clearance::ask(here, ours, pose, cloud, clearance::min_distance{});
   std::printf("%.6f m to point %u in Eigen's boxes, %.6f m to point %u in ours\n", a.distance, a.point, b.distance,
               b.point);
   return a.distance == b.distance && a.point == b.point && a.primitive == b.primitive ? 0 : 1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/signed_distances.cuh>  // a device's scan
+#include <clearance/questions/signed_distances.hpp>
+#include <clearance/device.cuh>
 
 #include "exact.hpp"
 

@@ -3,7 +3,7 @@
 // How deep is a tool in what the camera sees? Signed distances to closed meshes, exact on both sides of the surface.
 
 #include <clearance/make_model.hpp>
-#include <clearance/signed_distances.hpp>
+#include <clearance/questions/signed_distances.hpp>
 #include <clearance/volume/aabb.hpp>
 
 #include <cmath>
@@ -23,7 +23,7 @@ int example(const Backend& on) {
   // [exact]
   const auto tool = clearance::make_model<clearance::aabb>(std::vector{clearance::close_mesh(block)}).on(on);
   const std::vector<Eigen::Isometry3d> poses(1, Eigen::Isometry3d::Identity());
-  const auto all = clearance::signed_distances(on, tool, poses, bench, {.d_max = 0.1f, .which = true});
+  const auto all = clearance::ask(on, tool, poses, bench, clearance::signed_distances{.d_max = 0.1f, .which = true});
   const auto inside = std::ranges::count_if(all.distance, [](clearance::real d) { return d < 0; });
   const auto deepest = std::size_t(std::ranges::min_element(all.distance) - all.distance.begin());
   std::printf("%zd of %zu points are inside; the deepest is %.1f mm from triangle %u\n", std::ptrdiff_t(inside),

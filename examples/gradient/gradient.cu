@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/min_distance.cuh>  // a device's scan
-#include <clearance/part_witnesses.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
+#include <clearance/questions/part_witnesses.hpp>
 
 #include "gradient.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <clearance/gradient.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance.hpp>
-#include <clearance/part_witnesses.hpp>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/questions/part_witnesses.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -28,7 +28,7 @@ int example(const Backend& on) {
   double before = 0;
   for (int step = 0; step < 3; ++step) {
     // [gradient]
-    const auto [least, minima] = clearance::min_distance_per_part(on, robot, poses, wall);
+    const auto [least, minima] = clearance::ask(on, robot, poses, wall, clearance::min_distance_per_part{});
     const auto g = clearance::gradient(least, Eigen::Vector3d(poses[least.part].translation()));
     if (!g) return std::printf("no gradient: %s\n", to_string(g.state)), 1;
     std::printf("link %u is %.3f m away, and a metre along (%.2f, %.2f, %.2f) takes it a metre farther\n", least.part,
@@ -36,7 +36,7 @@ int example(const Backend& on) {
 
     // Both links count, the nearer more: no jump where they change places. 2 cm is how much of a difference matters.
     const auto smooth = clearance::smooth_minimum_of(minima, 0.02);
-    const auto witnesses = clearance::part_witnesses(on, robot, poses, wall, minima);
+    const auto witnesses = clearance::ask(on, robot, poses, wall, clearance::part_witnesses{minima});
     Eigen::Vector3d away = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < witnesses.size(); ++k)
       if (const auto its = clearance::gradient(witnesses[k], Eigen::Vector3d(poses[k].translation())))

@@ -3,7 +3,7 @@
 // From a mesh to a distance with a certificate: inner spheres in bounding spheres.
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -28,9 +28,9 @@ int example(const Backend& on) {
   // A point 5 cm above the middle of the box's upper face; then another one, inside.
   const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   std::vector<clearance::vec3> cloud = {{0, 0, 0.07f}};
-  const auto outside = clearance::min_distance(on, part, pose, cloud);
+  const auto outside = clearance::ask(on, part, pose, cloud, clearance::min_distance{});
   cloud.push_back({0.01f, 0, 0});
-  const auto inside = clearance::min_distance(on, part, pose, cloud);
+  const auto inside = clearance::ask(on, part, pose, cloud, clearance::min_distance{});
   for (const auto& r : {outside, inside})
     std::printf("%-9s %9.6f m to the spheres, certainly %.6f m to %.6f m to the box\n", clearance::to_string(r.state),
                 r.distance, r.lower, r.upper);

@@ -31,7 +31,7 @@ int main() {
   const std::vector<double> q{0.2, 0.4};
   const auto link_poses = tree.link_poses(q);
   const std::vector poses{link_poses[links[0]], link_poses[links[1]]};
-  const auto near = clearance::min_distance(on, arm, poses, points);
+  const auto near = clearance::ask(on, arm, poses, points, clearance::min_distance{});
   const auto g = clearance::gradient(near, Eigen::Vector3d(poses[near.part].translation()));
   const auto by_joints = clearance::io::joint_gradient(tree, link_poses, links[near.part], g);
   if (!by_joints) return std::printf("no gradient: %s\n", to_string(g.state)), 1;

@@ -4,7 +4,7 @@
 // next.
 
 #include <clearance/bvh/build.hpp>
-#include <clearance/min_distance_query.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -71,7 +71,7 @@ int example(const Backend& on) {
     }
   });
   const auto arm = clearance::model(std::vector{link, link}).on(on);
-  clearance::min_distance_query ask(on, arm);
+  clearance::query ask(on, arm, clearance::min_distance{});
   for (; tick < 300 || taken < 3; ++tick) {
     std::this_thread::sleep_until(start + tick * milliseconds(1));
     taken += clouds.take();
@@ -82,7 +82,7 @@ int example(const Backend& on) {
     const clearance::min_distance_result r = ask(poses, clouds.front());
     stops += !(r.lower > 0.05);  // also if there was no valid point
     // [loop]
-    const auto plain = clearance::min_distance(clearance::host{}, same, poses, clouds.front());
+    const auto plain = clearance::ask(clearance::host{}, same, poses, clouds.front(), clearance::min_distance{});
     wrong += r.distance != plain.distance || r.point != plain.point || r.part != plain.part ||
              r.primitive != plain.primitive;
   }

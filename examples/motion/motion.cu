@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/motion_clearance.cuh>  // a device's scan
+#include <clearance/motion_clearance.hpp>
+#include <clearance/device.cuh>
 
 #include "motion.hpp"
 

@@ -35,8 +35,8 @@ int example(const Backend& on) {
   if (!(r.lower > 0.1)) std::printf("another way is needed between %.3f and %.3f\n", r.from, r.to);
   // [motion]
 
-  const auto ends = std::min(clearance::min_distance(on, robot, here, points).lower,
-                             clearance::min_distance(on, robot, there, points).lower);
+  const auto ends = std::min(clearance::ask(on, robot, here, points, clearance::min_distance{}).lower,
+                             clearance::ask(on, robot, there, points, clearance::min_distance{}).lower);
   const auto enough =
       clearance::motion_clearance(on, robot, motion, points, {.tolerance = clearance::infinity, .margin = 0.1});
   const bool found = r.state == clearance::state::collision && r.lower <= r.upper && r.upper < 0.1 && ends > 0.8f;

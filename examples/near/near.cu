@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/in_collision.cuh>  // a device's scan
-#include <clearance/within.cuh>
+#include <clearance/questions/in_collision.hpp>
+#include <clearance/device.cuh>
+#include <clearance/questions/within.hpp>
 
 #include "near.hpp"
 

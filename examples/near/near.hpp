@@ -2,11 +2,11 @@
 #pragma once
 // Is any point closer than a margin, and which points are?
 
-#include <clearance/in_collision.hpp>
+#include <clearance/questions/in_collision.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/within.hpp>
+#include <clearance/questions/within.hpp>
 
 #include <cstdio>
 
@@ -23,15 +23,15 @@ int example(const Backend& on) {
 
   // [near]
   const auto robot = clearance::make_model<clearance::sphere>(links).on(on);
-  const auto touched = clearance::in_collision(on, robot, poses, shelf, 0.12);  // metres
+  const auto touched = clearance::ask(on, robot, poses, shelf, clearance::in_collision{{0.12}});  // metres
   std::printf("closer than 12 cm: %s, point %u is near link %u\n", to_string(touched.state), touched.point,
               touched.part);
 
-  const auto near = clearance::within(on, robot, poses, shelf, 0.12f);
+  const auto near = clearance::ask(on, robot, poses, shelf, clearance::within{{0.12f}});
   for (std::size_t k = 0; k < links.size(); ++k)
     std::printf("link %zu: %zu points within 12 cm\n", k, near.offsets[k + 1] - near.offsets[k]);
 
-  clearance::in_collision_query ask(on, robot);  // in every frame: it keeps its memory; within_query likewise
+  clearance::query ask(on, robot, clearance::in_collision{});  // in every frame: it keeps its memory; within_query likewise
   const auto again = ask(poses, shelf, 0.12);
   // [near]
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/min_support.cuh>  // a device's scan
+#include <clearance/questions/min_distance_supported.hpp>
+#include <clearance/device.cuh>
 
 #include "nearest.hpp"
 

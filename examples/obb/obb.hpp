@@ -3,7 +3,7 @@
 // Spheres in oriented boxes: an arm of two links, the distance of each, and the nearest of all.
 
 #include <clearance/bvh/build.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/obb.hpp>
 
@@ -22,7 +22,7 @@ int example(const Backend& on) {
   std::vector<clearance::vec3> cloud;
   for (int k = 0; k < 1000; ++k) cloud.push_back({-1 + 0.002f * k, 1, 0.0005f * k});
 
-  const auto [r, parts] = clearance::min_distance_per_part(on, arm, poses, cloud);
+  const auto [r, parts] = clearance::ask(on, arm, poses, cloud, clearance::min_distance_per_part{});
   for (const auto& minimum : parts) std::printf("%.6f m to point %u\n", minimum.distance, minimum.point);
   std::printf("certainly between %.6f m and %.6f m; nearest is part %u\n", r.lower, r.upper, r.part);
 

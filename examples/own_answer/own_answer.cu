@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/collect.cuh>  // a device's scan
+#include <clearance/questions/collect.hpp>
+#include <clearance/device.cuh>
 
 #include "own_answer.hpp"
 

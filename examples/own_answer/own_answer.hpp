@@ -2,7 +2,7 @@
 #pragma once
 // An answer of one's own: for each part of a robot, how many points are nearer than 5, 10 and 20 cm.
 
-#include <clearance/collect.hpp>
+#include <clearance/questions/collect.hpp>
 #include <clearance/ground/ordered.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
@@ -46,8 +46,7 @@ int example(const Backend& on) {
   // [ask]
   const auto counts =
       on.copy_in(std::span<const unsigned long long>(std::vector<unsigned long long>(3 * robot.size())));
-  const clearance::point_counts seen = clearance::collect(on, robot, poses, clearance::point_span(cloud),
-                                                          crowding{const_cast<unsigned long long*>(counts.data())});
+  const clearance::point_counts seen = clearance::ask(on, robot, poses, clearance::point_span(cloud), clearance::collect{crowding{const_cast<unsigned long long*>(counts.data())}});
   const auto near = on.copy_out(counts);
   // [ask]
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "own_bvh.hpp"
 
-#include <clearance/min_distance.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 
 int main() {
   theirs::node* memory = nullptr;  // managed: their pointers mean the same on the CPU and on the GPU

@@ -5,7 +5,7 @@
 #include "their_tree.hpp"
 
 #include <clearance/bvh/flat_list.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/aabb.hpp>
 
@@ -58,7 +58,7 @@ clearance::min_distance_result ask(const Backend& on, const Tree& tree, const cl
   const auto there = on.copy_in(std::span(&view, 1));
   const clearance::model_view<clearance::part_view<Tree>> robot{there.data(), {&facts, 1}, tree.depth(), tree.width()};
   const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  return clearance::min_distance(on, robot, std::span(&pose, 1), clearance::point_span(cloud));
+  return clearance::ask(on, robot, std::span(&pose, 1), clearance::point_span(cloud), clearance::min_distance{});
 }
 // [ask]
 

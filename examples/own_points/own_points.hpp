@@ -4,7 +4,7 @@
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/ground/read_only.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -74,7 +74,7 @@ int example(const Backend& on) {
   const auto in = [&](const std::vector<float>& array) { return on.copy_in(std::span<const float>(array)); };
   const auto xs = in(x), ys = in(y), zs = in(z), weights = in(weight);
   const three_arrays points{xs.data(), ys.data(), zs.data(), weights.data(), x.size()};
-  const auto r = clearance::min_distance(on, part, Eigen::Isometry3d::Identity(), points);
+  const auto r = clearance::ask(on, part, Eigen::Isometry3d::Identity(), points, clearance::min_distance{});
   // [use]
 
   std::printf("%.6f m to point %u; %u of %u points count\n", r.distance, r.point, unsigned(r.valid), unsigned(r.seen));

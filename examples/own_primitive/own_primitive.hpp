@@ -3,7 +3,7 @@
 // A primitive of one's own: capsules in oriented boxes. The box knows nothing of capsules; it sees two balls.
 
 #include <clearance/bvh/build.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/obb.hpp>
 
 #include <array>
@@ -45,7 +45,7 @@ int example(const Backend& on) {
   const std::vector<capsule> arm = {{{0, 0, 0}, {0, 0, 0.4f}, 0.06f}, {{0, 0, 0.4f}, {0.3f, 0, 0.6f}, 0.05f}};
   const std::vector<clearance::vec3> cloud = {{0.5f, 0.5f, 0.5f}, {0.16f, 0, 0.2f}, {0, 0, -0.3f}};
   const auto part = clearance::make_part(clearance::build<clearance::obb>(arm)).on(on);
-  const auto r = clearance::min_distance(on, part, Eigen::Isometry3d::Identity(), cloud);
+  const auto r = clearance::ask(on, part, Eigen::Isometry3d::Identity(), cloud, clearance::min_distance{});
   std::printf("%.6f m from capsule %u to point %u\n", r.distance, r.primitive, r.point);
   return std::abs(r.distance - 0.1f) < 1e-6f && r.primitive == 0 && r.point == 1 && r.normal.x == 1 ? 0 : 1;
 }

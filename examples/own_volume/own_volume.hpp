@@ -3,7 +3,7 @@
 // A bounding volume of one's own. Nothing of it is in the library, and the library needs no change for it.
 
 #include <clearance/bvh/build.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/aabb.hpp>
 
@@ -68,12 +68,12 @@ int example(const Backend& on) {
 
   // [use]
   const auto part = clearance::make_part(clearance::build<dop14>(diagonal)).on(on);
-  const auto mine = clearance::min_distance(on, part, pose, cloud);
+  const auto mine = clearance::ask(on, part, pose, cloud, clearance::min_distance{});
   // [use]
 
   // Whatever the volume, the answer has the same bits.
   const auto boxes = clearance::make_part(clearance::build<clearance::aabb>(diagonal)).on(on);
-  const auto theirs = clearance::min_distance(on, boxes, pose, cloud);
+  const auto theirs = clearance::ask(on, boxes, pose, cloud, clearance::min_distance{});
   std::printf("%.6f m to point %u with my volume, %.6f m to point %u with a box\n", mine.distance, mine.point,
               theirs.distance, theirs.point);
   return mine.distance == theirs.distance && mine.point == theirs.point && mine.primitive == theirs.primitive ? 0 : 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/in_collisions.cuh>  // a device's search
-#include <clearance/min_distances_per_part.cuh>
+#include <clearance/questions/in_collisions.hpp>
+#include <clearance/device.cuh>
+#include <clearance/questions/min_distances_per_part.hpp>
 
 #include "plan.hpp"
 

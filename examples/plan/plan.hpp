@@ -2,9 +2,9 @@
 #pragma once
 // Is a planned trajectory still free in the newest frame, and where is it not?
 
-#include <clearance/in_collisions.hpp>
+#include <clearance/questions/in_collisions.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distances_per_part.hpp>
+#include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -29,7 +29,7 @@ int example(const Backend& on) {
       trajectory.push_back(Eigen::Isometry3d::Identity());
       trajectory.back().translation().x() = link * (0.3 + 0.01 * waypoint);  // it reaches out
     }
-  clearance::min_distances_query ask(on, arm);
+  clearance::query ask(on, arm, clearance::min_distances{});
   std::size_t stops = 0;
   for (const auto& frame : {wall, room}) {
     const auto found = ask(trajectory, frame, {.d_max = 0.2f});  // farther away: only that fact is reported
@@ -44,16 +44,16 @@ int example(const Backend& on) {
   }
 
   // [in_collisions]
-  clearance::in_collisions_query touches(on, arm);  // one state per configuration
+  clearance::query touches(on, arm, clearance::in_collisions{});  // one state per configuration
   const auto& states = touches(trajectory, wall, 0.05);
   const std::size_t not_free = states.first_not_free();
   if (not_free < states.of.size())
     std::printf("waypoint %zu is the first that may be within 5 cm: %s\n", not_free, to_string(states.of[not_free]));
   // [in_collisions]
-  if (not_free != 73 || clearance::in_collisions(on, arm, trajectory, wall, 0.05).of != states.of) return 1;
+  if (not_free != 73 || clearance::ask(on, arm, trajectory, wall, clearance::in_collisions{{0.05}}).of != states.of) return 1;
 
   // [parts]
-  const auto each = clearance::min_distances_per_part(on, arm, trajectory, wall);
+  const auto each = clearance::ask(on, arm, trajectory, wall, clearance::min_distances_per_part{});
   const auto at_73 = each.of(73);
   std::printf("at waypoint 73 link 0 is %.3f m away, and link 1 %.3f m\n", double(at_73[0].distance),
               double(at_73[1].distance));

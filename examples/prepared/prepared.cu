@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/min_distance_query.cuh>  // the device's own query, one kernel a frame
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 
 #include "prepared.hpp"
 

@@ -3,7 +3,7 @@
 // A robot in a loop: the prepared query keeps its scratch memory, and where the last minimum was, from frame to frame.
 
 #include <clearance/bvh/build.hpp>
-#include <clearance/min_distance_query.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -19,7 +19,7 @@ int example(const Backend& on) {
 
   // [frames]
   const auto arm = clearance::model(std::vector{link, link}).on(on);  // once
-  clearance::min_distance_query ask(on, arm);
+  clearance::query ask(on, arm, clearance::min_distance{});
   int stops = 0;
   for (int frame = 0; frame < 20; ++frame) {  // new poses and new points in every frame
     Eigen::Isometry3d shoulder = Eigen::Isometry3d::Identity(), elbow = shoulder;
@@ -27,8 +27,7 @@ int example(const Backend& on) {
     const clearance::min_distance_result r = ask(std::vector{shoulder, elbow}, wall);
     if (!(r.lower > 0.05)) ++stops;  // also if there was no valid point
     // [frames]
-    const auto same = clearance::min_distance(clearance::host{}, clearance::model(std::vector{link, link}),
-                                              std::vector{shoulder, elbow}, wall);
+    const auto same = clearance::ask(clearance::host{}, clearance::model(std::vector{link, link}), std::vector{shoulder, elbow}, wall, clearance::min_distance{});
     if (r.distance != same.distance || r.point != same.point || r.primitive != same.primitive) return 1;
   }
   std::printf("%d of 20 frames were too close\n", stops);

@@ -41,14 +41,14 @@ int main(int count, char** arguments) {
   {
     // [ask]
     const clearance::mpi::shard all{MPI_COMM_WORLD, clearance::host{1}};  // or device{}, devices{0, 1}
-    clearance::min_distance_query ask(all, arm);
+    clearance::query ask(all, arm, clearance::min_distance{});
     for (const double angle : {1.5, 1.0, 0.5, 0.0}) {
       const clearance::min_distance_result r = ask(poses_at(angle), mine);  // on every rank; all get the same answer
       // [ask]
       if (rank == 0)
         std::printf("%.1f rad: %.3f m, certainly more than %.3f m, to point %u of %llu on %d ranks\n", angle,
                     double(r.distance), double(r.lower), r.point, static_cast<unsigned long long>(r.seen), ranks);
-      const auto same = clearance::min_distance(clearance::host{1}, arm, poses_at(angle), points);
+      const auto same = clearance::ask(clearance::host{1}, arm, poses_at(angle), points, clearance::min_distance{});
       wrong += r.distance != same.distance || r.lower != same.lower || r.point != same.point ||
                r.primitive != same.primitive || r.valid != same.valid;
     }

@@ -3,7 +3,7 @@
 #include <clearance/backend/host.hpp>
 #include <clearance/io/robot.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -54,7 +54,7 @@ int main() {
   // In every frame: where the links are now, and what the camera sees.
   for (const double angle : {1.5, 0.75, 0.0}) {
     const std::vector<Eigen::Isometry3d> poses = robot.poses(std::vector{angle});
-    last = clearance::min_distance(clearance::host{}, arm, poses, image, camera);
+    last = clearance::ask(clearance::host{}, arm, poses, image, camera, clearance::min_distance{});
     std::printf("hinge at %.2f rad: %s is %.4f m from pixel (%u, %u), certainly at least %.4f m\n", angle,
                 robot.parts()[last.part].name.c_str(), last.distance, last.point % 64, last.point / 64, last.lower);
     if (!(last.lower > 0.6)) ++stops;  // also if there was no valid point

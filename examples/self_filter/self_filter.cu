@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <clearance/compacted.cuh>  // how a device does it
-#include <clearance/self_filter.cuh>
+#include <clearance/questions/self_filter.hpp>
+#include <clearance/device.cuh>
 
 #include "self_filter.hpp"
 

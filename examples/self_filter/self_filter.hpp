@@ -6,7 +6,7 @@
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/robot/attached.hpp>
-#include <clearance/self_filter.hpp>
+#include <clearance/questions/self_filter.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>
@@ -28,7 +28,7 @@ int example(const Backend& on) {
 
   // [self_filter]
   const auto arm = clearance::make_model<clearance::sphere>(links).on(on);
-  const clearance::self_filter_options options{
+  const clearance::self_filter options{
       .padding = {0.02}};  // metres: noise, calibration, and the gap of the spheres
   const auto bare = clearance::min_distance_filtered(on, arm, poses, seen, options);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/min_distance.cuh>  // a device's scans
-#include <clearance/part_witnesses.cuh>
-#include <clearance/zones.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
+#include <clearance/questions/part_witnesses.hpp>
+#include <clearance/questions/zones.hpp>
 
 #include "zones.hpp"
 

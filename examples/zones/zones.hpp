@@ -4,12 +4,12 @@
 // And approach: as slow as leaves time before a collision.
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance.hpp>
-#include <clearance/part_witnesses.hpp>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/questions/part_witnesses.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/separation.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/zones.hpp>
+#include <clearance/questions/zones.hpp>
 
 #include <cstdio>
 
@@ -25,8 +25,8 @@ int example(const Backend& on) {
 
   // [zones]
   const auto arm = clearance::make_model<clearance::sphere>(links).on(on);
-  const clearance::zones_options options{.thresholds = {0.1, 0.3, 0.6}, .min_points = 5};  // stop, slow down, warn
-  clearance::zones_query ask(on, arm);  // once; a single call is zones(on, arm, poses, person, options)
+  const clearance::zones options{.thresholds = {0.1, 0.3, 0.6}, .min_points = 5};  // stop, slow down, warn
+  clearance::query ask(on, arm, clearance::zones{});  // once; a single call is ask(on, arm, poses, person, options)
   std::size_t wrong = 0, expected = 3;
   for (const double reached : {0.0, 0.3, 0.5, 0.7}) {
     std::vector<Eigen::Isometry3d> poses(2, Eigen::Isometry3d::Identity());
@@ -38,7 +38,7 @@ int example(const Backend& on) {
                 double(seen.of(1, 2).nearest));
     // [zones]
     wrong += seen.innermost() != expected-- ||
-             clearance::zones(on, arm, poses, person, options).of(1, 2).points != seen.of(1, 2).points;
+             clearance::ask(on, arm, poses, person, options).of(1, 2).points != seen.of(1, 2).points;
   }
 
   for (const double x : {0.5, -0.5}) {
@@ -48,10 +48,10 @@ int example(const Backend& on) {
     const std::vector<Eigen::Vector3d> velocity{{0, 0, 0},
                                                 {x, 0, 0}};  // of each link, as commanded (m/s); neither turns
     const double time_before_collision = 2;                  // seconds that have to remain
-    const auto [least, minima] = clearance::min_distance_per_part(on, arm, poses, person);
+    const auto [least, minima] = clearance::ask(on, arm, poses, person, clearance::min_distance_per_part{});
     double speed = least.lower > 0 ? 1 : 0,
            fastest = 0;  // the share of the commanded speed, 0 if nothing is known; and how fast a gap closes
-    for (const auto& near : clearance::part_witnesses(on, arm, poses, person, minima)) {
+    for (const auto& near : clearance::ask(on, arm, poses, person, clearance::part_witnesses{minima})) {
       if (near.part == clearance::none) continue;
       const auto closing =
           clearance::approach_speed(near, velocity[near.part], Eigen::Vector3d::Zero(), poses[near.part].translation());

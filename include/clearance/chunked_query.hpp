@@ -1,159 +1,138 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How far is a robot from a cloud that is read in chunks? Runs on the host; include chunked_query.cuh for a device.
+// Questions about a cloud that is read in chunks, because it is larger than memory.
 
-#include <clearance/answer/chunked.hpp>
-#include <clearance/answer/host_search.hpp>
-
-#include <future>
+#include <clearance/minimum/chunked_search.hpp>
+#include <clearance/query/pieces.hpp>
+#include <clearance/query/query.hpp>
 
 namespace clearance {
 
-namespace minimum {
+namespace detail {
 
-/// Asks about ranges of a chunked cloud on a backend: `(cloud, ranges, poses, pose, result, minima, seen)`. Points are
-/// numbered as in the cloud. `minima` has one per part, or is empty. If `seen` is not null, it gets what was seen of
-/// each piece.
-template <class On, class PartView>
-class chunked_search {
-  static_assert(
-      !requires { typename On::own_scan; },
-      "a device has a ring of its own: include <clearance/chunked_query.cuh>, not the .hpp");
-};
-
-/// On the CPU: one chunk is searched while the next is loaded. Ranges of a cloud in one place are searched as one, all
-/// at once or a chunk of points at a time, because each search costs the host tens of microseconds to begin.
-template <class PartView>
-class chunked_search<host, PartView> {
+/// Asks about each chunk, while the next one is loaded. A question with `reach(part, parts, facts, error)` and
+/// `set_counts` needs only the chunks within reach, once the host has read the whole cloud.
+template <class Q, class On, class PartView>
+class chunk_engine {
  public:
-  chunked_search(const host& on, const model_view<PartView>& model) : search_(on, model) {}
-
-  std::size_t parts() const { return search_.parts(); }
+  template <class Robot>
+  chunk_engine(const On& on, const Robot& robot, const Q& q) : facts_(facts_of(robot)), query_(on, robot, q) {}
 
   template <class C>
-  void operator()(const chunked<C>& chunks, const std::vector<point_range>& ranges,
-                  std::span<const Eigen::Isometry3d> poses, const Eigen::Isometry3d& pose, min_distance_result& result,
-                  std::span<part_minimum> minima, std::vector<scan::boxed_piece>* seen) {
-    const C& cloud = chunks.cloud();
-    const std::vector<turn> turns = put_together(chunks, ranges);
-    const auto load = [&](std::size_t k) { return load_part(cloud, ranges, turns[k], room_[k % 2]); };
-    using part = decltype(load(0));
-    std::future<part> ahead;
-    const auto next = [&](std::size_t k) {
-      const auto make = [&](const part& source) {
-        const scan::boxing<part> boxing{
-            source, seen == nullptr || turns[k].points == 0 ? nullptr : seen->data() + numbers_[turns[k].piece]};
-        boxing.add_rest();
-        return placed<scan::boxing<part>>{boxing, pose};
-      };
-      if constexpr (requires { requires C::in_place; }) return make(load(k));
-      const part source = k == 0 ? load(0) : ahead.get();
-      if (k + 1 < turns.size()) ahead = std::async(std::launch::async, load, k + 1);
-      return make(source);
+  typename Q::result run(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose,
+                         const Q& q) {
+    constexpr bool on_host = std::is_same_v<On, host> || !requires { requires C::in_place; };
+    constexpr bool skips = on_host && requires(typename Q::result& r, const point_counts& counts,
+                                               const part_facts& facts, const frames::float_error& error) {
+      Q::set_counts(r, counts);
+      { q.reach(std::size_t(0), std::size_t(0), facts, error) } -> std::same_as<real>;
     };
-    search_(poses, as_they_come(turns.size(), next), &result, minima.empty() ? nullptr : minima.data());
-    number_as_in_cloud(result, minima, [&](std::uint32_t k, std::uint32_t i) {
-      return numbers_[turns[k].piece + i / scan::piece_points] * std::uint32_t(scan::piece_points) +
-             i % std::uint32_t(scan::piece_points);
-    });
-  }
-
- private:
-  /// Ranges that are searched as one, its pieces' numbers from `numbers_[piece]` on.
-  struct turn {
-    std::size_t first, last, piece, points;
-  };
-  template <class C>
-  std::vector<turn> put_together(const chunked<C>& chunks, const std::vector<point_range>& ranges) {
-    const std::size_t most = requires { requires C::in_place; } ? none : chunks.chunk();
-    std::vector<turn> turns;
-    numbers_.clear();
-    for (std::size_t r = 0; r < ranges.size(); ++r) {
-      const std::size_t points = ranges[r].end - ranges[r].begin;
-      if (!addressed_cloud<C> || turns.empty() || turns.back().points + points > most)
-        turns.push_back({r, r, numbers_.size(), 0});
-      turns.back().last = r + 1, turns.back().points += points;
-      for (std::size_t at = ranges[r].begin; at < ranges[r].end; at += scan::piece_points)
-        numbers_.push_back(std::uint32_t(at / scan::piece_points));
+    const bool first = cloud.pieces().empty();
+    std::vector<point_range> ranges = cloud.all();
+    if constexpr (skips)
+      if (!first && !facts_.empty()) ranges = near(poses, cloud, pose, q);
+    if (ranges.empty()) ranges.push_back({0, 0});
+    joined_of<Q, PartView> all(q, facts_);
+    std::vector<scan::boxed_piece> seen(skips && first ? (cloud.size() + scan::piece_points - 1) / scan::piece_points
+                                                       : 0);
+    std::future<loaded_source<C>> ahead;
+    const auto load = [&](std::size_t k) {
+      auto& room = room_[k % 2];
+      room.resize((cloud.cloud().room(ranges[k].end - ranges[k].begin) + sizeof(line) - 1) / sizeof(line));
+      return minimum::load_range(cloud.cloud(), ranges[k], room.empty() ? nullptr : room[0].bytes);
+    };
+    loaded_ = 0;
+    for (std::size_t k = 0; k < ranges.size(); ++k) {
+      const auto source = k == 0 ? load(0) : ahead.get();
+      if (k + 1 < ranges.size()) ahead = std::async(std::launch::async, load, k + 1);
+      const std::uint32_t begin = std::uint32_t(ranges[k].begin), count = std::uint32_t(source.size()),
+                          whole = std::uint32_t(cloud.size());
+      all.add(query_(poses, placed<loaded_source<C>>{source, pose}, q), {{&begin, 1}, {&count, 1}, {&whole, 1}});
+      if constexpr (skips)
+        if (first) scan::box_points(source, seen.data() + begin / scan::piece_points);
+      loaded_ += count;
     }
-    return turns;
-  }
-
-  struct alignas(64) cache_line {
-    std::byte bytes[64];
-  };
-  template <class C>
-  auto load_part(const C& cloud, const std::vector<point_range>& ranges, const turn& its,
-                 std::vector<cache_line>& room) const {
-    std::size_t bytes = 0;
-    for (std::size_t r = its.first; r < its.last; ++r)
-      bytes = std::max(bytes, cloud.room(ranges[r].end - ranges[r].begin));
-    room.resize((bytes + sizeof(cache_line) - 1) / sizeof(cache_line));
-    std::byte* const memory = room.empty() ? nullptr : room[0].bytes;
-    if constexpr (addressed_cloud<C>) {
-      for (std::size_t r = its.first; r < its.last; ++r) load_range(cloud, ranges[r], memory);
-      return scan::listed_pieces<std::remove_cvref_t<decltype(cloud.whole())>>{cloud.whole(),
-                                                                               numbers_.data() + its.piece, its.points};
-    } else {
-      return load_range(cloud, ranges[its.first], memory);
+    typename Q::result result = all.result();
+    if constexpr (skips) {
+      if (first) cloud.keep(std::move(seen));
+      if (!facts_.empty()) Q::set_counts(result, cloud.counts());
     }
+    return result;
   }
-
-  host_search<PartView> search_;
-  std::vector<std::uint32_t> numbers_;  ///< Of the pieces that are asked about.
-  std::vector<cache_line> room_[2];
-};
-
-}  // namespace minimum
-
-/// How far is a robot from a `chunked` cloud? The answer is that of min_distance about the whole cloud in memory, to
-/// the bit. The robot must outlive the object; use it from one thread. On a device it takes memory for three chunks,
-/// and as much pinned memory if the cloud is not pinned.
-template <class On, class PartView>
-class chunked_query {
- public:
-  /// Throws std::invalid_argument as min_distance_query.
-  template <robot Robot>
-  chunked_query(const On& on, const Robot& robot) : facts_(view_of(robot).facts), search_(on, view_of(robot)) {}
-
-  /// As min_distance; `pose` is world-from-cloud. Throws what `load` throws; afterwards you can ask the same object
-  /// again.
-  template <loaded_cloud C>
-  min_distance_result operator()(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud,
-                                 const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
-    return ask(poses, cloud, pose, {});
-  }
-  /// As min_distance_per_part; writes `minima`, one per part.
-  template <loaded_cloud C>
-  min_distance_result per_part(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud,
-                               const Eigen::Isometry3d& pose, std::span<part_minimum> minima) {
-    frames::check_room(search_.parts(), minima.size());
-    return ask(poses, cloud, pose, minima);
-  }
-
-  /// How many points the last answer loaded.
   std::uint64_t loaded() const { return loaded_; }
 
  private:
+  struct alignas(64) line {
+    std::byte bytes[64];
+  };
+
+  /// The ranges within reach of some part.
   template <class C>
-  min_distance_result ask(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose,
-                          std::span<part_minimum> minima) {
-    loaded_ = 0;
-    return minimum::ask_chunked(
-        cloud, facts_, poses, pose, minima,
-        [&](const std::vector<point_range>& ranges, min_distance_result& result, std::vector<scan::boxed_piece>* seen) {
-          search_(cloud, ranges, poses, pose, result, minima, seen);
-          for (const point_range& r : ranges) loaded_ += r.end - r.begin;
-        });
+  std::vector<point_range> near(std::span<const Eigen::Isometry3d> poses, const chunked<C>& cloud,
+                                const Eigen::Isometry3d& pose, const Q& q) const {
+    const auto none_of_it = minimum::load_range(cloud.cloud(), point_range{0, 0}, nullptr);
+    const frames::cloud_frame frame(facts_, poses, pose, rounding_of(none_of_it));
+    return cloud.where([&](const extent& seen) {
+      const extent box{seen.lower - frame.origin, seen.upper - frame.origin};
+      for (std::size_t k = 0; k < facts_.size(); ++k)
+        if (scan::may_reach(frame.places[k].around, q.reach(k, facts_.size(), facts_[k], frame.error), box)) return true;
+      return false;
+    });
   }
 
   std::span<const part_facts> facts_;
-  minimum::chunked_search<On, PartView> search_;
+  query<Q, On, PartView> query_;
+  std::vector<line> room_[2];
   std::uint64_t loaded_ = 0;
 };
 
-template <class On, robot Robot>
-chunked_query(const On&, const Robot&)
-    -> chunked_query<On, typename decltype(view_of(std::declval<const Robot&>()))::part_type>;
+template <class Q, class On, class PartView>
+struct chunk_engine_of {
+  using type = chunk_engine<Q, On, PartView>;
+};
+template <class Q, class On, class PartView>
+  requires requires { typename Q::template chunks<On, PartView>; }
+struct chunk_engine_of<Q, On, PartView> {
+  /// With the robot where it is asked.
+  struct type : one_robot<On, PartView>, Q::template chunks<On, PartView> {
+    template <class Robot>
+    type(const On& on, const Robot& robot, const Q&)
+        : one_robot<On, PartView>(on, robot),
+          Q::template chunks<On, PartView>(on, one_robot<On, PartView>::view()) {}
+  };
+};
+
+}  // namespace detail
+
+/// A prepared question about a `chunked` cloud. The answer is that of `ask` about the whole cloud in memory, to the bit.
+/// The robot must outlive the object; use it from one thread.
+template <question Q, class On, class PartView>
+class chunked_query {
+ public:
+  /// Throws std::invalid_argument as `query`.
+  template <class Robot>
+  chunked_query(const On& on, const Robot& robot, const Q& asked) : engine_(on, robot, asked), asked_(asked) {}
+
+  /// As `query`; `pose` is world-from-cloud. Throws what `load` throws; afterwards you can ask the same object again.
+  template <class Poses, loaded_cloud C>
+  typename Q::result operator()(const Poses& poses, chunked<C>& cloud, const Eigen::Isometry3d& pose, const Q& q) {
+    return engine_.run(detail::as_poses(poses), cloud, pose, q);
+  }
+  template <class Poses, loaded_cloud C>
+  typename Q::result operator()(const Poses& poses, chunked<C>& cloud,
+                                const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
+    return engine_.run(detail::as_poses(poses), cloud, pose, asked_);
+  }
+
+  /// How many points the last answer loaded.
+  std::uint64_t loaded() const { return engine_.loaded(); }
+
+ private:
+  typename detail::chunk_engine_of<Q, On, PartView>::type engine_;
+  Q asked_;
+};
+template <class On, class Robot, class Q>
+chunked_query(const On&, const Robot&, const Q&)
+    -> chunked_query<Q, On, typename detail::part_view_of<Robot>::type>;
 
 }  // namespace clearance

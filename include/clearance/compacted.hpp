@@ -2,7 +2,7 @@
 #pragma once
 // The valid points of a cloud, and nothing else. Runs on the host; include compacted.cuh for a device.
 
-#include <clearance/answer/search_on.hpp>
+#include <clearance/frame/readable.hpp>
 
 #include <stdexcept>
 #include <string>
@@ -38,7 +38,7 @@ template <class On>
 struct compacts_on {
   static_assert(
       !requires { typename On::own_scan; },
-      "a device does it otherwise: include <clearance/compacted.cuh>, not the .hpp");
+      "a device does it otherwise: include <clearance/compacted.cuh>");
 
   template <point_source S>
   static void enqueue(const On& on, const S& source, vec3* points, std::uint32_t* numbers, std::uint32_t* count) {
@@ -66,8 +66,8 @@ compacted_points compacted(const On& on, const S& source) {
   auto points = on.template make_scratch<vec3>(source.size());
   auto numbers = on.template make_scratch<std::uint32_t>(source.size());
   auto count = on.template make_scratch<std::uint32_t>(1);
-  minimum::cloud_copies<On> copies;
-  compacted_async(on, minimum::readable_on<On>{on, copies}(source, 0), points.data(), numbers.data(), count.data());
+  frames::cloud_copies<On> copies;
+  compacted_async(on, frames::readable_on<On>{on, copies}(source, 0), points.data(), numbers.data(), count.data());
   const std::size_t n = on.copy_out(count.data(), 1)[0];
   return {on.copy_out(points.data(), n), on.copy_out(numbers.data(), n)};
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// How close does a robot come to the points while it moves? Runs on the host; include motion_clearance.cuh for a
-// device.
+// How close does a robot come to the points while it moves?
 
-#include <clearance/answer/margins.hpp>
-#include <clearance/min_distance_query.hpp>
+#include <clearance/frame/margins.hpp>
 #include <clearance/motion.hpp>
+#include <clearance/questions/min_distance.hpp>
 
 #include <queue>
 
@@ -90,27 +89,27 @@ inline void check(const moment& m, std::size_t parts) {
   }
 }
 
-/// `ask(poses, minima)` is min_distance_per_part.
+/// `ask(poses)` is min_distance_per_part.
 template <class Ask, motion Motion, class Clouds>
 motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> facts, const Motion& motion,
                                     const Clouds& clouds, const motion_clearance_options& options) {
   check(options);
   motion_clearance_result all;
   std::vector<asked_time> asked;
-  std::vector<part_minimum> minima(facts.size());
-  pairwise::frame_ahead ahead;
+  frames::frame_ahead ahead;
   double certain = infinity;  // at the times that were asked
   const auto look = [&](double time) {
     moment now = motion.at(time, facts);
     check(now, facts.size());
-    const min_distance_result r = ask(std::span<const Eigen::Isometry3d>(now.poses), std::span(minima));
+    const min_distance_per_part_result& found = ask(now.poses);
+    const min_distance_result& r = found.all;
     if (++all.queries == 1 || r.upper < all.upper || (r.upper == all.upper && time < all.time))
       all.upper = r.upper, all.time = time, all.nearest = r;
     if (r.part == none) return false;
     const frames::float_error error = ahead.look(facts, now.poses, clouds).error;
     asked_time a{time, {}, std::move(now.travels)};
     for (std::size_t k = 0; k < facts.size(); ++k) {
-      const double its = minimum::certain_distance(minima[k].distance, frames::slop(facts[k]), error);
+      const double its = minimum::certain_distance(found.parts[k].distance, frames::slop(facts[k]), error);
       a.lower.push_back(its > 0 ? its : 0);
     }
     certain = std::min(certain, piece_around(a, 0, 0).lower);
@@ -147,38 +146,26 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
 
 }  // namespace detail
 
-/// The same with your prepared query for the same robot, which keeps its memory.
-template <class On, class PartView, robot Robot, motion Motion, class Clouds>
-motion_clearance_result motion_clearance(min_distance_query<On, PartView>& query, const Robot& robot,
+/// The same with your prepared query about the same robot, which keeps its memory.
+template <class On, class PartView, class Robot, motion Motion, class Clouds>
+motion_clearance_result motion_clearance(query<min_distance_per_part, On, PartView>& ask, const Robot& robot,
                                          const Motion& motion, const Clouds& clouds,
                                          const motion_clearance_options& options = {}) {
-  static_assert(explain_clouds<Clouds>());
-  const auto ask = [&](std::span<const Eigen::Isometry3d> poses, std::span<part_minimum> minima) {
-    return query.per_part(poses, clouds, minima);
-  };
-  return detail::over_motion(ask, view_of(robot).facts, motion, clouds, options);
+  static_assert(explain_robot<Robot>() && explain_clouds<Clouds>());
+  const auto at = [&](std::span<const Eigen::Isometry3d> poses) -> decltype(auto) { return ask(poses, clouds); };
+  return detail::over_motion(at, detail::facts_of(robot), motion, clouds, options);
 }
 
 /// A lower bound of the clearance over a motion, never above it. Every part's least distance is asked at times where
-/// the bound is lowest; between them a part can come nearer only by as much as it moves. `clouds` as for min_distance;
-/// they are asked many times, so clouds for a device should be there. Throws std::invalid_argument as min_distance and
-/// the motion do, and if a tolerance or a margin is negative or not a number.
-template <class On, robot Robot, motion Motion, class Clouds>
+/// the bound is lowest; between them a part can come nearer only by as much as it moves. `clouds` as for `ask`; they are
+/// asked many times, so clouds for a device should be there. Throws std::invalid_argument as `ask` and the motion do,
+/// and if a tolerance or a margin is negative or not a number.
+template <class On, class Robot, motion Motion, class Clouds>
 motion_clearance_result motion_clearance(const On& on, const Robot& robot, const Motion& motion, const Clouds& clouds,
                                          const motion_clearance_options& options = {}) {
-  static_assert(explain_clouds<Clouds>());
-  using query_type = min_distance_query<On, typename decltype(view_of(robot))::part_type>;
-  if constexpr (std::is_constructible_v<query_type, const On&, const Robot&>) {
-    query_type query(on, robot);
-    return motion_clearance(query, robot, motion, clouds, options);
-  } else {
-    const auto ask = [&](std::span<const Eigen::Isometry3d> poses, std::span<part_minimum> minima) {
-      const auto [r, each] = min_distance_per_part(on, robot, poses, clouds);
-      std::copy(each.begin(), each.end(), minima.begin());
-      return r;
-    };
-    return detail::over_motion(ask, view_of(robot).facts, motion, clouds, options);
-  }
+  static_assert(detail::explain_asked<On, Robot, min_distance_per_part>());
+  query prepared(on, robot, min_distance_per_part{});
+  return motion_clearance(prepared, robot, motion, clouds, options);
 }
 
 }  // namespace clearance

@@ -40,6 +40,12 @@ struct part_witness {
 struct point_counts {
   std::uint64_t seen = 0, valid = 0;
   std::uint64_t dropped[drop_reasons] = {};  ///< Counts by drop_reason; [none] stays 0.
+
+  /// Adds those of other points.
+  CLEARANCE_HD void add(const point_counts& other) {
+    seen += other.seen, valid += other.valid;
+    for (int k = 0; k < drop_reasons; ++k) dropped[k] += other.dropped[k];
+  }
 };
 
 /// The clearance of a robot, its bracket and its witness; plain data that a kernel may write or read.

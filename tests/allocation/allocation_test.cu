@@ -5,15 +5,15 @@
 // wraps: cudaDeviceSynchronize cudaStreamSynchronize _Znwm
 #include "support/product_device.cuh"
 
-#include <clearance/distances.cuh>
-#include <clearance/distances_per_part.cuh>
-#include <clearance/in_collision.cuh>
-#include <clearance/min_distance_devices.cuh>
-#include <clearance/part_witnesses.cuh>
-#include <clearance/self_filter.cuh>
+#include <clearance/questions/distances.hpp>
+#include <clearance/device.cuh>
+#include <clearance/questions/distances_per_part.hpp>
+#include <clearance/questions/in_collision.hpp>
+#include <clearance/questions/part_witnesses.hpp>
+#include <clearance/questions/self_filter.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/within.cuh>
-#include <clearance/zones.cuh>
+#include <clearance/questions/within.hpp>
+#include <clearance/questions/zones.hpp>
 
 namespace allocation_test {
 
@@ -81,10 +81,10 @@ TEST_CASE("Prepared questions allocate nothing, and do not wait, after their fir
   const auto points = gpu.copy_in(all.span.bytes()), pixels = gpu.copy_in(all.raw.bytes());
   const placed here{all.span, s.cloud_pose}, cloud{all.span.at(points.data()), s.cloud_pose};
   const std::tuple clouds{cloud, placed{all.raw.at(pixels.data()), all.camera_pose}};
-  clearance::min_distance_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distance{});
   const clearance::devices twice{0, 0};
   const auto on_both = make_model<clearance::sphere>(s, {}, clearance::wrapped{}).on(twice);
-  clearance::min_distance_query together(twice, on_both);
+  clearance::query together(twice, on_both, clearance::min_distance{});
   clearance::pointwise::device_points<typename decltype(model)::view_type> each(gpu, model.view());
   std::vector<clearance::part_minimum> minima(model.size());
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
@@ -119,8 +119,8 @@ namespace {
 /// What a frame asks, made before anything is counted.
 struct pair_options {
   double near;
-  clearance::zones_options zones = {.thresholds = {near, 2 * near}};
-  clearance::self_filter_options own = {.padding = {near}};
+  clearance::zones zones = {.thresholds = {near, 2 * near}};
+  clearance::self_filter own = {.padding = {near}};
 };
 
 /// Every prepared question about pairs, about one cloud and about so many.
@@ -131,13 +131,13 @@ void ask_about_pairs(const scene<inner_sphere>& s, std::size_t clouds) {
   const auto points = gpu.copy_in(all.span.bytes());
   const placed cloud{all.span.at(points.data()), s.cloud_pose};
   const std::vector several(clouds, cloud);
-  clearance::zones_query zones(gpu, model);
-  clearance::within_query within(gpu, model);
-  clearance::in_collision_query in_collision(gpu, model);
-  clearance::distances_per_part_query per_part(gpu, model);
-  clearance::collect_query collect(gpu, model);
-  clearance::self_filter_query filter(gpu, model);
-  clearance::part_witnesses_query where(gpu, model);
+  clearance::query zones(gpu, model, clearance::zones{});
+  clearance::query within(gpu, model, clearance::within{});
+  clearance::query in_collision(gpu, model, clearance::in_collision{});
+  clearance::query per_part(gpu, model, clearance::distances_per_part{});
+  clearance::query collect(gpu, model, clearance::collect{});
+  clearance::query filter(gpu, model, clearance::self_filter{});
+  clearance::query where(gpu, model, clearance::part_witnesses{});
   const clearance::device_buffer<clearance::part_minimum> minima(model.size(), gpu.id);
   const clearance::device_buffer<clearance::part_witness> witnesses(model.size(), gpu.id);
   const clearance::device_buffer<clearance::point_counts> counts(1, gpu.id);
@@ -198,7 +198,7 @@ TEST_CASE("One call takes one block of memory in the order of its stream, and wa
   const auto points = gpu.copy_in(all.span.bytes());
   const placed cloud{all.span.at(points.data()), s.cloud_pose};
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
-  const auto ask = [&] { clearance::min_distance_async(gpu, model, s.poses, cloud, result.data()); };
+  const auto ask = [&] { clearance::enqueue(gpu, model, s.poses, cloud, clearance::min_distance{}, result.data()); };
   ask();
   const counted before;
   ask();
@@ -206,7 +206,7 @@ TEST_CASE("One call takes one block of memory in the order of its stream, and wa
   CHECK(waits == before.before_waits);
   const clearance::device_buffer<clearance::collision_result> found(1, gpu.id);
   const auto collide = [&] {
-    clearance::in_collision_async(gpu, model, s.poses, cloud, std::vector{0.1}, found.data());
+    clearance::enqueue(gpu, model, s.poses, cloud, clearance::in_collision{{std::vector{0.1}}}, found.data());
   };
   collide();
   const counted collided;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // expected-error: a device keeps its memory otherwise: include the question's .cuh header, not the .hpp
 #include <clearance/bvh/build.hpp>
-#include <clearance/part_witnesses.hpp>
+#include <clearance/questions/part_witnesses.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -14,5 +14,5 @@ std::size_t ask(const std::vector<clearance::inner_sphere>& spheres, const std::
   const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(spheres))}};
   const std::vector<clearance::part_minimum> minima(1);
   const std::vector<Eigen::Isometry3d> poses(1, Eigen::Isometry3d::Identity());
-  return clearance::part_witnesses(card{}, robot, poses, points, minima).size();
+  return clearance::ask(card{}, robot, poses, points, clearance::part_witnesses{minima}).size();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // expected-error: a device has a scan of its own: include <clearance/min_distance.cuh>, not the .hpp
 #include <clearance/bvh/build.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -12,5 +12,5 @@ struct card : clearance::host {
 
 clearance::real ask(const std::vector<clearance::inner_sphere>& spheres, const std::vector<clearance::vec3>& points) {
   const auto part = clearance::make_part(clearance::build<clearance::sphere>(spheres));
-  return clearance::min_distance(card{}, part, Eigen::Isometry3d::Identity(), points).distance;
+  return clearance::ask(card{}, part, Eigen::Isometry3d::Identity(), points, clearance::min_distance{}).distance;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // expected-error: a device has a scan of its own: include <clearance/distances.cuh>, not the .hpp
-#include <clearance/distances.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -12,6 +12,5 @@ struct card : clearance::host {
 
 clearance::point_distances ask(const std::vector<std::vector<clearance::inner_sphere>>& bodies,
                                const std::vector<clearance::vec3>& points) {
-  return clearance::distances(card{}, clearance::make_model<clearance::sphere>(bodies),
-                              std::vector{Eigen::Isometry3d::Identity()}, points);
+  return clearance::ask(card{}, clearance::make_model<clearance::sphere>(bodies), std::vector{Eigen::Isometry3d::Identity()}, points, clearance::distances{});
 }

@@ -2,12 +2,12 @@
 // The least that a point source, an answer and a part must offer to the operations; and a foreign backend.
 #include <clearance/backend/host.hpp>
 #include <clearance/bvh/build.hpp>
-#include <clearance/collect.hpp>
-#include <clearance/distances.hpp>
-#include <clearance/min_distance.hpp>
-#include <clearance/min_support.hpp>
+#include <clearance/questions/collect.hpp>
+#include <clearance/questions/distances.hpp>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
-#include <clearance/self_filter.hpp>
+#include <clearance/questions/self_filter.hpp>
 #include <clearance/volume/sphere.hpp>
 
 namespace {
@@ -45,20 +45,20 @@ static_assert(clearance::backend<in_line>);
 int main() {
   const std::vector<clearance::inner_sphere> ball = {{{0, 0, 0}, 1}};
   const auto part = clearance::make_part(clearance::build<clearance::sphere>(ball));
-  const auto r = clearance::min_distance(clearance::host{}, part, Eigen::Isometry3d::Identity(), least_source{});
-  const auto same = clearance::min_distance(in_line{}, part, Eigen::Isometry3d::Identity(), least_source{});
+  const auto r = clearance::ask(clearance::host{}, part, Eigen::Isometry3d::Identity(), least_source{}, clearance::min_distance{});
+  const auto same = clearance::ask(in_line{}, part, Eigen::Isometry3d::Identity(), least_source{}, clearance::min_distance{});
   const clearance::model robot{std::vector{part}};
   const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()};
   int pairs = 0, in_line_pairs = 0;
-  const auto seen = clearance::collect(clearance::host{1}, robot, poses, least_source{}, least_answer{&pairs});
-  clearance::collect(in_line{}, robot, poses, least_source{}, least_answer{&in_line_pairs});
-  const auto each = clearance::distances(in_line{}, robot, poses, least_source{}, {.d_max = 2});
+  const auto seen = clearance::ask(clearance::host{1}, robot, poses, least_source{}, clearance::collect{least_answer{&pairs}});
+  clearance::ask(in_line{}, robot, poses, least_source{}, clearance::collect{least_answer{&in_line_pairs}});
+  const auto each = clearance::ask(in_line{}, robot, poses, least_source{}, clearance::distances{.d_max = 2});
   if (each.distance != std::vector<float>{1, 2, clearance::infinity} || each.counts.valid != 3) return 2;
   const auto rest = clearance::min_distance_filtered(in_line{}, robot, poses, least_source{}, {.padding = {1.5}});
   if (rest.rest.distance != 2 || rest.filter.counts.own != 1 || rest.filter.rest.size() != 2) return 3;
-  const auto nearest = clearance::nearest_k(in_line{}, robot, poses, least_source{}, 2);
+  const auto nearest = clearance::ask(in_line{}, robot, poses, least_source{}, clearance::nearest_k{2});
   if (nearest.of(0)[1].distance != 2) return 4;
-  if (clearance::min_distance_supported(in_line{}, robot, poses, least_source{}, {.min_points = 3, .radius = 1})
+  if (clearance::ask(in_line{}, robot, poses, least_source{}, clearance::min_distance_supported{.min_points = 3, .radius = 1})
           .distance != 2)
     return 5;
   return r.distance == 1 && same.distance == 1 && pairs == 2 && in_line_pairs == 2 && seen.valid == 3 ? 0 : 1;

@@ -7,8 +7,8 @@
 
 #include <clearance/io/jacobian.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance.hpp>
-#include <clearance/part_witnesses.hpp>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/questions/part_witnesses.hpp>
 #include <clearance/volume/sphere.hpp>
 
 namespace jacobian_test {
@@ -38,13 +38,13 @@ void against_differences() {
       return all;
     };
     const auto here = poses(q);
-    const auto minima = min_distance_per_part(host{}, model, here, points).second;
-    const auto witnesses = part_witnesses(host{}, model, here, points, minima);
+    const auto minima = ask(host{}, model, here, points, min_distance_per_part{}).second;
+    const auto witnesses = ask(host{}, model, here, points, part_witnesses{minima});
     for (std::size_t i = 0; i < q.size(); ++i) {
       const auto ask = [&](double step) {
         auto there = q;
         there[i] += step;
-        return min_distance_per_part(host{}, model, poses(there), points).second;
+        return ask(host{}, model, poses(there), points, min_distance_per_part{}).second;
       };
       const auto before = ask(-h), after = ask(h);
       for (std::size_t k = 0; k < minima.size(); ++k) {

@@ -81,7 +81,7 @@ TEST_CASE("No time of a joint motion has less than its clearance") {
     const auto points = d.points(30, 2);
     const joint_motion motion(tree, all_links(tree), from, to);
     const auto r = motion_clearance(host{}, model, motion, points, {.tolerance = 0.01, .most_queries = 20000});
-    min_distance_query query(host{}, model);
+    query query(host{}, model, min_distance{});
     double least = clearance::infinity;
     for (int i = 0; i <= 1000; ++i) {
       std::vector<double> q;

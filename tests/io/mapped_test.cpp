@@ -9,7 +9,7 @@
 #include <clearance/chunked_query.hpp>
 #include <clearance/io/mapped_cloud.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <sys/resource.h>
@@ -51,7 +51,7 @@ template <class Cloud>
 void same(Cloud cloud, const std::vector<vec3>& points) {
   chunked in_chunks(std::move(cloud), 5000);
   clearance::chunked_query query(host{}, arm());
-  const auto expected = clearance::min_distance(host{}, arm(), poses, points);
+  const auto expected = clearance::ask(host{}, arm(), poses, points, clearance::min_distance{});
   CHECK(same_result(query(poses, in_chunks), expected));
   CHECK(same_result(query(poses, in_chunks), expected));
 }
@@ -173,7 +173,7 @@ TEST_CASE("A file that changes its size, and a disk that fails, are told, and th
   const scratch_file raw(".raw", bytes_of(points));
   chunked cloud(clearance::io::map_points(raw.path), 5000);
   clearance::chunked_query query(host{}, arm());
-  const auto expected = clearance::min_distance(host{}, arm(), poses, points);
+  const auto expected = clearance::ask(host{}, arm(), poses, points, clearance::min_distance{});
   const auto ask = [&] { query(poses, cloud); };
   std::filesystem::resize_file(raw.path, points.size() * 12 - 12);
   CHECK(refusal(ask) == raw.path + ": had 360132 bytes when it was opened, and has 360120 now");

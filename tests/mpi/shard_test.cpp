@@ -75,18 +75,18 @@ std::string refused(F f) {
 template <class Model, class Mine, class Whole>
 void ask_often(const Model& model, std::vector<Eigen::Isometry3d> poses, const Mine& mine, const Whole& whole,
                verdict& v, const std::string& what) {
-  clearance::min_distance_query query(on, model);
+  clearance::query query(on, model, clearance::min_distance{});
   std::vector<part_minimum> minima(poses.size());
   for (int round = 0; round < 3; ++round) {
-    const auto expected = min_distance(host{1}, model, poses, whole);
+    const auto expected = ask(host{1}, model, poses, whole, min_distance{});
     v.require(same_result(query(poses, mine), expected), what, ", round ", round, ": another answer");
-    v.require(same_result(min_distance(on, model, poses, mine), expected), what, ", round ", round,
+    v.require(same_result(ask(on, model, poses, mine, min_distance{}), expected), what, ", round ", round,
               ": another answer of one call");
-    const auto [robot, each] = min_distance_per_part(host{1}, model, poses, whole);
+    const auto [robot, each] = ask(host{1}, model, poses, whole, min_distance_per_part{});
     v.require(same_result(query.per_part(poses, mine, minima), robot), what, ", round ", round,
               ": another answer by parts");
     v.require(std::ranges::equal(minima, each, same_minimum), what, ", round ", round, ": some part's minimum differs");
-    const auto [again, theirs] = min_distance_per_part(on, model, poses, mine);
+    const auto [again, theirs] = ask(on, model, poses, mine, min_distance_per_part{});
     v.require(same_result(again, robot) && std::ranges::equal(theirs, each, same_minimum), what, ", round ", round,
               ": one call differs by parts");
     poses[0].translation().x() += 0.1;
@@ -158,10 +158,10 @@ TEST_CASE("A rank that throws ends all with its sentence, and all can ask again"
       std::vector<std::vector<inner_sphere>>{random_primitives<inner_sphere>(d, 30, 0.3, 0.1)});
   const auto points = d.points(500, 2);
   const std::vector<Eigen::Isometry3d> poses = {shifted(0, 0, 0)};
-  clearance::min_distance_query query(on, model);
+  clearance::query query(on, model, clearance::min_distance{});
   const int last = ranks() - 1;
   const auto mine = piece_of(point_span(points), std::size_t(rank()), std::size_t(ranks()));
-  const auto expected = min_distance(host{1}, model, poses, points);
+  const auto expected = ask(host{1}, model, poses, points, min_distance{});
 
   mpi::question asked(MPI_COMM_WORLD);
   asked.agree(1, poses, mine);

@@ -3,7 +3,7 @@
 #include "real/robots.hpp"
 
 #include <clearance/io/cloud_file.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 namespace frames_test {
@@ -32,8 +32,8 @@ TEST_CASE("A depth image and the cloud of the same frame agree to 1e-6 m, and in
     const auto part = clearance::make_part(clearance::build<clearance::sphere>(random_spheres(d, 500, 0.2, 0.05)));
     for (const double z : {0.2, 0.9, 3.0}) {
       const auto pose = shifted(0, 0, z);
-      const auto a = clearance::min_distance(clearance::host{}, part, pose, image),
-                 b = clearance::min_distance(clearance::host{}, part, pose, cloud);
+      const auto a = clearance::ask(clearance::host{}, part, pose, image, clearance::min_distance{}),
+                 b = clearance::ask(clearance::host{}, part, pose, cloud, clearance::min_distance{});
       CHECK(std::abs(a.distance - b.distance) <= 1e-6f);
       CHECK(a.valid == b.valid);
       CHECK(a.state == b.state);

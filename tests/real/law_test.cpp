@@ -9,7 +9,7 @@
 #include <clearance/io/mesh.hpp>
 #include <clearance/io/robot.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance_query.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/solid/mesh_solid.hpp>
@@ -93,7 +93,7 @@ void check(const clearance::triangle_mesh& mesh, const std::string& name, census
   ++all.solids;
   const clearance::packing spheres = clearance::pack(*solid, {.count = spheres_a_solid});
   const clearance::model model{std::vector{clearance::make_part<clearance::sphere>(spheres)}};
-  clearance::min_distance_query ask(clearance::host{.threads = 1}, model);
+  clearance::query ask(clearance::host{.threads = 1}, model, clearance::min_distance{});
   const std::vector<Eigen::Isometry3d> pose = {Eigen::Isometry3d::Identity()};
   const auto law = [&](const Vector3d& at, bool brute) {
     const vec3 p{clearance::to_float(at.x()), clearance::to_float(at.y()), clearance::to_float(at.z())};

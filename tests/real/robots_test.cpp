@@ -45,7 +45,7 @@ template <class Model>
 answer ask(const Model& model, const std::vector<Eigen::Isometry3d>& poses, const seen_frame& frame,
            const Eigen::Isometry3d& camera) {
   return frame.with_source(
-      [&](const auto& source) { return min_distance_per_part(host{}, model, poses, placed{source, camera}); });
+      [&](const auto& source) { return ask(host{}, model, poses, placed{source, camera}, min_distance_per_part{}); });
 }
 
 void require_same(const answer& a, const answer& b, verdict& v, const std::string& what) {
@@ -138,10 +138,10 @@ TEST_CASE("A real robot before every 997th pixel of a real frame is brute force,
       });
       const auto poses = robot.poses(shifted(0, 0, 0), 0.4);
       const auto expected = brute_force(parts, poses, {brute_cloud(clearance::point_span(some), camera)});
-      const auto [r, minima] = min_distance_per_part(host{}, model, poses, placed{clearance::point_span(some), camera});
+      const auto [r, minima] = ask(host{}, model, poses, placed{clearance::point_span(some), camera}, min_distance_per_part{});
       require_equal(r, expected, v, frame.name);
       require_equal(minima, expected, v, frame.name);
-      require_equal(clearance::min_distance(host{}, model, poses, placed{clearance::point_span(some), camera}),
+      require_equal(clearance::ask(host{}, model, poses, placed{clearance::point_span(some), camera}, clearance::min_distance{}),
                     expected, v, frame.name);
     }
 }

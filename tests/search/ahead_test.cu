@@ -3,7 +3,8 @@
 // every bit.
 #include "support/product_device.cuh"
 
-#include <clearance/min_distance_query.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 #include <clearance/points/ray_image.hpp>
 #include <clearance/points/slice.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -52,8 +53,8 @@ TEST_CASE("Points that are read ahead are the host's, from every kind of source"
   const auto same = [&](const auto& here, const auto& there, const std::string& what) {
     v.require(there.fetches(), what, ": it does not fetch");
     const auto pose = shifted(0.01, 0.02, 0);
-    const auto expected = clearance::min_distance(host{}, on_host, s.poses, placed{here, pose});
-    clearance::min_distance_query query(gpu, model);
+    const auto expected = clearance::ask(host{}, on_host, s.poses, placed{here, pose}, clearance::min_distance{});
+    clearance::query query(gpu, model, clearance::min_distance{});
     for (const char* when : {", cold", ", warm"})
       v.require(same_result(query(s.poses, placed{there, pose}), expected), what + when,
                 ": differs from the host's result");

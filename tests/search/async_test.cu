@@ -42,7 +42,7 @@ struct robot_and_cloud {
   scene<inner_sphere> s = scenes<inner_sphere>()[1];
   decltype(make_model<clearance::sphere>(s, {}, clearance::wrapped{})) on_host =
       make_model<clearance::sphere>(s, {}, clearance::wrapped{});
-  min_distance_result expected = min_distance(clearance::host{}, on_host, s.poses, point_span(s.points));
+  min_distance_result expected = ask(clearance::host{}, on_host, s.poses, point_span(s.points), min_distance{});
 };
 
 }  // namespace
@@ -62,7 +62,7 @@ TEST_CASE(
     const answer result(pinned);
     const auto enqueue = [&] {
       auto poses = given.s.poses;
-      min_distance_async(gpu, model, poses, cloud, result.at);
+      enqueue(gpu, model, poses, cloud, min_distance{}, result.at);
       brake<<<1, 1, 0, stream.handle>>>(result.at, speed);
       check(cudaGetLastError());
       for (auto& pose : poses) pose.setIdentity();  // what was passed may go
@@ -89,11 +89,10 @@ TEST_CASE("Part minima arrive in device memory too") {
   const auto points = gpu.copy_in(std::span<const vec3>(given.s.points));
   const answer result(true);
   auto minima = gpu.make_scratch<clearance::part_minimum>(model.size());
-  clearance::min_distance_per_part_async(gpu, model, given.s.poses, point_span(points.data(), points.size()), result.at,
-                                         minima.data());
+  clearance::enqueue(gpu, model, given.s.poses, point_span(points.data(), points.size()), clearance::min_distance_per_part{}, {result.at, minima.data()});
   const auto got = gpu.copy_out(minima.data(), minima.size());
   const auto [r, expected] =
-      clearance::min_distance_per_part(clearance::host{}, given.on_host, given.s.poses, point_span(given.s.points));
+      clearance::ask(clearance::host{}, given.on_host, given.s.poses, point_span(given.s.points), clearance::min_distance_per_part{});
   CHECK(same_result(result.read(), r));
   REQUIRE(got.size() == expected.size());
   for (std::size_t k = 0; k < got.size(); ++k) CHECK(same_bytes(got[k], expected[k]));
@@ -105,13 +104,12 @@ TEST_CASE("Several streams at once, one of them held, do not disturb one another
   const auto model = given.on_host.on(device{});
   const auto points = device{}.copy_in(std::span<const vec3>(given.s.points));
   const answer results[3] = {answer(true), answer(false), answer(true)};
-  min_distance_async(device{}, model, given.s.poses, point_span(points.data(), points.size()), results[0].at);
+  enqueue(device{}, model, given.s.poses, point_span(points.data(), points.size()), min_distance{}, results[0].at);
   check(cudaDeviceSynchronize());
   gate held(streams[0].handle);
   for (int round = 0; round < 20; ++round)
     for (int k = 0; k < 3; ++k)
-      min_distance_async(device{0, streams[k].handle}, model, given.s.poses, point_span(points.data(), points.size()),
-                         results[k].at);
+      enqueue(device{0, streams[k].handle}, model, given.s.poses, point_span(points.data(), points.size()), min_distance{}, results[k].at);
   check(cudaStreamSynchronize(streams[1].handle));
   check(cudaStreamSynchronize(streams[2].handle));
   CHECK(cudaStreamQuery(streams[0].handle) == cudaErrorNotReady);
@@ -124,15 +122,15 @@ TEST_CASE("Points may lie in pageable, pinned or device memory") {
   const robot_and_cloud given;
   const device gpu;
   const auto model = given.on_host.on(gpu);
-  CHECK(same_result(min_distance(gpu, model, given.s.poses, given.s.points), given.expected));
+  CHECK(same_result(ask(gpu, model, given.s.poses, given.s.points, min_distance{}), given.expected));
   vec3* pinned = nullptr;
   check(cudaMallocHost(&pinned, given.s.points.size() * sizeof(vec3)));
   std::copy(given.s.points.begin(), given.s.points.end(), pinned);
   CHECK(
-      same_result(min_distance(gpu, model, given.s.poses, point_span(pinned, given.s.points.size())), given.expected));
+      same_result(ask(gpu, model, given.s.poses, point_span(pinned, given.s.points.size()), min_distance{}), given.expected));
   cudaFreeHost(pinned);
   const auto there = gpu.copy_in(std::span<const vec3>(given.s.points));
-  CHECK(same_result(min_distance(gpu, model, given.s.poses, point_span(there.data(), there.size())), given.expected));
+  CHECK(same_result(ask(gpu, model, given.s.poses, point_span(there.data(), there.size()), min_distance{}), given.expected));
 }
 
 TEST_CASE("Every device works, whichever is current, and the current one stays") {
@@ -145,7 +143,7 @@ TEST_CASE("Every device works, whichever is current, and the current one stays")
       {
         const device gpu{used};
         const auto model = given.on_host.on(gpu);
-        CHECK(same_result(min_distance(gpu, model, given.s.poses, given.s.points), given.expected));
+        CHECK(same_result(ask(gpu, model, given.s.poses, given.s.points, min_distance{}), given.expected));
       }
       int now = -1;
       check(cudaGetDevice(&now));
@@ -177,7 +175,7 @@ TEST_CASE(
     std::size_t limit = 0;
     check(cudaDeviceGetLimit(&limit, cudaLimitStackSize));
     try {
-      min_distance(clearance::plain{gpu, clearance::recursive{}}, model, poses, points);
+      ask(clearance::plain{gpu, clearance::recursive{}}, model, poses, points, min_distance{});
       FAIL("not refused");
     } catch (const std::invalid_argument& e) {
       CHECK(std::string(e.what()).find("cudaLimitStackSize") != std::string::npos);
@@ -186,10 +184,10 @@ TEST_CASE(
     std::size_t after = 0;
     check(cudaDeviceGetLimit(&after, cudaLimitStackSize));
     CHECK(after == limit);
-    CHECK(min_distance(clearance::plain{gpu, clearance::stack{}}, model, poses, points).primitive == 57);  // needs none
+    CHECK(ask(clearance::plain{gpu, clearance::stack{}}, model, poses, points, min_distance{}).primitive == 57);  // needs none
   }
   const deep_stack enough(clearance::recursive::device_stack(tree.view().depth()));
-  const auto r = min_distance(clearance::plain{gpu, clearance::recursive{}}, model, poses, points);
+  const auto r = ask(clearance::plain{gpu, clearance::recursive{}}, model, poses, points, min_distance{});
   CHECK(r.primitive == 57);
   CHECK(r.distance == 0.75f);
   check(cudaDeviceSynchronize());
@@ -202,9 +200,9 @@ TEST_CASE("A tree too deep for a stack is refused before anything is launched") 
   const clearance::model_view<view> model{nullptr, {&facts, 1}, 64, 2};
   const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()};
   CHECK_THROWS_AS(
-      min_distance(clearance::plain{gpu, clearance::near_first{}}, model, poses, std::vector<vec3>{{1, 2, 3}}),
+      ask(clearance::plain{gpu, clearance::near_first{}}, model, poses, std::vector<vec3>{{1, 2, 3}}, min_distance{}),
       std::invalid_argument);
-  CHECK_THROWS_AS(min_distance(clearance::plain{gpu, clearance::stack{}}, model, poses, std::vector<vec3>{{1, 2, 3}}),
+  CHECK_THROWS_AS(ask(clearance::plain{gpu, clearance::stack{}}, model, poses, std::vector<vec3>{{1, 2, 3}}, min_distance{}),
                   std::invalid_argument);
 }
 
@@ -217,7 +215,7 @@ TEST_CASE("A model may go as soon as its queries are enqueued") {
   for (int round = 0; round < 10; ++round) {
     {
       const auto model = given.on_host.on(gpu);
-      min_distance_async(gpu, model, given.s.poses, point_span(points.data(), points.size()), result.at);
+      enqueue(gpu, model, given.s.poses, point_span(points.data(), points.size()), min_distance{}, result.at);
     }  // giving memory back waits
     check(cudaStreamSynchronize(stream.handle));
     CHECK(same_result(result.read(), given.expected));
@@ -231,9 +229,9 @@ TEST_CASE("Foreign boxes and volumes of one's own work in kernels") {
     const auto expected = brute_force(brute_parts(s), s.poses, {brute_cloud(point_span(s.points), s.cloud_pose)});
     const clearance::placed cloud{point_span(s.points), s.cloud_pose};
     const auto boxes = make_model<Eigen::AlignedBox3f>(s, {}, clearance::wrapped{}).on(gpu);
-    require_equal(min_distance(gpu, boxes, s.poses, cloud), expected, v, s.name);
+    require_equal(ask(gpu, boxes, s.poses, cloud, min_distance{}), expected, v, s.name);
     const auto slabs = make_model<kdop14>(s, {.width = 2}, clearance::wrapped{}).on(gpu);
-    require_equal(min_distance(gpu, slabs, s.poses, cloud), expected, v, s.name);
+    require_equal(ask(gpu, slabs, s.poses, cloud, min_distance{}), expected, v, s.name);
   }
 }
 
@@ -249,8 +247,8 @@ TEST_CASE("Clouds of different kinds share one search on the device too") {
     const auto expected = brute_force(brute_parts(s), s.poses,
                                       {brute_cloud(all.raw, all.camera_pose), brute_cloud(all.span, s.cloud_pose),
                                        brute_cloud(all.span, s.cloud_pose)});
-    require_equal(min_distance(gpu, model, s.poses, clouds), expected, v, s.name);
-    require_equal(min_distance(clearance::plain{gpu, clearance::near_first{}}, model, s.poses, clouds), expected, v,
+    require_equal(ask(gpu, model, s.poses, clouds, min_distance{}), expected, v, s.name);
+    require_equal(ask(clearance::plain{gpu, clearance::near_first{}}, model, s.poses, clouds, min_distance{}), expected, v,
                   s.name + ", plain");
   }
 }

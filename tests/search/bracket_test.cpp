@@ -20,7 +20,7 @@ auto unit_ball(real gap, real tolerance = 0) {
                               tolerance);
 }
 auto ask(real gap, real x, real tolerance = 0) {
-  return min_distance(host{}, unit_ball(gap, tolerance), Eigen::Isometry3d::Identity(), std::vector<vec3>{{x, 0, 0}});
+  return ask(host{}, unit_ball(gap, tolerance), Eigen::Isometry3d::Identity(), std::vector<vec3>{{x, 0, 0}}, min_distance{});
 }
 
 /// A cube of half edge 1 as triangles, and its inside.
@@ -109,26 +109,26 @@ TEST_CASE("The lower end is the least over all parts, not the winner's") {
   const std::vector<Eigen::Isometry3d> poses = {shifted(-2, 0, 0), shifted(2.25, 0, 0)};
   const std::vector<vec3> points = {{0, 0, 0}};
   // 1 to the first part, 1.25 to the second, which may reach as far as 0.375.
-  const auto [each, minima] = min_distance_per_part(host{}, robot, poses, points);
+  const auto [each, minima] = ask(host{}, robot, poses, points, min_distance_per_part{});
   CHECK(each.part == 0);
   CHECK(each.distance == 1);
   CHECK(each.lower == Approx(0.375).epsilon(1e-4));
   CHECK(minima[1].distance == 1.25f);
   // Without minima a part, the largest gap counts.
-  const auto shared = min_distance(host{}, robot, poses, points);
+  const auto shared = ask(host{}, robot, poses, points, min_distance{});
   CHECK(shared.part == 0);
   CHECK(shared.lower == Approx(0.125).epsilon(1e-3));
   CHECK(shared.lower <= each.lower);
   // One part without a certificate spoils it for all.
   const auto half = clearance::model(std::vector{unit_ball(0.125f), unit_ball(infinity)});
-  CHECK(min_distance_per_part(host{}, half, poses, points).first.lower == 0);
-  CHECK(min_distance(host{}, half, poses, points).lower == 0);
+  CHECK(ask(host{}, half, poses, points, min_distance_per_part{}).first.lower == 0);
+  CHECK(ask(host{}, half, poses, points, min_distance{}).lower == 0);
 }
 
 TEST_CASE("No valid point is no data, never far away") {
   for (const auto& points : {std::vector<vec3>{}, std::vector<vec3>(40, {0, clearance::not_a_number, 0}),
                              std::vector<vec3>(3, {0, 1e30f, 0})}) {
-    const auto r = min_distance(host{}, unit_ball(0), Eigen::Isometry3d::Identity(), points);
+    const auto r = ask(host{}, unit_ball(0), Eigen::Isometry3d::Identity(), points, min_distance{});
     CHECK(r.state == state::no_data);
     CHECK(r.distance != r.distance);
     CHECK(r.lower == 0);
@@ -144,7 +144,7 @@ TEST_CASE("No valid point is no data, never far away") {
 
 TEST_CASE("A valid point inside a triangle part makes its distance 0, and certainly a collision if it is well inside") {
   const auto ask = [](vec3 p, real tolerance = 0) {
-    return min_distance(host{}, cube_part(tolerance), Eigen::Isometry3d::Identity(), std::vector<vec3>{{5, 0, 0}, p});
+    return ask(host{}, cube_part(tolerance), Eigen::Isometry3d::Identity(), std::vector<vec3>{{5, 0, 0}, p}, min_distance{});
   };
   const auto deep = ask({0.5f, 0.25f, 0});
   CHECK(deep.distance == 0);
@@ -182,8 +182,8 @@ TEST_CASE("Points inside triangle parts are brute force too, witness and ties in
     for (std::size_t k = 0; k < 40; ++k)
       points.push_back({real(d.below(9)) / 2, real(d.below(5)) / 2 - 1, real(d.below(5)) / 2 - 1});
     const auto expected = brute_force(parts, poses, {brute_cloud(clearance::point_span(points))});
-    require_equal(min_distance(host{}, robot, poses, points), expected, v, "inside");
-    const auto [r, minima] = min_distance_per_part(host{}, robot, poses, points);
+    require_equal(ask(host{}, robot, poses, points, min_distance{}), expected, v, "inside");
+    const auto [r, minima] = ask(host{}, robot, poses, points, min_distance_per_part{});
     require_equal(r, expected, v, "inside, per part");
     require_equal(minima, expected, v, "inside");
     // A collision exactly if some point is inside by more than rounding, whichever point is the witness.

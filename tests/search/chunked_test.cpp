@@ -63,7 +63,7 @@ TEST_CASE("Records that are read have the answer of those in memory, and a failu
   ask_often(host{}, model, arm_poses, in_chunks, point_span(cloud), shifted(0, 0, 0), v, "read");
   CHECK(most == 8192 * sizeof(vec3));
 
-  const auto expected = min_distance(host{}, model, arm_poses, cloud);
+  const auto expected = ask(host{}, model, arm_poses, cloud, min_distance{});
   clearance::chunked_query query(host{}, model);
   for (const int k : {0, 1, 12}) {
     in_chunks.forget();
@@ -153,7 +153,7 @@ TEST_CASE("A cloud that loads what was not asked for is refused, and one that gr
     }
   };
   chunked in_chunks(growing{&points, &there});
-  const auto expected = min_distance(host{}, model, arm_poses, point_span(points.data(), 10000));
+  const auto expected = ask(host{}, model, arm_poses, point_span(points.data(), 10000), min_distance{});
   for (int round = 0; round < 2; ++round, there = 20000) CHECK(same_result(query(arm_poses, in_chunks), expected));
 }
 
@@ -177,7 +177,7 @@ TEST_CASE("More points than numbers are refused, and so are poses that are none"
     Eigen::Isometry3d skewed = arm_poses[0];
     skewed.linear() *= 1.01;
     CHECK_THROWS_AS(query(arm_poses, in_chunks, skewed), std::invalid_argument);
-    CHECK(same_result(query(arm_poses, in_chunks), min_distance(host{}, model, arm_poses, cloud)));
+    CHECK(same_result(query(arm_poses, in_chunks), ask(host{}, model, arm_poses, cloud, min_distance{})));
   }
 }
 

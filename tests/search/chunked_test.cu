@@ -4,7 +4,8 @@
 #include "support/chunked.hpp"
 #include "support/product_device.cuh"
 
-#include <clearance/chunked_query.cuh>
+#include <clearance/chunked_query.hpp>
+#include <clearance/device.cuh>
 
 #include <cstring>
 
@@ -54,7 +55,7 @@ TEST_CASE("From pageable, pinned and device memory, and from a reader that may f
         e.forget(), reads = 0, fails_at = k;
         CHECK_THROWS_WITH(query(arm_poses, e), "the link is down");
         fails_at = -1;
-        v.require(same_result(query(arm_poses, e), min_distance(host{}, robot, arm_poses, cloud)), what,
+        v.require(same_result(query(arm_poses, e), ask(host{}, robot, arm_poses, cloud, min_distance{})), what,
                   ": another answer after a failure");
         const std::uint64_t all = query.loaded();
         query(arm_poses, e);

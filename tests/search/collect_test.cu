@@ -3,7 +3,8 @@
 #include "support/product_device.cuh"
 #include "support/tallied.hpp"
 
-#include <clearance/collect.cuh>
+#include <clearance/questions/collect.hpp>
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
@@ -22,10 +23,10 @@ void same_pairs(const Model& on_host, const std::vector<Eigen::Isometry3d>& pose
   const device gpu;
   const auto model = on_host.on(gpu);
   tally_of_pairs expected;
-  const auto counts = clearance::collect(host{}, on_host, poses, clouds, tallied{farthest, expected.words});
+  const auto counts = clearance::ask(host{}, on_host, poses, clouds, clearance::collect{tallied{farthest, expected.words}});
   auto words = gpu.make_scratch<unsigned long long>(2);
   gpu.stage(std::span<const unsigned long long>(tally_of_pairs{}.words), words.data());
-  const auto seen = clearance::collect(gpu, model, poses, clouds, tallied{farthest, words.data()});
+  const auto seen = clearance::ask(gpu, model, poses, clouds, clearance::collect{tallied{farthest, words.data()}});
   const auto found = gpu.copy_out(words.data(), 2);
   const std::string all = what + ", within " + std::to_string(farthest);
   v.require(found[0] == expected.words[0] && found[1] == expected.words[1], all, ": other pairs than the host's, ",

@@ -4,7 +4,8 @@
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
-#include <clearance/in_collision.cuh>
+#include <clearance/questions/in_collision.hpp>
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -31,8 +32,8 @@ TEST_CASE("On a device a point within a margin is the host's, in all scenes") {
     const auto there = model.on(gpu);
     const auto two = two_clouds(s);
     for (const double margin : {-0.1, 0.0, 1e-7, 0.02, 0.3})
-      v.require(same(in_collision(gpu, there, s.poses, two, margin * s.size),
-                     in_collision(host{}, model, s.poses, two, margin * s.size)),
+      v.require(same(ask(gpu, there, s.poses, two, in_collision{{margin * s.size}}),
+                     ask(host{}, model, s.poses, two, in_collision{{margin * s.size}})),
                 s.name, ", margin ", margin, ": differs from the host's");
   }
 }
@@ -43,9 +44,9 @@ TEST_CASE("In a crowd the first point is found again and again") {
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto there = model.on(gpu);
   for (const double margin : {0.0, 0.001, 0.3}) {
-    const auto expected = in_collision(host{}, model, s.poses, point_span(s.points), margin);
+    const auto expected = ask(host{}, model, s.poses, point_span(s.points), in_collision{{margin}});
     CHECK(expected.state == state::collision);
-    for (int k = 0; k < 5; ++k) CHECK(same(in_collision(gpu, there, s.poses, point_span(s.points), margin), expected));
+    for (int k = 0; k < 5; ++k) CHECK(same(ask(gpu, there, s.poses, point_span(s.points), in_collision{{margin}}), expected));
   }
 }
 
@@ -58,10 +59,10 @@ TEST_CASE("A prepared question of collision says on a device in every frame what
     moving_frames f(parts, 123);
     const auto model = f.model();
     const auto there = model.on(gpu);
-    clearance::in_collision_query query(gpu, there);
+    clearance::query query(gpu, there, clearance::in_collision{});
     const auto result = room_on<clearance::collision_result>(gpu, 1);
     const auto look = [&](const std::vector<double>& margins, const std::string& when) {
-      const auto expected = in_collision(host{}, model, f.s.poses, f.here(), margins);
+      const auto expected = ask(host{}, model, f.s.poses, f.here(), in_collision{{margins}});
       v.require(same(gpu.copy_out(result)[0], expected), parts, " parts, ", when,
                 ", enqueued: differs from the host's");
       ++states[int(expected.state)];

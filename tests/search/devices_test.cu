@@ -5,7 +5,7 @@
 #include "support/product_device.cuh"
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance_devices.cuh>
+#include <clearance/device.cuh>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -52,11 +52,11 @@ template <class Model, class Clouds, class Same>
 void ask_often(const devices& on, const Model& on_host, std::vector<Eigen::Isometry3d> poses, const Clouds& clouds,
                const Same& same, verdict& v, const std::string& what) {
   const auto model = on_host.on(on);
-  clearance::min_distance_query query(on, model);
+  clearance::query query(on, model, clearance::min_distance{});
   const auto ask = [&](const std::string& when) {
-    const auto expected = min_distance(host{}, on_host, poses, same);
+    const auto expected = ask(host{}, on_host, poses, same, min_distance{});
     v.require(same_result(query(poses, clouds), expected), what, ", ", when, ": differs from the host's result");
-    const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, same);
+    const auto [robot, each] = clearance::ask(host{}, on_host, poses, same, clearance::min_distance_per_part{});
     std::vector<clearance::part_minimum> minima(poses.size());
     v.require(same_result(query.per_part(poses, clouds, minima), robot), what, ", ", when,
               ": differs from the host's result by parts");
@@ -70,10 +70,10 @@ void ask_often(const devices& on, const Model& on_host, std::vector<Eigen::Isome
   ask("moved far");
   query.forget();
   ask("cold again");
-  v.require(same_result(min_distance(on, model, poses, clouds), min_distance(host{}, on_host, poses, same)), what,
+  v.require(same_result(ask(on, model, poses, clouds, min_distance{}), ask(host{}, on_host, poses, same, min_distance{})), what,
             ": one call differs");
-  const auto [robot, each] = clearance::min_distance_per_part(on, model, poses, clouds);
-  const auto [expected, its] = clearance::min_distance_per_part(host{}, on_host, poses, same);
+  const auto [robot, each] = clearance::ask(on, model, poses, clouds, clearance::min_distance_per_part{});
+  const auto [expected, its] = clearance::ask(host{}, on_host, poses, same, clearance::min_distance_per_part{});
   v.require(same_result(robot, expected) && std::ranges::equal(each, its, same_minimum), what,
             ": one call differs by parts");
 }
@@ -242,7 +242,7 @@ TEST_CASE("Equally near points in all shards: the lowest wins") {
     std::fill_n(same.begin(), first, vec3{3, 0, 0});
     for (const auto& [name, on] : all_devices()) {
       const auto model = robot.on(on);
-      const auto r = min_distance(on, model, poses, same);
+      const auto r = ask(on, model, poses, same, min_distance{});
       v.require(r.point == first && r.part == 0 && r.distance == 1.5f, "from ", first, " on ", name, ": point ",
                 r.point);
       ask_often(on, robot, poses, same, same, v, "ties from " + std::to_string(first) + " on " + name);
@@ -258,7 +258,7 @@ TEST_CASE("Only the nearest pair says whether a point is certainly inside a part
   const std::vector<Eigen::Isometry3d> poses = {shifted(-5, 0, 0), shifted(5, 0, 0)};
   const std::vector<vec3> points = {{-4.003f, 0, 0}, {0, 9, 0}, {0, 9, 0}, {0, 9, 0}, {4.002f, 0, 0}};
   verdict v;
-  REQUIRE(min_distance(host{}, robot, poses, points).state == clearance::state::possible);
+  REQUIRE(ask(host{}, robot, poses, points, min_distance{}).state == clearance::state::possible);
   for (const auto& [name, on] : all_devices()) ask_often(on, robot, poses, points, points, v, name);
 }
 
@@ -271,11 +271,11 @@ TEST_CASE(
   const clearance::pinned_buffer<vec3> pinned(3001, 0);
   for (const auto& [name, on] : all_devices()) {
     const auto model = robot.on(on);
-    clearance::min_distance_query query(on, model);
+    clearance::query query(on, model, clearance::min_distance{});
     for (int round = 0; round < 3; ++round) {
       const auto points = d.points(pinned.size(), 2);
       std::ranges::copy(points, pinned.data());
-      const auto expected = min_distance(host{}, robot, poses, points);
+      const auto expected = ask(host{}, robot, poses, points, min_distance{});
       v.require(same_result(query(poses, point_span(pinned.data(), pinned.size())), expected), "pinned, on ", name,
                 ": differs");
       for (int id = 0; id < gpus(); ++id) {
@@ -298,8 +298,8 @@ TEST_CASE("One device, whose memory the cloud is not in, copies it, too") {
   const auto points = d.points(3000, 2);
   const auto there = device{1}.copy_in(std::span<const vec3>(points));
   const auto model = robot.on(device{0});
-  clearance::min_distance_query query(device{0}, model);
-  CHECK(same_result(query(poses, point_span(there.data(), there.size())), min_distance(host{}, robot, poses, points)));
+  clearance::query query(device{0}, model, clearance::min_distance{});
+  CHECK(same_result(query(poses, point_span(there.data(), there.size())), ask(host{}, robot, poses, points, min_distance{})));
 }
 
 TEST_CASE("Streams of the caller's are taken, and the caller's device stays", "[concurrent]") {
@@ -316,8 +316,8 @@ TEST_CASE("Streams of the caller's are taken, and the caller's device stays", "[
       ask_often(on, robot, poses, points, points, v, "streams of " + std::to_string(id));
       CHECK(current() == id);
       const auto model = robot.on(on);
-      clearance::min_distance_query query(on, model);
-      CHECK(same_result(query(poses, points), min_distance(host{}, robot, poses, points)));
+      clearance::query query(on, model, clearance::min_distance{});
+      CHECK(same_result(query(poses, points), ask(host{}, robot, poses, points, min_distance{})));
       gate held(two.handle);  // the answer waits for the second stream, and only for that
       std::thread later([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(30));
@@ -327,14 +327,14 @@ TEST_CASE("Streams of the caller's are taken, and the caller's device stays", "[
       const auto r = query(poses, points);
       CHECK(std::chrono::steady_clock::now() - start > std::chrono::milliseconds(20));
       later.join();
-      CHECK(same_result(r, min_distance(host{}, robot, poses, points)));
+      CHECK(same_result(r, ask(host{}, robot, poses, points, min_distance{})));
     }
     for (const auto& [name, on] : all_devices()) {
       const auto model = robot.on(on);
       const auto shards = clearance::shard(on, points);
       CHECK(current() == id);
-      clearance::min_distance_query query(on, model);
-      v.require(same_result(query(poses, shards.view()), min_distance(host{}, robot, poses, points)), name,
+      clearance::query query(on, model, clearance::min_distance{});
+      v.require(same_result(query(poses, shards.view()), ask(host{}, robot, poses, points, min_distance{})), name,
                 " from device ", id, ": differs");
       CHECK(current() == id);
       CHECK_THROWS_AS(query(std::span(poses).first(1), points), std::invalid_argument);
@@ -351,15 +351,15 @@ TEST_CASE("Streams of one's own come behind what is in a device's default stream
   const auto before = d.points(3000, 2), after = d.points(3000, 2);
   const devices on{0, 0};
   const auto model = robot.on(on);
-  clearance::min_distance_query query(on, model);
+  clearance::query query(on, model, clearance::min_distance{});
   const auto there = device{}.copy_in(std::span<const vec3>(before)),
              next = device{}.copy_in(std::span<const vec3>(after));
   const sharded cloud(std::vector{point_span(there.data(), 1500), point_span(there.data() + 1500, 1500)});
-  CHECK(same_result(query(poses, cloud), min_distance(host{}, robot, poses, before)));
+  CHECK(same_result(query(poses, cloud), ask(host{}, robot, poses, before, min_distance{})));
   check(
       cudaLaunchHostFunc(nullptr, [](void*) { std::this_thread::sleep_for(std::chrono::milliseconds(30)); }, nullptr));
   check(cudaMemcpyAsync(there.data(), next.data(), 3000 * sizeof(vec3), cudaMemcpyDeviceToDevice, nullptr));
-  CHECK(same_result(query(poses, cloud), min_distance(host{}, robot, poses, after)));
+  CHECK(same_result(query(poses, cloud), ask(host{}, robot, poses, after, min_distance{})));
 }
 
 namespace {
@@ -427,8 +427,8 @@ TEST_CASE("What cannot be is refused with a sentence, and leaves nothing behind"
   CHECK(refused([&] { clearance::min_distance_query(on, model, std::span(both).first(1)); }) ==
         "clearance: 1 memory resources for 2 devices");
   {
-    clearance::min_distance_query query(on, model, both);
-    const auto expected = min_distance(host{}, robot, poses, cloud);
+    clearance::query query(on, model, clearance::min_distance{}, both);
+    const auto expected = ask(host{}, robot, poses, cloud, min_distance{});
     CHECK(same_result(query(poses, cloud), expected));
     CHECK((first.held > 500 * sizeof(vec3) && second.held > 500 * sizeof(vec3)));
     const std::size_t asked = first.asked + second.asked;

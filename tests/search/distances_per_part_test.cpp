@@ -20,9 +20,9 @@ TEST_CASE("Every part's distance to every point is brute force's, to the bit, an
     const auto two = two_clouds(s);
     for (const real d_max : {real(0), real(0.2 * s.size), clearance::infinity}) {
       const std::string what = s.name + ", d_max " + std::to_string(d_max);
-      const auto found = distances_per_part(host{}, model, s.poses, two, d_max);
+      const auto found = ask(host{}, model, s.poses, two, distances_per_part{d_max});
       require_same(found, brute_per_part(s, two, d_max, nothing_inside), v, what);
-      const auto least = clearance::distances(host{}, model, s.poses, two, {.d_max = d_max});
+      const auto least = clearance::ask(host{}, model, s.poses, two, clearance::distances{.d_max = d_max});
       for (std::size_t i = 0; i < found.points; ++i) {
         real nearest = found.of(0)[i];
         for (std::size_t k = 1; k < s.parts.size(); ++k) nearest = found.of(k)[i] < nearest ? found.of(k)[i] : nearest;
@@ -40,10 +40,10 @@ TEST_CASE("No point, no part in reach, and d_max that is no number") {
   const std::vector<std::vector<inner_sphere>> bodies{{{{0, 0, 0}, 1}}, {{{9, 0, 0}, 1}}};
   const auto model = clearance::make_model<clearance::sphere>(bodies);
   const std::vector<Eigen::Isometry3d> poses(2, Eigen::Isometry3d::Identity());
-  CHECK(distances_per_part(host{}, model, poses, std::vector<vec3>{}).distance.empty());
-  const auto one = distances_per_part(host{}, model, poses, std::vector<vec3>{{3, 0, 0}}, 2.5f);
+  CHECK(ask(host{}, model, poses, std::vector<vec3>{}, distances_per_part{}).distance.empty());
+  const auto one = ask(host{}, model, poses, std::vector<vec3>{{3, 0, 0}}, distances_per_part{2.5f});
   CHECK((one.of(0)[0] == 2 && one.of(1)[0] == clearance::infinity && one.counts.valid == 1));
-  CHECK_THROWS_AS(distances_per_part(host{}, model, poses, std::vector<vec3>{{3, 0, 0}}, clearance::not_a_number),
+  CHECK_THROWS_AS(ask(host{}, model, poses, std::vector<vec3>{{3, 0, 0}}, distances_per_part{clearance::not_a_number}),
                   std::invalid_argument);
 }
 
@@ -51,10 +51,10 @@ TEST_CASE("Prepared, every part's distances are in every frame what one call say
   verdict v;
   moving_frames f(5, 116);
   const auto model = f.model();
-  clearance::distances_per_part_query query(host{}, model);
+  clearance::query query(host{}, model, clearance::distances_per_part{});
   for (; f.there(); f.next()) {
     const real d_max = f.number % 2 ? 0.3f : clearance::infinity;
-    const auto expected = distances_per_part(host{}, model, f.s.poses, f.here(), d_max);
+    const auto expected = ask(host{}, model, f.s.poses, f.here(), distances_per_part{d_max});
     const std::string what = "frame " + std::to_string(f.number);
     require_same(query(f.s.poses, f.here(), d_max), expected, v, what);
     clearance::part_distances enqueued = expected;

@@ -4,7 +4,8 @@
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
-#include <clearance/distances_per_part.cuh>
+#include <clearance/questions/distances_per_part.hpp>
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -22,8 +23,8 @@ TEST_CASE("On a device every part's distances are the host's, to the bit") {
     const auto two = two_clouds(s);
     for (const real d_max : {real(0.2 * s.size), clearance::infinity}) {
       const std::string what = s.name + ", d_max " + std::to_string(d_max);
-      require_same(distances_per_part(gpu, model.on(gpu), s.poses, two, d_max),
-                   distances_per_part(host{}, model, s.poses, two, d_max), v, what);
+      require_same(ask(gpu, model.on(gpu), s.poses, two, distances_per_part{d_max}),
+                   ask(host{}, model, s.poses, two, distances_per_part{d_max}), v, what);
     }
   }
 }
@@ -36,11 +37,11 @@ TEST_CASE("Prepared, every part's distances are on a device in every frame the h
     moving_frames f(parts, 126);
     const auto model = f.model();
     const auto there = model.on(gpu);
-    clearance::distances_per_part_query query(gpu, there);
+    clearance::query query(gpu, there, clearance::distances_per_part{});
     const auto distance = room_on<real>(gpu, std::size_t(parts) * 45010);
     const auto counts = room_on<clearance::point_counts>(gpu, 1);
     const auto look = [&](real d_max, const std::string& when) {
-      const auto expected = distances_per_part(host{}, model, f.s.poses, f.here(), d_max);
+      const auto expected = ask(host{}, model, f.s.poses, f.here(), distances_per_part{d_max});
       const std::string what = std::to_string(parts) + " parts, " + when;
       require_same(
           {gpu.copy_out(distance.data(), expected.distance.size()), expected.points, gpu.copy_out(counts)[0], {}},

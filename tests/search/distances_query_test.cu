@@ -3,7 +3,8 @@
 #include "support/brute_distances.hpp"
 #include "support/product_device.cuh"
 
-#include <clearance/distances_query.cuh>
+#include <clearance/questions/distances.hpp>
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/ray_image.hpp>
@@ -22,9 +23,9 @@ void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const
                const std::string& what) {
   const device gpu;
   const auto model = on_host.on(gpu);
-  clearance::distances_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::distances{});
   const auto same = [&](const std::string& when, real d_max, bool which = true) {
-    require_same(query(poses, clouds, {d_max, which}), distances(host{}, on_host, poses, clouds, {d_max, which}), v,
+    require_same(query(poses, clouds, {d_max, which}), ask(host{}, on_host, poses, clouds, distances{d_max, which}), v,
                  what + ", " + when);
   };
   same("cold", clearance::infinity);
@@ -35,7 +36,7 @@ void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const
   poses.back().translation().z() -= 5;
   same("moved far", clearance::infinity);
   same("within nothing", 0);
-  require_same(query(poses, point_span{}, {}), distances(host{}, on_host, poses, point_span{}), v,
+  require_same(query(poses, point_span{}, {}), ask(host{}, on_host, poses, point_span{}, distances{}), v,
                what + ", no points");
   same("warm again, inside alone", -0.001f);
   same("warm again", clearance::infinity);
@@ -90,13 +91,13 @@ TEST_CASE("More parts than a kernel takes, and points that come and go: warm dis
   ask_often(many, s.poses, point_span(points), v, "200 parts");
   const device gpu;
   const auto there = many.on(gpu);
-  clearance::distances_query query(gpu, there);
+  clearance::query query(gpu, there, clearance::distances{});
   for (const std::size_t count : {1000, 5000, 33, 4999}) {
     std::ranges::shuffle(points, std::mt19937(unsigned(count)));
     for (std::size_t i = 0; i < count; i += 7) points[i].y = i % 2 == 0 ? clearance::not_a_number : real(i);
     const point_span some(points.data(), count);
     require_same(query(s.poses, some, {clearance::infinity, true}),
-                 distances(host{}, many, s.poses, some, {clearance::infinity, true}), v,
+                 ask(host{}, many, s.poses, some, distances{clearance::infinity, true}), v,
                  std::to_string(count) + " points");
   }
 }
@@ -125,14 +126,14 @@ TEST_CASE("A picture's pixels are taken in tiles, and each distance is at its ow
     const placed cloud{image, camera};
     const std::string what = std::to_string(width) + " x " + std::to_string(height);
     for (const real d_max : {real(0.3), clearance::infinity}) {
-      const auto expected = distances(host{}, model, poses, cloud, {d_max, true});
-      require_same(distances(gpu, model.on(gpu), poses, cloud, {d_max, true}), expected, v, what);
+      const auto expected = ask(host{}, model, poses, cloud, distances{d_max, true});
+      require_same(ask(gpu, model.on(gpu), poses, cloud, distances{d_max, true}), expected, v, what);
       const placed seen{clearance::ray_image(depth.data(), rays.data(), std::uint32_t(width), std::uint32_t(height)),
                         camera};
       const placed seen_there{
           clearance::ray_image(depth.data(), rays_there.data(), std::uint32_t(width), std::uint32_t(height)), camera};
-      require_same(distances(gpu, model.on(gpu), poses, std::tuple(cloud, seen_there), {d_max, true}),
-                   distances(host{}, model, poses, std::tuple(cloud, seen), {d_max, true}), v,
+      require_same(ask(gpu, model.on(gpu), poses, std::tuple(cloud, seen_there), distances{d_max, true}),
+                   ask(host{}, model, poses, std::tuple(cloud, seen), distances{d_max, true}), v,
                    what + ", and with rays");
     }
   }

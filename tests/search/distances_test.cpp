@@ -3,7 +3,7 @@
 #include "support/brute_distances.hpp"
 #include "support/volumes.hpp"
 
-#include <clearance/distances_query.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
@@ -26,12 +26,12 @@ void all_scenes() {
       const std::string what = s.name + ", d_max " + std::to_string(d_max);
       auto expected = brute_distances(s, all.span, s.cloud_pose, d_max, nothing_inside);
       const placed cloud{all.span, s.cloud_pose};
-      require_same(distances(host{}, model, s.poses, cloud, {d_max, true}), expected, v, what);
-      require_same(distances(host{1}, model, s.poses, cloud, {d_max}), expected, v,
+      require_same(ask(host{}, model, s.poses, cloud, distances{d_max, true}), expected, v, what);
+      require_same(ask(host{1}, model, s.poses, cloud, distances{d_max}), expected, v,
                    what + ", one thread, distances alone");
       append(expected, brute_distances(s, all.raw, all.camera_pose, d_max, nothing_inside));
       require_same(
-          distances(host{}, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), {d_max, true}),
+          ask(host{}, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), distances{d_max, true}),
           expected, v, what + ", two clouds");
     }
   }
@@ -75,8 +75,8 @@ void as_seen(double far) {
       const auto expected = brute_distances(s, span, s.cloud_pose, d_max, nothing_inside);
       const std::string what =
           "round " + std::to_string(round) + ", " + std::to_string(far) + " m off, d_max " + std::to_string(d_max);
-      require_same(distances(host{}, model, s.poses, placed{span, s.cloud_pose}, {d_max, true}), expected, v, what);
-      require_same(distances(host{1}, model, s.poses, placed{span, s.cloud_pose}, {d_max, true}), expected, v,
+      require_same(ask(host{}, model, s.poses, placed{span, s.cloud_pose}, distances{d_max, true}), expected, v, what);
+      require_same(ask(host{1}, model, s.poses, placed{span, s.cloud_pose}, distances{d_max, true}), expected, v,
                    what + ", one thread");
     }
   }
@@ -107,7 +107,7 @@ TEST_CASE("A prepared question of distances on the host says the same") {
   for (const auto& s : scenes<triangle>()) {
     const sources<triangle> all(s);
     const auto model = make_model<clearance::aabb>(s, {}, clearance::wrapped{});
-    clearance::distances_query query(host{}, model);
+    clearance::query query(host{}, model, clearance::distances{});
     const placed cloud{all.span, s.cloud_pose};
     for (const real d_max : {real(0.2), clearance::infinity}) {
       const auto expected = brute_distances(s, all.span, s.cloud_pose, d_max, nothing_inside);
@@ -120,7 +120,7 @@ TEST_CASE("A prepared question of distances on the host says the same") {
     }
   }
   const auto model = make_model<clearance::aabb>(scenes<triangle>()[0], {}, clearance::wrapped{});
-  clearance::distances_query query(host{}, model);
+  clearance::query query(host{}, model, clearance::distances{});
   CHECK_THROWS_AS(query(scenes<triangle>()[0].poses, std::vector<vec3>{}, {clearance::not_a_number}),
                   std::invalid_argument);
 }
@@ -146,7 +146,7 @@ TEST_CASE("A point inside a solid is 0 away, of the first part that it is in, an
   for (const real d_max : {real(-1), real(0), real(0.5), clearance::infinity}) {
     const auto expected = brute_distances(
         s, span, pose, d_max, [&](std::uint32_t k, vec3 q) { return model.parts()[k].interior.view().inside(q); });
-    const auto found = distances(host{}, model, s.poses, placed{span, pose}, {d_max, true});
+    const auto found = ask(host{}, model, s.poses, placed{span, pose}, distances{d_max, true});
     require_same(found, expected, v, "d_max " + std::to_string(d_max));
     CHECK((d_max < 0 || std::ranges::count(found.distance, 0.0f) > 100));
   }
@@ -158,7 +158,7 @@ TEST_CASE("What a distance leaves certain holds: no primitive is nearer than the
   auto packed = clearance::make_part(clearance::build<clearance::sphere>(s.parts[0]), 0.01, 0.002);
   const clearance::model model{std::vector{packed}};
   const auto points = d.points(500, 3);
-  const auto found = distances(host{}, model, std::span(s.poses.data(), 1), clearance::point_span(points));
+  const auto found = ask(host{}, model, std::span(s.poses.data(), 1), clearance::point_span(points), distances{});
   std::size_t positive = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d q = s.poses[0].inverse() * Eigen::Vector3d(points[i].x, points[i].y, points[i].z);
@@ -177,9 +177,9 @@ TEST_CASE("What cannot be asked is refused, and nothing is nowhere") {
   const auto s = scenes<inner_sphere>()[0];
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const clearance::point_span span(s.points);
-  CHECK_THROWS_AS(distances(host{}, model, s.poses, span, {clearance::not_a_number}), std::invalid_argument);
-  CHECK_THROWS_AS(distances(host{}, model, std::span(s.poses.data(), 1), span), std::invalid_argument);
-  const auto none = distances(host{}, model, s.poses, std::vector<clearance::point_span>{});
+  CHECK_THROWS_AS(ask(host{}, model, s.poses, span, distances{clearance::not_a_number}), std::invalid_argument);
+  CHECK_THROWS_AS(ask(host{}, model, std::span(s.poses.data(), 1), span, distances{}), std::invalid_argument);
+  const auto none = ask(host{}, model, s.poses, std::vector<clearance::point_span>{}, distances{});
   CHECK(none.distance.empty());
   CHECK(none.counts.seen == 0);
 }

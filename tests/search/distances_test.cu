@@ -3,7 +3,8 @@
 #include "support/brute_distances.hpp"
 #include "support/product_device.cuh"
 
-#include <clearance/distances.cuh>
+#include <clearance/questions/distances.hpp>
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
@@ -30,9 +31,9 @@ void all_scenes(std::uint32_t width, bool layered = false) {
       const std::string what = s.name + ", d_max " + std::to_string(d_max);
       auto expected = brute_distances(s, all.span, s.cloud_pose, d_max, nothing_inside);
       const placed cloud{all.span, s.cloud_pose};
-      require_same(distances(gpu, model, s.poses, cloud, {d_max, true}), expected, v, what);
+      require_same(ask(gpu, model, s.poses, cloud, distances{d_max, true}), expected, v, what);
       append(expected, brute_distances(s, all.raw, all.camera_pose, d_max, nothing_inside));
-      require_same(distances(gpu, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), {d_max}),
+      require_same(ask(gpu, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), distances{d_max}),
                    expected, v, what + ", two clouds");
     }
   }
@@ -71,8 +72,8 @@ TEST_CASE("Walls, crowds, neighbours and strangers: every point's distance on a 
   const auto there = boxes.on(gpu);
   for (const std::vector<vec3>* points : {&std::as_const(wall), &std::as_const(edge), &crowd})
     for (const real d_max : {real(0.3), clearance::infinity}) {
-      const auto expected = distances(host{}, boxes, poses, point_span(*points), {d_max, true});
-      require_same(distances(gpu, there, poses, point_span(*points), {d_max, true}), expected, v,
+      const auto expected = ask(host{}, boxes, poses, point_span(*points), distances{d_max, true});
+      require_same(ask(gpu, there, poses, point_span(*points), distances{d_max, true}), expected, v,
                    std::to_string(points->size()) + " points within " + std::to_string(d_max));
     }
   scene<inner_sphere> s;
@@ -84,8 +85,8 @@ TEST_CASE("Walls, crowds, neighbours and strangers: every point's distance on a 
   const auto many = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto some = d.points(5000, 1.5);
   for (const real d_max : {real(0.2), clearance::infinity})
-    require_same(distances(gpu, many.on(gpu), s.poses, point_span(some), {d_max, true}),
-                 distances(host{}, many, s.poses, point_span(some), {d_max, true}), v,
+    require_same(ask(gpu, many.on(gpu), s.poses, point_span(some), distances{d_max, true}),
+                 ask(host{}, many, s.poses, point_span(some), distances{d_max, true}), v,
                  "200 parts within " + std::to_string(d_max));
 }
 

@@ -4,7 +4,7 @@
 #include "support/product.hpp"
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance_query.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -35,10 +35,10 @@ void ask(const Model& model, const scene<inner_sphere>& s, verdict& v, const std
   const auto parts = brute_parts(s);
   auto poses = s.poses;
   const placed cloud{point_span(s.points), s.cloud_pose};
-  min_distance_query query(host{2}, model), alone(host{1}, model);
+  query query(host{2}, model, min_distance{}), alone(host{1}, model);
   brute_answer expected;
   const auto same = [&](const std::string& when) {
-    require_equal(min_distance(host{}, model, poses, cloud), expected, v, what + ", plain, " + when);
+    require_equal(ask(host{}, model, poses, cloud, min_distance{}), expected, v, what + ", plain, " + when);
     require_equal(query(poses, cloud), expected, v, what + ", " + when);
     std::vector<clearance::part_minimum> minima(model.size());
     const auto r = alone.per_part(poses, cloud, minima);
@@ -102,7 +102,7 @@ TEST_CASE("Where every point is inside a solid the distance is 0, at the first p
     const std::vector<Eigen::Isometry3d> poses = {d.pose(0.1), shifted(off, 0, 0) * d.pose(0.1), d.pose(0.1)};
     auto points = d.points(20000, 0.5);
     points[0].z = clearance::not_a_number;
-    min_distance_query query(host{2}, model);
+    query query(host{2}, model, min_distance{});
     const auto expected = brute_force(brute, poses, {brute_cloud(point_span(points))});
     for (const char* when : {"cold", "warm"}) {
       const auto r = query(poses, points);
@@ -120,7 +120,7 @@ TEST_CASE(
     "Poses so far away that distances in float would overflow are refused; up to there every distance is finite") {
   const auto s = small_robot();
   const auto model = edge_model(s);
-  min_distance_query query(host{}, model);
+  query query(host{}, model, min_distance{});
   const auto ask = [&](double robot, double cloud) {
     auto poses = s.poses;
     for (auto& pose : poses) pose.translation().setConstant(robot);
@@ -148,13 +148,13 @@ TEST_CASE("Ten million points: the one that is near is found wherever it is", "[
   std::vector<vec3> cloud(n);
   for (std::size_t i = 0; i < n; ++i) cloud[i] = endless_points{n}[i].position;
   REQUIRE(expected.best.distance < 2);
-  min_distance_query query(host{}, model);
+  query query(host{}, model, min_distance{});
   for (const std::size_t at : {std::size_t(0), std::size_t(7), n / 2, n - 2, n - 1}) {
     const endless_points all{n, at};
     const vec3 before = cloud[at];
     cloud[at] = endless_points::near();
     for (const auto& r : {query(s.poses, cloud), query(s.poses, all, Eigen::Isometry3d::Identity()),
-                          min_distance(host{}, model, s.poses, cloud)}) {
+                          ask(host{}, model, s.poses, cloud, min_distance{})}) {
       CHECK(same_bits(r.distance, expected.best.distance));
       CHECK((r.point == at && r.part == expected.part && r.primitive == expected.best.primitive));
       CHECK((r.seen == n && r.valid == all.valid()));
@@ -163,7 +163,7 @@ TEST_CASE("Ten million points: the one that is near is found wherever it is", "[
   }
   const auto r = query(s.poses, cloud);
   CHECK(r.distance >= 2);
-  const auto same = min_distance(host{1}, model, s.poses, endless_points{n});
+  const auto same = ask(host{1}, model, s.poses, endless_points{n}, min_distance{});
   CHECK((same_bits(r.distance, same.distance) && r.point == same.point && r.primitive == same.primitive &&
          r.valid == same.valid));
 }

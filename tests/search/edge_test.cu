@@ -4,7 +4,8 @@
 #include "support/product_device.cuh"
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance_query.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 #include <clearance/volume/obb.hpp>
 
 #include <optional>
@@ -31,11 +32,11 @@ void ask(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const std::
   std::optional<prepared> query;
   if (poses.size() <= 128) query.emplace(gpu, model.view());
   const auto same = [&](const std::string& when, int times) {
-    const auto expected = min_distance(host{}, on_host, poses, here);
-    const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, here);
-    v.require(same_result(min_distance(gpu, model, poses, cloud), expected), what, ", plain, " + when,
+    const auto expected = ask(host{}, on_host, poses, here, min_distance{});
+    const auto [robot, each] = clearance::ask(host{}, on_host, poses, here, clearance::min_distance_per_part{});
+    v.require(same_result(ask(gpu, model, poses, cloud, min_distance{}), expected), what, ", plain, " + when,
               ": differs from the host's result");
-    const auto [plain, own] = clearance::min_distance_per_part(gpu, model, poses, cloud);
+    const auto [plain, own] = clearance::ask(gpu, model, poses, cloud, clearance::min_distance_per_part{});
     v.require(same_result(plain, robot) && std::ranges::equal(own, each, same_minimum), what,
               ", plain, by parts, " + when, ": differs");
     for (int k = 0; query && k < times; ++k) {
@@ -105,7 +106,7 @@ TEST_CASE("Where every point is inside a solid the device says 0, at the first p
         "the second box " + std::to_string(off) + " m off");
   const device gpu;
   const auto there = model.on(gpu);
-  clearance::min_distance_query query(gpu, there);
+  clearance::query query(gpu, there, clearance::min_distance{});
   const auto r = query(std::vector{d.pose(0.1), d.pose(0.1), d.pose(0.1)}, points);
   CHECK((r.distance == 0 && r.point == 1 && r.part == 0 && r.state == clearance::state::collision && r.upper == 0 &&
          r.lower == 0));
@@ -129,31 +130,31 @@ TEST_CASE("A hundred million points: the one that is near is found wherever it i
   const auto put = [&](std::size_t i, vec3 p) {
     clearance::check_cuda(cudaMemcpy(cloud.data() + i, &p, sizeof p, cudaMemcpyHostToDevice), "cudaMemcpy");
   };
-  const auto near = min_distance(host{}, on_host, s.poses, s.points);
+  const auto near = ask(host{}, on_host, s.poses, s.points, min_distance{});
   REQUIRE(near.distance < 2);
-  clearance::min_distance_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distance{});
   std::vector<clearance::part_minimum> minima(3);
   verdict v;
   // Where floats stop counting, pieces and blocks end, and no point was before.
   for (const std::size_t at : {std::size_t(0), std::size_t(16'777'217), std::size_t(67'108'871), n / 2, n - 2, n - 1}) {
     const std::string what = "point " + std::to_string(at);
     put(at, endless_points::near());
-    const auto plain = min_distance(gpu, model, s.poses, all);
+    const auto plain = ask(gpu, model, s.poses, all, min_distance{});
     v.require(same_bits(plain.distance, near.distance) && plain.point == at && plain.part == near.part &&
                   plain.primitive == near.primitive,
               what);
     v.require(plain.seen == n && plain.valid == endless_points{n, at}.valid(), what, ": the counts");
     for (const char* when : {", before this one was there", ", warm"})
       v.require(same_result(query(s.poses, all), plain), what, when);
-    const auto [robot, each] = clearance::min_distance_per_part(gpu, model, s.poses, all);
+    const auto [robot, each] = clearance::ask(gpu, model, s.poses, all, clearance::min_distance_per_part{});
     v.require(
         same_result(query.per_part(s.poses, all, minima), robot) && std::ranges::equal(minima, each, same_minimum),
         what, ": by parts");
     if (at == n - 1) {
-      v.require(same_result(min_distance(host{}, on_host, s.poses, endless_points{n, at}), plain), what,
+      v.require(same_result(ask(host{}, on_host, s.poses, endless_points{n, at}, min_distance{}), plain), what,
                 ": differs from the host's result");
       const point_span but_one(cloud.data() + 1, n - 1);
-      v.require(same_result(query(s.poses, but_one), min_distance(gpu, model, s.poses, but_one)), what, ": unaligned");
+      v.require(same_result(query(s.poses, but_one), ask(gpu, model, s.poses, but_one, min_distance{})), what, ": unaligned");
       put(n / 2, endless_points::near());
       v.require(query(s.poses, all).point == n / 2, what, ": of two that are equally near the first is the answer");
     } else {

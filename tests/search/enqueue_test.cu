@@ -7,13 +7,14 @@
 #include "support/tallied.hpp"
 
 #include <clearance/backend/pinned_buffer.cuh>
-#include <clearance/collect_query.cuh>
-#include <clearance/distances.cuh>
-#include <clearance/in_collision.cuh>
-#include <clearance/min_distance_query.cuh>
+#include <clearance/questions/collect.hpp>
+#include <clearance/device.cuh>
+#include <clearance/questions/distances.hpp>
+#include <clearance/questions/in_collision.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/within.cuh>
-#include <clearance/zones.cuh>
+#include <clearance/questions/within.hpp>
+#include <clearance/questions/zones.hpp>
 
 namespace enqueue_test {
 
@@ -55,10 +56,10 @@ struct given {
     const auto one = [&](const auto& there, const auto& same, const std::string& what) {
       each(
           "min_distance_async" + what,
-          [&] { clearance::min_distance_async(gpu, model, s.poses, there, result.data()); }, same);
+          [&] { clearance::enqueue(gpu, model, s.poses, there, clearance::min_distance{}, result.data()); }, same);
       each(
           "min_distance_per_part_async" + what,
-          [&] { clearance::min_distance_per_part_async(gpu, model, s.poses, there, result.data(), minima.data()); },
+          [&] { clearance::enqueue(gpu, model, s.poses, there, clearance::min_distance_per_part{}, {result.data(), minima.data()}); },
           same);
       each("enqueue" + what, [&] { query.enqueue(s.poses, there, result.data()); }, same);
       each(
@@ -83,8 +84,8 @@ TEST_CASE("Every frame that is enqueued returns while its stream is held, and is
   verdict v;
   g.every_way([&](const std::string& name, auto enqueue, const auto& same) {
     const bool per_part = name.find("per_part") != std::string::npos;
-    const auto expected = per_part ? clearance::min_distance_per_part(host{}, g.on_host, g.s.poses, same).first
-                                   : clearance::min_distance(host{}, g.on_host, g.s.poses, same);
+    const auto expected = per_part ? clearance::ask(host{}, g.on_host, g.s.poses, same, clearance::min_distance_per_part{}).first
+                                   : clearance::ask(host{}, g.on_host, g.s.poses, same, clearance::min_distance{});
     enqueue();  // once, as loading a kernel may wait for everything
     g.gpu.wait();
     *g.result.data() = {};
@@ -100,9 +101,9 @@ TEST_CASE("An answer of one's own is enqueued without waiting, too", "[concurren
   given g;
   tally_of_pairs expected;
   const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});
-  clearance::collect(host{}, g.on_host, g.s.poses, both, tallied{1, expected.words});
+  clearance::ask(host{}, g.on_host, g.s.poses, both, clearance::collect{tallied{1, expected.words}});
   const auto enqueue = [&] {
-    clearance::collect_async(g.gpu, g.model, g.s.poses, g.clouds, tallied{1, g.words.data()}, g.counts.data());
+    clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, clearance::collect{tallied{1, g.words.data()}}, {g.counts.data()});
   };
   enqueue();
   g.gpu.wait();
@@ -113,7 +114,7 @@ TEST_CASE("An answer of one's own is enqueued without waiting, too", "[concurren
   held.release();
   CHECK((g.words.data()[0] == expected.words[0] && g.words.data()[1] == expected.words[1]));
 
-  clearance::collect_query query(g.gpu, g.model);
+  clearance::query query(g.gpu, g.model, clearance::collect{});
   g.words.data()[0] = g.words.data()[1] = 0;
   const auto counts = query(g.s.poses, both, tallied{1, g.words.data()});
   CHECK((g.words.data()[0] == expected.words[0] && g.words.data()[1] == expected.words[1] &&
@@ -134,16 +135,16 @@ TEST_CASE("Several robots are asked in one call, each with its own result") {
   const auto results = clearance::min_distance_per_robot(g.gpu, robots, poses, both);
   REQUIRE(results.size() == 3);
   for (std::size_t k = 0; k < 3; ++k)
-    CHECK(same_result(results[k], clearance::min_distance(host{}, g.on_host, poses[k], both)));
+    CHECK(same_result(results[k], clearance::ask(host{}, g.on_host, poses[k], both, clearance::min_distance{})));
 }
 
 TEST_CASE("Distances are enqueued without waiting, too", "[concurrent]") {
   given g;
   const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});
-  const auto expected = clearance::distances(host{}, g.on_host, g.s.poses, both, {.d_max = 1});
+  const auto expected = clearance::ask(host{}, g.on_host, g.s.poses, both, clearance::distances{.d_max = 1});
   clearance::pinned_buffer<real> distance(expected.distance.size(), 0);
   const auto enqueue = [&] {
-    return clearance::distances_async(g.gpu, g.model, g.s.poses, g.clouds, {distance.data()}, g.counts.data(), 1);
+    return clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, clearance::distances{1}, {{distance.data()}, g.counts.data()});
   };
   enqueue();
   g.gpu.wait();
@@ -164,8 +165,8 @@ TEST_CASE("Every frame that is enqueued by a prepared query can be captured and 
   g.every_way([&](const std::string& name, auto enqueue, const auto& same) {
     if (name.find("async") != std::string::npos) return;  // asks for memory
     const bool per_part = name.find("per_part") != std::string::npos;
-    const auto expected = per_part ? clearance::min_distance_per_part(host{}, g.on_host, g.s.poses, same).first
-                                   : clearance::min_distance(host{}, g.on_host, g.s.poses, same);
+    const auto expected = per_part ? clearance::ask(host{}, g.on_host, g.s.poses, same, clearance::min_distance_per_part{}).first
+                                   : clearance::ask(host{}, g.on_host, g.s.poses, same, clearance::min_distance{});
     enqueue();
     g.gpu.wait();
     const captured_graph graph(g.stream.handle, enqueue);
@@ -183,11 +184,11 @@ TEST_CASE("Questions that want memory for a call are enqueued without waiting, a
   given g;
   verdict v;
   const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});
-  const clearance::zones_options thresholds{.thresholds = {0, 0.05 * g.s.size, 0.5 * g.s.size}};
+  const clearance::zones thresholds{.thresholds = {0, 0.05 * g.s.size, 0.5 * g.s.size}};
   const std::vector margin{0.05 * g.s.size};
-  const auto distances = clearance::distances(host{}, g.on_host, g.s.poses, both);
-  const auto zones = clearance::zones(host{}, g.on_host, g.s.poses, both, thresholds);
-  const auto collision = clearance::in_collision(host{}, g.on_host, g.s.poses, both, margin);
+  const auto distances = clearance::ask(host{}, g.on_host, g.s.poses, both, clearance::distances{});
+  const auto zones = clearance::ask(host{}, g.on_host, g.s.poses, both, thresholds);
+  const auto collision = clearance::ask(host{}, g.on_host, g.s.poses, both, clearance::in_collision{{margin}});
   clearance::pinned_buffer<real> distance(distances.distance.size(), 0);
   clearance::pinned_buffer<clearance::zone> zone(zones.zones.size(), 0);
   clearance::pinned_buffer<clearance::collision_result> found(1, 0);
@@ -208,9 +209,9 @@ TEST_CASE("Questions that want memory for a call are enqueued without waiting, a
               what, ": in_collision differs");
   };
   const auto enqueue = [&] {
-    clearance::distances_async(g.gpu, g.model, g.s.poses, g.clouds, {distance.data()}, g.counts.data());
-    clearance::zones_async(g.gpu, g.model, g.s.poses, g.clouds, thresholds, zone.data(), g.counts.data());
-    clearance::in_collision_async(g.gpu, g.model, g.s.poses, g.clouds, margin, found.data());
+    clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, clearance::distances{}, {{distance.data()}, g.counts.data()});
+    clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, thresholds, {zone.data(), g.counts.data()});
+    clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, clearance::in_collision{{margin}}, found.data());
   };
   enqueue();
   g.gpu.wait();

@@ -2,8 +2,8 @@
 // The bracket is true wherever most points are, and the origin of their floats, and the poses.
 #include "search/far_scenes.hpp"
 
-#include <clearance/in_collision.hpp>
-#include <clearance/min_distance_query.hpp>
+#include <clearance/questions/in_collision.hpp>
+#include <clearance/questions/min_distance.hpp>
 
 namespace far_test {
 
@@ -22,10 +22,10 @@ struct ask_host {
     const auto model = model_of(robot);
     const wide distance = t.distance(robot, poses);
     const placed cloud{source, t.pose};
-    require_bracket(clearance::min_distance(host{}, model, poses, cloud), distance, v, name);
-    require_bracket(clearance::min_distance_per_part(host{}, model, poses, cloud).first, distance, v,
+    require_bracket(clearance::ask(host{}, model, poses, cloud, clearance::min_distance{}), distance, v, name);
+    require_bracket(clearance::ask(host{}, model, poses, cloud, clearance::min_distance_per_part{}).first, distance, v,
                     name + ", by parts");
-    clearance::min_distance_query query(host{}, model);
+    clearance::query query(host{}, model, clearance::min_distance{});
     for (const char* when : {", cold", ", warm"}) require_bracket(query(poses, cloud), distance, v, name + when);
     // A cloud whose floats are exact comes before or after it, near the robot but a little farther: the error is that
     // of both.
@@ -33,8 +33,8 @@ struct ask_host {
     for (const bool before : {true, false}) {
       clearance::min_distance_result r;
       const placed beside{clearance::point_span(other), poses[0]};
-      r = before ? clearance::min_distance(host{}, model, poses, std::tuple(beside, cloud))
-                 : clearance::min_distance(host{}, model, poses, std::tuple(cloud, beside));
+      r = before ? clearance::ask(host{}, model, poses, std::tuple(beside, cloud), clearance::min_distance{})
+                 : clearance::ask(host{}, model, poses, std::tuple(cloud, beside), clearance::min_distance{});
       const wide both =
           std::min(distance, truth{{oracle::vec{0, 0, wide(other[0].z)}}, poses[0]}.distance(robot, poses));
       require_bracket(r, both, v, name + (before ? ", the second" : ", the first"));
@@ -64,7 +64,7 @@ TEST_CASE("A robot near the origin of the floats has a bracket of micrometres, w
     const auto model = model_of(s.robot);
     s.each_source([&](const auto& source, const truth& t, const std::string& name) {
       if (name.find("less the robot") == name.npos) return;
-      const auto r = clearance::min_distance(host{}, model, s.poses, placed{source, t.pose});
+      const auto r = clearance::ask(host{}, model, s.poses, placed{source, t.pose}, clearance::min_distance{});
       if (r.distance < 5)
         v.require(r.upper - r.lower < 100e-6f + 0x1p-42f * (s.world_from_cloud.translation().norm() + s.middle.norm()),
                   name, ": from", r.lower, " to", r.upper);
@@ -80,8 +80,8 @@ TEST_CASE("A source that may be off by about as much as it measures, or says no 
   const auto asked = [&](const clearance::position_error& off) {
     clearance::point_span source(point);
     source.off = off;
-    const auto near = clearance::in_collision(host{}, robot, poses, source, 0.5).state;
-    const auto r = clearance::min_distance(host{}, robot, poses, source);
+    const auto near = clearance::ask(host{}, robot, poses, source, clearance::in_collision{{0.5}}).state;
+    const auto r = clearance::ask(host{}, robot, poses, source, clearance::min_distance{});
     return std::tuple(near, r.state, r.lower);
   };
   const std::tuple nothing(clearance::state::possible, clearance::state::possible, real(0));

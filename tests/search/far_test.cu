@@ -5,7 +5,8 @@
 #include "search/far_scenes.hpp"
 #include "support/product_device.cuh"
 
-#include <clearance/min_distance_query.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 
 namespace far_test {
 
@@ -23,8 +24,8 @@ struct ask_device {
     const auto on_host = model_of(robot);
     const wide distance = t.distance(robot, poses);
     const placed cloud{source, t.pose};
-    const auto expected = clearance::min_distance(host{}, on_host, poses, cloud);
-    const auto by_parts = clearance::min_distance_per_part(host{}, on_host, poses, cloud).first;
+    const auto expected = clearance::ask(host{}, on_host, poses, cloud, clearance::min_distance{});
+    const auto by_parts = clearance::ask(host{}, on_host, poses, cloud, clearance::min_distance_per_part{}).first;
     const device gpu;
     const auto model = on_host.on(gpu);
     const auto check = [&](const clearance::min_distance_result& r, const clearance::min_distance_result& as,
@@ -34,16 +35,16 @@ struct ask_device {
     };
     // A table of rays is read where it lies: such a source is asked on the host alone.
     if constexpr (!requires { source.rays; }) {
-      check(clearance::min_distance(gpu, model, poses, cloud), expected, ", plain");
-      check(clearance::min_distance_per_part(gpu, model, poses, cloud).first, by_parts, ", plain, by parts");
-      clearance::min_distance_query query(gpu, model);
+      check(clearance::ask(gpu, model, poses, cloud, clearance::min_distance{}), expected, ", plain");
+      check(clearance::ask(gpu, model, poses, cloud, clearance::min_distance_per_part{}).first, by_parts, ", plain, by parts");
+      clearance::query query(gpu, model, clearance::min_distance{});
       std::vector<clearance::part_minimum> minima(poses.size());
       for (const char* when : {", cold", ", warm"}) {
         check(query(poses, cloud), expected, when);
         check(query.per_part(poses, cloud, minima), by_parts, when);
       }
       const std::vector<placed<Source>> twice = {cloud, {source, t.pose}};
-      check(query(poses, twice), clearance::min_distance(host{}, on_host, poses, twice), ", twice");
+      check(query(poses, twice), clearance::ask(host{}, on_host, poses, twice, clearance::min_distance{}), ", twice");
       const auto bytes = gpu.copy_in(source.bytes());
       std::vector<clearance::world_transform> all(poses.begin(), poses.end());
       all.emplace_back(t.pose);

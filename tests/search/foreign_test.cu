@@ -8,9 +8,10 @@
 
 #include <clearance/bvh/any_tree.hpp>
 #include <clearance/bvh/flat_list.hpp>
-#include <clearance/distances.cuh>
+#include <clearance/questions/distances.hpp>
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance_query.cuh>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -30,17 +31,17 @@ template <class Here, class There, class Cloud>
 void ask(const Here& on_host, const There& model, const std::vector<Eigen::Isometry3d>& poses, const Cloud& cloud,
          verdict& v, const std::string& what) {
   const device gpu;
-  const auto expected = min_distance(host{}, on_host, poses, cloud);
-  const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, cloud);
-  v.require(same_result(min_distance(gpu, model, poses, cloud), expected), what,
+  const auto expected = ask(host{}, on_host, poses, cloud, min_distance{});
+  const auto [robot, each] = clearance::ask(host{}, on_host, poses, cloud, clearance::min_distance_per_part{});
+  v.require(same_result(ask(gpu, model, poses, cloud, min_distance{}), expected), what,
             ", one call: differs from the host's result");
-  const auto [by_parts, own] = clearance::min_distance_per_part(gpu, model, poses, cloud);
+  const auto [by_parts, own] = clearance::ask(gpu, model, poses, cloud, clearance::min_distance_per_part{});
   v.require(same_result(by_parts, robot) && std::ranges::equal(own, each, same_minimum), what,
             ", one call, per part: differs");
   for (const real d_max : {real(0.3), clearance::infinity})
-    require_same(clearance::distances(gpu, model, poses, cloud, {d_max, true}),
-                 clearance::distances(host{}, on_host, poses, cloud, {d_max, true}), v, what + ", distances");
-  clearance::min_distance_query query(gpu, model);
+    require_same(clearance::ask(gpu, model, poses, cloud, clearance::distances{d_max, true}),
+                 clearance::ask(host{}, on_host, poses, cloud, clearance::distances{d_max, true}), v, what + ", distances");
+  clearance::query query(gpu, model, clearance::min_distance{});
   std::vector<clearance::part_minimum> minima(poses.size());
   for (const char* when : {", cold", ", warm"}) {
     v.require(same_result(query(poses, cloud), expected), what + when, ": differs from the host's result");
@@ -75,7 +76,7 @@ void ask_linked(const scene<P>& s, bool lopsided, verdict& v, const std::string&
   const auto parts = gpu.copy_in(std::span<const view>(there));
   const placed cloud{point_span(s.points), s.cloud_pose};
   const clearance::model_view<view> on_host{here.data(), facts, depth, 2}, model{parts.data(), facts, depth, 2};
-  require_equal(min_distance(gpu, model, s.poses, cloud),
+  require_equal(ask(gpu, model, s.poses, cloud, min_distance{}),
                 brute_force(brute_parts(s), s.poses, {brute_cloud(cloud.source, cloud.pose)}), v, what);
   ask(on_host, model, s.poses, cloud, v, what);
 }
@@ -141,7 +142,7 @@ TEST_CASE("A tree wider than eight, and a flat list, are walked eight children a
     compare(clearance::any_tree{tree.view()}, clearance::any_tree{tree_there.view()}, "arrays");
     const clearance::model on_host(std::vector{clearance::make_part(std::move(tree))});
     const auto model = on_host.on(gpu);
-    CHECK_THROWS_AS(min_distance(gpu, model, poses, cloud), std::invalid_argument);
+    CHECK_THROWS_AS(ask(gpu, model, poses, cloud, min_distance{}), std::invalid_argument);
   }
 }
 
@@ -202,13 +203,13 @@ void ask_wide(dice& d, int parts, std::uint32_t groups, std::uint32_t width, int
       const placed cloud{point_span(s.points), d.pose(0.1)};
       const clearance::model_view<view> on_host{here.data(), facts, 2, most}, model{views.data(), facts, 2, most};
       if (again == 0)
-        require_equal(min_distance(gpu, model, s.poses, cloud),
+        require_equal(ask(gpu, model, s.poses, cloud, min_distance{}),
                       brute_force(brute_parts(s), s.poses, {brute_cloud(cloud.source, cloud.pose)}), v, what);
       ask(on_host, model, s.poses, cloud, v, what);
     }
   }
   CHECK_THROWS_WITH(
-      min_distance(gpu, clearance::model_view<view>{views.data(), facts, 2, 262'145}, s.poses, point_span{}),
+      ask(gpu, clearance::model_view<view>{views.data(), facts, 2, 262'145}, s.poses, point_span{}, min_distance{}),
       "clearance: a node has 262145 children; a device takes 262144");
 }
 
@@ -300,7 +301,7 @@ TEST_CASE("Parts of unequal tolerance are one robot, in groups too") {
     const auto on_host = clearance::make_model<clearance::sphere>(
         bodies,
         [&](std::size_t k) -> clearance::part_options { return {.build = {}, .tolerance = k == 0 ? tolerance : 0}; });
-    const auto expected = min_distance(host{}, on_host, poses, point_span(points));
+    const auto expected = ask(host{}, on_host, poses, point_span(points), min_distance{});
     v.require(expected.part == 0 &&
                   expected.state == (tolerance > 0 ? clearance::state::possible : clearance::state::collision),
               "the scene is not what it was meant to be");

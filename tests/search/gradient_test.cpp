@@ -5,7 +5,7 @@
 #include "support/same_result.hpp"
 
 #include <clearance/gradient.hpp>
-#include <clearance/part_witnesses.hpp>
+#include <clearance/questions/part_witnesses.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -51,13 +51,13 @@ void against_differences() {
     const auto s = sparse<P>(d);
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
     const clearance::placed cloud{clearance::point_span(s.points), s.cloud_pose};
-    const auto [least, minima] = min_distance_per_part(host{}, model, s.poses, cloud);
-    const auto witnesses = part_witnesses(host{}, model, s.poses, cloud, minima);
+    const auto [least, minima] = ask(host{}, model, s.poses, cloud, min_distance_per_part{});
+    const auto witnesses = ask(host{}, model, s.poses, cloud, part_witnesses{minima});
     const Eigen::Vector3d velocity = any(d, 1), turning = any(d, 1), about = any(d, 2);
     const auto ask = [&](double time) {
       auto poses = s.poses;
       for (auto& pose : poses) pose = moved(pose, velocity, turning, about, time);
-      return min_distance_per_part(host{}, model, poses, cloud).second;
+      return ask(host{}, model, poses, cloud, min_distance_per_part{}).second;
     };
     const auto before = ask(-h), after = ask(h);
     for (std::size_t k = 0; k < minima.size(); ++k) {
@@ -91,8 +91,8 @@ void of_all_scenes() {
   for (const auto& s : scenes<P>()) {
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
     const auto two = two_clouds(s);
-    const auto [least, minima] = min_distance_per_part(host{}, model, s.poses, two);
-    const auto all = part_witnesses(host{}, model, s.poses, two, minima);
+    const auto [least, minima] = ask(host{}, model, s.poses, two, min_distance_per_part{});
+    const auto all = ask(host{}, model, s.poses, two, part_witnesses{minima});
     v.require(all.size() == minima.size(), s.name);
     for (std::size_t k = 0; k < all.size(); ++k) {
       const part_witness& w = all[k];
@@ -115,10 +115,10 @@ void of_all_scenes() {
     const auto same = [&](const std::vector<part_witness>& other) {
       return std::equal(all.begin(), all.end(), other.begin(), other.end(), same_witness);
     };
-    v.require(same(part_witnesses(clearance::host{1}, model, s.poses, std::tuple(two[0], two[1]), minima)), s.name,
+    v.require(same(ask(clearance::host{1}, model, s.poses, std::tuple(two[0], two[1]), part_witnesses{minima})), s.name,
               ", clouds of several kinds");
-    clearance::part_witnesses_query query(host{}, model);
-    query(s.poses, two[0], min_distance_per_part(host{}, model, s.poses, two[0]).second);
+    clearance::query query(host{}, model, clearance::part_witnesses{});
+    query(s.poses, two[0], ask(host{}, model, s.poses, two[0], min_distance_per_part{}).second);
     v.require(same(query(s.poses, two, minima)), s.name, ", prepared");
     std::vector<part_witness> room(minima.size());
     query.enqueue(s.poses, two, minima.data(), room.data());
@@ -174,8 +174,8 @@ TEST_CASE("What has no gradient says why, and has no numbers") {
   const auto ask = [&](const auto& part, vec3 p) {
     const std::vector points{p};
     const clearance::model robot{std::vector{part}};
-    const auto [r, minima] = min_distance_per_part(host{}, robot, poses, points);
-    const auto of_part = gradient(part_witnesses(host{}, robot, poses, points, minima)[0], origin);
+    const auto [r, minima] = ask(host{}, robot, poses, points, min_distance_per_part{});
+    const auto of_part = gradient(ask(host{}, robot, poses, points, part_witnesses{minima})[0], origin);
     const auto of_robot = gradient(r, origin);
     CHECK(of_part.state == of_robot.state);
     return of_robot;
@@ -198,9 +198,9 @@ TEST_CASE("Witnesses of minima that are of something else are refused") {
   const auto s = sparse<inner_sphere>(d);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const clearance::point_span cloud(s.points);
-  const auto minima = min_distance_per_part(host{}, model, s.poses, cloud).second;
+  const auto minima = ask(host{}, model, s.poses, cloud, min_distance_per_part{}).second;
   const auto refused = [&](std::vector<part_minimum> changed, const auto& poses, const auto& clouds) {
-    CHECK_THROWS_AS(part_witnesses(host{}, model, poses, clouds, changed), std::invalid_argument);
+    CHECK_THROWS_AS(ask(host{}, model, poses, clouds, part_witnesses{changed}), std::invalid_argument);
   };
   auto changed = minima;
   changed[1].distance = std::nextafter(changed[1].distance, clearance::infinity);

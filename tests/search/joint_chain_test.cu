@@ -4,10 +4,11 @@
 #include "support/same_result.hpp"
 #include "support/scenes.hpp"
 
-#include <clearance/in_collisions.cuh>
+#include <clearance/questions/in_collisions.hpp>
+#include <clearance/device.cuh>
 #include <clearance/io/joint_chain.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distances.cuh>
+#include <clearance/questions/min_distances.hpp>
 #include <clearance/volume/sphere.hpp>
 
 namespace joint_chain_test {
@@ -49,8 +50,8 @@ TEST_CASE("Joint vectors on a device have the host's answers, from the host's me
       q.insert(q.end(), values.begin(), values.end());
     }
     const auto points = d.points(500, 1.5);
-    const auto expected = clearance::min_distances(host{}, model, chain.poses(q), points);
-    clearance::min_distances_query query(gpu, there);
+    const auto expected = clearance::ask(host{}, model, chain.poses(q), points, clearance::min_distances{});
+    clearance::query query(gpu, there, clearance::min_distances{});
     const auto same = [&](const std::vector<clearance::min_distance_result>& found, const char* what) {
       v.require(found.size() == 50, what, ":", found.size(), " results");
       for (std::size_t c = 0; c < found.size() && c < 50; ++c)
@@ -60,10 +61,10 @@ TEST_CASE("Joint vectors on a device have the host's answers, from the host's me
     const auto q_there = gpu.copy_in(std::span<const double>(q));
     query.place(moved, q_there.data(), 50);
     same(query(points).of, "from the device");
-    clearance::min_distances_query on_host(host{}, model);
+    clearance::query on_host(host{}, model, clearance::min_distances{});
     same(on_host(chain, q, points).of, "on the host");
-    const auto states = clearance::in_collisions(host{}, model, chain.poses(q), points, 0.1);
-    clearance::in_collisions_query in(gpu, there);
+    const auto states = clearance::ask(host{}, model, chain.poses(q), points, clearance::in_collisions{{0.1}});
+    clearance::query in(gpu, there, clearance::in_collisions{});
     v.require(in(moved, q, points, 0.1).of == states.of, "within a margin");
     turned += std::size_t(std::ranges::count(states.of, clearance::state::collision));
   }
@@ -80,7 +81,7 @@ TEST_CASE("A joint vector on a device that is not allowed is refused, and never 
   const auto model =
       clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{{{{0, 0, 0}, 0.1f}}}).on(gpu);
   const std::vector<vec3> points{{3, 0, 0}};
-  clearance::min_distances_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distances{});
   CHECK_THROWS_WITH(query(moved, std::vector<double>{0, 2}, points),
                     "clearance: configuration 1: joint \"slide\" at 2.000000 is outside -1.000000 to 1.000000");
   const std::vector<double> q{0, 2};

@@ -2,7 +2,7 @@
 // Answers about pieces of a cloud, and about separate clouds, merge into the answer about all of them.
 #include "support/product.hpp"
 
-#include <clearance/answer/merge.hpp>
+#include <clearance/minimum/merge.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/points/slice.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -36,16 +36,16 @@ template <class Model, class S>
 void cut(const Model& model, const std::vector<Eigen::Isometry3d>& poses, const S& source,
          const Eigen::Isometry3d& pose, dice& d, verdict& v, const std::string& what) {
   const placed whole{source, pose};
-  const auto expected = min_distance(host{}, model, poses, whole);
-  const auto [by_parts, own] = clearance::min_distance_per_part(host{}, model, poses, whole);
+  const auto expected = ask(host{}, model, poses, whole, min_distance{});
+  const auto [by_parts, own] = clearance::ask(host{}, model, poses, whole, clearance::min_distance_per_part{});
   std::vector<min_distance_result> pieces, piece_by_parts;
   std::vector<std::vector<part_minimum>> minima;
   for (std::size_t begin = 0; begin < source.size() || begin == 0;) {
     const std::size_t end = std::min(source.size(), begin + 1 + d.below(unsigned(source.size())));
     const auto piece = slice(source, begin, end);
     v.require(piece.size() == end - begin, what, ": a piece of another size");
-    pieces.push_back(renumbered(min_distance(host{}, model, poses, placed{piece, pose}), 0, std::uint32_t(begin)));
-    auto [r, each] = clearance::min_distance_per_part(host{}, model, poses, placed{piece, pose});
+    pieces.push_back(renumbered(ask(host{}, model, poses, placed{piece, pose}, min_distance{}), 0, std::uint32_t(begin)));
+    auto [r, each] = clearance::ask(host{}, model, poses, placed{piece, pose}, clearance::min_distance_per_part{});
     piece_by_parts.push_back(renumbered(r, 0, std::uint32_t(begin)));
     for (auto& m : each) m = renumbered(m, 0, std::uint32_t(begin));
     minima.push_back(each);
@@ -94,9 +94,9 @@ TEST_CASE("Answers about several clouds have the witness and counts of one call,
     const auto model = make_model<clearance::aabb>(s, {}, clearance::wrapped{});
     const placed first{all.span, s.cloud_pose};
     const placed second{all.raw, all.camera_pose};
-    const auto expected = min_distance(host{}, model, s.poses, std::tuple(first, second));
-    const auto a = min_distance(host{}, model, s.poses, first),
-               b = renumbered(min_distance(host{}, model, s.poses, second), 1);
+    const auto expected = ask(host{}, model, s.poses, std::tuple(first, second), min_distance{});
+    const auto a = ask(host{}, model, s.poses, first, min_distance{}),
+               b = renumbered(ask(host{}, model, s.poses, second, min_distance{}), 1);
     for (const auto& r : {merge(a, b), merge(b, a)}) {
       v.require(same_witness(r, expected) && same_counts(r, expected), s.name, ": another witness");
       v.require(r.lower >= expected.lower && r.upper <= expected.upper, s.name, ": a wider bracket");
@@ -112,7 +112,7 @@ TEST_CASE("Some point certainly inside is a collision of all, and no valid point
   const auto model = clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{one});
   const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()};
   const std::vector<vec3> inside = {{0.1f, 0, 0}}, apart = {{3, 0, 0}}, none = {{clearance::not_a_number, 0, 0}};
-  const auto ask = [&](const std::vector<vec3>& points) { return min_distance(host{}, model, poses, points); };
+  const auto ask = [&](const std::vector<vec3>& points) { return ask(host{}, model, poses, points, min_distance{}); };
   const auto hit = merge(ask(apart), renumbered(ask(inside), 1));
   CHECK((hit.state == clearance::state::collision && hit.upper == 0 && hit.lower == 0 && hit.cloud == 1 &&
          hit.valid == 2));

@@ -5,7 +5,8 @@
 #include "support/same_result.hpp"
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance_by.hpp>
+#include <clearance/deadline.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/points/masked.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -42,17 +43,16 @@ void cut_everywhere() {
   std::size_t longest = 0;
   for (const auto& s : scenes<P>()) {
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
-    min_distance_query query(host{1}, model);
+    query query(host{1}, model, min_distance{});
     for (std::size_t pieces = 0;; ++pieces) {
       std::vector<point_label> labels(s.points.size(), point_label::own);
       const placed cloud{watched{point_span(s.points), labels.data()}, s.cloud_pose};
       const auto r =
-          min_distance_while(query, s.poses, cloud, [left = pieces]() mutable { return left-- > 0; }, {.piece = 100});
+          ask_while(query, s.poses, cloud, [left = pieces]() mutable { return left-- > 0; }, min_distance{}, {.piece = 100});
       const std::size_t unseen = std::size_t(std::ranges::count(labels, point_label::own));
       const std::string what = s.name + " after " + std::to_string(pieces) + " pieces";
       v.require(r.unseen == unseen && r.seen == s.points.size() - unseen, what, ": other counts");
-      auto expected = min_distance(host{1}, model, s.poses,
-                                   placed{clearance::masked(point_span(s.points), labels.data()), s.cloud_pose});
+      auto expected = ask(host{1}, model, s.poses, placed{clearance::masked(point_span(s.points), labels.data()), s.cloud_pose}, min_distance{});
       std::uint64_t bad = 0;
       for (std::size_t i = 0; i < labels.size(); ++i)
         bad += labels[i] == point_label::rest && !point_span(s.points)[i].valid();
@@ -88,9 +88,9 @@ TEST_CASE("In time it is the least distance, of clouds of any kind and in any pi
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     const std::tuple clouds(placed{all.raw, all.camera_pose}, placed{all.span, s.cloud_pose},
                             placed{all.doubles, s.cloud_pose});
-    const auto expected = min_distance(host{}, model, s.poses, clouds);
+    const auto expected = ask(host{}, model, s.poses, clouds, min_distance{});
     for (const std::size_t piece : {1, 37, 1000, 0}) {
-      const auto r = min_distance_by(host{2}, model, s.poses, clouds, ever, {.piece = piece});
+      const auto r = ask_by(host{2}, model, s.poses, clouds, ever, min_distance{}, {.piece = piece});
       v.require(same_result(r, expected) && r.unseen == 0, s.name, " in pieces of", piece);
     }
   }
@@ -105,21 +105,21 @@ TEST_CASE("Points inside a closed mesh are found in whatever piece") {
     auto points = d.points(1000, 4);
     const std::size_t from = d.below(990);
     for (std::size_t i = 0; k % 2 && i < 10; ++i) points[from + i] = d.point(0.3);
-    v.require(same_result(min_distance_by(host{1}, model, poses, points, ever, {.piece = 50}),
-                          min_distance(host{1}, model, poses, points)),
+    v.require(same_result(ask_by(host{1}, model, poses, points, ever, min_distance{}, {.piece = 50}),
+                          ask(host{1}, model, poses, points, min_distance{})),
               "cloud", k);
   }
-  min_distance_query query(host{1}, model);
+  query query(host{1}, model, min_distance{});
   const auto crowd = d.points(2000, 0.5);
   const auto some =
-      min_distance_while(query, poses, crowd, [left = 20]() mutable { return left-- > 0; }, {.piece = 50});
+      ask_while(query, poses, crowd, [left = 20]() mutable { return left-- > 0; }, min_distance{}, {.piece = 50});
   CHECK((some.state == clearance::state::collision && some.lower == 0 && some.upper == 0 &&
          some.unseen > 0));  // what is certain stays so
-  CHECK(same_result(query(poses, crowd), min_distance(host{1}, model, poses, crowd)));
+  CHECK(same_result(query(poses, crowd), ask(host{1}, model, poses, crowd, min_distance{})));
   // A bound that the query was given for some other frame is none of this one's.
   const std::vector<vec3> two{{9, 0, 0}, {9, 0, 0}, {9, 0, 0}, {9, 0, 0}, {99, 0, 0}};
   query.bound_by(1);
-  CHECK(same_result(min_distance_by(query, poses, two, ever, {.piece = 4}), min_distance(host{1}, model, poses, two)));
+  CHECK(same_result(ask_by(query, poses, two, ever, min_distance{}, {.piece = 4}), ask(host{1}, model, poses, two, min_distance{})));
 }
 
 TEST_CASE("No time, little time, and deadlines that are none") {
@@ -127,19 +127,19 @@ TEST_CASE("No time, little time, and deadlines that are none") {
   const auto model = clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{ball});
   const std::vector poses{Eigen::Isometry3d::Identity()};
   const std::vector<vec3> points(100000, vec3{3, 0, 0});
-  const auto none = min_distance_by(host{}, model, poses, points, 0s);
+  const auto none = ask_by(host{}, model, poses, points, 0s, min_distance{});
   CHECK((none.unseen == 100000 && none.seen == 0 && none.state == clearance::state::no_data && none.lower == 0 &&
          none.upper == infinity));
-  const auto empty = min_distance_by(host{}, model, poses, std::vector<vec3>{}, 0s);
-  CHECK((same_result(empty, min_distance(host{}, model, poses, std::vector<vec3>{})) && empty.unseen == 0));
-  CHECK(same_result(min_distance_by(host{}, model, poses, points, 1h), min_distance(host{}, model, poses, points)));
-  const auto some = min_distance_by(host{1}, model, poses, points, 1us, {.piece = 8});
+  const auto empty = ask_by(host{}, model, poses, std::vector<vec3>{}, 0s, min_distance{});
+  CHECK((same_result(empty, ask(host{}, model, poses, std::vector<vec3>{}, min_distance{})) && empty.unseen == 0));
+  CHECK(same_result(ask_by(host{}, model, poses, points, 1h, min_distance{}), ask(host{}, model, poses, points, min_distance{})));
+  const auto some = ask_by(host{1}, model, poses, points, 1us, min_distance{}, {.piece = 8});
   CHECK(some.seen + some.unseen == 100000);
   CHECK((some.unseen == 0 || !(some.lower > 0)));
   for (const double seconds : {-1e-9, -1.0, std::numeric_limits<double>::quiet_NaN()})
-    CHECK_THROWS_AS(min_distance_by(host{}, model, poses, points, std::chrono::duration<double>(seconds)),
+    CHECK_THROWS_AS(ask_by(host{}, model, poses, points, std::chrono::duration<double>(seconds), min_distance{}),
                     std::invalid_argument);
-  CHECK_THROWS_AS(min_distance_by(host{}, model, std::vector(2, poses[0]), points, 0s), std::invalid_argument);
+  CHECK_THROWS_AS(ask_by(host{}, model, std::vector(2, poses[0]), points, 0s, min_distance{}), std::invalid_argument);
 }
 
 TEST_CASE("Asked per part, an answer with time for all is min_distance_per_part's, with its lower end") {
@@ -151,10 +151,10 @@ TEST_CASE("Asked per part, an answer with time for all is min_distance_per_part'
       parts.push_back(clearance::make_part(clearance::build<clearance::sphere>(s.parts[k]), 0.01 * double(k) * s.size));
     const clearance::model model{parts};
     const placed cloud{point_span(s.points), s.cloud_pose};
-    const auto whole = clearance::min_distance_per_part(host{}, model, s.poses, cloud).first;
-    const auto r = min_distance_by(host{}, model, s.poses, cloud, ever, {.piece = 100, .per_part = true});
+    const auto whole = clearance::ask(host{}, model, s.poses, cloud, clearance::min_distance_per_part{}).first;
+    const auto r = ask_by(host{}, model, s.poses, cloud, ever, min_distance{}, {.piece = 100, .per_part = true});
     v.require(r.unseen == 0 && same_result(r, whole), s.name, ": another answer");
-    higher += r.lower > min_distance_by(host{}, model, s.poses, cloud, ever, {.piece = 100}).lower;
+    higher += r.lower > ask_by(host{}, model, s.poses, cloud, ever, min_distance{}, {.piece = 100}).lower;
   }
   CHECK(higher > 0);
 }

@@ -8,9 +8,9 @@
 #include "support/volumes.hpp"
 #include "support/wide_tree.hpp"
 
-#include <clearance/in_collisions.hpp>
+#include <clearance/questions/in_collisions.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distances_per_part.hpp>
+#include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -27,13 +27,13 @@ namespace {
 template <class Model, class Clouds>
 void check(const Model& model, std::size_t parts, const configurations& poses, const Clouds& clouds, double size,
            verdict& v, const std::string& what) {
-  clearance::min_distances_query query(host{}, model);
-  const auto one = [&](auto own) { return min_distance(host{1}, model, own, clouds); };
+  clearance::query query(host{}, model, clearance::min_distances{});
+  const auto one = [&](auto own) { return ask(host{1}, model, own, clouds, min_distance{}); };
   for (const double d_max : {-0.05, 0.0, 0.2, 1.0, double(infinity)}) {
-    const clearance::min_distances_options options{real(d_max * size)};
+    const clearance::min_distances options{real(d_max * size)};
     const std::string which = what + ", d_max " + std::to_string(options.d_max);
     require_same(query(poses, clouds, options), poses, parts, options.d_max, one, v, which + ", prepared");
-    require_same(min_distances(host{1}, model, poses, clouds, options), poses, parts, options.d_max, one, v, which);
+    require_same(ask(host{1}, model, poses, clouds, options), poses, parts, options.d_max, one, v, which);
   }
 }
 
@@ -66,10 +66,10 @@ void all_parts() {
     const std::size_t parts = s.parts.size();
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
     const auto clouds = std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}));
-    clearance::min_distances_per_part_query query(host{}, model);
+    clearance::query query(host{}, model, clearance::min_distances_per_part{});
     for (const double d_max : {0.2, double(infinity)}) {
-      const clearance::min_distances_options options{real(d_max * s.size)};
-      const auto found = clearance::min_distances_per_part(host{1}, model, poses, clouds, options);
+      const clearance::min_distances options{real(d_max * s.size)};
+      const auto found = clearance::ask(host{1}, model, poses, clouds, options);
       const auto& prepared = query(poses, clouds, options);
       v.require(found.size() == poses.size() / parts && prepared.size() == found.size(), s.name,
                 ": another number of configurations");
@@ -88,7 +88,7 @@ void all_parts() {
         }
         require_same(
             its, own, 1, options.d_max,
-            [&](auto pose) { return min_distance(host{1}, model.parts()[k], pose[0], clouds); }, v,
+            [&](auto pose) { return ask(host{1}, model.parts()[k], pose[0], clouds, min_distance{}); }, v,
             s.name + ", part " + std::to_string(k));
       }
     }
@@ -99,17 +99,17 @@ void all_parts() {
 template <class Model, class Clouds>
 void check_states(const Model& model, std::size_t parts, const configurations& poses, const Clouds& clouds, double size,
                   verdict& v, const std::string& what, std::size_t (&states)[4]) {
-  clearance::in_collisions_query query(host{}, model);
+  clearance::query query(host{}, model, clearance::in_collisions{});
   for (const double margin : {-0.1, -0.01, 0.0, 1e-7, 0.02, 0.3, double(infinity)})
     for (const bool own : {false, true}) {
       std::vector<double> margins(own ? parts : 1, margin * size);
       if (own) margins[0] *= 3;
-      const auto found = clearance::in_collisions(host{1}, model, poses, clouds, margins);
+      const auto found = clearance::ask(host{1}, model, poses, clouds, clearance::in_collisions{{margins}});
       v.require(found.of.size() * parts == poses.size() && query(poses, clouds, margins).of == found.of, what,
                 ": another number, or other states if prepared");
       for (std::size_t c = 0; c < found.of.size(); ++c) {
         const auto one =
-            clearance::in_collision(host{1}, model, std::span(poses).subspan(c * parts, parts), clouds, margins);
+            clearance::ask(host{1}, model, std::span(poses).subspan(c * parts, parts), clouds, clearance::in_collision{{margins}});
         v.require(found.of[c] == one.state, what, ", margin", margins[0], ", configuration", c, ": ",
                   to_string(found.of[c]), " and not ", to_string(one.state));
         v.require(found.counts.seen == one.counts.seen && found.counts.valid == one.counts.valid, what,
@@ -207,7 +207,7 @@ TEST_CASE("Points inside solids are 0 away of every configuration, certainly or 
       const auto cloud = d.points(points, 3);
       check(model, 2, poses, placed{point_span(cloud), d.pose(0.1)}, 1, v, std::to_string(points) + " points");
       check_states(model, 2, poses, point_span(cloud), 1, v, std::to_string(points) + " points", states);
-      for (const auto& r : min_distances(host{}, model, poses, cloud).of)
+      for (const auto& r : ask(host{}, model, poses, cloud, min_distances{}).of)
         inside += r.distance == 0, uncertain += r.distance == 0 && r.state == state::possible;
     }
   }
@@ -245,8 +245,8 @@ TEST_CASE("A volume is a ball if it says so, and not because it has a middle and
   const auto model = make_model<padded>(s, {}, clearance::wrapped{});
   const auto poses = configurations_of(s, d, 40);
   require_same(
-      min_distances(host{}, model, poses, point_span(s.points)), poses, s.parts.size(), infinity,
-      [&](auto own) { return min_distance(host{}, model, own, point_span(s.points)); }, v, "padded");
+      ask(host{}, model, poses, point_span(s.points), min_distances{}), poses, s.parts.size(), infinity,
+      [&](auto own) { return ask(host{}, model, own, point_span(s.points), min_distance{}); }, v, "padded");
 }
 
 TEST_CASE("Clouds in order and in none, large ones, and one point far from all others") {
@@ -272,10 +272,10 @@ TEST_CASE("The monitor of a trajectory: every frame is new, and its answer does 
   configurations poses;
   for (int c = 0; c < 50; ++c)
     for (const auto& pose : s.poses) poses.push_back(shifted(0.02 * c, 0, 0) * pose);
-  clearance::min_distances_query query(host{}, model);
+  clearance::query query(host{}, model, clearance::min_distances{});
   for (const std::size_t points : {300, 10, 2000, 0, 500}) {
     const auto cloud = d.points(points, 2);
-    const auto one = [&](auto own) { return min_distance(host{}, model, own, cloud); };
+    const auto one = [&](auto own) { return ask(host{}, model, own, cloud, min_distance{}); };
     require_same(query(poses, cloud), poses, s.parts.size(), infinity, one, v, std::to_string(points) + " points");
     if (points == 10) poses.resize(poses.size() / 2 / s.parts.size() * s.parts.size());
     if (points == 2000) query.forget();
@@ -289,7 +289,7 @@ TEST_CASE("The first waypoint below a margin, and nothing known is below it") {
   configurations poses;
   for (int c = 0; c < 10; ++c) poses.push_back(shifted(0.5 * c, 0, 0));
   const std::vector<vec3> wall{{4, 0, 0}};
-  const auto found = min_distances(host{}, model, poses, wall);
+  const auto found = ask(host{}, model, poses, wall, min_distances{});
   CHECK(found.first_below(0.0) == 7);  // 4 - 3.5 - 0.5, less the gap
   CHECK(found.first_below(0.48) == 7);
   CHECK(found.first_below(0.495) == 6);
@@ -300,12 +300,12 @@ TEST_CASE("The first waypoint below a margin, and nothing known is below it") {
     CHECK_THROWS_AS(found.first_below(nonsense, 5), std::invalid_argument);
     CHECK_THROWS_AS(clearance::min_distances_result{}.first_below(nonsense, 5), std::invalid_argument);
   }
-  const auto nearby = min_distances(host{}, model, poses, wall, {0.6f});
+  const auto nearby = ask(host{}, model, poses, wall, min_distances{0.6f});
   CHECK(nearby.first_below(0.495) == 6);
   CHECK((nearby.of[0].state == state::free && nearby.of[0].distance == infinity && nearby.of[0].lower > 0.589f &&
          nearby.of[0].lower <= 0.59f));
-  CHECK(min_distances(host{}, model, poses, std::vector<vec3>{}).first_below(0) == 0);
-  CHECK(min_distances(host{}, model, poses, std::vector<vec3>{{clearance::not_a_number, 0, 0}}).of[3].state ==
+  CHECK(ask(host{}, model, poses, std::vector<vec3>{}, min_distances{}).first_below(0) == 0);
+  CHECK(ask(host{}, model, poses, std::vector<vec3>{{clearance::not_a_number, 0, 0}}, min_distances{}).of[3].state ==
         state::no_data);
 }
 
@@ -315,23 +315,23 @@ TEST_CASE("What is no batch is refused, and an empty one is one") {
   const point_span cloud(s.points);
   configurations poses = s.poses;
   poses.insert(poses.end(), s.poses.begin(), s.poses.end());
-  CHECK(min_distances(host{}, model, configurations{}, cloud).of.empty());
-  CHECK_THROWS_WITH(min_distances(host{}, model, std::span(poses).first(4), cloud),
+  CHECK(ask(host{}, model, configurations{}, cloud, min_distances{}).of.empty());
+  CHECK_THROWS_WITH(ask(host{}, model, std::span(poses).first(4), cloud, min_distances{}),
                     "clearance: 4 poses are no whole configurations of 3 parts");
-  CHECK_THROWS_AS(min_distances(host{}, model, poses, cloud, {clearance::not_a_number}), std::invalid_argument);
-  CHECK_THROWS_AS(min_distances(host{}, model, poses, placed{cloud, Eigen::Isometry3d(Eigen::Scaling(2.0))}),
+  CHECK_THROWS_AS(ask(host{}, model, poses, cloud, min_distances{clearance::not_a_number}), std::invalid_argument);
+  CHECK_THROWS_AS(ask(host{}, model, poses, placed{cloud, Eigen::Isometry3d(Eigen::Scaling(2.0))}, min_distances{}),
                   std::invalid_argument);
-  CHECK(clearance::min_distances_per_part(host{}, model, configurations{}, cloud).size() == 0);
-  CHECK_THROWS_WITH(clearance::min_distances_per_part(host{}, model, std::span(poses).first(4), cloud),
+  CHECK(clearance::ask(host{}, model, configurations{}, cloud, clearance::min_distances_per_part{}).size() == 0);
+  CHECK_THROWS_WITH(clearance::ask(host{}, model, std::span(poses).first(4), cloud, clearance::min_distances_per_part{}),
                     "clearance: 4 poses are no whole configurations of 3 parts");
-  CHECK_THROWS_AS(clearance::min_distances_per_part(host{}, model, poses, cloud, {clearance::not_a_number}),
+  CHECK_THROWS_AS(clearance::ask(host{}, model, poses, cloud, clearance::min_distances_per_part{clearance::not_a_number}),
                   std::invalid_argument);
   poses[4].linear() *= 1.5;
   CHECK_THROWS_WITH(
-      clearance::min_distances_per_part(host{}, model, poses, cloud),
+      clearance::ask(host{}, model, poses, cloud, clearance::min_distances_per_part{}),
       Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
   CHECK_THROWS_WITH(
-      min_distances(host{}, model, poses, cloud),
+      ask(host{}, model, poses, cloud, min_distances{}),
       Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
 }
 
@@ -344,23 +344,23 @@ TEST_CASE(
   configurations poses;
   for (const double x : {0.0, 2.0, 2.475, 2.485, 2.5, 2.6, 3.0}) poses.push_back(shifted(x, 0, 0));
   const std::vector<vec3> wall{{3, 0, 0}};
-  const auto found = clearance::in_collisions(host{}, model, poses, wall, 0.005);
+  const auto found = clearance::ask(host{}, model, poses, wall, clearance::in_collisions{{0.005}});
   CHECK((found.of == std::vector{state::free, state::free, state::possible, state::possible, state::possible,
                                  state::collision, state::collision}));
   CHECK((found.first_not_free() == 2 && found.counts.valid == 1));
-  CHECK(clearance::in_collisions(host{}, model, poses, std::vector<vec3>{}).of == std::vector(7, state::no_data));
+  CHECK(clearance::ask(host{}, model, poses, std::vector<vec3>{}, clearance::in_collisions{}).of == std::vector(7, state::no_data));
   const float pixels[] = {3, -infinity};
   const clearance::depth_image image(pixels, 2, 1, {1, 1, 0, 0});
-  CHECK(clearance::in_collisions(host{}, model, poses, image).of == std::vector(7, state::possible));
-  CHECK(clearance::in_collisions(own_backend{}, model, poses, wall, 0.005).of == found.of);
-  CHECK(clearance::in_collisions(host{}, model, configurations{}, wall).of.empty());
-  CHECK_THROWS_WITH(clearance::in_collisions(host{}, model, poses, wall, clearance::not_a_number),
+  CHECK(clearance::ask(host{}, model, poses, image, clearance::in_collisions{}).of == std::vector(7, state::possible));
+  CHECK(clearance::ask(own_backend{}, model, poses, wall, clearance::in_collisions{{0.005}}).of == found.of);
+  CHECK(clearance::ask(host{}, model, configurations{}, wall, clearance::in_collisions{}).of.empty());
+  CHECK_THROWS_WITH(clearance::ask(host{}, model, poses, wall, clearance::in_collisions{{clearance::not_a_number}}),
                     "clearance: the margin of part 0 is not a number");
-  CHECK_THROWS_WITH(clearance::in_collisions(host{}, model, poses, wall, std::vector{0.1, 0.2}),
+  CHECK_THROWS_WITH(clearance::ask(host{}, model, poses, wall, clearance::in_collisions{{std::vector{0.1, 0.2}}}),
                     "clearance: there are 1 parts, but 2 margins");
   poses[4].linear() *= 1.5;
   CHECK_THROWS_WITH(
-      clearance::in_collisions(host{}, model, poses, wall),
+      clearance::ask(host{}, model, poses, wall, clearance::in_collisions{}),
       Catch::Matchers::StartsWith("clearance: the pose of configuration 4's part 0 is not rigid: its axes"));
 }
 
@@ -373,8 +373,8 @@ TEST_CASE("With a traversal of one's choice each configuration is asked for by i
   const placed cloud{point_span(s.points), s.cloud_pose};
   for (const real d_max : {0.1f, real(infinity)})
     require_same(
-        min_distances(clearance::plain{host{}, clearance::stack{}}, model, poses, cloud, {d_max}), poses,
-        s.parts.size(), d_max, [&](auto own) { return min_distance(host{}, model, own, cloud); }, v, "plain");
+        ask(clearance::plain{host{}, clearance::stack{}}, model, poses, cloud, min_distances{d_max}), poses,
+        s.parts.size(), d_max, [&](auto own) { return ask(host{}, model, own, cloud, min_distance{}); }, v, "plain");
 }
 
 TEST_CASE("Results of several trajectories are taken apart by their horizon") {
@@ -382,7 +382,7 @@ TEST_CASE("Results of several trajectories are taken apart by their horizon") {
       clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{{{{0, 0, 0}, 0.1f}}});
   std::vector<Eigen::Isometry3d> poses;
   for (const double x : {0.0, 1.0, 1.85, 1.9, 0.0, 0.0}) poses.push_back(shifted(x, 0, 0));
-  const auto found = min_distances(host{}, model, poses, std::vector<vec3>{{2, 0, 0}});
+  const auto found = ask(host{}, model, poses, std::vector<vec3>{{2, 0, 0}}, min_distances{});
   CHECK(found.first_below(0.08) == 2);
   CHECK(found.first_below(0.08, 3) == std::vector<std::size_t>{2, 0});
   CHECK(found.first_below(0.08, 2) == std::vector<std::size_t>{2, 0, 2});
@@ -390,14 +390,14 @@ TEST_CASE("Results of several trajectories are taken apart by their horizon") {
   CHECK_THROWS_AS(found.first_below(0.08, 4), std::invalid_argument);
   CHECK_THROWS_AS(found.first_below(0.08, 0), std::invalid_argument);
   CHECK_THROWS_AS(found.trajectory(3, 2), std::invalid_argument);
-  const auto states = clearance::in_collisions(host{}, model, poses, std::vector<vec3>{{2, 0, 0}}, 0.08);
+  const auto states = clearance::ask(host{}, model, poses, std::vector<vec3>{{2, 0, 0}}, clearance::in_collisions{{0.08}});
   CHECK(states.first_not_free() == 2);
   CHECK(states.first_not_free(3) == std::vector<std::size_t>{2, 0});
   CHECK(states.first_not_free(2) == std::vector<std::size_t>{2, 0, 2});
   CHECK(states.trajectory(1, 2)[1] == states.of[3]);
   CHECK_THROWS_AS(states.first_not_free(4), std::invalid_argument);
   CHECK_THROWS_AS(states.trajectory(3, 2), std::invalid_argument);
-  const auto none = clearance::min_distances(host{}, model, std::vector<Eigen::Isometry3d>{}, std::vector<vec3>{});
+  const auto none = clearance::ask(host{}, model, std::vector<Eigen::Isometry3d>{}, std::vector<vec3>{}, clearance::min_distances{});
   CHECK(none.first_below(0, 7).empty());
 }
 
@@ -432,9 +432,9 @@ void check_crowds(const Model& model, verdict& v, const std::string& what) {
     for (std::size_t k = 0; k < model.size(); ++k)
       poses.push_back(c == 0 ? shifted(0.125 * double(k), 0, 0) : d.pose(c < 6 ? 0.3 : 1.2));
   for (const auto& [name, points] : crowds(d, 20000)) {
-    const auto one = [&, &points = points](auto own) { return min_distance(host{}, model, own, points); };
+    const auto one = [&, &points = points](auto own) { return ask(host{}, model, own, points, min_distance{}); };
     for (const double d_max : {0.5, double(infinity)})
-      require_same(min_distances(host{}, model, poses, points, {real(d_max)}), poses, model.size(), real(d_max), one, v,
+      require_same(ask(host{}, model, poses, points, min_distances{real(d_max)}), poses, model.size(), real(d_max), one, v,
                    what + ", " + name);
   }
 }

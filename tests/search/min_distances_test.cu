@@ -4,10 +4,11 @@
 #include "support/brute_pairs.hpp"
 #include "support/configurations.hpp"
 
-#include <clearance/in_collisions.cuh>
+#include <clearance/questions/in_collisions.hpp>
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distances.cuh>
-#include <clearance/min_distances_per_part.cuh>
+#include <clearance/questions/min_distances.hpp>
+#include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -34,29 +35,29 @@ void check(const Model& model, const configurations& poses, const Clouds& clouds
            const std::string& what) {
   const device gpu;
   const auto there = model.on(gpu);
-  clearance::min_distances_query query(gpu, there);
+  clearance::query query(gpu, there, clearance::min_distances{});
   query.place(poses);
   for (const double d_max : {-0.05, 0.0, 0.2, double(infinity)}) {
-    const clearance::min_distances_options options{real(d_max * size)};
-    const auto expected = min_distances(host{}, model, poses, clouds, options);
+    const clearance::min_distances options{real(d_max * size)};
+    const auto expected = ask(host{}, model, poses, clouds, options);
     require_results(query(clouds, options).of, expected.of, v,
                     what + ", prepared, d_max " + std::to_string(options.d_max));
     if (d_max > 0)
-      require_results(min_distances(gpu, there, poses, clouds, options).of, expected.of, v,
+      require_results(ask(gpu, there, poses, clouds, options).of, expected.of, v,
                       what + ", d_max " + std::to_string(options.d_max));
   }
-  clearance::in_collisions_query states(gpu, there);
+  clearance::query states(gpu, there, clearance::in_collisions{});
   states.place(poses);
   for (const double margin : {-0.05, 0.0, 0.02, 0.3}) {
     std::vector<double> margins(view_of(model).size(), margin * size);
     margins[0] *= 3;
-    const auto expected = clearance::in_collisions(host{}, model, poses, clouds, margins);
+    const auto expected = clearance::ask(host{}, model, poses, clouds, clearance::in_collisions{{margins}});
     const auto& found = states(clouds, margins);
     v.require(found.of == expected.of, what, ", margin", margin, ": other states");
     v.require(found.counts.valid == expected.counts.valid && found.counts.seen == expected.counts.seen, what,
               ": other counts");
     if (margin > 0.1)
-      v.require(clearance::in_collisions(gpu, there, poses, clouds, margins).of == expected.of, what,
+      v.require(clearance::ask(gpu, there, poses, clouds, clearance::in_collisions{{margins}}).of == expected.of, what,
                 ", in one call: other states");
   }
 }
@@ -67,13 +68,13 @@ void check_parts(const Model& model, const configurations& poses, const Clouds& 
                  const std::string& what) {
   const device gpu;
   const auto there = model.on(gpu);
-  clearance::min_distances_per_part_query query(gpu, there);
+  clearance::query query(gpu, there, clearance::min_distances_per_part{});
   for (const double d_max : {0.2, double(infinity)}) {
-    const clearance::min_distances_options options{real(d_max * size)};
-    const auto expected = clearance::min_distances_per_part(host{}, model, poses, clouds, options);
+    const clearance::min_distances options{real(d_max * size)};
+    const auto expected = clearance::ask(host{}, model, poses, clouds, options);
     require_results(query(poses, clouds, options).all, expected.all, v,
                     what + ", each part, prepared, d_max " + std::to_string(options.d_max));
-    require_results(clearance::min_distances_per_part(gpu, there, poses, clouds, options).all, expected.all, v,
+    require_results(clearance::ask(gpu, there, poses, clouds, options).all, expected.all, v,
                     what + ", each part, d_max " + std::to_string(options.d_max));
   }
 }
@@ -128,9 +129,9 @@ TEST_CASE("A trajectory among a crowd is watched on a device, from frame to fram
   for (int c = 0; c < 600; ++c)
     for (const auto& pose : s.poses) poses.push_back(shifted(0.002 * c, 0, 0) * pose);
   const auto there = model.on(gpu);
-  clearance::min_distances_query query(gpu, there);
+  clearance::query query(gpu, there, clearance::min_distances{});
   query.place(poses);
-  clearance::min_distances_query on_host(host{}, model);
+  clearance::query on_host(host{}, model, clearance::min_distances{});
   dice d(514);
   for (int frame = 0; frame < 3; ++frame) {
     for (vec3& p : s.points) p.x += d.number(-0.001, 0.001);
@@ -163,7 +164,7 @@ TEST_CASE("A tree of a few hundred thousand points has all its levels") {
   s.points = d.points(200000, 2);
   const device gpu;
   const point_span cloud(s.points);
-  require_results(min_distances(gpu, model.on(gpu), poses, cloud).of, min_distances(host{}, model, poses, cloud).of, v,
+  require_results(ask(gpu, model.on(gpu), poses, cloud, min_distances{}).of, ask(host{}, model, poses, cloud, min_distances{}).of, v,
                   "many points");
 }
 
@@ -192,37 +193,37 @@ TEST_CASE("What is no batch is refused on a device, and a pose that is not rigid
   const point_span cloud(s.points);
   configurations poses = s.poses;
   poses.insert(poses.end(), s.poses.begin(), s.poses.end());
-  CHECK(min_distances(gpu, model, configurations{}, cloud).of.empty());
-  CHECK_THROWS_WITH(min_distances(gpu, model, std::span(poses).first(4), cloud),
+  CHECK(ask(gpu, model, configurations{}, cloud, min_distances{}).of.empty());
+  CHECK_THROWS_WITH(ask(gpu, model, std::span(poses).first(4), cloud, min_distances{}),
                     "clearance: 4 poses are no whole configurations of 3 parts");
-  CHECK_THROWS_AS(min_distances(gpu, model, poses, cloud, {clearance::not_a_number}), std::invalid_argument);
+  CHECK_THROWS_AS(ask(gpu, model, poses, cloud, min_distances{clearance::not_a_number}), std::invalid_argument);
   poses[4].linear() *= 1.5;
   CHECK_THROWS_WITH(
-      min_distances(gpu, model, poses, cloud),
+      ask(gpu, model, poses, cloud, min_distances{}),
       Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
   const auto points = gpu.copy_in(std::span<const vec3>(s.points));
-  clearance::min_distances_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distances{});
   query.place(poses);
   const auto r = gpu.copy_out(query.enqueue(point_span(points.data(), points.size()), {0.1f}), 2);
   CHECK((r[1].state == state::possible && r[1].distance != r[1].distance && r[1].lower == 0));
   CHECK((r[0].state != state::no_data && (r[0].distance == infinity || r[0].part != clearance::none)));
   CHECK_THROWS_WITH(
-      clearance::in_collisions(gpu, model, poses, cloud, 0.1),
+      clearance::ask(gpu, model, poses, cloud, clearance::in_collisions{{0.1}}),
       Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
-  clearance::in_collisions_query ask(gpu, model);
+  clearance::query ask(gpu, model, clearance::in_collisions{});
   ask.place(poses);
   CHECK((gpu.copy_out(ask.enqueue(point_span(points.data(), points.size()), 1e9), 2) ==
          std::vector{state::collision, state::possible}));
   CHECK_THROWS_AS(ask(cloud, clearance::not_a_number), std::invalid_argument);
-  CHECK(clearance::in_collisions(gpu, model, configurations{}, cloud).of.empty());
+  CHECK(clearance::ask(gpu, model, configurations{}, cloud, clearance::in_collisions{}).of.empty());
 }
 
 TEST_CASE("A robot without parts has no configurations, on a device") {
   using view = clearance::part_view<clearance::bvh_view<clearance::sphere, inner_sphere>>;
   const clearance::model_view<view> nothing{nullptr, {}, 0, 0};
-  CHECK(min_distances(device{}, nothing, configurations{}, std::vector<vec3>{{1, 2, 3}}).of.empty());
+  CHECK(ask(device{}, nothing, configurations{}, std::vector<vec3>{{1, 2, 3}}, min_distances{}).of.empty());
   CHECK_THROWS_AS(
-      min_distances(device{}, nothing, configurations(2, Eigen::Isometry3d::Identity()), std::vector<vec3>{{1, 2, 3}}),
+      ask(device{}, nothing, configurations(2, Eigen::Isometry3d::Identity()), std::vector<vec3>{{1, 2, 3}}, min_distances{}),
       std::invalid_argument);
 }
 

@@ -5,7 +5,8 @@
 #include "support/product_device.cuh"
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_support.cuh>
+#include <clearance/questions/min_distance_supported.hpp>
+#include <clearance/device.cuh>
 #include <clearance/volume/sphere.hpp>
 
 namespace min_support_test {
@@ -24,9 +25,9 @@ TEST_CASE("On a device the nearest point that others confirm is the host's") {
     const std::tuple both(placed{all.span, s.cloud_pose}, placed{all.raw, all.camera_pose});
     for (const std::uint32_t min_points : {1, 4})
       for (const double radius : {0.0, 0.1}) {
-        const clearance::support_options options{.min_points = min_points, .radius = radius * s.size};
-        const auto a = min_distance_supported(gpu, there, s.poses, both, options),
-                   b = min_distance_supported(host{}, model, s.poses, both, options);
+        const clearance::min_distance_supported options{.min_points = min_points, .radius = radius * s.size};
+        const auto a = ask(gpu, there, s.poses, both, options),
+                   b = ask(host{}, model, s.poses, both, options);
         require_same(a, b, v, s.name + ", " + std::to_string(min_points) + " within " + std::to_string(options.radius));
         v.require(a.state == b.state && same_bits(a.lower, b.lower) && a.counts.valid == b.counts.valid, s.name,
                   ": state, bracket or counts");
@@ -43,11 +44,11 @@ TEST_CASE("Prepared, the nearest confirmed point is on a device in every frame t
     moving_frames f(parts, 125);
     const auto model = f.model();
     const auto there = model.on(gpu);
-    clearance::min_distance_supported_query query(gpu, there);
+    clearance::query query(gpu, there, clearance::min_distance_supported{});
     for (; f.there(); f.next()) {
-      const clearance::support_options options{.min_points = f.number % 2 ? 2u : 3u, .radius = 0.1};
+      const clearance::min_distance_supported options{.min_points = f.number % 2 ? 2u : 3u, .radius = 0.1};
       require_same(query(f.s.poses, f.here(), options),
-                   min_distance_supported(host{}, model, f.s.poses, f.here(), options), v,
+                   ask(host{}, model, f.s.poses, f.here(), options), v,
                    std::to_string(parts) + " parts, frame " + std::to_string(f.number));
       CHECK_THROWS_AS(query(f.s.poses, f.here(), {.min_points = 0}), std::invalid_argument);
     }

@@ -30,7 +30,7 @@ void check_truth() {
   for (const auto& s : scenes<P>()) {
     if (s.name == "many points" || s.points.size() < 33) continue;
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
-    const auto r = min_distance(host{}, model, s.poses, placed{point_span(s.points), s.cloud_pose});
+    const auto r = ask(host{}, model, s.poses, placed{point_span(s.points), s.cloud_pose}, min_distance{});
     wide truth = infinity, scale = 0;
     for (const vec3 p : s.points) {
       if (!clearance::is_finite(p)) continue;
@@ -100,7 +100,7 @@ TEST_CASE("Spheres so small that squares of their distances vanish are found") {
       for (const inner_sphere& s : all) least = std::min(least, s.distance(p));
     const auto ask = [&](auto volume) {
       const clearance::model robot{std::vector{clearance::make_part(clearance::build<decltype(volume)>(all))}};
-      return min_distance(host{}, robot, std::vector{identity()}, point_span(points)).distance;
+      return ask(host{}, robot, std::vector{identity()}, point_span(points), min_distance{}).distance;
     };
     v.require(ask(clearance::sphere{}) == least && ask(clearance::aabb{}) == least && ask(clearance::obb{}) == least,
               "of size ", size, ": not ", least);
@@ -132,10 +132,10 @@ TEST_CASE("Clouds of different kinds share one search; ties go to the lowest clo
         clearance::for_each_cloud(
             given, [&](const auto& source, const Eigen::Isometry3d& pose) { clouds.emplace_back(source, pose); });
         const auto expected = brute_force(parts, s.poses, clouds);
-        clearance::min_distance_per_part_async(host{}, model, s.poses, given, &r, minima.data());
+        clearance::enqueue(host{}, model, s.poses, given, clearance::min_distance_per_part{}, {&r, minima.data()});
         require_equal(r, expected, v, s.name);
         require_equal(minima, expected, v, s.name);
-        require_equal(min_distance(clearance::plain{host{}, clearance::stack{}}, model, s.poses, given), expected, v,
+        require_equal(ask(clearance::plain{host{}, clearance::stack{}}, model, s.poses, given, min_distance{}), expected, v,
                       s.name + ", plain");
       };
       if (images_first)
@@ -147,10 +147,10 @@ TEST_CASE("Clouds of different kinds share one search; ties go to the lowest clo
         {all.span, s.cloud_pose}, {all.span, all.camera_pose}, {all.span, s.cloud_pose}};
     std::vector<brute_cloud> clouds;
     for (const auto& c : several) clouds.emplace_back(c.source, c.pose);
-    require_equal(min_distance(host{}, model, s.poses, several), brute_force(parts, s.poses, clouds), v,
+    require_equal(ask(host{}, model, s.poses, several, min_distance{}), brute_force(parts, s.poses, clouds), v,
                   s.name + ", several");
     v.require(
-        min_distance(host{}, model, s.poses, std::vector<placed<point_span>>{}).state == clearance::state::no_data,
+        ask(host{}, model, s.poses, std::vector<placed<point_span>>{}, min_distance{}).state == clearance::state::no_data,
         "no cloud");
   }
 }
@@ -163,21 +163,20 @@ TEST_CASE("A source with its pose beside it is asked as the placed one is, by ev
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     const auto check = [&](const auto& source, const Eigen::Isometry3d& pose) {
       const auto expected = brute_force(parts, s.poses, {brute_cloud(source, pose)});
-      require_equal(min_distance(host{}, model, s.poses, source, pose), expected, v, s.name);
-      require_equal(min_distance(clearance::plain{host{}, clearance::stack{}}, model, s.poses, source, pose), expected,
+      require_equal(ask(host{}, model, s.poses, source, pose, min_distance{}), expected, v, s.name);
+      require_equal(ask(clearance::plain{host{}, clearance::stack{}}, model, s.poses, source, pose, min_distance{}), expected,
                     v, s.name + ", stack");
-      const auto [r, each] = clearance::min_distance_per_part(clearance::plain{host{}, clearance::recursive{}}, model,
-                                                              s.poses, source, pose);
+      const auto [r, each] = clearance::ask(clearance::plain{host{}, clearance::recursive{}}, model, s.poses, source, pose, clearance::min_distance_per_part{});
       require_equal(r, expected, v, s.name + ", per part");
       require_equal(each, expected, v, s.name + ", per part");
       clearance::min_distance_result later;
-      clearance::min_distance_async(host{}, model, s.poses, placed{source, pose}, &later);
+      clearance::enqueue(host{}, model, s.poses, placed{source, pose}, clearance::min_distance{}, &later);
       require_equal(later, expected, v, s.name + ", enqueued");
       std::vector<clearance::part_minimum> minima(model.size());
-      clearance::min_distance_per_part_async(host{}, model, s.poses, placed{source, pose}, &later, minima.data());
+      clearance::enqueue(host{}, model, s.poses, placed{source, pose}, clearance::min_distance_per_part{}, {&later, minima.data()});
       require_equal(later, expected, v, s.name + ", enqueued");
       require_equal(minima, expected, v, s.name + ", enqueued");
-      require_equal(min_distance(host{}, model.parts()[0], s.poses[0], source, pose),
+      require_equal(ask(host{}, model.parts()[0], s.poses[0], source, pose, min_distance{}),
                     brute_force(std::vector{parts[0]}, {s.poses[0]}, {brute_cloud(source, pose)}), v,
                     s.name + ", one part");
     };
@@ -245,14 +244,14 @@ TEST_CASE("A tree too deep for a stack is refused with its numbers, and the recu
   clearance::part<linked_tree<clearance::sphere, inner_sphere>> deep{tree, {}, {{32, 0, 0}, 40, 0, 0}};
   const std::vector<vec3> points = {{40, 2, 0}, {64, 1, 0}};
   for (const std::string& words :
-       {refusal([&] { min_distance(clearance::plain{host{}, clearance::near_first{}}, deep, identity(), points); }),
-        refusal([&] { min_distance(clearance::plain{host{}, clearance::stack{}}, deep, identity(), points); })}) {
+       {refusal([&] { ask(clearance::plain{host{}, clearance::near_first{}}, deep, identity(), points, min_distance{}); }),
+        refusal([&] { ask(clearance::plain{host{}, clearance::stack{}}, deep, identity(), points, min_distance{}); })}) {
     CHECK(has(words, "depth 64"));
     CHECK(has(words, "65 entries"));
   }
-  CHECK(min_distance(clearance::plain{host{}, clearance::recursive{}}, deep, identity(), points).primitive == 64);
-  CHECK(min_distance(clearance::plain{host{}, clearance::basic_stack<65>{}}, deep, identity(), points).primitive == 64);
-  CHECK(min_distance(clearance::plain{host{}, clearance::basic_near_first<65>{}}, deep, identity(), points).distance ==
+  CHECK(ask(clearance::plain{host{}, clearance::recursive{}}, deep, identity(), points, min_distance{}).primitive == 64);
+  CHECK(ask(clearance::plain{host{}, clearance::basic_stack<65>{}}, deep, identity(), points, min_distance{}).primitive == 64);
+  CHECK(ask(clearance::plain{host{}, clearance::basic_near_first<65>{}}, deep, identity(), points, min_distance{}).distance ==
         0.75f);
 }
 
@@ -260,9 +259,9 @@ TEST_CASE("The number of threads changes nothing") {
   for (const auto& s : scenes<triangle>()) {
     if (s.name != "many points" && s.name != "ties") continue;
     const auto model = make_model<clearance::obb>(s, {}, clearance::wrapped{});
-    const auto first = min_distance(host{1}, model, s.poses, point_span(s.points));
+    const auto first = ask(host{1}, model, s.poses, point_span(s.points), min_distance{});
     for (const unsigned threads : {0u, 2u, 3u, 0u, 2u}) {
-      const auto r = min_distance(host{threads}, model, s.poses, point_span(s.points));
+      const auto r = ask(host{threads}, model, s.poses, point_span(s.points), min_distance{});
       CHECK(same_bits(r.distance, first.distance));
       CHECK((r.point == first.point && r.part == first.part && r.primitive == first.primitive));
       CHECK((same_bits(r.lower, first.lower) && same_bits(r.upper, first.upper) && r.valid == first.valid));
@@ -275,7 +274,7 @@ TEST_CASE("Poses that are not rigid, and a wrong number of them, are refused wit
   const auto model = clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{one, one});
   const std::vector<vec3> points = {{3, 0, 0}};
   const auto ask = [&](std::vector<Eigen::Isometry3d> poses, Eigen::Isometry3d cloud = identity()) {
-    return refusal([&] { min_distance(host{}, model, poses, placed{point_span(points), cloud}); });
+    return refusal([&] { ask(host{}, model, poses, placed{point_span(points), cloud}, min_distance{}); });
   };
   CHECK(ask({identity(), identity()}) == "");
   CHECK(has(ask({identity()}), "2 parts, but 1 poses"));
@@ -320,7 +319,7 @@ TEST_CASE("A float cloud at 5e6 m is as good as its coordinates, and doubles kee
   clearance::strided_points<double> cloud;
   cloud.data = reinterpret_cast<const std::byte*>(records.data()), cloud.count = 500, cloud.step = 24;
   cloud.offset[1] = 8, cloud.offset[2] = 16, cloud.origin = {5e6f, -4.5e6f, 896};
-  const auto r = min_distance(host{}, part, pose, placed{cloud, shifted(5e6, -4.5e6, 896)});
+  const auto r = ask(host{}, part, pose, placed{cloud, shifted(5e6, -4.5e6, 896)}, min_distance{});
   wide truth = infinity;
   for (std::size_t k = 0; k < records.size(); k += 3)
     for (const auto& s : primitives)
@@ -341,7 +340,7 @@ TEST_CASE("Several robots are asked in one call, each with its own result") {
   const auto results = clearance::min_distance_per_robot(host{}, std::vector(2, model.view()), poses, cloud);
   REQUIRE(results.size() == 2);
   for (std::size_t k = 0; k < 2; ++k) {
-    const auto alone = min_distance(host{}, model, poses[k], cloud);
+    const auto alone = ask(host{}, model, poses[k], cloud, min_distance{});
     CHECK((same_bits(results[k].distance, alone.distance) && results[k].point == alone.point &&
            results[k].part == alone.part));
   }

@@ -22,7 +22,7 @@ using poses_type = std::vector<Eigen::Isometry3d>;
 /// The least distance at `times` times, by asking for each.
 template <class Model, class Motion, class Clouds>
 double sampled(const Model& model, const Motion& motion, const Clouds& clouds, int times) {
-  min_distance_query query(host{}, model);
+  query query(host{}, model, min_distance{});
   double least = clearance::infinity;
   for (int i = 0; i <= times; ++i)
     least = std::min(least, double(query(motion.at(double(i) / times, model.view().facts).poses, clouds).distance));
@@ -63,11 +63,11 @@ void against_samples() {
               "trial", trial, ": the state");
     v.require(r.from <= r.to && r.from >= 0 && r.to <= 1 && r.part < 3 && r.time >= 0 && r.time <= 1, "trial", trial,
               ": where");
-    const auto there = min_distance(host{}, model, motion.at(r.time, model.view().facts).poses, cloud);
+    const auto there = ask(host{}, model, motion.at(r.time, model.view().facts).poses, cloud, min_distance{});
     v.require(there.point == r.nearest.point && same_bits(there.distance, r.nearest.distance), "trial", trial,
               ": the witness is that of its time");
     free += r.state == state::free, big += trial % 2 == 0 && r.lower > 0;
-    min_distance_query query(host{}, model);
+    query query(host{}, model, min_distance{});
     const auto by_query = motion_clearance(query, model, motion, cloud, {.tolerance = 0.004});
     const auto plain = motion_clearance(clearance::plain{host{1}, clearance::near_first{}}, model, motion,
                                         clearance::placed{cloud}, {.tolerance = 0.004});
@@ -197,7 +197,7 @@ TEST_CASE("Without motion one question decides, whatever the tolerance") {
   const poses_type poses{d.pose(1)};
   const straight_motion motion(poses, poses);
   const std::vector<vec3> points{{2, 1, 0}, {0, 3, 1}};
-  const auto still = min_distance(host{}, one_ball(0.2, 0.01), poses, points);
+  const auto still = ask(host{}, one_ball(0.2, 0.01), poses, points, min_distance{});
   const auto r = motion_clearance(host{}, one_ball(0.2, 0.01), motion, points, {.tolerance = 0});
   CHECK(r.queries == 1);
   CHECK(r.settled);

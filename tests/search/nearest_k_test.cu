@@ -5,7 +5,8 @@
 #include "support/product_device.cuh"
 
 #include <clearance/make_model.hpp>
-#include <clearance/nearest_k.cuh>
+#include <clearance/questions/nearest_k.hpp>
+#include <clearance/device.cuh>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -27,8 +28,8 @@ void all_scenes() {
     const std::tuple both(placed{all.span, s.cloud_pose}, placed{all.raw, all.camera_pose});
     for (const std::size_t k : {1, 7, 400})
       for (const real d_max : {real(-0.02), real(0.3), clearance::infinity})
-        require_same(nearest_k(gpu, there, s.poses, both, k, {d_max}),
-                     nearest_k(host{}, model, s.poses, both, k, {d_max}), v, s.name + ", " + std::to_string(k));
+        require_same(ask(gpu, there, s.poses, both, nearest_k{.k = k, d_max}),
+                     ask(host{}, model, s.poses, both, nearest_k{.k = k, d_max}), v, s.name + ", " + std::to_string(k));
   }
 }
 
@@ -49,8 +50,8 @@ TEST_CASE("The nearest of a crowd, and of a shell where all are about equally ne
   for (int i = 0; i < 300000; ++i) shell.push_back(clearance::scaled(3 + 1e-4f * d.number(0, 1), d.direction()));
   for (const std::vector<vec3>* points : {&s.points, &std::as_const(shell)})
     for (const std::size_t k : {1, 100, 5000})
-      require_same(nearest_k(gpu, model.on(gpu), s.poses, point_span(*points), k),
-                   nearest_k(host{}, model, s.poses, point_span(*points), k), v, std::to_string(k));
+      require_same(ask(gpu, model.on(gpu), s.poses, point_span(*points), nearest_k{k}),
+                   ask(host{}, model, s.poses, point_span(*points), nearest_k{k}), v, std::to_string(k));
 }
 
 TEST_CASE("Prepared, the nearest are on a device in every frame the host's") {
@@ -60,10 +61,10 @@ TEST_CASE("Prepared, the nearest are on a device in every frame the host's") {
     moving_frames f(parts, 124);
     const auto model = f.model();
     const auto there = model.on(gpu);
-    clearance::nearest_k_query query(gpu, there);
+    clearance::query query(gpu, there, clearance::nearest_k{});
     for (; f.there(); f.next()) {
       const std::size_t k = f.number < 4 ? 500 : 3;  // what is known of a frame is of use in some, and in some not
-      require_same(query(f.s.poses, f.here(), k), nearest_k(host{}, model, f.s.poses, f.here(), k), v,
+      require_same(query(f.s.poses, f.here(), k), ask(host{}, model, f.s.poses, f.here(), nearest_k{k}), v,
                    std::to_string(parts) + " parts, frame " + std::to_string(f.number));
       CHECK_THROWS_AS(query(f.s.poses, f.here(), 0), std::invalid_argument);
     }

@@ -5,8 +5,7 @@
 #include "support/catch.hpp"
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance.hpp>
-#include <clearance/min_distance_query.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/robot/attached.hpp>
 #include <clearance/solid/close_mesh.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -68,11 +67,11 @@ TEST_CASE("facts that are none are refused in a model, in a part that is asked a
   for (const part_facts& bad : bad_facts()) {
     const part made{tree, no_interior{}, bad};
     CHECK_THROWS_AS(model(std::vector{part{tree, no_interior{}, good}, made}), std::invalid_argument);
-    CHECK_THROWS_AS(min_distance(host{}, made, here, points), std::invalid_argument);
+    CHECK_THROWS_AS(ask(host{}, made, here, points, min_distance{}), std::invalid_argument);
     const auto view = made.view();
     const model_view<std::remove_const_t<decltype(view)>> by_hand{
         &view, {&bad, 1}, view.tree.depth(), view.tree.width()};
-    CHECK_THROWS_AS(min_distance(host{}, by_hand, poses, points), std::invalid_argument);
+    CHECK_THROWS_AS(ask(host{}, by_hand, poses, points, min_distance{}), std::invalid_argument);
     CHECK_THROWS_AS(min_distance_query(host{}, by_hand), std::invalid_argument);
     CHECK_THROWS_AS(attach(host{}, by_hand, by_hand), std::invalid_argument);
   }

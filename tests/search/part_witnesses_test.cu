@@ -4,8 +4,9 @@
 #include "support/product_device.cuh"
 #include "support/same_result.hpp"
 
-#include <clearance/min_distance_query.cuh>
-#include <clearance/part_witnesses.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
+#include <clearance/questions/part_witnesses.hpp>
 
 namespace part_witnesses_test {
 
@@ -32,19 +33,19 @@ TEST_CASE(
     moving_frames f(parts, 161);
     const auto model = f.model();
     const auto there = model.on(gpu);
-    clearance::min_distance_query least(gpu, there);
-    clearance::part_witnesses_query query(gpu, there), follows(gpu, there);
+    clearance::query least(gpu, there, clearance::min_distance{});
+    clearance::query query(gpu, there, clearance::part_witnesses{}), follows(gpu, there);
     const auto result = room_on<clearance::min_distance_result>(gpu, 1);
     const auto minima = room_on<part_minimum>(gpu, std::size_t(parts));
     const auto witnesses = room_on<part_witness>(gpu, std::size_t(parts));
     std::size_t seen = 0;
     const auto look = [&](const std::string& when) {
-      const auto nearest = min_distance_per_part(host{}, model, f.s.poses, f.here()).second;
-      const auto expected = part_witnesses(host{}, model, f.s.poses, f.here(), nearest);
+      const auto nearest = ask(host{}, model, f.s.poses, f.here(), min_distance_per_part{}).second;
+      const auto expected = ask(host{}, model, f.s.poses, f.here(), part_witnesses{nearest});
       const std::string what = std::to_string(parts) + " parts, " + when;
       require_witnesses(gpu.copy_out(witnesses), expected, v, what + ", enqueued");
       require_witnesses(query(f.s.poses, f.here(), nearest), expected, v, what + ", prepared");
-      require_witnesses(part_witnesses(gpu, there, f.s.poses, f.here(), nearest), expected, v, what + ", one call");
+      require_witnesses(ask(gpu, there, f.s.poses, f.here(), part_witnesses{nearest}), expected, v, what + ", one call");
       for (const part_witness& w : expected) seen += w.part != clearance::none;
     };
     const auto enqueue = [&](const clouds& all) {
@@ -64,10 +65,10 @@ TEST_CASE("Minima of other clouds have no witness on a device") {
   const device gpu;
   moving_frames f(4, 162);
   const auto there = f.model().on(gpu);
-  const auto minima = min_distance_per_part(gpu, there, f.s.poses, f.here()).second;
+  const auto minima = ask(gpu, there, f.s.poses, f.here(), min_distance_per_part{}).second;
   const auto others = gpu.copy_in(std::span<const part_minimum>(minima));
   const auto witnesses = room_on<part_witness>(gpu, minima.size());
-  clearance::part_witnesses_query query(gpu, there);
+  clearance::query query(gpu, there, clearance::part_witnesses{});
   f.see(10);  // smaller: points of those numbers are not there
   CHECK_THROWS_AS(query(f.s.poses, f.here(), minima), std::invalid_argument);
   query.enqueue(f.s.poses, frame_there(gpu, f).all, others.data(), witnesses.data());

@@ -3,7 +3,7 @@
 // every bit, cold, warm, and after anything has moved; and no allocation once it has run.
 #include "support/product.hpp"
 
-#include <clearance/min_distance_query.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -39,7 +39,7 @@ void ask_often(const Model& model, const scene<P>& s, const S& source, const Eig
                verdict& v, const std::string& what) {
   auto poses = s.poses;
   const auto parts = brute_parts(s);
-  min_distance_query query(host{threads}, model);
+  query query(host{threads}, model, min_distance{});
   const auto same = [&](const std::string& when) {
     const auto expected = brute_force(parts, poses, {brute_cloud(source, pose)});
     require_equal(query(poses, source, pose), expected, v, what + ", " + when);
@@ -164,7 +164,7 @@ TEST_CASE("Frames of another size, none, and several at once follow one another 
   const scene<inner_sphere> s = robot(d);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto parts = brute_parts(s);
-  min_distance_query query(host{2}, model);
+  query query(host{2}, model, min_distance{});
   for (const std::size_t n : {9000, 40, 0, 1, 9000, 300}) {
     const auto near = d.points(n, 2, {0, 0, 3}), far = d.points(n / 2, 2, {0, 3, 3});
     const std::vector<placed<point_span>> clouds = {{far, shifted(0, 0, 0.5)}, {near}, {far}};
@@ -180,7 +180,7 @@ TEST_CASE("After its first frames a prepared query asks for no memory") {
   const scene<inner_sphere> s = robot(d);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto points = d.points(20000, 2, {0, 0, 3});
-  min_distance_query query(host{1}, model);
+  query query(host{1}, model, min_distance{});
   std::vector<clearance::part_minimum> minima(model.size());
   auto poses = s.poses;
   std::size_t before = 0;
@@ -200,7 +200,7 @@ TEST_CASE(
   const scene<inner_sphere> s = robot(d);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto points = d.points(500, 2, {0, 0, 3});
-  min_distance_query query(host{}, model);
+  query query(host{}, model, min_distance{});
   std::vector<clearance::part_minimum> minima(3);
   CHECK_THROWS_AS(query.per_part(s.poses, points, minima), std::invalid_argument);
   CHECK_THROWS_AS(query(std::vector(s.poses.begin(), s.poses.begin() + 1), points), std::invalid_argument);

@@ -4,7 +4,8 @@
 #include "support/product_device.cuh"
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance_query.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -26,13 +27,13 @@ void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const
                const Eigen::Isometry3d& pose, verdict& v, const std::string& what) {
   const device gpu;
   const auto model = on_host.on(gpu);
-  clearance::min_distance_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distance{});
   const clearance::placed<S> cloud{source, pose};
   const auto same = [&](const std::string& when) {
-    const auto expected = min_distance(host{}, on_host, poses, cloud);
+    const auto expected = ask(host{}, on_host, poses, cloud, min_distance{});
     v.require(same_result(query(poses, source, pose), expected), what + ", " + when,
               ": differs from the host's result");
-    const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, cloud);
+    const auto [robot, each] = clearance::ask(host{}, on_host, poses, cloud, clearance::min_distance_per_part{});
     std::vector<clearance::part_minimum> minima(poses.size());
     v.require(same_result(query.per_part(poses, cloud, minima), robot), what + ", " + when,
               ": differs from the host's result by parts");
@@ -151,7 +152,7 @@ TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are cou
   const device gpu;
   const auto on_host = robot_of<clearance::sphere>(d, 5, 60);
   const auto model = on_host.on(gpu);
-  clearance::min_distance_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distance{});
   std::vector<Eigen::Isometry3d> poses;
   for (int k = 0; k < 5; ++k) poses.push_back(d.pose(1));
   const std::vector<vec3> blind(300, vec3{clearance::not_a_number, 0, 0}), none;
@@ -160,9 +161,9 @@ TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are cou
   for (const auto& points : data) clouds.push_back({clearance::point_span(points), d.pose(0.2)});
   for (int rotation = 0; rotation < 5; ++rotation, std::rotate(clouds.begin(), clouds.begin() + 1, clouds.end()))
     for (const char* when : {"first", "again"}) {
-      const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, poses, clouds);
+      const auto [robot, each] = clearance::ask(host{}, on_host, poses, clouds, clearance::min_distance_per_part{});
       std::vector<clearance::part_minimum> minima(5);
-      v.require(same_result(query(poses, clouds), min_distance(host{}, on_host, poses, clouds)),
+      v.require(same_result(query(poses, clouds), ask(host{}, on_host, poses, clouds, min_distance{})),
                 std::to_string(rotation) + when, ": differs");
       v.require(same_result(query.per_part(poses, clouds, minima), robot), std::to_string(rotation) + when,
                 ": differs by parts");
@@ -170,7 +171,7 @@ TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are cou
                 ": some part's minimum differs");
     }
   const std::vector<clearance::placed<clearance::point_span>> no_cloud;
-  REQUIRE(same_result(query(poses, no_cloud), min_distance(host{}, on_host, poses, no_cloud)));
+  REQUIRE(same_result(query(poses, no_cloud), ask(host{}, on_host, poses, no_cloud, min_distance{})));
   // What was enqueued before a cloud is refused leaves nothing behind: the near points are in the first cloud alone.
   auto near = clouds;
   std::ranges::sort(near, std::greater{}, [](const auto& cloud) { return cloud.source.size(); });
@@ -178,7 +179,7 @@ TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are cou
   near[1].pose.linear() *= 1.01;
   const std::vector<vec3> apart(5000, vec3{50, 0, 0});
   const clearance::placed<clearance::point_span> far{clearance::point_span(apart), d.pose(0.2)};
-  const auto expected = min_distance(host{}, on_host, poses, far);
+  const auto expected = ask(host{}, on_host, poses, far, min_distance{});
   for (int k = 0; k < 3; ++k) {
     REQUIRE_THROWS_AS(query(poses, near), std::invalid_argument);
     REQUIRE(same_result(query(poses, far), expected));
@@ -194,7 +195,7 @@ TEST_CASE(
   const device gpu{.stream = stream.handle};
   const auto on_host = robot_of<clearance::sphere>(d, 14, 60);
   const auto model = on_host.on(gpu);
-  clearance::min_distance_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distance{});
   const auto points = d.points(30000, 2);
   const auto there = gpu.copy_in(std::span<const vec3>(points));
   const clearance::point_span view(there.data(), points.size());
@@ -217,7 +218,7 @@ TEST_CASE(
     }
     run();
     const clearance::placed cloud{clearance::point_span(points), at[14]};
-    const auto [robot, each] = clearance::min_distance_per_part(host{}, on_host, std::span(at).first(14), cloud);
+    const auto [robot, each] = clearance::ask(host{}, on_host, std::span(at).first(14), cloud, clearance::min_distance_per_part{});
     v.require(same_result(*result.data(), robot), "replay " + std::to_string(k), ": differs from the host's result");
     v.require(std::ranges::equal(std::span(minima.data(), 14), each, same_minimum), "replay " + std::to_string(k),
               ": some part's minimum differs");
@@ -259,11 +260,11 @@ TEST_CASE("A prepared query takes its memory from the caller's resource, and non
   const std::vector<Eigen::Isometry3d> poses = {d.pose(1), d.pose(1), d.pose(1)};
   counting_resource memory;
   {
-    clearance::min_distance_query query(gpu, model, &memory);
-    REQUIRE(same_result(query(poses, cloud), min_distance(host{}, on_host, poses, cloud)));
+    clearance::query query(gpu, model, clearance::min_distance{}, &memory);
+    REQUIRE(same_result(query(poses, cloud), ask(host{}, on_host, poses, cloud, min_distance{})));
     REQUIRE(memory.held > 3000 * sizeof(vec3));  // the cloud's copy too
     const std::size_t first = memory.most;
-    for (int k = 0; k < 3; ++k) REQUIRE(same_result(query(poses, cloud), min_distance(host{}, on_host, poses, cloud)));
+    for (int k = 0; k < 3; ++k) REQUIRE(same_result(query(poses, cloud), ask(host{}, on_host, poses, cloud, min_distance{})));
     REQUIRE(memory.most == first);
   }
   REQUIRE(memory.held == 0);
@@ -274,7 +275,7 @@ TEST_CASE("Points in pinned memory are found where they are, and where they have
   const device gpu;
   const auto on_host = robot_of<clearance::sphere>(d, 3, 60);
   const auto model = on_host.on(gpu);
-  clearance::min_distance_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distance{});
   const std::vector<Eigen::Isometry3d> poses = {d.pose(1), d.pose(1), d.pose(1)};
   const clearance::pinned_buffer<vec3> pinned(3000, gpu.id);
   verdict v;
@@ -282,7 +283,7 @@ TEST_CASE("Points in pinned memory are found where they are, and where they have
     const auto points = d.points(pinned.size(), 2);
     std::copy(points.begin(), points.end(), pinned.data());
     v.require(same_result(query(poses, clearance::point_span(pinned.data(), pinned.size())),
-                          min_distance(host{}, on_host, poses, points)),
+                          ask(host{}, on_host, poses, points, min_distance{})),
               when, ": differs from the host's result");
   }
 }
@@ -292,7 +293,7 @@ TEST_CASE("A query in a stream of its own leaves the caller's device alone, and 
   const device gpu;
   const auto on_host = robot_of<clearance::sphere>(d, 2, 20);
   const auto model = on_host.on(gpu);
-  clearance::min_distance_query query(gpu, model);
+  clearance::query query(gpu, model, clearance::min_distance{});
   const std::vector<Eigen::Isometry3d> poses = {d.pose(1), d.pose(1)};
   const auto cloud = d.points(100, 2);
   REQUIRE_THROWS_AS(query(std::span(poses).first(1), clearance::point_span(cloud)), std::invalid_argument);
@@ -302,7 +303,7 @@ TEST_CASE("A query in a stream of its own leaves the caller's device alone, and 
   skewed.linear() *= 1.01;
   REQUIRE_THROWS_AS(query(std::vector{skewed, poses[1]}, clearance::point_span(cloud)), std::invalid_argument);
   REQUIRE(same_result(query(poses, clearance::point_span(cloud)),
-                      min_distance(host{}, on_host, poses, clearance::point_span(cloud))));
+                      ask(host{}, on_host, poses, clearance::point_span(cloud), min_distance{})));
 }
 
 }  // namespace query_test

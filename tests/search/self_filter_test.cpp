@@ -24,19 +24,19 @@ void all_scenes() {
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
     const auto two = two_clouds(s);
     std::vector<std::vector<vec3>> kept;
-    clearance::self_filter_query prepared(host{}, model);
+    clearance::query prepared(host{}, model, clearance::self_filter{});
     for (const double padding : {0.0, 0.02, 0.4}) {
       std::vector<double> each(s.parts.size(), padding * s.size);
       const std::string what = s.name + ", padding " + std::to_string(padding);
-      const auto all = self_filter(host{}, model, s.poses, two, {.padding = {each[0]}});
+      const auto all = ask(host{}, model, s.poses, two, self_filter{.padding = {each[0]}});
       require_same(all, brute_own(s, two, each), v, what);
       each.back() *= 3;
       const auto expected = brute_own(s, two, each);
-      require_same(self_filter(host{1}, model, s.poses, two, {.padding = each}), expected, v, what + ", one a part");
+      require_same(ask(host{1}, model, s.poses, two, self_filter{.padding = each}), expected, v, what + ", one a part");
       require_same(prepared(s.poses, two, {.padding = each}), expected, v, what + ", prepared");
       const auto both = min_distance_filtered(host{}, model, s.poses, two, {.padding = each});
       require_same(both.filter, expected, v, what + ", with the rest");
-      require_rest(both, min_distance(host{}, model, s.poses, without(two, expected, kept)), v, what);
+      require_rest(both, ask(host{}, model, s.poses, without(two, expected, kept), min_distance{}), v, what);
       own += all.counts.own, uncertain += all.counts.uncertain;
     }
   }
@@ -61,7 +61,7 @@ TEST_CASE("What gap and tolerance leave open is uncertain, and not hidden") {
   const auto ask = [&](double gap, double tolerance) {
     const clearance::model robot{
         std::vector{clearance::make_part(clearance::build<clearance::sphere>(one_ball), gap, tolerance)}};
-    return self_filter(host{}, robot, poses, point_span(points), {.padding = {0.5}});
+    return ask(host{}, robot, poses, point_span(points), self_filter{.padding = {0.5}});
   };
   using enum point_label;
   CHECK(ask(0, 0).labels == std::vector{own, own, rest, rest, no_point});
@@ -95,9 +95,9 @@ TEST_CASE("All are the robot's, no points, and what cannot be asked") {
   CHECK((none.filter.labels.empty() && none.filter.offsets == std::vector<std::size_t>{0} &&
          none.rest.state == clearance::state::no_data));
   for (const double bad : {-0.01, double(clearance::not_a_number), double(clearance::infinity)})
-    CHECK_THROWS_AS(self_filter(host{}, robot, poses, points, {.padding = {bad}}), std::invalid_argument);
-  CHECK_THROWS_AS(self_filter(host{}, robot, poses, points, {.padding = {0, 0}}), std::invalid_argument);
-  CHECK_THROWS_AS(self_filter(host{}, robot, poses, points, {.padding = {}}), std::invalid_argument);
+    CHECK_THROWS_AS(ask(host{}, robot, poses, points, self_filter{.padding = {bad}}), std::invalid_argument);
+  CHECK_THROWS_AS(ask(host{}, robot, poses, points, self_filter{.padding = {0, 0}}), std::invalid_argument);
+  CHECK_THROWS_AS(ask(host{}, robot, poses, points, self_filter{.padding = {}}), std::invalid_argument);
 }
 
 TEST_CASE("A masked source reads four at once what it reads one by one, and tells what is hidden") {
@@ -168,10 +168,10 @@ TEST_CASE("A robot that holds something is as if it had always been of more part
   const auto whole = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const clearance::model arm{std::vector{whole.parts()[0], whole.parts()[1]}}, tool{std::vector{whole.parts()[2]}};
   const auto both = attach(host{}, arm, tool);
-  require_same(self_filter(host{}, both, s.poses, point_span(s.points)),
-               self_filter(host{}, whole, s.poses, point_span(s.points)), v, "attached");
-  const auto a = min_distance(host{}, both, s.poses, point_span(s.points)),
-             b = min_distance(host{}, whole, s.poses, point_span(s.points));
+  require_same(ask(host{}, both, s.poses, point_span(s.points), self_filter{}),
+               ask(host{}, whole, s.poses, point_span(s.points), self_filter{}), v, "attached");
+  const auto a = ask(host{}, both, s.poses, point_span(s.points), min_distance{}),
+             b = ask(host{}, whole, s.poses, point_span(s.points), min_distance{});
   CHECK((same_bits(a.distance, b.distance) && same_bits(a.lower, b.lower) && a.part == b.part && a.point == b.point &&
          a.primitive == b.primitive));
   CHECK(attach(host{}, both, tool).size() == 4);

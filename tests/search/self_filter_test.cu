@@ -6,7 +6,8 @@
 
 #include <clearance/make_model.hpp>
 #include <clearance/robot/attached.hpp>
-#include <clearance/self_filter.cuh>
+#include <clearance/questions/self_filter.hpp>
+#include <clearance/device.cuh>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -28,11 +29,11 @@ void all_scenes() {
     const auto there = model.on(gpu);
     const auto each = [&](const auto& clouds, const std::string& what) {
       for (const double padding : {0.0, 0.02, 0.4}) {
-        const clearance::self_filter_options options{.padding = {padding * s.size}};
+        const clearance::self_filter options{.padding = {padding * s.size}};
         const auto a = min_distance_filtered(gpu, there, s.poses, clouds, options),
                    b = min_distance_filtered(host{}, model, s.poses, clouds, options);
         require_same(a.filter, b.filter, v, s.name + what);
-        require_same(self_filter(gpu, there, s.poses, clouds, options), b.filter, v, s.name + what + ", alone");
+        require_same(ask(gpu, there, s.poses, clouds, options), b.filter, v, s.name + what + ", alone");
         v.require(same_result(a.rest, b.rest), s.name + what, ": the rest differs");
       }
     };
@@ -61,7 +62,7 @@ TEST_CASE("A crowd around three parts, one of them held by the others: filter an
       tool_here{std::vector{model.parts()[2]}};
   const auto arm = arm_here.on(gpu), tool = tool_here.on(gpu);
   const auto both = attach(gpu, arm, tool);
-  const clearance::self_filter_options options{.padding = {0.05}};
+  const clearance::self_filter options{.padding = {0.05}};
   const auto expected = min_distance_filtered(host{}, model, s.poses, point_span(s.points), options);
   CHECK(expected.filter.counts.own > 10000);
   const auto found = min_distance_filtered(gpu, both, s.poses, point_span(s.points), options);
@@ -76,8 +77,8 @@ TEST_CASE("A crowd around three parts, one of them held by the others: filter an
   const auto result =
       gpu.copy_in(std::span<const clearance::min_distance_result>(std::vector<clearance::min_distance_result>(1)));
   const auto enqueue = [&] {
-    clearance::self_filter_async(gpu, there, s.poses, cloud, options, labels.data(), counts.data());
-    clearance::min_distance_async(gpu, there, s.poses, clearance::masked_clouds(cloud, labels.data()), result.data());
+    clearance::enqueue(gpu, there, s.poses, cloud, options, {labels.data(), counts.data()});
+    clearance::enqueue(gpu, there, s.poses, clearance::masked_clouds(cloud, labels.data()), clearance::min_distance{}, result.data());
   };
   enqueue();  // once, as loading a kernel is not for a graph
   gpu.wait();
@@ -105,9 +106,9 @@ TEST_CASE(
   }
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto there = model.on(gpu);
-  clearance::self_filter_query filter(gpu, there);
-  clearance::self_filter_query here(host{}, model);
-  const clearance::self_filter_options options{.padding = {0.05}};
+  clearance::query filter(gpu, there, clearance::self_filter{});
+  clearance::query here(host{}, model, clearance::self_filter{});
+  const clearance::self_filter options{.padding = {0.05}};
   constexpr std::size_t count = 6 * 1001;
   const auto labels = gpu.copy_in(std::span<const point_label>(std::vector<point_label>(count)));
   const auto counts =
@@ -122,7 +123,7 @@ TEST_CASE(
         six.push_back({point_span(from + c * 1001, 1001), Eigen::Isometry3d::Identity()});
       return six;
     };
-    const auto expected = self_filter(host{}, model, s.poses, in_six(points.data()), options);
+    const auto expected = ask(host{}, model, s.poses, in_six(points.data()), options);
     filter.enqueue(s.poses, in_six(points_there.data()), options, labels.data(), counts.data());
     v.require(gpu.copy_out(labels) == expected.labels, "frame ", frame, ": some label differs");
     const auto found = gpu.copy_out(counts)[0];

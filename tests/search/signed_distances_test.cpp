@@ -4,7 +4,7 @@
 #include "support/brute_signed.hpp"
 
 #include <clearance/make_model.hpp>
-#include <clearance/signed_distances.hpp>
+#include <clearance/questions/signed_distances.hpp>
 #include <clearance/volume/aabb.hpp>
 
 namespace signed_distances_test {
@@ -32,12 +32,12 @@ TEST_CASE("Signed distances to closed meshes are those of all triangles, negativ
     for (const real d_max : {real(0), real(0.1), clearance::infinity}) {
       auto expected = brute_signed(parts, cloud.source, cloud.pose, d_max);
       const std::string what = "round " + std::to_string(round) + ", d_max " + std::to_string(d_max);
-      require_same(signed_distances(host{1}, model, s.poses, cloud, {d_max, true}), expected, v, what);
+      require_same(ask(host{1}, model, s.poses, cloud, signed_distances{d_max, true}), expected, v, what);
       const auto deep = std::ranges::count_if(expected.distance, [](real x) { return x < real(-0.02); });
       v.require(deep > 50, what, ": only ", deep, " points are inside");
       append(expected, brute_signed(parts, all.raw, all.camera_pose, d_max));
       require_same(
-          signed_distances(host{}, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), {d_max}),
+          ask(host{}, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), signed_distances{d_max}),
           expected, v, what + ", two clouds");
     }
   }
@@ -55,7 +55,7 @@ TEST_CASE("The signed distance to a box is the one known by hand, on its surface
                                  {-1, 0, 0},
                                  {4.5f, 6, 0},
                                  {clearance::not_a_number, 0, 0}};
-  const auto found = signed_distances(host{}, model, poses, points, {.which = true});
+  const auto found = ask(host{}, model, poses, points, signed_distances{.which = true});
   const std::vector<real> expected{-1, -0.25f, -0.25f, 1, 0, 5};
   for (std::size_t i = 0; i < expected.size(); ++i) CHECK(found.distance[i] == expected[i]);
   CHECK(found.distance[6] != found.distance[6]);
@@ -63,9 +63,9 @@ TEST_CASE("The signed distance to a box is the one known by hand, on its surface
          found.primitive[0] != ~0u));
   CHECK(!std::signbit(found.distance[4]));
   CHECK((found.counts.seen == 7 && found.counts.valid == 6));
-  CHECK(signed_distances(host{}, model, poses, points, {.d_max = 0.5f}).distance[3] == infinity);
-  CHECK_THROWS_AS(signed_distances(host{}, model, poses, points, {.d_max = -0.5f}), std::invalid_argument);
-  CHECK_THROWS_AS(signed_distances(host{}, model, poses, points, {.d_max = clearance::not_a_number}),
+  CHECK(ask(host{}, model, poses, points, signed_distances{.d_max = 0.5f}).distance[3] == infinity);
+  CHECK_THROWS_AS(ask(host{}, model, poses, points, signed_distances{.d_max = -0.5f}), std::invalid_argument);
+  CHECK_THROWS_AS(ask(host{}, model, poses, points, signed_distances{.d_max = clearance::not_a_number}),
                   std::invalid_argument);
 }
 

@@ -4,7 +4,8 @@
 #include "support/product_device.cuh"
 
 #include <clearance/make_model.hpp>
-#include <clearance/signed_distances.cuh>
+#include <clearance/questions/signed_distances.hpp>
+#include <clearance/device.cuh>
 #include <clearance/volume/aabb.hpp>
 
 namespace signed_distances_test {
@@ -24,11 +25,11 @@ TEST_CASE("Signed distances on a device are those of all triangles, and the host
     const placed cloud{point_span(points), d.pose(0.1)}, more{point_span(crowd), d.pose(0.1)};
     for (const real d_max : {real(0), real(0.1), clearance::infinity}) {
       const std::string what = "round " + std::to_string(round) + ", d_max " + std::to_string(d_max);
-      require_same(signed_distances(gpu, model.on(gpu), parts.poses, cloud, {d_max, true}),
+      require_same(ask(gpu, model.on(gpu), parts.poses, cloud, signed_distances{d_max, true}),
                    brute_signed(parts, cloud.source, cloud.pose, d_max), v, what);
       const auto two = std::vector{cloud, more};
-      require_same(signed_distances(gpu, model.on(gpu), parts.poses, two, {d_max, true}),
-                   signed_distances(host{}, model, parts.poses, two, {d_max, true}), v, what + ", a crowd");
+      require_same(ask(gpu, model.on(gpu), parts.poses, two, signed_distances{d_max, true}),
+                   ask(host{}, model, parts.poses, two, signed_distances{d_max, true}), v, what + ", a crowd");
     }
   }
 }

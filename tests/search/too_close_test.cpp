@@ -4,16 +4,16 @@
 #include "support/laws.hpp"
 #include "support/too_close_frame.hpp"
 
-#include <clearance/answer/merge.hpp>
-#include <clearance/in_collision.hpp>
+#include <clearance/minimum/merge.hpp>
+#include <clearance/questions/in_collision.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance.hpp>
-#include <clearance/min_distances.hpp>
-#include <clearance/min_support.hpp>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/questions/min_distances.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
 #include <clearance/motion_clearance.hpp>
 #include <clearance/traversal/near_first.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/zones.hpp>
+#include <clearance/questions/zones.hpp>
 
 namespace too_close_test {
 
@@ -52,24 +52,24 @@ TEST_CASE("A depth of -inf is too close, +inf and NaN are not, and the survey sa
 
 TEST_CASE("Nothing is free in a frame with something too close") {
   const too_close_frame clear(0, 9), blocked(1);
-  const auto free = min_distance(host{}, robot, poses, clear.image()),
-             r = min_distance(host{}, robot, poses, blocked.image());
+  const auto free = ask(host{}, robot, poses, clear.image(), min_distance{}),
+             r = ask(host{}, robot, poses, blocked.image(), min_distance{});
   CHECK((free.state == state::free && free.lower > 1.7f));
   CHECK((r.state == state::possible && r.lower == 0 && r.distance == free.distance &&
          r.dropped[int(drop_reason::too_close)] == 1));
-  CHECK(clearance::min_distance_per_part(host{}, robot, poses, blocked.image()).first.state == state::possible);
-  CHECK(min_distance(clearance::plain{host{}, clearance::near_first{}}, robot, poses, blocked.image()).state ==
+  CHECK(clearance::ask(host{}, robot, poses, blocked.image(), clearance::min_distance_per_part{}).first.state == state::possible);
+  CHECK(ask(clearance::plain{host{}, clearance::near_first{}}, robot, poses, blocked.image(), min_distance{}).state ==
         state::possible);
   auto told = blocked.image();
   told.minus_infinity_is_near = false;
-  CHECK(min_distance(host{}, robot, poses, told).state == state::free);
-  CHECK(clearance::in_collision(host{}, robot, poses, clear.image(), 0.1).state == state::free);
-  CHECK(clearance::in_collision(host{}, robot, poses, blocked.image(), 0.1).state == state::possible);
-  CHECK(clearance::zones(host{}, robot, poses, clear.image(), {.thresholds = {0.1}}).innermost() == 1);
-  CHECK(clearance::zones(host{}, robot, poses, blocked.image(), {.thresholds = {0.1}}).innermost() == 0);
+  CHECK(ask(host{}, robot, poses, told, min_distance{}).state == state::free);
+  CHECK(clearance::ask(host{}, robot, poses, clear.image(), clearance::in_collision{{0.1}}).state == state::free);
+  CHECK(clearance::ask(host{}, robot, poses, blocked.image(), clearance::in_collision{{0.1}}).state == state::possible);
+  CHECK(clearance::ask(host{}, robot, poses, clear.image(), clearance::zones{.thresholds = {0.1}}).innermost() == 1);
+  CHECK(clearance::ask(host{}, robot, poses, blocked.image(), clearance::zones{.thresholds = {0.1}}).innermost() == 0);
   for (const real d_max : {clearance::infinity, real(0.1)}) {
     const auto ask = [&](const auto& frame) {
-      return clearance::min_distances(host{}, robot, poses, frame.image(), {.d_max = d_max});
+      return clearance::ask(host{}, robot, poses, frame.image(), clearance::min_distances{.d_max = d_max});
     };
     CHECK((ask(clear).of[0].state == state::free && ask(clear).first_below(0.05) == 1));
     CHECK((ask(blocked).of[0].state == state::possible && ask(blocked).of[0].lower == 0 &&
@@ -79,17 +79,17 @@ TEST_CASE("Nothing is free in a frame with something too close") {
   CHECK(motion_clearance(host{}, robot, still, clear.image()).state == state::free);
   const auto moving = motion_clearance(host{}, robot, still, blocked.image());
   CHECK((moving.state == state::possible && moving.lower == 0));
-  const auto supported = clearance::min_distance_supported(host{}, robot, poses, blocked.image(), {.radius = 0.1});
+  const auto supported = clearance::ask(host{}, robot, poses, blocked.image(), clearance::min_distance_supported{.radius = 0.1});
   CHECK((supported.state == state::possible && supported.lower == 0 && supported.distance == free.distance));
 }
 
 TEST_CASE("One camera that is covered leaves nothing free for all") {
   const too_close_frame clear(0), blocked(1);
   const auto both = std::vector{clear.image(), blocked.image()};
-  CHECK(min_distance(host{}, robot, poses, both).state == state::possible);
+  CHECK(ask(host{}, robot, poses, both, min_distance{}).state == state::possible);
   const std::vector<float> covered(64 * 48, -clearance::infinity);
   const clearance::depth_image<float> nothing(covered.data(), 64, 48, {60, 60, 31.5, 23.5});
-  const auto a = min_distance(host{}, robot, poses, clear.image()), b = min_distance(host{}, robot, poses, nothing);
+  const auto a = ask(host{}, robot, poses, clear.image(), min_distance{}), b = ask(host{}, robot, poses, nothing, min_distance{});
   CHECK((a.state == state::free && b.state == state::no_data &&
          b.dropped[int(drop_reason::too_close)] == covered.size()));
   CHECK((merge(a, b).state == state::possible && merge(b, a).lower == 0));

@@ -3,7 +3,8 @@
 #include "support/product_device.cuh"
 #include "support/too_close_frame.hpp"
 
-#include <clearance/in_collision.cuh>
+#include <clearance/questions/in_collision.hpp>
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -19,13 +20,13 @@ TEST_CASE("On a device what is too close is counted, and leaves nothing free") {
   const auto there = robot.on(gpu);
   for (const std::size_t near : {0, 1, 400}) {
     const too_close_frame frame(near, 50, 3);
-    const auto r = min_distance(gpu, there, poses, frame.image());
-    CHECK(same_result(r, min_distance(host{}, robot, poses, frame.image())));
+    const auto r = ask(gpu, there, poses, frame.image(), min_distance{});
+    CHECK(same_result(r, ask(host{}, robot, poses, frame.image(), min_distance{})));
     CHECK(r.dropped[int(drop_reason::too_close)] == near);
     CHECK(r.state == (near == 0 ? state::free : state::possible));
-    CHECK(same_result(clearance::min_distance_per_part(gpu, there, poses, frame.image()).first,
-                      clearance::min_distance_per_part(host{}, robot, poses, frame.image()).first));
-    CHECK(clearance::in_collision(gpu, there, poses, frame.image(), 0.1).state ==
+    CHECK(same_result(clearance::ask(gpu, there, poses, frame.image(), clearance::min_distance_per_part{}).first,
+                      clearance::ask(host{}, robot, poses, frame.image(), clearance::min_distance_per_part{}).first));
+    CHECK(clearance::ask(gpu, there, poses, frame.image(), clearance::in_collision{{0.1}}).state ==
           (near == 0 ? state::free : state::possible));
   }
 }

@@ -24,9 +24,9 @@ void all_scenes() {
     for (const real radius : {real(-0.02), real(0), real(0.1), clearance::infinity}) {
       std::vector<real> own(s.parts.size(), radius * real(s.size));
       const std::string what = s.name + ", within " + std::to_string(radius);
-      require_same(within(host{}, model, s.poses, two, own[0]), brute_within(s, two, own), v, what);
+      require_same(ask(host{}, model, s.poses, two, within{{own[0]}}), brute_within(s, two, own), v, what);
       own[0] *= 2;
-      const auto r = within(host{1}, model, s.poses, two, own);
+      const auto r = ask(host{1}, model, s.poses, two, within{{own}});
       require_same(r, brute_within(s, two, own), v, what + ", one a part");
       found += r.pairs.size();
     }
@@ -51,7 +51,7 @@ TEST_CASE("A list longer than its first room is whole, and one of the caller's s
   s.points = d.points(50000, 1);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const std::vector cloud{placed{point_span(s.points)}};
-  const auto all = within(host{}, model, s.poses, cloud, 10);
+  const auto all = ask(host{}, model, s.poses, cloud, within{{10}});
   CHECK(all.pairs.size() == 100000);
   const std::vector<real> reaches(2, 10);
   std::vector<clearance::pair_distance> pairs(100);
@@ -59,21 +59,21 @@ TEST_CASE("A list longer than its first room is whole, and one of the caller's s
   clearance::point_counts counts;
   clearance::within_async(host{}, model, s.poses, cloud, reaches.data(), pairs.data(), pairs.size(), &count, &counts);
   CHECK((count == 100000 && counts.valid == 50000 && pairs[99].distance > 0));
-  CHECK_THROWS_AS(within(host{}, model, s.poses, cloud, clearance::not_a_number), std::invalid_argument);
-  CHECK_THROWS_AS(within(host{}, model, s.poses, cloud, std::vector<real>(3, 1)), std::invalid_argument);
+  CHECK_THROWS_AS(ask(host{}, model, s.poses, cloud, within{{clearance::not_a_number}}), std::invalid_argument);
+  CHECK_THROWS_AS(ask(host{}, model, s.poses, cloud, within{{std::vector<real>(3, 1)}}), std::invalid_argument);
 }
 
 TEST_CASE("A prepared list says in every frame what one call says, and goes on after one that is refused") {
   verdict v;
   moving_frames f(5, 112);
   const auto model = f.model();
-  clearance::within_query query(host{}, model);
+  clearance::query query(host{}, model, clearance::within{});
   std::size_t listed = 0;
   for (; f.there(); f.next()) {
     const std::vector<real> radii(
         f.number % 2 ? 5 : 1,
         f.number == 4 ? 10 : 0.3f);  // that of frame 4 is a longer list than there is room for at first
-    const auto expected = within(host{}, model, f.s.poses, f.here(), radii);
+    const auto expected = ask(host{}, model, f.s.poses, f.here(), within{{radii}});
     listed = std::max(listed, expected.pairs.size());
     const std::string what = "frame " + std::to_string(f.number);
     require_same(query(f.s.poses, f.here(), radii), expected, v, what);

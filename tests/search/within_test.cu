@@ -6,7 +6,8 @@
 
 #include <clearance/make_model.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/within.cuh>
+#include <clearance/questions/within.hpp>
+#include <clearance/device.cuh>
 
 namespace within_test {
 
@@ -20,7 +21,7 @@ TEST_CASE("On a device points within a distance are the host's, and a long list 
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     const auto two = two_clouds(s);
     for (const real radius : {real(0), real(0.1), clearance::infinity})
-      require_same(within(gpu, model.on(gpu), s.poses, two, radius), within(host{}, model, s.poses, two, radius), v,
+      require_same(ask(gpu, model.on(gpu), s.poses, two, within{{radius}}), ask(host{}, model, s.poses, two, within{{radius}}), v,
                    s.name + ", within " + std::to_string(radius));
   }
   dice d(99);
@@ -30,7 +31,7 @@ TEST_CASE("On a device points within a distance are the host's, and a long list 
   s.points = d.points(50000, 1);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const std::vector cloud{placed{point_span(s.points)}};
-  require_same(within(gpu, model.on(gpu), s.poses, cloud, 10), within(host{}, model, s.poses, cloud, 10), v, "many");
+  require_same(ask(gpu, model.on(gpu), s.poses, cloud, within{{10}}), ask(host{}, model, s.poses, cloud, within{{10}}), v, "many");
 }
 
 TEST_CASE("A prepared list says on a device in every frame what the host says, and in a graph") {
@@ -41,13 +42,13 @@ TEST_CASE("A prepared list says on a device in every frame what the host says, a
     moving_frames f(parts, 122);
     const auto model = f.model();
     const auto there = model.on(gpu);
-    clearance::within_query query(gpu, there);
+    clearance::query query(gpu, there, clearance::within{});
     constexpr std::size_t capacity = 3000000;
     const auto pairs = room_on<clearance::pair_distance>(gpu, capacity);
     const auto count = room_on<unsigned long long>(gpu, 1);
     const auto counts = room_on<clearance::point_counts>(gpu, 1);
     const auto look = [&](const std::vector<real>& radii, const std::string& when) {
-      const auto expected = within(host{}, model, f.s.poses, f.here(), radii);
+      const auto expected = ask(host{}, model, f.s.poses, f.here(), within{{radii}});
       const std::string what = std::to_string(parts) + " parts, " + when;
       const auto found = gpu.copy_out(count)[0];
       require_listed(gpu.copy_out(pairs.data(), std::min<std::size_t>(found, capacity)), found, expected, v,

@@ -7,7 +7,8 @@
 #include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/zones.cuh>
+#include <clearance/questions/zones.hpp>
+#include <clearance/device.cuh>
 
 namespace zones_test {
 
@@ -20,8 +21,8 @@ TEST_CASE("Zones on a device hold what they hold on the host") {
   for (const auto& s : scenes<inner_sphere>()) {
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     const auto two = two_clouds(s);
-    const clearance::zones_options options{.thresholds = {0, 0.05 * s.size, 0.5 * s.size}};
-    require_same(zones(gpu, model.on(gpu), s.poses, two, options), zones(host{}, model, s.poses, two, options), v,
+    const clearance::zones options{.thresholds = {0, 0.05 * s.size, 0.5 * s.size}};
+    require_same(ask(gpu, model.on(gpu), s.poses, two, options), ask(host{}, model, s.poses, two, options), v,
                  s.name);
   }
 }
@@ -31,9 +32,9 @@ TEST_CASE("Crowds in zones are counted one by one") {
   const device gpu;
   const auto s = crowd(97);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
-  const clearance::zones_options options{.thresholds = {0.02, 0.1, 0.3}};
-  const auto found = zones(gpu, model.on(gpu), s.poses, point_span(s.points), options);
-  require_same(found, zones(host{}, model, s.poses, point_span(s.points), options), v, "crowd");
+  const clearance::zones options{.thresholds = {0.02, 0.1, 0.3}};
+  const auto found = ask(gpu, model.on(gpu), s.poses, point_span(s.points), options);
+  require_same(found, ask(host{}, model, s.poses, point_span(s.points), options), v, "crowd");
   CHECK(found.of(0, 2).points > 10000);
 }
 
@@ -49,9 +50,9 @@ TEST_CASE("Crowds in and around solids are counted one by one") {
   const clearance::model boxes{std::vector{box(), box()}};
   const std::vector poses{d.pose(0.5), d.pose(0.5)};
   const auto crowd = d.points(300000, 2);
-  const clearance::zones_options options{.thresholds = {0, 0.05, 0.5}};
-  const auto found = zones(gpu, boxes.on(gpu), poses, point_span(crowd), options);
-  require_same(found, zones(host{}, boxes, poses, point_span(crowd), options), v, "boxes");
+  const clearance::zones options{.thresholds = {0, 0.05, 0.5}};
+  const auto found = ask(gpu, boxes.on(gpu), poses, point_span(crowd), options);
+  require_same(found, ask(host{}, boxes, poses, point_span(crowd), options), v, "boxes");
   CHECK((found.of(0, 0).points > 10000 && found.of(0, 1).points > found.of(0, 0).points));
 }
 
@@ -63,12 +64,12 @@ TEST_CASE("A prepared question of zones says on a device in every frame what the
     moving_frames f(parts, 121);
     const auto model = f.model();
     const auto there = model.on(gpu);
-    clearance::zones_query query(gpu, there);
-    const clearance::zones_options wide{.thresholds = {0, 0.05, 0.4}}, narrow{.thresholds = {0.02, 0.3}};
+    clearance::query query(gpu, there, clearance::zones{});
+    const clearance::zones wide{.thresholds = {0, 0.05, 0.4}}, narrow{.thresholds = {0.02, 0.3}};
     const auto zone_there = room_on<clearance::zone>(gpu, wide.thresholds.size() * std::size_t(parts));
     const auto counts = room_on<clearance::point_counts>(gpu, 1);
-    const auto look = [&](const clearance::zones_options& options, const std::string& when) {
-      const auto expected = zones(host{}, model, f.s.poses, f.here(), options);
+    const auto look = [&](const clearance::zones& options, const std::string& when) {
+      const auto expected = ask(host{}, model, f.s.poses, f.here(), options);
       const std::string what = std::to_string(parts) + " parts, " + when;
       require_same({expected.per_part, 1, gpu.copy_out(zone_there.data(), expected.zones.size()), {}}, expected, v,
                    what + ", enqueued");

@@ -7,7 +7,7 @@
 #include "support/laws.hpp"
 
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance_query.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -41,7 +41,7 @@ template <class Part>
 void law(const Part& part, const damaged_solid& s, const std::string& what, const std::vector<Vector3d>& points,
          census& all, verdict& v) {
   const clearance::model model{std::vector{part}};
-  clearance::min_distance_query ask(clearance::host{.threads = 1}, model);
+  clearance::query ask(clearance::host{.threads = 1}, model, clearance::min_distance{});
   const double rounding = 1e-5 * s.size(), unsure = part.facts.tolerance + double(part.facts.gap);
   for (const Vector3d& at : points) {
     const vec3 p{real(at.x()), real(at.y()), real(at.z())};

@@ -5,7 +5,7 @@
 #include "support/brute_pairs.hpp"
 #include "support/product.hpp"
 
-#include <clearance/distances.hpp>
+#include <clearance/questions/distances.hpp>
 
 namespace testing {
 

@@ -5,7 +5,7 @@
 
 #include "support/laws.hpp"
 
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 
 namespace testing {
 

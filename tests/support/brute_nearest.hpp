@@ -4,7 +4,7 @@
 
 #include "support/brute_within.hpp"
 
-#include <clearance/nearest_k.hpp>
+#include <clearance/questions/nearest_k.hpp>
 
 namespace testing {
 

@@ -5,7 +5,7 @@
 #include "support/brute_distances.hpp"
 #include "support/brute_pairs.hpp"
 
-#include <clearance/self_filter.hpp>
+#include <clearance/questions/self_filter.hpp>
 
 namespace testing {
 

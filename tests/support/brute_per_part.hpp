@@ -4,7 +4,7 @@
 
 #include "support/brute_distances.hpp"
 
-#include <clearance/distances_per_part.hpp>
+#include <clearance/questions/distances_per_part.hpp>
 
 namespace testing {
 

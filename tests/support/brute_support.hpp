@@ -5,7 +5,7 @@
 #include "support/brute_pairs.hpp"
 #include "support/product.hpp"
 
-#include <clearance/min_support.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
 
 #include <map>
 
@@ -13,7 +13,7 @@ namespace testing {
 
 template <class P>
 clearance::supported_distance brute_support(const scene<P>& s, const clouds& all,
-                                            const clearance::support_options& options) {
+                                            const clearance::min_distance_supported& options) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, clearance::pair_distance> nearest;  // by point
   for_each_pair(s, all, [&](const clearance::pair_distance& pair) {
     const auto [its, fresh] = nearest.try_emplace({pair.cloud, pair.point}, pair);

@@ -4,7 +4,7 @@
 
 #include "support/brute_distances.hpp"
 
-#include <clearance/within.hpp>
+#include <clearance/questions/within.hpp>
 
 namespace testing {
 

@@ -4,7 +4,7 @@
 
 #include "support/brute_distances.hpp"
 
-#include <clearance/zones.hpp>
+#include <clearance/questions/zones.hpp>
 
 namespace testing {
 

@@ -8,7 +8,7 @@
 
 #include <clearance/chunked_query.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/min_distance.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 namespace testing {
@@ -27,10 +27,10 @@ void ask_often(const On& on, const Model& on_host, std::vector<Eigen::Isometry3d
   std::vector<clearance::part_minimum> minima(poses.size());
   for (int round = 0; round < 4; ++round) {
     const clearance::placed<S> whole{source, pose};
-    v.require(same_result(query(poses, cloud, pose), clearance::min_distance(host, on_host, poses, whole)), what,
+    v.require(same_result(query(poses, cloud, pose), clearance::ask(host, on_host, poses, whole, clearance::min_distance{})), what,
               ", round ", round, ": another answer");
     v.require(round > 0 || query.loaded() == source.size(), what, ": the first question did not read all");
-    const auto [robot, each] = clearance::min_distance_per_part(host, on_host, poses, whole);
+    const auto [robot, each] = clearance::ask(host, on_host, poses, whole, clearance::min_distance_per_part{});
     v.require(same_result(query.per_part(poses, cloud, pose, minima), robot), what, ", round ", round,
               ": another answer by parts");
     v.require(std::ranges::equal(minima, each, same_minimum), what, ", round ", round, ": some part's minimum differs");

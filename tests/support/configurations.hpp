@@ -5,7 +5,7 @@
 #include "support/product.hpp"
 #include "support/same_result.hpp"
 
-#include <clearance/min_distances.hpp>
+#include <clearance/questions/min_distances.hpp>
 
 namespace testing {
 

@@ -33,8 +33,8 @@ auto make_model(const scene<P>& s, const clearance::build_options& options, Fit 
 template <class On, class Model, class S>
 void check_query(const On& on, const Model& model, const std::vector<Eigen::Isometry3d>& poses,
                  const clearance::placed<S>& cloud, const brute_answer& expected, verdict& v, const std::string& what) {
-  require_equal(clearance::min_distance(on, model, poses, cloud), expected, v, what);
-  const auto [r, minima] = clearance::min_distance_per_part(on, model, poses, cloud);
+  require_equal(clearance::ask(on, model, poses, cloud, clearance::min_distance{}), expected, v, what);
+  const auto [r, minima] = clearance::ask(on, model, poses, cloud, clearance::min_distance_per_part{});
   require_equal(r, expected, v, what + ", per part");
   require_equal(minima, expected, v, what);
 }

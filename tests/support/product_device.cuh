@@ -6,7 +6,8 @@
 #include "support/product.hpp"
 #include "support/same_result.hpp"
 
-#include <clearance/min_distance.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 
 namespace testing {
 
@@ -42,12 +43,12 @@ void check_on_device(Pick pick) {
             layered ? make_model<V>(s, options, clearance::layered{}) : make_model<V>(s, options, clearance::wrapped{});
         const auto model = on_host.on(gpu);
         const std::string what = s.name + ", width " + std::to_string(width);
-        const auto same = clearance::min_distance(clearance::host{}, on_host, s.poses, cloud);
+        const auto same = clearance::ask(clearance::host{}, on_host, s.poses, cloud, clearance::min_distance{});
         const auto check = [&](const auto& on, const std::string& how) {
-          const auto r = clearance::min_distance(on, model, s.poses, cloud);
+          const auto r = clearance::ask(on, model, s.poses, cloud, clearance::min_distance{});
           require_equal(r, expected, v, what + how);
           v.require(same_result(r, same), what + how, ": something differs from the host's result");
-          const auto [each, minima] = clearance::min_distance_per_part(on, model, s.poses, cloud);
+          const auto [each, minima] = clearance::ask(on, model, s.poses, cloud, clearance::min_distance_per_part{});
           require_equal(each, expected, v, what + how + ", per part");
           require_equal(minima, expected, v, what + how);
         };

@@ -3,19 +3,19 @@
 
 #include "robot_on.hpp"
 
-#include <clearance/distances.hpp>
-#include <clearance/part_witnesses.hpp>
-#include <clearance/signed_distances.hpp>
+#include <clearance/questions/distances.hpp>
+#include <clearance/questions/part_witnesses.hpp>
+#include <clearance/questions/signed_distances.hpp>
 
 #include <stdexcept>
 
 template <class Backend>
 clearance::point_distances robot_on_backend<Backend>::distances(poses_of poses, double d_max, bool is_signed) {
-  const clearance::distances_options options{.d_max = clearance::real(d_max), .which = true};
+  const clearance::distances options{.d_max = clearance::real(d_max), .which = true};
   return with_usual_trees([&](const auto& trees) {
-    if (!is_signed) return clearance::distances(on_, trees, poses, clouds_, options);
+    if (!is_signed) return clearance::ask(on_, trees, poses, clouds_, options);
     if constexpr (clearance::scan::has_interior<typename decltype(clearance::view_of(trees))::part_type>)
-      return clearance::signed_distances(on_, trees, poses, clouds_, options);
+      return clearance::ask(on_, trees, poses, clouds_, options);
     else
       throw std::logic_error("distances to spheres are signed already");
   });
@@ -25,5 +25,5 @@ template <class Backend>
 std::vector<clearance::part_witness> robot_on_backend<Backend>::witnesses(
     poses_of poses, std::span<const clearance::part_minimum> minima) {
   return with_usual_trees(
-      [&](const auto& trees) { return clearance::part_witnesses(on_, trees, poses, clouds_, minima); });
+      [&](const auto& trees) { return clearance::ask(on_, trees, poses, clouds_, clearance::part_witnesses{minima}); });
 }

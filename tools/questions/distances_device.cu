@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/distances.cuh>
-#include <clearance/part_witnesses.cuh>
-#include <clearance/signed_distances.cuh>
+#include <clearance/questions/distances.hpp>
+#include <clearance/device.cuh>
+#include <clearance/questions/part_witnesses.hpp>
+#include <clearance/questions/signed_distances.hpp>
 
 #include "distances.hpp"
 

@@ -4,7 +4,8 @@
 
 #include "trees.hpp"
 
-#include <clearance/min_distance_by.hpp>
+#include <clearance/deadline.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 
 #include <algorithm>
@@ -82,11 +83,11 @@ template <class Backend>
 reply robot_on_backend<Backend>::least_by(poses_of poses, double deadline) {
   double seconds = 0;
   reply out = with_usual_trees([&](const auto& trees) {
-    clearance::min_distance_query asked(on_, trees);  // prepared before the clock starts
+    clearance::query asked(on_, trees, clearance::min_distance{});  // prepared before the clock starts
     stopwatch clock;
     // With every part's, as in `least_per_part`: a complete answer then has the same lower end.
     const auto known =
-        clearance::min_distance_by(asked, poses, clouds_, std::chrono::duration<double>(deadline), {.per_part = true});
+        clearance::ask_by(asked, poses, clouds_, std::chrono::duration<double>(deadline), clearance::min_distance{}, {.per_part = true});
     seconds = clock.lap();
     return reply{known, {}, known.unseen};
   });

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/min_distance_by.cuh>  // the device's own prepared query
+#include <clearance/deadline.hpp>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 
 #include "least.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "robot_on.hpp"
 
-#include <clearance/min_distances.hpp>
+#include <clearance/questions/min_distances.hpp>
 
 #include <algorithm>
 
@@ -15,7 +15,7 @@ class plan_of final : public prepared_plan {
 
   const clearance::min_distances_result& ask(poses_of poses, const std::vector<placed_points>& clouds,
                                              double d_max) override {
-    const clearance::min_distances_options options{.d_max = clearance::real(d_max)};
+    const clearance::min_distances options{.d_max = clearance::real(d_max)};
     if constexpr (requires { query_.place(poses); }) {
       if (!std::ranges::equal(poses, placed_, [](const auto& a, const auto& b) { return a.matrix() == b.matrix(); })) {
         query_.place(poses);

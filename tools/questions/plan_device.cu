@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/min_distances.cuh>
+#include <clearance/questions/min_distances.hpp>
+#include <clearance/device.cuh>
 
 #include "plan.hpp"
 

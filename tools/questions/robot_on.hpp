@@ -5,7 +5,7 @@
 #include "../backends.hpp"
 #include "../stopwatch.hpp"
 
-#include <clearance/answer/search_on.hpp>
+#include <clearance/minimum/search_on.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/primitive/triangle.hpp>
 #include <clearance/robot/model.hpp>
@@ -58,9 +58,9 @@ class robot_on_backend final : public backend_robot {
   reply least(poses_of poses) override;
   reply least_per_part(poses_of poses, int repeat) override;
   reply least_by(poses_of poses, double deadline) override;
-  clearance::zones_result zones(poses_of poses, const clearance::zones_options& options) override;
+  clearance::zones_result zones(poses_of poses, const clearance::zones& options) override;
   clearance::self_filter_result own_points(poses_of poses, double padding) override;
-  clearance::supported_distance supported(poses_of poses, const clearance::support_options& options) override;
+  clearance::supported_distance supported(poses_of poses, const clearance::min_distance_supported& options) override;
   clearance::point_distances distances(poses_of poses, double d_max, bool is_signed) override;
   clearance::nearest_k_result nearest(poses_of poses, std::size_t k, double d_max) override;
   std::vector<clearance::part_witness> witnesses(poses_of poses,

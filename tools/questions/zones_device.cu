@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/min_support.cuh>
-#include <clearance/nearest_k.cuh>
-#include <clearance/self_filter.cuh>
-#include <clearance/zones.cuh>
+#include <clearance/questions/min_distance_supported.hpp>
+#include <clearance/device.cuh>
+#include <clearance/questions/nearest_k.hpp>
+#include <clearance/questions/self_filter.hpp>
+#include <clearance/questions/zones.hpp>
 
 #include "zones.hpp"
 
-template clearance::zones_result robot_on_backend<clearance::device>::zones(poses_of, const clearance::zones_options&);
+template clearance::zones_result robot_on_backend<clearance::device>::zones(poses_of, const clearance::zones&);
 template clearance::self_filter_result robot_on_backend<clearance::device>::own_points(poses_of, double);
 template clearance::supported_distance robot_on_backend<clearance::device>::supported(
-    poses_of, const clearance::support_options&);
+    poses_of, const clearance::min_distance_supported&);
 template clearance::nearest_k_result robot_on_backend<clearance::device>::nearest(poses_of, std::size_t, double);

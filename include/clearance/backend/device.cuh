@@ -52,7 +52,7 @@ struct device {
   using buffer = device_buffer<T>;
   template <class T>
   using scratch = stream_buffer<T>;
-  using own_scan = void;  ///< Operations on a device need their .cuh headers.
+  using own_scan = void;  ///< Questions on a device need <clearance/device.cuh>.
 
   int id = 0;
   cudaStream_t stream = nullptr;

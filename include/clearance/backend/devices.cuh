@@ -14,7 +14,8 @@ namespace clearance {
 /// value share the streams. The caller's current device stays as it was.
 class devices {
  public:
-  using own_scan = void;  ///< Operations on devices need their .cuh headers.
+  using own_scan = void;  ///< Questions on devices need <clearance/device.cuh>.
+  using several = void;   ///< A robot is on each of them.
 
   devices() = delete;  // nvcc 13.0 would take devices{} for devices{0}
 

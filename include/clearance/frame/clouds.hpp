@@ -80,6 +80,14 @@ std::size_t count_clouds(const Clouds& clouds) {
   return n;
 }
 
+/// The number of points of all clouds.
+template <class Clouds>
+std::size_t count_points(const Clouds& clouds) {
+  std::size_t points = 0;
+  for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
+  return points;
+}
+
 /// `clouds_of_any_kind<T>` with reasons.
 template <class T>
 consteval bool explain_clouds() {

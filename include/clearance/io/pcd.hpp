@@ -104,6 +104,9 @@ inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_h
 /// Refuses data beyond POINTS, except the zeros with which some writers fill a page, and a line end before or after
 /// them.
 inline void check_pcd_end(std::string_view rest, const pcd_header& header, const std::string& file) {
+  if (header.line_end_left && !rest.empty())
+    refuse(file,
+           "some lines of the header end with \\r and the last one with \\r\\n, so it is unclear where the data begin");
   std::string_view zeros = rest;
   for (const std::string_view end : {"\r\n", "\n"})
     if (zeros.size() == rest.size() && zeros.ends_with(end))

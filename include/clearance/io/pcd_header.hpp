@@ -34,7 +34,8 @@ struct pcd_header {
   std::uint64_t width = 0, height = 1, points = 0;
   std::optional<io::viewpoint> viewpoint;
   encoding data = encoding::ascii;
-  std::size_t lines = 0;  // of the header
+  std::size_t lines = 0;       // of the header
+  bool line_end_left = false;  // the data begin with what may be the end of the header's last line
 };
 
 /// Fills in offsets and finds x, y and z. Fields and counts are bounded, so nothing overflows.
@@ -195,7 +196,9 @@ inline pcd_header take_pcd_header(std::string_view& rest, const std::string& fil
   while (!rest.empty()) {
     if (!entries.take(take_line(rest))) continue;
     entries.finish();
+    const std::size_t behind = rest.size();
     rest = data_after(all, rest);
+    entries.made.line_end_left = rest.size() != behind;
     return std::move(entries.made);
   }
   refuse(file, "the PCD header has no DATA entry (is the file cut short, or no PCD?)");

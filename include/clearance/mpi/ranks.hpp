@@ -2,8 +2,8 @@
 #pragma once
 // What ranks tell one another about a question: before it, that it is the same for all; after it, their answers.
 
-#include <clearance/answer/of_pieces.hpp>
 #include <clearance/frame/clouds.hpp>
+#include <clearance/query/fields.hpp>
 
 #include <mpi.h>
 
@@ -26,34 +26,6 @@ inline void check(int error, const char* call) {
   throw std::runtime_error(std::string("clearance: ") + call + ": " + text);
 }
 
-/// Reduces plain values over all ranks with their own `add`, which is associative and commutative.
-template <class T>
-void reduce(MPI_Comm comm, T* values, std::size_t count) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  // Made once and kept as long as the process, because they must not be freed after MPI_Finalize.
-  static const MPI_Datatype type = [] {
-    MPI_Datatype made;
-    check(MPI_Type_contiguous(int(sizeof(T)), MPI_BYTE, &made), "MPI_Type_contiguous");
-    check(MPI_Type_commit(&made), "MPI_Type_commit");
-    return made;
-  }();
-  static const MPI_Op operation = [] {
-    MPI_Op made;
-    MPI_User_function* const add = [](void* from, void* to, int* n, MPI_Datatype*) {
-      for (int k = 0; k < *n; ++k) {
-        T a, b;
-        std::memcpy(&a, static_cast<char*>(from) + std::size_t(k) * sizeof(T), sizeof(T));
-        std::memcpy(&b, static_cast<char*>(to) + std::size_t(k) * sizeof(T), sizeof(T));
-        b.add(a);
-        std::memcpy(static_cast<char*>(to) + std::size_t(k) * sizeof(T), &b, sizeof(T));
-      }
-    };
-    check(MPI_Op_create(add, 1, &made), "MPI_Op_create");
-    return made;
-  }();
-  check(MPI_Allreduce(MPI_IN_PLACE, values, int(count), type, operation, comm), "MPI_Allreduce");
-}
-
 /// All ranks' values, in order.
 template <class T>
 std::vector<T> gather(MPI_Comm comm, int ranks, const T* values, std::size_t count) {
@@ -63,11 +35,11 @@ std::vector<T> gather(MPI_Comm comm, int ranks, const T* values, std::size_t cou
   return all;
 }
 
-/// One question that all ranks ask. Every rank makes the same calls, whatever fails: an exception on one ends it on
+/// One call that all ranks make together. Every rank does the same steps, whatever fails: an exception on one ends it on
 /// all.
-class question {
+class together {
  public:
-  explicit question(MPI_Comm comm) : comm_(comm) {
+  explicit together(MPI_Comm comm) : comm_(comm) {
     int started = 0, ended = 0;
     MPI_Initialized(&started), MPI_Finalized(&ended);
     if (started == 0 || ended != 0 || comm == MPI_COMM_NULL)
@@ -120,28 +92,45 @@ class question {
     std::vector<std::uint64_t> table;
     for (const said& its : all) table.push_back(its.points);
     if (sizes.size() > 1) table = gather(comm_, ranks_, sizes.data(), sizes.size());
-    first_.assign(sizes.size(), 0);
+    if (sizes.empty()) table.clear();
+    sizes_ = std::move(table);
     std::uint64_t points = 0;
-    for (std::size_t k = 0; k < table.size() && !sizes.empty(); ++k) {
-      if (k < std::size_t(rank_) * sizes.size()) first_[k % sizes.size()] += table[k];
-      points += table[k];
-    }
-    if (points >= none) throw std::invalid_argument("clearance: more than 2^32 - 2 points on all ranks together");
+    for (const std::uint64_t its : sizes_) points += its;
+    if (points >= ~std::uint32_t(0)) throw std::invalid_argument("clearance: more than 2^32 - 2 points on all ranks together");
   }
 
-  /// From this rank's answers, in the numbers of its own clouds, to those of all ranks. `minima`: one per part, or
-  /// empty.
-  min_distance_result answer(const min_distance_result& mine, std::span<part_minimum> minima, bool has_interior) {
-    sum all{minimum::of_pieces(in_whole(mine)), thrown_ ? std::uint32_t(rank_) : none};
-    reduce(comm_, &all, 1);
-    if (all.thrown != none) end_all(int(all.thrown));
-    if (!minima.empty()) {
-      std::vector<part> parts;
-      for (const part_minimum& m : minima) parts.push_back({in_whole(m)});
-      reduce(comm_, parts.data(), parts.size());
-      std::ranges::transform(parts, minima.begin(), [](const part& p) { return p.least; });
+  /// Joins the results of all ranks in their order: `mine` is this rank's, in the numbers of its own clouds.
+  template <class Joined, class Result>
+  void join(Joined& all, const Result& mine) {
+    struct sent {
+      std::uint64_t bytes, thrown;
+    };
+    std::vector<std::byte> packed;
+    attempt([&] { detail::pack(packed, mine); });
+    const sent own{packed.size(), std::uint64_t(thrown_ ? 1 : 0)};
+    const std::vector<sent> sizes = gather(comm_, ranks_, &own, 1);
+    for (int r = 0; r < ranks_; ++r)
+      if (sizes[std::size_t(r)].thrown != 0) end_all(r);
+    std::vector<std::size_t> begins{0};
+    for (const sent& its : sizes) begins.push_back(begins.back() + its.bytes);
+    std::vector<std::byte> bytes(begins.back());
+    for (int r = 0; r < ranks_; ++r)  // one after another, because all together may exceed what MPI's counts can say
+      for (std::size_t at = begins[std::size_t(r)], end = begins[std::size_t(r) + 1]; at < end; at += most_bytes) {
+        if (r == rank_)
+          std::copy_n(packed.data() + (at - begins[std::size_t(r)]), std::min(end - at, most_bytes), bytes.data() + at);
+        check(MPI_Bcast(bytes.data() + at, int(std::min(end - at, most_bytes)), MPI_BYTE, r, comm_), "MPI_Bcast");
+      }
+    const std::size_t clouds = sizes_.size() / std::size_t(ranks_);
+    std::vector<std::uint32_t> first(clouds), whole(clouds), count(clouds);
+    for (std::size_t k = 0; k < sizes_.size(); ++k) whole[k % clouds] += std::uint32_t(sizes_[k]);
+    for (int r = 0; r < ranks_; ++r) {
+      for (std::size_t c = 0; c < clouds; ++c) count[c] = std::uint32_t(sizes_[std::size_t(r) * clouds + c]);
+      Result its{};
+      std::span<const std::byte> from = std::span(bytes).subspan(begins[std::size_t(r)], sizes[std::size_t(r)].bytes);
+      detail::unpack(from, its);
+      all.add(std::move(its), {first, count, whole});
+      for (std::size_t c = 0; c < clouds; ++c) first[c] += count[c];
     }
-    return all.pieces.answer(has_interior);
   }
 
  private:
@@ -158,22 +147,6 @@ class question {
       }
     }
   };
-  struct sum {
-    minimum::of_pieces pieces;
-    std::uint32_t thrown;  ///< The lowest rank that threw.
-
-    void add(const sum& other) { pieces.add(other.pieces), thrown = std::min(thrown, other.thrown); }
-  };
-  struct part {
-    part_minimum least;
-
-    void add(const part& other) { least = merge(least, other.least); }
-  };
-
-  template <class Answer>
-  Answer in_whole(const Answer& r) const {
-    return r.cloud == none ? r : renumbered(r, 0, std::uint32_t(first_[r.cloud]));
-  }
   [[noreturn]] void end_all(int by) {
     char text[512] = {};
     if (rank_ == by) std::memcpy(text, sentence_.data(), std::min(sentence_.size(), sizeof text - 1));
@@ -182,9 +155,11 @@ class question {
     throw std::runtime_error("clearance: rank " + std::to_string(by) + " of " + std::to_string(ranks_) + ": " + text);
   }
 
+  static constexpr std::size_t most_bytes = std::size_t(1) << 30;  ///< Of one broadcast.
+
   MPI_Comm comm_;
   int rank_ = 0, ranks_ = 1;
-  std::vector<std::uint64_t> first_;
+  std::vector<std::uint64_t> sizes_;  ///< Of all clouds, rank after rank.
   std::exception_ptr thrown_;
   std::string sentence_;
 };

@@ -27,18 +27,47 @@ void check(const model_view<PartView>& view) {
   for (std::size_t k = 0; k < view.size(); ++k) check(view.facts[k], std::int64_t(k));
 }
 
+/// A rigid body: what `make_part` makes. It is a robot of one part.
+template <class R>
+concept rigid_part = requires(const R r) {
+  { r.facts } -> std::convertible_to<const part_facts&>;
+  r.view().tree;
+};
+
 /// What operations take as a robot: a `model` or its view. `view_of` returns the view.
 template <class Robot>
-concept robot = requires(const Robot r) {
+concept robot = !rigid_part<Robot> && (requires(const Robot r) {
   { r.facts } -> std::convertible_to<std::span<const part_facts>>;
   r.parts;
-} || requires(const Robot r) { r.view().facts; };
+} || requires(const Robot r) { r.view().facts; });
 template <robot Robot>
 auto view_of(const Robot& r) {
   if constexpr (requires { r.view(); })
     return r.view();
   else
     return check(r), r;
+}
+
+namespace detail {
+
+template <class R>
+struct part_view_of {
+  using type = typename decltype(view_of(std::declval<const R&>()))::part_type;
+};
+template <rigid_part R>
+struct part_view_of<R> {
+  using type = std::remove_const_t<decltype(std::declval<const R&>().view())>;
+};
+
+}  // namespace detail
+
+/// `robot<R>`, or a part, with reasons.
+template <class R>
+consteval bool explain_robot() {
+  static_assert(robot<R> || rigid_part<R>,
+                "a robot is: a model (make_model), its view, or one part. The arguments are: backend, robot, poses, "
+                "clouds, question");
+  return robot<R> || rigid_part<R>;
 }
 
 template <class Model>

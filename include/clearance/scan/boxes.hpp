@@ -69,6 +69,13 @@ struct boxing {
   }
 };
 
+/// Boxes around a source's points: `pieces` has one per `piece_points`.
+template <point_source S>
+void box_points(const S& source, boxed_piece* pieces) {
+  const std::size_t size = source.size();
+  for (std::size_t i = 0; i < size; ++i) pieces[i / piece_points].add(source[i]);
+}
+
 /// Some pieces of a source as one source: its piece k is piece `numbers[k]` of the whole. The whole's last piece, which
 /// may be shorter, may only come last.
 template <point_source S>

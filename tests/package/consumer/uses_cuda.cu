@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <clearance/bvh/build.hpp>
-#include <clearance/min_distance.cuh>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/device.cuh>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/obb.hpp>
 
@@ -8,5 +9,5 @@
 float distance_on_device(const clearance::device& gpu, const std::vector<clearance::inner_sphere>& spheres,
                          const std::vector<clearance::vec3>& cloud) {
   const auto part = clearance::make_part(clearance::build<clearance::obb>(spheres)).on(gpu);
-  return clearance::min_distance(gpu, part, Eigen::Isometry3d::Identity(), cloud).distance;
+  return clearance::ask(gpu, part, Eigen::Isometry3d::Identity(), cloud, clearance::min_distance{}).distance;
 }

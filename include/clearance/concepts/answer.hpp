@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What is kept of all pairs of a point and a part.
+
+#include <clearance/concepts/tree.hpp>
+
+namespace clearance {
+
+/// A pair of a point and a part, and their distance.
+struct pair_distance {
+  std::uint32_t cloud, point;  ///< The point's number as in its cloud.
+  std::uint32_t part;
+  std::uint32_t
+      primitive;  ///< The part's nearest; of equally near ones the lowest. ~0u: the point is inside the part's solid.
+  real distance;
+};
+
+/// What is kept of all pairs (point, part) of a frame: a view of memory that the scan's backend writes.
+///
+/// Law: `reach(part)` is how near the part must be to a point for the pair to matter. It never grows while a scan runs;
+/// an old value only costs time.
+/// Law: `take(pair)` is called once for every pair that is within reach, and perhaps for pairs that were so before. Any
+/// thread may call it, in any order; the result must not depend on that.
+template <class A>
+concept answer = std::is_trivially_copyable_v<A> && requires(const A a, std::uint32_t part, const pair_distance pair) {
+  { a.reach(part) } -> std::same_as<real>;
+  a.take(pair);
+};
+
+/// An answer that can do without some pairs, which are then not looked at any further.
+/// Law: `settled(cloud, point, part)` means that `take` of that pair would change nothing. Once true, it stays true
+/// while a scan runs.
+template <class A>
+concept settling_answer = answer<A> && requires(const A a, std::uint32_t n) {
+  { a.settled(n, n, n) } -> std::same_as<bool>;
+};
+
+/// A settling answer that tells when all later points are settled, too. A host then only counts them.
+/// Law: `ended(cloud, point)` means that every pair of that point, and of those after it in that cloud, is settled.
+template <class A>
+concept ending_answer = settling_answer<A> && requires(const A a, std::uint32_t n) {
+  { a.ended(n, n) } -> std::same_as<bool>;
+};
+
+/// An answer that needs only the range of a pair's distance, so that a walk may stop early.
+/// Law: `reach(part, found, nearest)` is how near another primitive must be to matter to a pair that has one at
+/// `found`, if some pair of the part is no farther than `nearest`. It never grows as those fall. `take` may get a
+/// primitive that is not the pair's nearest, if no nearer one is within that reach.
+template <class A>
+concept coarse_answer = answer<A> && requires(const A a, std::uint32_t part, real d) {
+  { a.reach(part, d, d) } -> std::same_as<real>;
+};
+
+/// `answer<A>` with reasons.
+template <class A>
+consteval bool explain_answer() {
+  static_assert(std::is_trivially_copyable_v<A>, "an answer must be a trivially copyable view");
+  static_assert(
+      requires(const A a, std::uint32_t part) {
+        { a.reach(part) } -> std::same_as<real>;
+      }, "an answer needs: CLEARANCE_HD real reach(std::uint32_t part) const");
+  static_assert(
+      requires(const A a, const pair_distance pair) { a.take(pair); },
+      "an answer needs: CLEARANCE_HD void take(const pair_distance&) const");
+  return answer<A>;
+}
+
+}  // namespace clearance

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Gives every question a device: include it beside the questions, in sources that nvcc compiles.
+
+#include <clearance/backend/one_call.cuh>
+#include <clearance/minimum/chunked_device.cuh>
+#include <clearance/minimum/device_engine.cuh>
+#include <clearance/pairwise/device_engine.cuh>
+#include <clearance/plan/device_engine.cuh>
+#include <clearance/pointwise/device_engine.cuh>
+#include <clearance/query/on_devices.cuh>

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Asks for the least distance on one backend, frame after frame.
+
+#include <clearance/backend/plain.hpp>
+#include <clearance/frame/readable.hpp>
+#include <clearance/minimum/host_search.hpp>
+
+namespace clearance::minimum {
+
+/// Where a question about the least distance writes: `Q::per_part` decides whether also every part's.
+template <class Q>
+auto minima_of(const typename Q::out& to) {
+  if constexpr (Q::per_part)
+    return std::pair(to.result, to.minima);
+  else
+    return std::pair(to, static_cast<part_minimum*>(nullptr));
+}
+
+/// For a backend without a search of its own, or `plain`: a loop over points, which keeps nothing from frame to frame.
+template <class On, class PartView, class Q>
+class engine {
+  using there = detail::backend_of_t<On>;
+  static_assert(
+      !requires { typename On::own_scan; },
+      "a device is asked with nvcc: include <clearance/device.cuh>");
+
+ public:
+  engine(const On& on, const model_view<PartView>& model) : on_(on), model_(model) {}
+
+  template <class Clouds>
+  typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&) {
+    const there& backend = detail::backend_of(on_);
+    auto result = backend.template make_scratch<min_distance_result>(1);
+    auto minima = backend.template make_scratch<part_minimum>(Q::per_part ? model_.size() : 0);
+    frames::cloud_copies<there> copies;
+    search(poses, clouds, result.data(), Q::per_part ? minima.data() : nullptr,
+           frames::readable_on<there>{backend, copies});
+    if constexpr (Q::per_part)
+      return {backend.copy_out(result.data(), 1)[0], backend.copy_out(minima.data(), minima.size())};
+    else
+      return backend.copy_out(result.data(), 1)[0];
+  }
+  template <class Clouds>
+  void start(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&, const typename Q::out& to) {
+    const auto [result, minima] = minima_of<Q>(to);
+    search(poses, clouds, result, minima, frames::as_it_is{});
+  }
+  void forget() const {}
+
+ private:
+  template <class Clouds, class Here>
+  void search(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
+              part_minimum* minima, const Here& here) const {
+    if constexpr (requires { on_.walk; }) {
+      using walk_type = std::remove_const_t<decltype(on_.walk)>;
+      static_assert(traversal<walk_type, typename PartView::hierarchy_type, shared_nearest>,
+                    "this is no traversal of the parts' trees");
+      plain_search<there, PartView, walk_type>(on_.on, model_, on_.walk)(poses, clouds, result, minima, here);
+    } else {
+      plain_search<On, PartView, near_first>(on_, model_, {})(poses, clouds, result, minima, here);
+    }
+  }
+
+  On on_;
+  model_view<PartView> model_;
+};
+
+/// On the CPU, with any tree. After the first frames of a size it allocates nothing.
+template <class PartView, class Q>
+class engine<host, PartView, Q> {
+ public:
+  engine(const host& on, const model_view<PartView>& model) : search_(on, model) {}
+
+  /// The result stays valid until the next call.
+  template <class Clouds>
+  const typename Q::result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&) {
+    if constexpr (Q::per_part) {
+      result_.parts.resize(search_.parts());
+      search_(poses, clouds, &result_.all, result_.parts.data());
+    } else {
+      search_(poses, clouds, &result_);
+    }
+    return result_;
+  }
+  template <class Clouds>
+  void start(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&, const typename Q::out& to) {
+    const auto [result, minima] = minima_of<Q>(to);
+    search_(poses, clouds, result, minima);
+  }
+
+  /// For the next frame only: pairs farther than `within` metres need not be found. If no pair is nearer, the answer
+  /// has no witness and the state `no_data`, whatever points there were.
+  void bound_by(real within)
+    requires(!Q::per_part)
+  {
+    search_.bound_by(within);
+  }
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
+  void forget() { search_.forget(); }
+
+ private:
+  host_search<PartView> search_;
+  typename Q::result result_;
+};
+
+}  // namespace clearance::minimum

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/minimum/resolve.hpp>
+#include <clearance/frame/clouds.hpp>
+#include <clearance/robot/model.hpp>
+#include <clearance/scan/descend.hpp>
+#include <clearance/scan/scan_body.hpp>
+
+namespace clearance::minimum {
+
+/// Refuses a tree that is too deep for a traversal's stack, which would have to drop nodes. Throws
+/// std::invalid_argument.
+template <class Traversal>
+void check_stack(std::uint32_t depth, std::uint32_t width) {
+  if constexpr (bounded_traversal<Traversal>)
+    if (stack_need(depth, width) > Traversal::capacity)
+      throw std::invalid_argument(
+          "clearance: a tree of depth " + std::to_string(depth) + " and width " + std::to_string(width) +
+          " needs a stack of " + std::to_string(stack_need(depth, width)) + " entries, but this traversal has " +
+          std::to_string(Traversal::capacity) + "; give it a larger capacity or use the recursive one");
+}
+
+/// Lowers the bound by the distance of one real pair. `p` is a point less the frame's origin.
+template <class Body>
+CLEARANCE_HD void seed(const Body& body, vec3 p, std::uint32_t index, std::uint32_t k) {
+  const auto& tree = body.parts[k].tree;
+  const real d =
+      scan::descend(scan::plain_steps<std::remove_cvref_t<decltype(tree)>>{tree}, body.places[k].part_from_cloud(p));
+  if (d < infinity) body.answer.lower(index, k, d);
+}
+
+/// Before all others, a few points spread over the cloud each go greedily down to one leaf. Any real pair is a valid
+/// bound, and a good bound saves most of the work. Without it, thousands of threads would start from infinity at once.
+template <class Body>
+struct seed_body {
+  static constexpr std::size_t samples = 2048;
+
+  Body body;
+  std::size_t stride;
+
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const sample s = body.source[i * stride];
+    if (!s.valid()) return;
+    const vec3 p = s.position - body.origin;
+    const auto index = body.first + std::uint32_t(i * stride);
+    std::uint32_t nearest_part = 0;
+    real least = infinity;
+    for (std::uint32_t k = 0; k < body.part_count; ++k) {
+      if (body.answer.part_best != nullptr) seed(body, p, index, k);  // every part wants a bound of its own
+      const ball& around = body.places[k].around;
+      const real lb = length(p - around.center) - around.radius;
+      if (lb < least) least = lb, nearest_part = k;
+    }
+    if (body.answer.part_best == nullptr) seed(body, p, index, nearest_part);
+  }
+};
+
+/// The least distance by a loop over points with any traversal, on any backend. It keeps nothing from frame to frame.
+template <backend B, class PartView, class Traversal>
+class plain_search {
+ public:
+  plain_search(const B& on, const model_view<PartView>& model, const Traversal& walk)
+      : on_(on), model_(model), walk_(walk) {
+    check_stack<Traversal>(model.depth, model.width);
+    if constexpr (recursing_traversal<Traversal>) stack_bytes_ = Traversal::device_stack(model.depth);
+  }
+
+  /// Enqueues one frame and does not wait. `result` and `minima` (one per part, or null) lie in memory that the backend
+  /// can write, and are valid once its work is done. Clouds must live until then. `here(source, cloud)` returns a
+  /// source that the backend can read.
+  template <class Clouds, class Here>
+  void operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
+                  part_minimum* minima, const Here& here) const {
+    const auto parts = std::uint32_t(model_.size());
+    auto all = on_.template make_scratch<totals>(1);
+    auto counts = on_.template make_scratch<scan::drop_counts>(1);
+    auto part_best = on_.template make_scratch<distance_key>(minima == nullptr ? 0 : parts);
+    fill(all.data(), totals{}, 1), fill(counts.data(), scan::drop_counts{}, 1), fill(result, min_distance_result{}, 1);
+    if (minima != nullptr) fill(part_best.data(), no_key, parts), fill(minima, part_minimum{}, parts);
+    const shared_bounds bounds{all.data(), minima == nullptr ? nullptr : part_best.data()};
+    frames::cloud_frame frame;
+    const std::uint64_t seen = frames::for_each_turn(
+        frame, model_.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
+          const S source = here(anywhere, now.cloud);
+          auto places = on_.template make_scratch<frames::placement>(parts);
+          on_.stage(std::span<const frames::placement>(frame.places), places.data());
+          using loop = scan::scan_body<PartView, S, Traversal, shared_bounds>;
+          const loop body{model_.parts, places.data(), parts,  source, frame.origin,
+                          now.first,    counts.data(), bounds, walk_,  stack_bytes_};
+          using seeds = seed_body<loop>;
+          if (const std::size_t n = source.size(); n > 4 * seeds::samples)
+            on_.for_each(seeds::samples, seeds{body, n / seeds::samples});
+          on_.for_ranges(source.size(), body);
+          on_.for_each(parts + 1, resolve_body<PartView, S, Traversal>{
+                                      model_.parts, places.data(), parts, source, frame.origin, frame.world_from_cloud,
+                                      now.first, now.cloud, bounds, walk_, result, minima, stack_bytes_});
+        });
+    on_.for_each(
+        1, conclude_body<PartView>{model_.parts, parts, counts.data(), bounds, frame.error, frame.slop, seen, result});
+  }
+
+ private:
+  template <class T>
+  void fill(T* to, const T& value, std::size_t n) const {
+    on_.stage(std::span<const T>(std::vector<T>(n, value)), to);
+  }
+
+  B on_;
+  model_view<PartView> model_;
+  Traversal walk_;
+  std::size_t stack_bytes_ = 0;
+};
+
+}  // namespace clearance::minimum

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Gives every pair to an answer once, by the blocks of a device.
+
+#include <clearance/pairwise/labels.cuh>
+#include <clearance/pairwise/each_pair.hpp>
+#include <clearance/scan/kernel.cuh>
+#include <clearance/scan/launch.cuh>
+#include <clearance/scan/record.hpp>
+
+namespace clearance::pairwise {
+
+template <class PartView, answer Answer>
+struct pairs_of {
+  using part_type = PartView;
+  using hierarchy_type = typename PartView::hierarchy_type;
+  using primitive_type = typename hierarchy_type::primitive_type;
+  using record = scan::record<typename scan::node_of<hierarchy_type>::place>;
+  using scan_type = std::conditional_t<ending_answer<Answer>, scan::by_pairs, scan::by_many_pairs>;
+  using block = scan::pair_memory<pairs_of>;
+  static constexpr bool bound_per_part = true;
+  /// So few pairs walk at once without going down to a leaf first. Few pairs of an answer that ends are that near.
+  static constexpr std::uint32_t few = ending_answer<Answer> ? 8 * scan::warps : 0;
+  static constexpr bool coarse = coarse_answer<Answer>, labels = labelling_answer<Answer>, goes_ahead = true;
+  /// Leaves room for two blocks on a processor of an H200 and, up to 20 parts, for the cache that reading points ahead
+  /// needs there.
+  static constexpr std::size_t top_bytes = 6400;
+
+  struct arguments {
+    Answer answer;
+    std::uint32_t first_part;  ///< Number of the kernel's first part.
+    point_counts* counts;      ///< Or null.
+    label_counts* labelled;    ///< Room for one per block, if there are labels.
+    bool last_group;           ///< Of parts.
+  };
+  struct memory {
+    distance_key best[scan::pair_capacity];  ///< Distance and primitive of each pair that is being looked at.
+    std::uint32_t
+        least[coarse ? scan::most_parts : 1];  ///< Per part, `ordered`: the least distance that this block knows.
+    std::uint32_t own, uncertain;              ///< Labels.
+    std::uint32_t open_count;                  ///< How many pairs are not known yet,
+    std::uint16_t open[scan::pair_capacity];   ///< and which.
+
+    __device__ void clear(std::uint32_t thread) {
+      if (thread == 0) own = uncertain = open_count = 0;
+      if (coarse && thread < scan::most_parts) least[thread] = scan::no_bound;
+      for (std::uint32_t i = thread; i < scan::pair_capacity; i += scan::block_threads) best[i] = no_key;
+    }
+  };
+
+  static __device__ real reach_of_part(const block& s, std::uint32_t part, std::uint32_t) {
+    return s.head.answer.answer.reach(s.head.answer.first_part + part);
+  }
+  static __device__ real reach_of_pair(const block& s, std::uint32_t part, std::uint32_t pair) {
+    const distance_key best = scan::fresh(s.answer.best[pair]);
+    if constexpr (coarse) {
+      if (best == no_key) return reach_of_part(s, part, 0);
+      return s.head.answer.answer.reach(s.head.answer.first_part + part, key_distance(best),
+                                        from_ordered(scan::fresh(s.answer.least[part])));
+    } else {
+      return min(reach_of_part(s, part, 0), key_distance(best));
+    }
+  }
+  static __device__ std::uint32_t common_bound(const block&) { return 0; }
+
+  static __device__ bool settled(const block&, std::uint32_t, std::uint32_t) { return false; }
+  /// True if nothing more of the part matters to the pair. `x` is its point in the cloud's frame. Inside a solid the
+  /// distance is 0.
+  static __device__ bool skips(const block& s, std::uint32_t part, std::uint32_t point, std::uint32_t pair, vec3 x) {
+    if constexpr (settling_answer<Answer>)
+      if (s.head.answer.answer.settled(s.head.cloud, point - s.head.first, s.head.answer.first_part + part))
+        return true;
+    if (!coarse || scan::fresh(s.answer.best[pair]) == no_key) return false;
+    const real reach = reach_of_pair(s, part, pair);
+    return !frames::may_reach(scan::frame_parts<pairs_of>::place(part).root.around,
+                              scan::has_interior<PartView> ? max(reach, 0) : reach, x);
+  }
+  /// The caller has the pair for itself. A primitive that was reached ahead may also be at distance 0; it is not
+  /// reported then.
+  static __device__ void take_inside(block& s, std::uint32_t part, std::uint32_t, std::uint32_t pair) {
+    if (!(reach_of_part(s, part, 0) >= 0)) return;
+    s.answer.best[pair] = make_key(0, none);
+    hear(s, part, pair, make_key(0, none));
+  }
+  static __device__ bool wants_certain(const block&) { return false; }
+  static __device__ void take_certain(block&) {}
+  static __device__ void take(block& s, const record& r, const primitive_type&, std::uint32_t pair) {
+    if (r.key != no_key) hear(s, r.part, pair, make_key(key_distance(r.key), r.id));
+  }
+  /// Takes a primitive of a pair.
+  static __device__ void hear(block& s, std::uint32_t part, std::uint32_t pair, distance_key found) {
+    atomicMin(&s.answer.best[pair], found);
+    if constexpr (coarse)
+      if (const std::uint32_t distance = ordered(key_distance(found)); distance < scan::fresh(s.answer.least[part]))
+        atomicMin(&s.answer.least[part], distance);
+  }
+  static __device__ void leave_open(block& s, std::uint32_t pair) {
+    s.answer.open[atomicAdd(&s.answer.open_count, 1u)] = std::uint16_t(pair);
+  }
+  static __device__ std::uint32_t open_pairs(const block& s) { return s.answer.open_count; }
+  static __device__ std::uint32_t open_pair(const block& s, std::uint32_t i) { return s.answer.open[i]; }
+  /// Called by all threads when the block has nothing left to walk.
+  static __device__ void drained(block& s, std::uint32_t count) {
+    if (threadIdx.x == 0) s.answer.open_count = 0;
+    if constexpr (labels) {
+      take_all(s, count, [&s](const pair_distance& pair) { return !s.head.answer.answer.is_late(pair); });
+      __syncthreads();
+    }
+    take_all(s, count, [](const pair_distance&) { return true; });
+  }
+
+  static __device__ void meet(const block& s, unsigned reasons, std::uint32_t first)
+    requires labels
+  {
+    labels_of<pairs_of>::meet(s, reasons, first);
+  }
+
+  struct news {
+    explicit __device__ news(const block&) {}
+    __device__ void hear(block&) {}
+  };
+  struct seeds {
+    explicit __device__ seeds(const scan::scan_arguments<pairs_of>&) {}
+    template <class Source>
+    __device__ void look(const scan::scan_arguments<pairs_of>&, const Source&) {}
+    __device__ void seed(const scan::scan_arguments<pairs_of>&) const {}
+    static __device__ std::uint32_t found(std::uint32_t) { return 0; }
+  };
+  static __device__ void seed_cold(const scan::quad_points&) {}
+
+  template <class Source>
+  static __device__ void hand_in(const scan::scan_arguments<pairs_of>& a, const Source&) {
+    if constexpr (labels) labels_of<pairs_of>::hand_in(a);
+  }
+  template <class Source>
+  static __device__ void conclude(const scan::scan_arguments<pairs_of>& a, const Source&) {
+    scan::write_counts(a, a.answer.counts);
+    if constexpr (labels) labels_of<pairs_of>::conclude(a);
+  }
+  static __device__ void reset(const scan::scan_arguments<pairs_of>&) {}
+
+ private:
+  /// Gives the answer the pairs that `now` chooses.
+  template <class Now>
+  static __device__ void take_all(block& s, std::uint32_t count, const Now& now) {
+    for (std::uint32_t i = threadIdx.x; i < count; i += scan::block_threads) {
+      const distance_key best = s.answer.best[i];
+      if (best == no_key) continue;
+      const pair_distance pair{s.head.cloud, s.pair_table[i].point - s.head.first,
+                               s.head.answer.first_part + s.part_of_pair[i], key_index(best), key_distance(best)};
+      if (!now(pair)) continue;
+      s.answer.best[i] = no_key;
+      s.head.answer.answer.take(pair);
+    }
+  }
+};
+
+/// Every pair on a device, frame after frame, with one kernel per cloud. It allocates nothing and never waits.
+template <class PartView>
+class device_pairs {
+ public:
+  device_pairs(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
+      : facts_(model.facts.begin(), model.facts.end()),
+        launch_(on, model, memory),
+        labelled_(launch_.most_blocks(), on.id, memory) {}
+
+  /// `counts` lies in memory that the device can write. `here(source, cloud)` returns a source that the device can
+  /// read.
+  template <class Clouds, answer Answer, class Here>
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
+               point_counts* counts, const Here& here) {
+    launch_.template pass<pairs_of<PartView, Answer>>(
+        facts_, poses, clouds,
+        [&](std::uint32_t group) {
+          return typename pairs_of<PartView, Answer>::arguments{answer, group * scan::most_parts,
+                                                                group == 0 ? counts : nullptr, labelled_.data(),
+                                                                group + 1 == launch_.groups()};
+        },
+        here);
+  }
+
+ private:
+  std::vector<part_facts> facts_;
+  scan::launcher<PartView> launch_;
+  device_buffer<label_counts> labelled_;
+};
+
+}  // namespace clearance::pairwise

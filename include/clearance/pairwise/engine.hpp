@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Asks questions about pairs of a point and a part on one backend, frame after frame.
+
+#include <clearance/backend/kept_memory.hpp>
+#include <clearance/frame/margins.hpp>
+#include <clearance/frame/readable.hpp>
+#include <clearance/pairwise/pairs_on.hpp>
+
+namespace clearance::pairwise {
+
+/// What a question is told before it is asked: the frame, and where memory comes from.
+template <class On>
+struct asked {
+  static constexpr bool meets_points = pairs_on<On>::meets_points;
+
+  const On& on;
+  std::span<const part_facts> facts;
+  const frames::frame_facts& frame;         ///< Of all clouds together.
+  const std::vector<std::uint32_t>& first;  ///< The number of each cloud's first point among all clouds' points.
+  std::size_t points;                       ///< Of all clouds.
+  std::vector<real>& reaches;               ///< For the question's use: how near a point must be to each part.
+  backends::kept_memory<On>& memory;
+
+  std::size_t parts() const { return facts.size(); }
+  distance_certainty certain() const { return certainty_of(frame); }
+
+  /// Memory that the backend can write, for `n` values, until the next frame.
+  template <class T>
+  T* room(std::size_t n) const {
+    return memory.template room<T>(n).data();
+  }
+  /// Copies for the backend, as a tuple of pointers; enqueued.
+  template <class... Data>
+  auto put(const Data&... data) const {
+    return memory.put(data...);
+  }
+  /// Waits, and copies `n` values from memory that the backend writes.
+  template <class T>
+  std::vector<T> copy_out(const T* data, std::size_t n) const {
+    return on.copy_out(data, n);
+  }
+};
+
+/// A question about pairs. `out` says where a backend writes, and has `point_counts* counts`.
+///
+/// Law: `prepare(asked, out, clouds)`, or without clouds, returns an `answer`; `conclude(asked, answer, out)`, which
+/// may be missing, enqueues what comes after the scan. `room(asked)` is an `out` in memory of `asked`, and `read(asked,
+/// out)` waits and makes the result of it.
+template <class Q>
+concept pair_question = question<Q> && requires(const Q q, const asked<host>& a, const typename Q::out& to) {
+  { q.room(a) } -> std::same_as<typename Q::out>;
+  { q.read(a, to) } -> std::same_as<typename Q::result>;
+};
+
+/// What a pass over all pairs of a frame needs. It is kept from frame to frame.
+template <class On, class PartView>
+class passes {
+ public:
+  template <class... Memory>
+  passes(const On& on, const model_view<PartView>& model, Memory... from)
+      : on(on), model(model), memory(on, from...), readable(on, from...), pairs_{on, model, from...} {}
+
+  On on;
+  model_view<PartView> model;
+  backends::kept_memory<On> memory;
+  frames::readable_clouds<On> readable;
+
+  /// Looks at a frame, and frees all rooms. Throws std::invalid_argument for poses that cannot be.
+  template <class Clouds>
+  asked<On> look(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
+    memory.begin();
+    ahead_.look(model.facts, poses, clouds);
+    return last();
+  }
+  /// The frame that was looked at.
+  asked<On> last() { return {on, model.facts, ahead_.frame, ahead_.first, ahead_.points, ahead_.reaches, memory}; }
+
+  /// Enqueues a pass; clouds must be readable where it runs.
+  template <class Clouds, answer Answer>
+  void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
+               point_counts* counts) {
+    pairs_.enqueue(poses, clouds, answer, counts, frames::as_it_is{});
+  }
+  /// The same; waits.
+  template <class Clouds, answer Answer>
+  point_counts count(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer) {
+    point_counts* const counts = memory.template room<point_counts>(1).data();
+    enqueue(poses, clouds, answer, counts);
+    return on.copy_out(counts, 1)[0];
+  }
+
+ private:
+  typename pairs_on<On>::template kept<PartView> pairs_;
+  frames::frame_ahead ahead_;
+};
+
+template <pair_question Q, class On, class PartView>
+class engine {
+ public:
+  template <class... Memory>
+  engine(const On& on, const model_view<PartView>& model, Memory... from) : passes_(on, model, from...) {}
+
+  /// Enqueues a frame. On a device it waits for nothing, and allocates only for more parts, clouds or options than ever
+  /// before. A graph that captures this keeps the current poses and options.
+  template <class Clouds>
+  distance_certainty start(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q,
+                           const typename Q::out& to) {
+    const auto a = passes_.look(poses, clouds);
+    pass(a, poses, clouds, q, to);
+    return a.certain();
+  }
+  /// Enqueues a frame whose result `finish` waits for; `q` must stay until then.
+  template <class Clouds>
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q)
+    requires(!requires(const asked<On>& a, const typename Q::out& to) { q.more(a, to); })
+  {
+    const auto a = passes_.look(poses, clouds);
+    asked_ = &q, to_ = q.room(a);
+    pass(a, poses, passes_.readable(clouds), q, to_);
+  }
+  typename Q::result finish() { return asked_->read(passes_.last(), to_); }
+  /// Waits for the last frame that was enqueued, and reads what it wrote.
+  typename Q::result read(const Q& q, const typename Q::out& from) { return q.read(passes_.last(), from); }
+
+  template <class Clouds>
+  typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
+    if constexpr (requires(const asked<On>& a, const typename Q::out& to) { q.more(a, to); }) {
+      const auto& here = passes_.readable(clouds);
+      for (std::size_t least = 0;;) {  // once more, if there was not enough room
+        const auto a = passes_.look(poses, clouds);
+        const typename Q::out to = q.room(a, least);
+        pass(a, poses, here, q, to);
+        least = q.more(a, to);
+        if (least == 0) return q.read(a, to);
+      }
+    } else {
+      begin(poses, clouds, q);
+      return finish();
+    }
+  }
+
+ private:
+  template <class Clouds>
+  void pass(const asked<On>& a, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q,
+            const typename Q::out& to) {
+    const auto answer = [&] {
+      if constexpr (requires { q.prepare(a, to, clouds); })
+        return q.prepare(a, to, clouds);
+      else
+        return q.prepare(a, to);
+    }();
+    using answer_type = std::remove_const_t<decltype(answer)>;
+    static_assert(explain_answer<answer_type>());
+    passes_.enqueue(poses, clouds, answer, counts_of(to));
+    if constexpr (requires { q.conclude(a, answer, to); }) q.conclude(a, answer, to);
+  }
+  static point_counts* counts_of(const typename Q::out& to) {
+    if constexpr (requires { Q::counts_of(to); })
+      return Q::counts_of(to);
+    else
+      return to.counts;
+  }
+
+  passes<On, PartView> passes_;
+  const Q* asked_ = nullptr;
+  typename Q::out to_{};
+};
+
+}  // namespace clearance::pairwise

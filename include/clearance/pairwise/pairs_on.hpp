@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Which scan gives an answer all pairs, by where it runs.
+
+#include <clearance/backend/staged.hpp>
+#include <clearance/pairwise/each_pair.hpp>
+#include <clearance/scan/plain_pass.hpp>
+
+namespace clearance::pairwise {
+
+/// For a backend without a scan of its own: a loop over points.
+template <class On>
+struct pairs_on {
+  static_assert(
+      !requires { typename On::own_scan; },
+      "a device is asked with nvcc: include <clearance/device.cuh>");
+  static constexpr bool meets_points = false;  ///< A scan that does tells a `labelling_answer` of each.
+
+  /// For one robot, frame after frame.
+  template <class PartView>
+  struct kept {
+    On on;
+    model_view<PartView> model;
+
+    template <class Clouds, answer Answer, class Here>
+    void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
+                 point_counts* counts, const Here& here) {
+      auto least = staged(on, std::vector<std::uint32_t>(coarse_answer<Answer> ? model.size() : 0, ordered(infinity)));
+      const auto of_cloud = [&](const auto&, const frames::turn& now) {
+        return each_pair<Answer>{answer, now.cloud, now.first, least.data()};
+      };
+      scan::plain_pass(on, model, poses, clouds, of_cloud, counts, here);
+    }
+  };
+};
+
+}  // namespace clearance::pairwise

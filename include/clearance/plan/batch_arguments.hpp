@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The arguments of a batch's kernels.
+
+#include <clearance/plan/tree_search.hpp>
+#include <clearance/frame/clouds.hpp>
+#include <clearance/points/point_span.hpp>
+#include <clearance/traversal/any_depth.hpp>
+
+namespace clearance::minimum {
+
+/// What all parts of a configuration have in common, in one cloud.
+struct configuration_facts : frames::frame_facts {
+  bool rigid = true;  ///< Are all poses rigid?
+
+  configuration_facts() = default;
+  CLEARANCE_HD configuration_facts(const world_transform& cloud, vec3 origin, const position_error& off)
+      : frames::frame_facts(cloud, origin, off) {}
+};
+
+/// Where a configuration's last minimum was.
+struct last_place {
+  std::uint32_t cloud = none, point = none;
+};
+
+/// Pairs that blocks have left to other blocks. Each piece belongs to one configuration.
+template <class Pair>
+struct batch_pieces {
+  static constexpr std::uint32_t most = 16;
+  struct piece {
+    std::uint32_t configuration, count;
+    Pair pairs[most];
+  };
+  piece* pieces = nullptr;
+  std::uint32_t* used = nullptr;  ///< How many pieces were asked for.
+  std::uint32_t capacity = 0;     ///< How many there are.
+
+  CLEARANCE_HD std::uint32_t size() const { return *used < capacity ? *used : capacity; }
+};
+
+/// Many configurations and one cloud. Arrays have one entry per configuration, or one per part of each configuration.
+template <class PartView, class Question>
+struct batch_arguments {
+  using part_type = PartView;
+  using question_type = Question;
+  using memory_type = typename Question::memory_type;
+  using body_type = scan::scan_body<PartView, point_span, any_depth, typename Question::answer_type>;
+  using pair_type = node_pair<typename PartView::hierarchy_type::node_type>;
+
+  const PartView* parts;
+  std::uint32_t part_count, configurations;
+  const world_transform* poses;
+  frames::turn now;
+  world_transform world_from_cloud;
+  position_error off;
+  Question question;
+  bool foreseen;       ///< The errors of all clouds were combined before.
+  std::uint64_t seen;  ///< Points of all clouds.
+  frames::placement* places;
+  ball_bounds* bounds;
+  configuration_facts* facts;
+  memory_type* all;
+  margin_reach* near;  ///< Only for a question by margins.
+  last_place* last;
+  cloud_tree::numbered_point* seeds;
+  typename Question::result_type* results;
+  scan::drop_counts* dropped;
+  std::uint32_t* lost;                ///< Becomes 1 if a pose is not rigid.
+  batch_pieces<pair_type> left = {};  ///< The pairs that blocks leave.
+  /// What earlier blocks have left. If it is set, blocks take these pieces instead of configurations.
+  batch_pieces<pair_type> given = {};
+  std::uint32_t depth = 0;      ///< Depth of a block's stack, in pairs.
+  std::uint32_t rounds = none;  ///< After so many rounds a block leaves its unfinished pairs.
+
+  CLEARANCE_HD frames::placement* its_places(std::uint32_t c) const { return places + std::size_t(c) * part_count; }
+  /// Tests points against the parts of configuration `c`, one point at a time, from any source.
+  CLEARANCE_HD body_type body(std::uint32_t c, memory_type* best) const {
+    const std::size_t first = std::size_t(c) * part_count;
+    return {parts,
+            places + first,
+            part_count,
+            {},
+            facts[c].origin,
+            now.first,
+            nullptr,
+            Question::answer(best, near + first),
+            {}};
+  }
+};
+
+}  // namespace clearance::minimum

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The search of many configurations in a tree over a cloud's points, on a device.
+
+#include <clearance/plan/batch_arguments.hpp>
+#include <clearance/scan/threads.cuh>
+
+#include <type_traits>
+
+namespace clearance::minimum {
+
+/// Shared memory of a block: the pairs that are still to be opened, the nearest on top, and the pairs that a round has
+/// made.
+template <class Pair, class Order>
+struct batch_room {
+  static constexpr std::uint32_t lanes = 8;  ///< So many lanes open a pair together, one child per lane.
+
+  Order* orders;  ///< Of the pairs in `made`.
+  Pair *stack, *made;
+
+  /// Room kept free on the stack: within it, pairs are opened one at a time, down to the last level.
+  static constexpr std::uint32_t reserve = 128;
+  CLEARANCE_HD static constexpr std::uint32_t least_depth(std::uint32_t threads) { return 512 + threads; }
+  /// A pair that has more children than lanes is itself made again, in addition to the children.
+  CLEARANCE_HD static constexpr std::uint32_t most(std::uint32_t threads) { return threads + threads / lanes; }
+  static constexpr std::size_t bytes(std::uint32_t threads, std::uint32_t depth) {
+    return most(threads) * (sizeof(distance_key) + sizeof(Pair)) + depth * sizeof(Pair);
+  }
+  /// How deep the stack may be if a block has `all` bytes.
+  static constexpr std::uint32_t depth(std::uint32_t threads, std::size_t all) {
+    const std::size_t others = bytes(threads, 0), least = least_depth(threads);
+    return std::uint32_t(all < others + least * sizeof(Pair) ? least : (all - others) / sizeof(Pair));
+  }
+  __device__ batch_room(distance_key* memory, std::uint32_t threads, std::uint32_t depth)
+      : orders(reinterpret_cast<Order*>(memory)),
+        stack(reinterpret_cast<Pair*>(memory + most(threads))),
+        made(stack + depth) {}
+};
+
+/// One configuration's search by a block. In every round it opens the nearest pairs of its stack, eight lanes per pair,
+/// and puts the new pairs back in order. The order matters, because an early find prunes the others.
+template <class Search>
+struct block_search {
+  using pair = typename Search::pair;
+  using room_type = batch_room<pair, typename Search::order_type>;
+  using pieces_type = batch_pieces<pair>;
+  static constexpr std::uint32_t lanes = room_type::lanes;
+
+  /// Words that all of its threads share.
+  struct words {
+    std::uint32_t made[2];  ///< Number of pairs made in this round and in the next.
+    std::uint32_t first;    ///< The first piece that the stack is left in.
+  };
+
+  const Search& search;
+  const room_type room;
+  words& shared;
+  const std::uint32_t depth;  ///< Of the stack.
+  std::uint32_t count = 0, round = 0, next = 0;
+  const std::uint32_t t = threadIdx.x, threads = blockDim.x;
+
+  /// Starts from the beginning, or with pairs that another block has left.
+  __device__ void start() {
+    if (t == 0) shared.made[0] = shared.made[1] = 0;
+    __syncthreads();
+  }
+  __device__ void start(const typename pieces_type::piece& left) {
+    count = left.count, next = search.starts();
+    if (t < count) room.stack[t] = left.pairs[t];
+    start();
+  }
+
+  /// Returns true when nothing is left, and false after `rounds` rounds.
+  __device__ bool go_on(std::uint32_t rounds) {
+    for (const std::uint32_t starts = search.starts(); next < starts || count > 0;) {
+      if (count == 0) {
+        pair p;
+        if (next + t < starts && search.start(next + t, p)) make(p);
+        next += threads;
+        put_back(0);
+        continue;
+      }
+      if (round >= rounds && next >= starts) return false;
+      const std::uint32_t left = depth - count,
+                          many = left > room_type::reserve ? (left - room_type::reserve) / (lanes + 1) : 0;
+      const std::uint32_t take = scan::lower_of(scan::lower_of(threads / lanes, count), many > 0 ? many : left > lanes);
+      if (take == 0) {
+        const pair top = room.stack[count - 1];
+        visit_all(top);
+        put_back(1);
+        continue;
+      }
+      if (t / lanes < take) open(room.stack[count - 1 - t / lanes]);
+      put_back(take);
+    }
+    return true;
+  }
+
+  /// Leaves the stack to other blocks, dealt out so that each piece gets some of the nearest pairs. Returns false if
+  /// there is no room.
+  __device__ bool leave_to(const pieces_type& others, std::uint32_t configuration) {
+    const std::uint32_t pieces = (count - 1) / pieces_type::most + 1;
+    if (t == 0) shared.first = atomicAdd(others.used, pieces);
+    __syncthreads();
+    const std::uint32_t first = shared.first;
+    const bool fits = first < others.capacity && others.capacity - first >= pieces;
+    for (std::uint32_t i = t; i < pieces && first + i < others.capacity; i += threads)
+      others.pieces[first + i].configuration = configuration,
+                            others.pieces[first + i].count = fits ? (count - 1 - i) / pieces + 1 : 0;
+    if (fits)
+      for (std::uint32_t i = t; i < count; i += threads)
+        others.pieces[first + i % pieces].pairs[i / pieces] = room.stack[i];
+    return fits;
+  }
+
+ private:
+  __device__ void make(const pair& p) {
+    const std::uint32_t at = atomicAdd(&shared.made[round % 2], 1u);
+    room.made[at] = p, room.orders[at] = search.order(p);
+  }
+
+  /// One child per lane.
+  __device__ void open(const pair top) {
+    if (search.settled(top)) return;
+    const std::uint32_t lane = t % lanes, size = search.children(top);
+    pair p;
+    if (top.from + lane < size && search.child(top, top.from + lane, p)) make(p);
+    if (lane == 0 && top.from + lanes < size) p = top, p.from += lanes, make(p);
+  }
+  /// For a pair whose children have no room on the stack: visits all its points at once.
+  __device__ void visit_all(const pair& p) const {
+    using tree_type = std::remove_cvref_t<decltype(search.tree)>;
+    std::uint64_t begin = p.at, end = p.at + 1;
+    for (std::uint32_t l = 0; l < p.level; ++l)
+      begin *= l == 0 ? tree_type::tile : tree_type::fan, end *= l == 0 ? tree_type::tile : tree_type::fan;
+    const cloud_tree::numbered_point* const points = search.tree.points;
+    for (begin += t, end = end < search.tree.count ? end : search.tree.count; begin < end; begin += threads)
+      search.visit(points[begin], p.part);
+  }
+
+  /// Replaces the stack's last `taken` pairs by the pairs that were made of them, the nearest on top.
+  __device__ void put_back(std::uint32_t taken) {
+    __syncthreads();
+    const std::uint32_t n = shared.made[round % 2];
+    if (t == 0) shared.made[(round + 1) % 2] = 0;
+    count -= taken;
+    for (std::uint32_t i = t; i < n; i += threads) {
+      const auto mine = room.orders[i];
+      std::uint32_t below = 0;
+      for (std::uint32_t j = 0; j < n; ++j) below += room.orders[j] > mine || (room.orders[j] == mine && j > i);
+      room.stack[count + below] = room.made[i];
+    }
+    count += n, ++round;
+    __syncthreads();
+  }
+};
+
+/// One block per configuration, whose parts share its bound. A block leaves very long work to the next launch, after
+/// all configurations had their turn: the slowest of many takes twenty times as long as most.
+template <class Arguments, class Tree>
+__global__ void __launch_bounds__(256, 4)
+    batch_kernel(const __grid_constant__ Arguments a, const __grid_constant__ Tree tree) {
+  using question = typename Arguments::question_type;
+  using memory_type = typename Arguments::memory_type;
+  using search_type = tree_search<typename Arguments::body_type, Tree>;
+  using block_type = block_search<search_type>;
+  extern __shared__ distance_key memory[];
+  __shared__ alignas(memory_type) std::byte memory_of_best[sizeof(memory_type)];
+  __shared__ typename block_type::words words;
+  memory_type& best = *reinterpret_cast<memory_type*>(memory_of_best);
+  const std::uint32_t t = threadIdx.x;
+  for (std::uint32_t i = blockIdx.x, count = a.given.pieces != nullptr ? a.given.size() : a.configurations; i < count;
+       i += gridDim.x) {
+    const std::uint32_t c = a.given.pieces != nullptr ? a.given.pieces[i].configuration : i;
+    if (!a.facts[c].rigid) continue;
+    if (t == 0) best = a.all[c];
+    __syncthreads();
+    const typename Arguments::body_type body = a.body(c, &best);
+    const search_type search{body, tree, a.bounds + std::size_t(c) * a.part_count};
+    block_type block{search, typename block_type::room_type(memory, blockDim.x, a.depth), words, a.depth};
+    if (a.given.pieces != nullptr) {
+      block.start(a.given.pieces[i]);
+    } else {
+      if constexpr (!question::by_margin)
+        for (std::uint32_t j = t; j < 3 * a.part_count; j += blockDim.x)  // its own last minimum and its neighbours'
+          if (const std::uint32_t from = c + j / a.part_count - 1; from < a.configurations)
+            if (const auto seed = a.seeds[from]; seed.number != none) search.visit(seed, j % a.part_count);
+      block.start();
+    }
+    if (!block.go_on(a.rounds) && !block.leave_to(a.left, c)) block.go_on(none);
+    __syncthreads();
+    if (t != 0) continue;
+    if (a.given.pieces != nullptr)
+      question::add(a.all + c, best);
+    else
+      a.all[c] = best;
+  }
+}
+
+}  // namespace clearance::minimum

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/plan/batch_arguments.hpp>
+#include <clearance/scan/threads.cuh>
+
+namespace clearance::minimum {
+
+/// Does what a host does with poses before a search, and finds where each search begins. One warp per configuration.
+template <class PartView, class Question, class Source>
+__global__ void __launch_bounds__(128)
+    place_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
+                         const __grid_constant__ Source source) {
+  const std::uint32_t c = (blockIdx.x * 128 + threadIdx.x) / 32, lane = threadIdx.x % 32;
+  if (c >= a.configurations) return;
+  if (c == 0 && lane == 0) a.left.used[0] = a.left.used[1] = 0;
+  frames::placement* const places = a.its_places(c);
+  bool rigid = true;
+  for (std::uint32_t k = lane; k < a.part_count; k += 32) {
+    const std::size_t which = std::size_t(c) * a.part_count + k;
+    world_transform pose = a.poses[which];
+    if (!make_rigid(pose)) {
+      rigid = false, pose = {};
+      *static_cast<volatile std::uint32_t*>(a.lost) = 1;
+    }
+    places[k].world_from_part = pose;
+  }
+  rigid = __all_sync(scan::all_lanes, rigid);
+  __syncwarp();
+  configuration_facts facts(a.world_from_cloud, {0, 0, 0}, a.off);
+  if (lane == 0) {
+    const auto pose = [places](std::uint32_t k) -> const world_transform& { return places[k].world_from_part; };
+    facts.origin = frames::origin_near(frames::middle_of(a.world_from_cloud, pose, a.part_count));
+  }
+  facts.origin = scan::from_lane(facts.origin, 0);
+  for (std::uint32_t k = lane; k < a.part_count; k += 32) {
+    const frames::placement here =
+        frames::place(a.parts[k].facts, places[k].world_from_part, a.world_from_cloud, facts.origin, a.off);
+    places[k] = here;
+    a.bounds[std::size_t(c) * a.part_count + k] = ball_bounds(a.parts[k].facts, here.part_from_cloud);
+  }
+  __syncwarp();
+  for (std::uint32_t k = 0; k < a.part_count; ++k) facts.add(a.parts[k].facts, places[k].error);
+  facts.rigid = rigid;
+  if (a.now.cloud != 0 || a.foreseen) facts.error.widen(a.facts[c].error);  // a bracket covers all clouds
+  if constexpr (Question::by_margin)
+    for (std::uint32_t k = lane; k < a.part_count; k += 32)
+      a.near[std::size_t(c) * a.part_count + k] = a.question.near(k, a.parts[k].facts, facts.error);
+  __syncwarp();
+  if (lane != 0) return;
+  if (a.now.cloud == 0) a.all[c] = a.question.start(rigid);
+  a.facts[c] = facts;
+  if constexpr (!Question::by_margin) {
+    if (a.now.cloud == 0) a.results[c] = {};
+    cloud_tree::numbered_point seed{{0, 0, 0}, none};
+    if (const last_place last = a.last[c]; last.cloud == a.now.cloud && last.point < source.size())
+      if (const sample s = source[last.point]; s.valid()) seed = {s.position, last.point};
+    a.seeds[c] = seed;
+  }
+}
+
+}  // namespace clearance::minimum

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/plan/batch_finish.cuh>
+#include <clearance/plan/batch_kernel.cuh>
+#include <clearance/plan/batch_place.cuh>
+#include <clearance/minimum/plain_search.hpp>
+#include <clearance/backend/raised_limits.cuh>
+#include <clearance/backend/side_stream.cuh>
+#include <clearance/cloud_tree/device_tree.cuh>
+#include <clearance/frame/clouds.hpp>
+#include <clearance/robot/model.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <memory>
+#include <utility>
+
+namespace clearance::minimum {
+
+/// A question about many configurations on a device, frame after frame: a tree over each cloud, and one block per
+/// configuration that searches it. It never waits. It allocates only for frames larger than any before.
+template <class PartView, class Question>
+class device_batch {
+ public:
+  using result_type = typename Question::result_type;
+
+  /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
+  device_batch(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
+      : on_(on),
+        model_(model),
+        facts_(model.facts.begin(), model.facts.end()),
+        memory_(memory),
+        beside_(on),
+        counts_(1, on.id, memory),
+        left_used_(2, on.id, memory) {
+    check_stack<near_first>(model.depth, model.width);
+    model_.facts = facts_;
+    anywhere_.assign(facts_.size(), Eigen::Isometry3d::Identity());
+    const auto ask_device = [&on](cudaDeviceAttr what) {
+      int value = 0;
+      check_cuda(cudaDeviceGetAttribute(&value, what, on.id), "cudaDeviceGetAttribute");
+      return value;
+    };
+    processors_ = ask_device(cudaDevAttrMultiProcessorCount);
+    of_processor_ = std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerMultiprocessor));
+    of_block_ =
+        std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerBlockOptin)) - 1024;  // less the kernel's static memory
+  }
+  device_batch(const device_batch&) = delete;
+
+  std::size_t parts() const { return facts_.size(); }
+  std::uint32_t size() const { return configurations_; }
+  const result_type* results() const { return results_.data(); }
+
+  /// Copies results and point counts, and returns whether all poses were rigid. Waits. Without results it returns true.
+  bool copy_out(std::span<result_type> to, point_counts* points = nullptr) const {
+    if (to.empty()) return true;
+    const device_guard guard(on_.id);
+    counts found;
+    const auto copy = [&](void* there, const void* from, std::size_t bytes) {
+      check_cuda(cudaMemcpyAsync(there, from, bytes, cudaMemcpyDeviceToHost, on_.stream), "cudaMemcpyAsync");
+    };
+    copy(to.data(), results_.data(), to.size_bytes());
+    copy(&found, counts_.data(), sizeof found);
+    on_.wait();
+    if (points != nullptr) scan::count(*points, found.dropped.dropped, seen_);
+    return found.lost == 0;
+  }
+
+  /// Enqueues a copy of the poses, one configuration after another, for all frames to come.
+  void place(std::span<const Eigen::Isometry3d> poses) {
+    staged_.clear();
+    for (const Eigen::Isometry3d& pose : poses) staged_.emplace_back(pose);
+    place(std::uint32_t(poses.empty() ? 0 : poses.size() / facts_.size()), [&](world_transform* there) {
+      const device_guard guard(on_.id);
+      check_cuda(cudaMemcpyAsync(there, staged_.data(), staged_.size() * sizeof staged_[0], cudaMemcpyHostToDevice,
+                                 on_.stream),
+                 "cudaMemcpyAsync");
+    });
+  }
+  /// The same for poses that `fill(there)` enqueues.
+  template <class Fill>
+  void place(std::uint32_t count, const Fill& fill) {
+    const std::size_t n = count * facts_.size();
+    const std::uint32_t before =
+        std::exchange(configurations_, 0);  // so that poses that were not placed are never asked about
+    grow(poses_, n), grow(places_, n), grow(bounds_, n);
+    grow(of_all_, count), grow(all_, count), grow(results_, count);
+    if constexpr (!Question::by_margin) grow(left_, pieces_of(count, 8)), grow(left_again_, pieces_of(count, 2));
+    if constexpr (Question::by_margin)
+      grow(near_, n);
+    else
+      grow(seeds_, count), grow(last_, count);
+    if (n == 0) return;
+    fill(poses_.data());
+    configurations_ = count;
+    if (count != before) forget();
+  }
+
+  /// Enqueues a frame. `here(source, cloud)` returns a source that the device can read.
+  template <class Clouds, class Here>
+  void enqueue(const Clouds& clouds, const Question& question, const Here& here) {
+    if (configurations_ == 0) return;
+    clear(counts_.data(), 0, 1);
+    const bool foreseen = Question::by_margin && count_clouds(clouds) > 1;  // margins need the errors of all clouds
+    if (foreseen)
+      frames::for_each_turn(frame_, facts_, anywhere_, clouds, [&](const auto& given, const frames::turn& now) {
+        place_in(on_, point_span{}, told(given, now, question, false));
+      });
+    seen_ = frames::for_each_turn(frame_, facts_, anywhere_, clouds, [&](const auto& given, const frames::turn& now) {
+      const auto source = here(given, now.cloud);
+      while (trees_.size() <= now.cloud) trees_.push_back(std::make_unique<cloud_tree::device_tree>(on_, memory_));
+      beside_.fork();
+      trees_[now.cloud]->build(source, &counts_.data()->dropped);
+      const arguments a = told(source, now, question, foreseen);
+      ask(source, trees_[now.cloud]->view(), a);
+      finish(source, a);
+    });
+  }
+
+  void forget() {
+    if constexpr (!Question::by_margin)
+      if (configurations_ != 0) clear(last_.data(), 0xff, configurations_);  // the number of no cloud
+  }
+
+ private:
+  using arguments = batch_arguments<PartView, Question>;
+  using tree_type = cloud_tree::device_tree::view_type;
+  using room = batch_room<typename arguments::pair_type, pair_order<PartView>>;
+  using piece = typename batch_pieces<typename arguments::pair_type>::piece;
+  /// After so many rounds of 128 threads a block leaves its stack to others. Where points may be inside a solid, stacks
+  /// are longer, and leaving earlier would make too many pieces.
+  static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128,
+                            next_rounds = first_rounds > 128 ? 48 : 24;
+  static constexpr unsigned resident_threads = 1024;  ///< Per processor, as the kernel's registers allow.
+  struct counts {
+    scan::drop_counts dropped;
+    std::uint32_t lost = 0;
+  };
+
+  /// Room for the pieces that blocks leave. Where it is not enough, blocks go on by themselves.
+  static std::size_t pieces_of(std::size_t configurations, std::size_t each) {
+    return std::min(each * configurations, std::size_t(1) << 18) + 1024;
+  }
+
+  template <point_source S>
+  arguments told(const S& source, const frames::turn& now, const Question& question, bool foreseen) const {
+    return {model_.parts,
+            std::uint32_t(facts_.size()),
+            configurations_,
+            poses_.data(),
+            now,
+            frame_.world_from_cloud,
+            rounding_of(source),
+            question,
+            foreseen,
+            now.first + source.size(),
+            places_.data(),
+            bounds_.data(),
+            of_all_.data(),
+            all_.data(),
+            near_.data(),
+            last_.data(),
+            seeds_.data(),
+            results_.data(),
+            &counts_.data()->dropped,
+            &counts_.data()->lost,
+            {left_.data(), left_used_.data(), std::uint32_t(left_.size())}};
+  }
+  template <point_source S>
+  void place_in(const device& on, const S& source, const arguments& a) const {
+    on.launch(place_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
+  }
+  template <point_source S>
+  void ask(const S& source, const tree_type& tree, const arguments& a) {
+    beside_.join([&](const device& beside) {  // the tree does not need it
+      if constexpr (Question::by_margin)
+        place_in(beside, point_span{}, a);
+      else
+        place_in(beside, source, a);
+    });
+    // As many threads as the device has room for: with few configurations each gets more threads, and so do all where
+    // most end at once or a look takes long. Stacks are as deep as the remaining room: a round that may take fewer
+    // pairs needs more rounds.
+    const bool uneven = a.question.limited() || scan::has_interior<PartView>;
+    unsigned threads =
+        uneven ? 256 : std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 256u);
+    static_assert(room::bytes(32, room::least_depth(32)) <= 48 * 1024, "a handle of a node must be smaller");
+    while (room::bytes(threads, room::least_depth(threads)) > 48 * 1024)
+      threads /= 2;  // the shared memory that a block always has
+    arguments with_stack = a;
+    with_stack.depth = room::depth(threads, std::min(of_block_, of_processor_ / (resident_threads / threads) - 2048));
+    {
+      const device_guard guard(on_.id);
+      limits_.raise(reinterpret_cast<const void*>(&batch_kernel<arguments, tree_type>), of_block_);
+    }
+    const unsigned at_once = processors_ * (resident_threads / threads);
+    const auto search = [&](unsigned blocks, unsigned rounds) {
+      with_stack.rounds = rounds == none ? none : rounds * 128 / threads;
+      on_.launch(batch_kernel<arguments, tree_type>, blocks, threads, room::bytes(threads, with_stack.depth),
+                 with_stack, tree);
+    };
+    if (a.question.limited() || configurations_ <= at_once) return search(configurations_, none);
+    // The slowest of many configurations takes twenty times as long as most, and most of that may come from one pair.
+    // So the rest is dealt out twice.
+    search(configurations_, first_rounds);
+    with_stack.given = with_stack.left;
+    with_stack.left = {left_again_.data(), left_used_.data() + 1, std::uint32_t(left_again_.size())};
+    search(at_once, next_rounds);
+    with_stack.given = with_stack.left, with_stack.left.capacity = 0;
+    search(at_once, none);
+  }
+  template <point_source S>
+  void finish(const S& source, const arguments& a) const {
+    if constexpr (!Question::by_margin)
+      on_.launch(finish_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
+    else if (a.now.last)
+      on_.launch(tell_configurations<PartView, Question>, (configurations_ + 127) / 128, 128, 0, a);
+  }
+
+  template <class T>
+  void grow(device_buffer<T>& buffer, std::size_t n) const {
+    if (buffer.size() < n) buffer = device_buffer<T>(n, on_.id, memory_);
+  }
+  template <class T>
+  void clear(T* what, int byte, std::size_t n) const {
+    const device_guard guard(on_.id);
+    check_cuda(cudaMemsetAsync(what, byte, n * sizeof(T), on_.stream), "cudaMemsetAsync");
+  }
+
+  device on_;
+  model_view<PartView> model_;
+  std::vector<part_facts> facts_;
+  std::pmr::memory_resource* memory_;
+  int processors_ = 0;
+  std::size_t of_processor_ = 0, of_block_ = 0;  ///< Bytes of shared memory.
+  side_stream beside_;
+  raised_limits limits_;
+  std::uint32_t configurations_ = 0;
+  std::uint64_t seen_ = 0;
+  std::vector<world_transform> staged_;
+  std::vector<Eigen::Isometry3d> anywhere_;  ///< Poses to place clouds on the host. The part places are not used.
+  frames::cloud_frame frame_;
+  std::vector<std::unique_ptr<cloud_tree::device_tree>> trees_;
+  device_buffer<world_transform> poses_;
+  device_buffer<frames::placement> places_;
+  device_buffer<ball_bounds> bounds_;
+  device_buffer<configuration_facts> of_all_;
+  device_buffer<typename Question::memory_type> all_;
+  device_buffer<margin_reach> near_;
+  device_buffer<last_place> last_;
+  device_buffer<cloud_tree::numbered_point> seeds_;
+  device_buffer<result_type> results_;
+  device_buffer<counts> counts_;
+  device_buffer<piece> left_, left_again_;
+  device_buffer<std::uint32_t> left_used_;
+};
+
+}  // namespace clearance::minimum

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Asks about many configurations on one backend, frame after frame.
+
+#include <clearance/frame/readable.hpp>
+#include <clearance/plan/configurations.hpp>
+#include <clearance/plan/host_batch.hpp>
+
+namespace clearance::plan {
+
+/// For a backend without a search of its own: each configuration by itself.
+template <class On, class PartView, class Q>
+class engine {
+  static_assert(
+      !requires { typename On::own_scan; },
+      "a device is asked with nvcc: include <clearance/device.cuh>");
+
+ public:
+  engine(const On& on, const model_view<PartView>& model) : on_(on), model_(model) {}
+
+  template <class Clouds>
+  typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
+    typename Q::result all;
+    all.of.resize(detail::count_configurations(model_.size(), poses.size()));
+    detail::named(model_.size(), poses, [&] {
+      for (std::size_t c = 0; c < all.of.size(); ++c)
+        q.ask_one(on_, model_, poses.subspan(c * model_.size(), model_.size()), clouds, all, c);
+    });
+    return all;
+  }
+  void forget() const {}
+
+ private:
+  On on_;
+  model_view<PartView> model_;
+};
+
+/// On the CPU. The result stays valid until the next call.
+template <class PartView, class Q>
+class engine<host, PartView, Q> {
+ public:
+  engine(const host& on, const model_view<PartView>& model) : search_(on, model) {}
+
+  template <class Clouds>
+  const typename Q::result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
+    const auto question = q.checked(search_.parts());
+    result_.of.resize(detail::count_configurations(search_.parts(), poses.size()));
+    detail::named(search_.parts(), poses,
+                  [&] { Q::take_counts(result_, search_(poses, clouds, question, result_.of)); });
+    return result_;
+  }
+  /// Throws std::invalid_argument as joint_chain::count, too.
+  template <class Clouds>
+  const typename Q::result& run_chain(const joint_chain<host>& chain, std::span<const double> joints,
+                                      const Clouds& clouds, const Q& q) {
+    detail::check_chain(search_.parts(), chain.parts());
+    return run(chain.poses(joints), clouds, q);
+  }
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
+  void forget() { search_.forget(); }
+
+ private:
+  minimum::host_batch<PartView, typename Q::searched> search_;
+  typename Q::result result_;
+};
+
+}  // namespace clearance::plan

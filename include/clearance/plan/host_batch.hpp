@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <clearance/minimum/beyond.hpp>
+#include <clearance/minimum/resolve.hpp>
+#include <clearance/plan/walk_tree.hpp>
+#include <clearance/cloud_tree/host_tree.hpp>
+#include <clearance/frame/clouds.hpp>
+#include <clearance/robot/model.hpp>
+#include <clearance/traversal/any_depth.hpp>
+
+namespace clearance::minimum {
+
+/// A question about many configurations on the CPU, frame after frame: a tree over each cloud, and each configuration
+/// searches all of them. It keeps memory and each configuration's last minimum. The next search begins there, and where
+/// the previous configuration's ended. That changes only how long it takes.
+template <class PartView, class Question>
+class host_batch {
+ public:
+  host_batch(const host& on, const model_view<PartView>& model)
+      : workers_(on), model_(model), walk_{stack_need(model.depth, model.width)} {}
+
+  using result_type = typename Question::result_type;
+
+  /// `poses` are rigid, one configuration after another; there is one result per configuration. Returns the point
+  /// counts.
+  template <class Clouds>
+  point_counts operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Question& question,
+                          std::span<result_type> results) {
+    if (results.empty()) return {};
+    const std::size_t parts = model_.size(), count = results.size();
+    dropped_ = {};
+    frames::cloud_frame first;
+    seen_ = frames::for_each_turn(first, model_.facts, poses.first(parts), clouds,
+                                  [&](const auto& source, const frames::turn& now) {
+                                    if (trees_.size() <= now.cloud) trees_.resize(now.cloud + 1);
+                                    trees_[now.cloud].build(workers_, source, dropped_);
+                                  });
+    if (last_.size() != count) last_.assign(count, {});
+    rooms_.resize((count + neighbours - 1) / neighbours);
+    workers_.for_pieces(count, neighbours, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; ++c) {
+        const place starts[] = {last_[c], c > begin ? last_[c - 1] : place{}};
+        ask(poses.subspan(c * parts, parts), clouds, question, starts, rooms_[begin / neighbours], results[c]);
+        if constexpr (!Question::by_margin) last_[c] = {results[c].cloud, results[c].point};
+      }
+    });
+    point_counts counts;
+    scan::count(counts, dropped_.dropped, seen_);
+    return counts;
+  }
+
+  void forget() { last_.clear(); }
+  std::size_t parts() const { return model_.size(); }
+
+ private:
+  static constexpr std::size_t neighbours = 8;  ///< Configurations that follow one another on one thread.
+
+  struct place {
+    std::uint32_t cloud = none, point = none;
+  };
+  struct room {
+    frames::cloud_frame frame;
+    std::vector<ball_bounds> bounds;
+    std::vector<margin_reach> near;
+    std::vector<pending_pair<node_pair<typename PartView::hierarchy_type::node_type>, pair_order<PartView>>> pending;
+  };
+
+  template <class Clouds>
+  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Question& question,
+           std::span<const place> starts, room& own, result_type& result) const {
+    const auto parts = std::uint32_t(model_.size());
+    typename Question::memory_type all = question.start();
+    result = {};
+    frames::float_error before;  // margins need the errors of all clouds
+    if (Question::by_margin && trees_.size() > 1) {
+      frames::for_each_turn(own.frame, model_.facts, poses, clouds, [](const auto&, const frames::turn&) {});
+      before = own.frame.error;
+    }
+    frames::for_each_turn(
+        own.frame, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+          const auto& places = own.frame.places;
+          if constexpr (Question::by_margin) {
+            before.widen(own.frame.error);
+            own.near.clear();
+            for (std::uint32_t k = 0; k < parts; ++k) own.near.push_back(question.near(k, model_.facts[k], before));
+          }
+          const auto answer = question.answer(&all, own.near.data());
+          const scan::scan_body<PartView, S, any_depth, typename Question::answer_type> body{
+              model_.parts, places.data(), parts, source, own.frame.origin, now.first, nullptr, answer, walk_};
+          for (const place& p : starts)
+            if (p.cloud == now.cloud && p.point < source.size())
+              if (const sample s = source[p.point]; s.valid()) body.visit(s.position - own.frame.origin, p.point);
+          own.bounds.clear();
+          for (std::uint32_t k = 0; k < parts; ++k) own.bounds.emplace_back(model_.facts[k], places[k].part_from_cloud);
+          const auto& tree = trees_[now.cloud].view();
+          const tree_search<std::remove_const_t<decltype(body)>, cloud_tree::host_tree::view_type> search{
+              body, tree, own.bounds.data()};
+          with_vectors([&] { walk_trees(search, own.pending); });
+          if constexpr (!Question::by_margin)
+            resolve_body<PartView, S, any_depth>{
+                model_.parts, places.data(), parts,  source, own.frame.origin, own.frame.world_from_cloud,
+                now.first,    now.cloud,     answer, walk_,  &result,          nullptr}(parts);
+        });
+    if constexpr (Question::by_margin) {
+      point_counts counts;
+      scan::count(counts, dropped_.dropped, seen_);
+      result = question.told(all, counts.valid, counts.dropped[int(drop_reason::too_close)] != 0);
+    } else {
+      conclude_body<PartView>{model_.parts,    parts,          &dropped_, {&all, nullptr},
+                              own.frame.error, own.frame.slop, seen_,     &result}(0);
+      if (parts != 0) beyond(result, question.d_max, own.frame.slop, own.frame.error);
+    }
+  }
+
+  host_workers workers_;
+  model_view<PartView> model_;
+  any_depth walk_;
+  scan::drop_counts dropped_;
+  std::uint64_t seen_ = 0;
+  std::vector<cloud_tree::host_tree> trees_;
+  std::vector<place> last_;
+  std::vector<room> rooms_;
+};
+
+}  // namespace clearance::minimum

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Each point's own distance on a device. It may remember the nearest primitives from frame to frame.
+
+#include <clearance/pointwise/each_point.hpp>
+#include <clearance/scan/launch.cuh>
+#include <clearance/scan/packet_kernel.cuh>
+
+#include <utility>
+
+namespace clearance::pointwise {
+
+/// The nearest primitive of a point: the part's number, or ~0u, and the primitive's place in its tree.
+template <class PartView>
+struct remembered {
+  std::uint32_t part;
+  typename scan::node_of<typename PartView::hierarchy_type>::place place;
+};
+
+template <class PartView>
+struct points_of {
+  using part_type = PartView;
+  using hierarchy_type = typename PartView::hierarchy_type;
+  using place_type = typename scan::node_of<hierarchy_type>::place;
+  using scan_type = scan::by_packets;
+  using block = scan::packet_memory<points_of>;
+  static constexpr bool bound_per_part = true, goes_ahead = false;
+  static constexpr std::size_t top_bytes = 0;  ///< 32 points share each read of a node, so no copy is needed.
+
+  struct arguments {
+    distances_out out;
+    real d_max;
+    std::uint32_t first_part;    ///< The kernel's first part. If it is not 0, other kernels have written before.
+    point_counts* counts;        ///< Or null.
+    remembered<PartView>* last;  ///< Per point, the nearest in the last frame, then in this one; or null.
+  };
+  struct memory {
+    __device__ void clear(std::uint32_t) {}
+  };
+
+  /// The visitor of one lane's point.
+  struct visitor_type {
+    real limit;
+    std::uint32_t before;
+    found best;
+    place_type at;  ///< Place of `best`, if it is a primitive of one of this kernel's parts.
+
+    __device__ real reach(std::uint32_t) const { return min(limit, best.distance); }
+    __device__ void offer(std::uint32_t k, const place_type& place, std::uint32_t id, real distance) {
+      if (best.offer({distance, before + k, id})) at = place;
+    }
+    __device__ void offer_inside(std::uint32_t k) {
+      if (reach(k) >= 0) best.offer({0, before + k, none});
+    }
+    __device__ bool hear(const visitor_type& other) {
+      const real its = scan::fresh(other.best.distance);
+      limit = min(limit, its);
+      return best.distance < its;
+    }
+    __device__ void join(const visitor_type& other) {
+      if (best.offer(other.best)) at = other.at;
+    }
+  };
+
+  static __device__ real reach_of_part(const block& s, std::uint32_t, std::uint32_t) { return s.head.answer.d_max; }
+
+  /// True if no point is too far away to matter.
+  static bool all_near(const arguments& a) { return a.d_max == infinity; }
+
+  static __device__ visitor_type visitor(const block& s, std::uint32_t index, bool counts) {
+    const arguments& a = s.head.answer;
+    return {a.d_max, a.first_part, a.first_part != 0 && counts ? read(a.out, index) : found{}, {}};
+  }
+  /// Evaluates the last nearest primitive anew. It gives only a bound, because the walk finds that primitive and
+  /// equally near ones again.
+  static __device__ void remind(const block& s, std::uint32_t index, vec3 x, visitor_type& v) {
+    const arguments& a = s.head.answer;
+    if (a.last == nullptr) return;
+    const remembered<PartView> last = a.last[index];
+    const std::uint32_t k = last.part - a.first_part;
+    if (k >= s.head.parts) return;
+    using parts = scan::tree_steps<points_of>;
+    const real d = parts::primitive(k, last.place).distance(parts::place(k).part_from_cloud(x));
+    if (d <= a.d_max) v.best.offer({d, none, none});
+  }
+  static __device__ void take(const block& s, std::uint32_t index, bool counts, const visitor_type& v) {
+    const arguments& a = s.head.answer;
+    write(a.out, index, {s.rigid && counts ? v.best.distance : not_a_number, v.best.part, v.best.primitive});
+    if (a.last == nullptr) return;
+    const bool of_these = v.best.part != none && v.best.part >= a.first_part;
+    if (of_these && v.best.primitive != none)
+      a.last[index] = {v.best.part, v.at};
+    else if (of_these || a.first_part == 0)
+      a.last[index].part = none;
+  }
+
+  template <class Source>
+  static __device__ void hand_in(const scan::scan_arguments<points_of>&, const Source&) {}
+  template <class Source>
+  static __device__ void conclude(const scan::scan_arguments<points_of>& a, const Source&) {
+    scan::write_counts(a, a.answer.counts);
+  }
+  static __device__ void reset(const scan::scan_arguments<points_of>&) {}
+};
+
+/// Each point's distance on a device, frame after frame, with one kernel per cloud. It allocates nothing and never
+/// waits. If it remembers the last frame, a frame with more points than any before allocates memory for that.
+template <class PartView>
+class device_points {
+ public:
+  device_points(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr,
+                bool remembers = false)
+      : on_(on),
+        memory_(memory),
+        remembers_(remembers),
+        facts_(model.facts.begin(), model.facts.end()),
+        launch_(on, model, memory) {}
+
+  /// Enqueues a frame and returns how certain its distances are. `here(source, cloud)` is a source that the device can
+  /// read.
+  template <class Clouds, class Here>
+  distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
+                             real d_max, point_counts* counts, const Here& here) {
+    if (remembers_) make_room(clouds);
+    return certainty_of(launch_.template pass<points_of<PartView>>(
+        facts_, poses, clouds,
+        [&](std::uint32_t group) {
+          return typename points_of<PartView>::arguments{out, d_max, group * scan::most_parts,
+                                                         group == 0 ? counts : nullptr, last_.data()};
+        },
+        here));
+  }
+
+  /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
+  void forget() {
+    const device_guard guard(on_.id);
+    if (last_.size() != 0)
+      check_cuda(cudaMemsetAsync(last_.data(), 0xff, last_.size() * sizeof(remembered<PartView>), on_.stream),
+                 "cudaMemsetAsync");
+  }
+
+ private:
+  template <class Clouds>
+  void make_room(const Clouds& clouds) {
+    std::size_t points = 0;
+    for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
+    if (points <= last_.size()) return;
+    device_buffer<remembered<PartView>> larger(points, on_.id, memory_);
+    outgrown_.push_back(std::exchange(last_, std::move(larger)));  // a graph may have captured it
+    forget();
+  }
+
+  device on_;
+  std::pmr::memory_resource* memory_;
+  bool remembers_;
+  std::vector<part_facts> facts_;
+  scan::launcher<PartView> launch_;
+  device_buffer<remembered<PartView>> last_;
+  std::vector<device_buffer<remembered<PartView>>> outgrown_;
+};
+
+}  // namespace clearance::pointwise

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How far is every point of the clouds from a robot?
+
+#include <clearance/pointwise/engine.hpp>
+#include <clearance/pointwise/joined_points.hpp>
+#include <clearance/query/query.hpp>
+
+namespace clearance {
+
+/// Distances of points, in the order of the clouds and their points.
+struct point_distances {
+  std::vector<real> distance;  ///< Metres: to sphere parts signed, to triangle parts 0 inside; `+inf` beyond d_max, NaN
+                               ///< where there is no point.
+  std::vector<std::uint32_t> part,
+      primitive;  ///< If `which` is set; of equally near ones the lowest. ~0u: none (for a primitive also: inside).
+  point_counts counts;
+  distance_certainty certain;
+};
+
+/// Every point's distance to the nearest part (elsewhere d_max is called max_dist, or activation distance). A prepared
+/// question on a device remembers the primitive nearest to each point, by its number. Refused: d_max that is NaN.
+struct distances {
+  double d_max = infinity;  ///< Metres; farther points are `+inf`, and cost next to nothing.
+  bool which = false;       ///< Also which part and primitive is nearest.
+
+  using result = point_distances;
+  /// One entry per point of all clouds, in memory that the backend writes.
+  struct out {
+    distances_out distances;
+    point_counts* counts;
+  };
+  template <class On, class PartView>
+  using engine = pointwise::engine<On, PartView, distances>;
+  template <class PartView>
+  using joined = pointwise::joined_points<distances>;
+
+  /// The farthest computed distance that counts.
+  real limit() const { return frames::largest_within(d_max); }
+};
+
+}  // namespace clearance

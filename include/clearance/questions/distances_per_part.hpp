@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How far is every point from every part?
+
+#include <clearance/pointwise/joined_points.hpp>
+#include <clearance/query/query.hpp>
+
+namespace clearance {
+
+/// Each part's distance to all points: those of part k are of(k), in the order of the clouds and their points.
+struct part_distances {
+  std::vector<real> distance;  ///< Metres: to sphere parts signed, to triangle parts 0 inside; `+inf` beyond d_max, NaN
+                               ///< where there is no point.
+  std::size_t points = 0;
+  point_counts counts;
+  distance_certainty certain;
+
+  std::span<const real> of(std::size_t part) const { return std::span(distance).subspan(part * points, points); }
+};
+
+namespace pairwise {
+
+/// An answer: writes each pair's distance in its place, part after part. Places of pairs beyond `d_max` are left alone.
+struct written {
+  real* distance;
+  const std::uint32_t* first_point;  ///< Per cloud.
+  std::size_t points;                ///< Of all clouds.
+  real d_max;
+
+  CLEARANCE_HD real reach(std::uint32_t) const { return d_max; }
+  CLEARANCE_HD void take(const pair_distance& pair) const {
+    distance[pair.part * points + first_point[pair.cloud] + pair.point] = pair.distance;
+  }
+};
+static_assert(answer<written>);
+
+/// Before the scan: every point of a source is too far away, or no point (NaN).
+template <point_source Source>
+struct nothing_written {
+  Source source;
+  real* distance;  ///< The place of its first point and the first part.
+  std::size_t points, parts;
+
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const real none = source[i].valid() ? infinity : not_a_number;
+    for (std::size_t k = 0; k < parts; ++k) distance[k * points + i] = none;
+  }
+};
+
+/// Joins the rows of pieces.
+template <class Q>
+class joined_rows {
+ public:
+  joined_rows(const Q&, std::span<const part_facts> facts) : parts_(facts.size()) {}
+
+  void add(const typename Q::result& piece, const piece_place& place) {
+    pointwise::place_entries(piece.distance, place, all_.distance, parts_);
+    all_.points = parts_ == 0 ? 0 : all_.distance.size() / parts_;
+    all_.counts.add(piece.counts);
+    all_.certain.widen(piece.certain);
+  }
+  typename Q::result result() { return std::move(all_); }
+
+ private:
+  std::size_t parts_;
+  typename Q::result all_;
+};
+
+}  // namespace pairwise
+
+/// Every point's distance to every part: parts times points numbers. Refused: d_max that is NaN.
+struct distances_per_part {
+  double d_max = infinity;  ///< Metres; farther points are `+inf`.
+
+  using result = part_distances;
+  /// Part k's distances go to `distance[k * points]` and on, in memory that the backend writes.
+  struct out {
+    real* distance;
+    point_counts* counts;
+  };
+  template <class PartView>
+  using joined = pairwise::joined_rows<distances_per_part>;
+
+  template <class Asked>
+  out room(const Asked& a) const {
+    return {a.template room<real>(a.points * a.parts()), a.template room<point_counts>(1)};
+  }
+  template <class Asked, class Clouds>
+  pairwise::written prepare(const Asked& a, const out& to, const Clouds& clouds) const {
+    const real most = frames::largest_within(d_max);
+    real* its = to.distance;
+    for_each_cloud(clouds, [&]<point_source S>(const S& source, const Eigen::Isometry3d&) {
+      a.on.for_each(source.size(), pairwise::nothing_written<S>{source, its, a.points, a.parts()});
+      its += source.size();
+    });
+    const auto [start] = a.put(a.first);
+    return {to.distance, start, a.points, most};
+  }
+  template <class Asked>
+  result read(const Asked& a, const out& from) const {
+    return {a.copy_out(from.distance, a.points * a.parts()), a.points, a.copy_out(from.counts, 1)[0], a.certain()};
+  }
+};
+
+}  // namespace clearance

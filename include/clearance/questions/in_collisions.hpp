@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Which of many configurations of one robot are nearer than a margin to anything that its sensors see?
+
+#include <clearance/plan/engine.hpp>
+#include <clearance/questions/in_collision.hpp>
+
+namespace clearance {
+
+/// One state per configuration: that of in_collision for its poses. There is no witness, because it is chance which one
+/// is found first; min_distances gives one.
+struct in_collisions_result {
+  std::vector<state> of;
+  point_counts counts;  ///< All 0 if there was no configuration.
+
+  /// The first configuration that is not certainly farther away than its margins, or of.size().
+  std::size_t first_not_free() const { return first_of(of); }
+
+  /// If the configurations are several trajectories, [batch, horizon]: the states of trajectory `i`, and the first of
+  /// each trajectory, counted from its beginning. Throws std::invalid_argument if they are not whole trajectories of
+  /// `horizon` configurations, or if there is no trajectory i.
+  std::span<const state> trajectory(std::size_t i, std::size_t horizon) const {
+    return detail::trajectory_of(std::span(of), i, horizon);
+  }
+  std::vector<std::size_t> first_not_free(std::size_t horizon) const {
+    return detail::first_of_each(std::span(of), horizon, first_of);
+  }
+
+ private:
+  static std::size_t first_of(std::span<const state> some) {
+    return std::size_t(std::find_if(some.begin(), some.end(), [](state s) { return s != state::free; }) - some.begin());
+  }
+};
+
+/// Is any point closer to a configuration than the margins? `poses` as for min_distances. Refused: poses that are no
+/// whole configurations, neither one nor as many margins as parts, and one that is NaN.
+struct in_collisions {
+  std::vector<double> margins = {0.0};  ///< Metres: one for all parts, or one per part.
+
+  using result = in_collisions_result;
+  using searched = minimum::margin_question;
+  template <class On, class PartView>
+  using engine = plan::engine<On, PartView, in_collisions>;
+
+  searched checked(std::size_t parts) const {
+    frames::check_margins(margins, parts);
+    return {margins.data(), std::uint32_t(margins.size())};
+  }
+  static void take_counts(result& all, const point_counts& counts) { all.counts = counts; }
+
+  static void merge(result& all, const result& other) {
+    all.counts.add(other.counts);
+    const bool too_close = all.counts.dropped[int(drop_reason::too_close)] != 0;
+    for (std::size_t c = 0; c < all.of.size(); ++c) {
+      state& its = all.of[c];
+      const state others = other.of[c];
+      if (its == state::collision || others == state::collision)
+        its = state::collision;
+      else if (its == state::no_data && others == state::no_data)
+        its = state::no_data;
+      else
+        its = its == state::possible || others == state::possible || too_close ? state::possible : state::free;
+    }
+  }
+  static void so_far(result& all, std::uint64_t unseen) {
+    for (state& its : all.of)
+      if (unseen != 0 && its != state::collision) its = state::possible;
+  }
+
+  template <class On, class PartView, class Clouds>
+  void ask_one(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
+               const Clouds& clouds, result& all, std::size_t c) const {
+    const collision_result one = ask(on, model, poses, clouds, in_collision{margins});
+    all.of[c] = one.state, all.counts = one.counts;
+  }
+};
+
+}  // namespace clearance

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// The k nearest points of each part.
+
+#include <clearance/questions/nearest_points.hpp>
+
+namespace clearance {
+
+/// The k nearest points of each part (elsewhere: kNN, top k): by computed distance, then cloud and point; a point may
+/// be in the lists of several parts. Refused: k of 0 or above 2^20, and d_max that is NaN.
+struct nearest_k {
+  std::size_t k = 1;
+  double d_max = infinity;  ///< Metres; farther points do not count.
+
+  using result = nearest_k_result;
+
+  /// It remembers how near the nearest points were, which only makes it faster. It cannot be enqueued: the host decides
+  /// by the counts of one pass whether there is another, and how much is listed.
+  template <class On, class PartView>
+  class engine {
+   public:
+    template <class... Memory>
+    engine(const On& on, const model_view<PartView>& model, Memory... from) : passes_(on, model, from...) {}
+
+    template <class Clouds>
+    result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const nearest_k& q) {
+      q.check();
+      return pairwise::list_nearest(passes_, known_, poses, passes_.readable(clouds), q.k,
+                                    frames::largest_within(q.d_max));
+    }
+    /// Forgets the last frame. The next one starts cold; its answer is the same.
+    void forget() { known_ = {}; }
+
+   private:
+    pairwise::passes<On, PartView> passes_;
+    pairwise::known_nearest known_;
+  };
+
+  void check() const {
+    if (k == 0 || k > pairwise::most_listed)
+      throw std::invalid_argument("clearance: k is " + std::to_string(k) + "; it must be 1 to 2^20");
+  }
+
+  static void place_in_whole(result& r, const piece_place& place) {
+    for (pair_distance& pair : r.pairs)
+      if (pair.cloud != none) pair.point += place.first[pair.cloud];
+  }
+  static void merge(result& all, const result& other) {
+    within_result both;
+    const std::size_t parts = all.per_part == 0 ? 0 : all.pairs.size() / all.per_part;
+    for (const auto from : {std::span<const pair_distance>(all.pairs), std::span<const pair_distance>(other.pairs)})
+      for (const pair_distance& pair : from)
+        if (pair.cloud != none) both.pairs.push_back(pair);
+    pairwise::put_in_order(both, parts);
+    pairwise::take_nearest(all, both);
+    all.counts.add(other.counts);
+    all.certain.widen(other.certain);
+  }
+};
+
+}  // namespace clearance

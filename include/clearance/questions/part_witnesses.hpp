@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Where every part's least distance is, after min_distance_per_part.
+
+#include <clearance/backend/few_values.hpp>
+#include <clearance/minimum/plain_search.hpp>
+#include <clearance/query/query.hpp>
+#include <clearance/traversal/any_depth.hpp>
+
+namespace clearance {
+
+namespace minimum {
+
+/// The places of up to so many parts go with the launch.
+inline constexpr std::uint32_t few = 12;
+
+/// One thread per part, for one cloud.
+template <class PartView, point_source Source>
+struct witness_body {
+  const PartView* parts;
+  backends::few_values<frames::placement, few> places;
+  Source source;
+  vec3 origin;
+  world_transform world_from_cloud;
+  std::uint32_t cloud;
+  const part_minimum* minima;
+  any_depth walk;
+  part_witness* witnesses;
+
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    const part_minimum least = minima[i];
+    if (cloud == 0) witnesses[i] = {};
+    if (least.cloud != cloud || least.point >= source.size()) return;
+    const frames::placement place = places[std::uint32_t(i)];
+    const vec3 p = source[least.point].position, q = place.part_from_cloud(p - origin);
+    const auto f = evaluate(parts[i], q, least.distance, walk);
+    if (f.nearest.id == none || f.distance != least.distance) return;
+    const contact here = f.at(q, place.world_from_part);
+    witnesses[i] = {f.distance,   std::uint32_t(i),    cloud,        least.point,
+                    f.nearest.id, world_from_cloud(p), here.nearest, here.normal};
+  }
+};
+
+}  // namespace minimum
+
+/// The witness of every part's minimum. On a device it is one kernel per cloud, after min_distance_per_part in a stream
+/// or graph. Refused: neither as many minima as parts, and one that is not of these poses and clouds.
+struct part_witnesses {
+  std::span<const part_minimum> minima;  ///< As min_distance_per_part gives them.
+
+  using result = std::vector<part_witness>;
+  /// `minima`, which `enqueue` reads instead, and `witnesses`, one each per part, in memory that the backend reads and
+  /// writes. Enqueued, a minimum of other poses or clouds has no witness.
+  struct out {
+    const part_minimum* minima;
+    part_witness* witnesses;
+  };
+  template <class On, class PartView>
+  class engine;
+};
+
+template <class On, class PartView>
+class part_witnesses::engine {
+ public:
+  /// Throws std::invalid_argument if a tree is too deep for `near_first` on a device.
+  template <class... Memory>
+  engine(const On& on, const model_view<PartView>& model, Memory... from)
+      : on_(on), model_(model), memory_(on, from...), readable_(on, from...) {
+    if constexpr (requires { typename On::own_scan; }) minimum::check_stack<near_first>(model_.depth, model_.width);
+  }
+
+  template <class Clouds>
+  result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_witnesses& q) {
+    frames::check_room(model_.size(), q.minima.size());
+    memory_.begin();
+    part_witness* const found = memory_.template room<part_witness>(q.minima.size()).data();
+    look(poses, readable_(clouds), std::get<0>(memory_.put(q.minima)), found);
+    auto all = on_.copy_out(found, q.minima.size());
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (q.minima[k].cloud != none && all[k].part == none)
+        throw std::invalid_argument("clearance: the minimum of part " + std::to_string(k) +
+                                    " is not one of these poses and clouds");
+    return all;
+  }
+
+  template <class Clouds>
+  void start(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_witnesses&, const out& to) {
+    memory_.begin();
+    look(poses, clouds, to.minima, to.witnesses);
+  }
+
+ private:
+  template <class Clouds>
+  void look(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima,
+            part_witness* witnesses) {
+    const any_depth walk{stack_need(model_.depth, model_.width)};
+    frames::for_each_turn(
+        frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+          const auto places = backends::few_or_kept<minimum::few>(frame_.places, memory_);
+          on_.for_each(model_.size(),
+                       minimum::witness_body<PartView, S>{model_.parts, places, source, frame_.origin,
+                                                          frame_.world_from_cloud, now.cloud, minima, walk, witnesses});
+        });
+  }
+
+  On on_;
+  model_view<PartView> model_;
+  backends::kept_memory<On> memory_;
+  frames::readable_clouds<On> readable_;
+  frames::cloud_frame frame_;
+};
+
+}  // namespace clearance
