@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <clearance/backend/host.hpp>
 #include <clearance/bvh/build.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>
@@ -18,7 +18,7 @@ int main() {
 
   const clearance::host cpu;
   const auto part = clearance::make_part(clearance::build<clearance::sphere>(link));  // once
-  const auto r = clearance::ask(cpu, part, pose, cloud, clearance::min_distance{});                     // in every frame
+  const auto r = clearance::ask(cpu, part, pose, cloud, clearance::min_distance{});   // in every frame
 
   std::printf("%s: %.4f m from sphere %u to point %u\n", clearance::to_string(r.state), r.distance, r.primitive,
               r.point);

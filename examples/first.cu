@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // first.cpp on a GPU: three lines differ.
 #include <clearance/bvh/build.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 int main() {

@@ -29,6 +29,7 @@ struct min_distance_supported;
 struct supported_distance;
 struct motion_clearance_options;
 struct motion_clearance_result;
+struct part_facts;
 namespace io {
 class joint_motion;
 }
@@ -102,6 +103,7 @@ class backend_robot {
   /// How near the robot comes on each way.
   virtual std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
                                                                const clearance::motion_clearance_options& options) = 0;
+  virtual std::span<const clearance::part_facts> facts() = 0;
 
   // Seconds: for the last question; so far for building trees; and for moving them to where the backend reads them.
   double query = 0, build = 0, upload = 0;

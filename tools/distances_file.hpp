@@ -4,8 +4,8 @@
 
 #include "asked_clouds.hpp"
 
-#include <clearance/questions/distances.hpp>
 #include <clearance/io/scene.hpp>
+#include <clearance/questions/distances.hpp>
 
 /// The contents of a file of distances.
 struct distances_written {

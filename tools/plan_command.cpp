@@ -2,6 +2,7 @@
 #include "asked_clouds.hpp"
 #include "command_line.hpp"
 #include "messages.hpp"
+#include "ranks.hpp"
 #include "recording.hpp"
 #include "report.hpp"
 
@@ -24,7 +25,8 @@ std::vector<io::joint_motion> ways_between(const query_options& asked, const ask
   return ways;
 }
 
-int run_plan(const query_options& asked) {
+/// `ranks`: those of --shard.
+int run_plan(const query_options& asked, all_ranks* ranks) {
   stopwatch clock;
   progress shown;
   shown.show("reading " + asked.robot);
@@ -42,7 +44,9 @@ int run_plan(const query_options& asked) {
   report.bodies = &bodies;
   report.pack = clock.lap();
   shown.show("asking about " + std::to_string(rows.size()) + " configurations");
-  const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies});
+  const asked_model model{asked.model, asked.volume, &bodies};
+  auto there = robot_on(asked.on_device, model);
+  if (ranks) there = ranks->together(std::move(there), model, questions_of(asked));
   report.upload = there->see(clouds.seen);
   report.found = ask_plan(*there, placed, asked.d_max, report.query);
   if (asked.between) {
@@ -53,6 +57,8 @@ int run_plan(const query_options& asked) {
     report.ways = there->ways(ways_between(asked, robot, rows), options);
     report.query += there->query;
   }
+  if (ranks) ranks->part();
+  if (ranks && !ranks->speaks()) return 0;
   report.build = there->build;
   report.upload += there->upload;
   shown.clear();
@@ -75,5 +81,9 @@ int run_plan(const query_options& asked) {
 subcommand add_plan(CLI::App& app) {
   CLI::App* sub =
       app.add_subcommand("plan", "The least distance of many configurations, such as those of a planned path");
-  return [options = add_query_options(*sub, asking::plan)] { return run_plan(options()); };
+  return [options = add_query_options(*sub, asking::plan)] {
+    const query_options asked = options();
+    return asked.shard ? on_all_ranks([&](all_ranks& ranks) { return run_plan(asked, &ranks); })
+                       : run_plan(asked, nullptr);
+  };
 }

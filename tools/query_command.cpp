@@ -128,20 +128,17 @@ int run(const query_options& asked, all_ranks* ranks) {
   report.clouds = &clouds.files;
   report.bodies = &bodies;
   shown.show("asking");
-  const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies});
-  const std::vector<seen_points> seen = ranks ? ranks->share(clouds.seen) : clouds.seen;
-  report.upload = there->see(seen);
+  const asked_model model{asked.model, asked.volume, &bodies};
+  auto there = robot_on(asked.on_device, model);
+  if (ranks) there = ranks->together(std::move(there), model, questions_of(asked));
+  report.upload = there->see(clouds.seen);
   if (asked.self_filter) {
     report.filter = there->own_points(poses, *asked.self_filter);
     note_hidden(asked, report.notes);
     clouds.hide(report.filter->labels);
     report.upload += there->see(clouds.seen);
   }
-  const auto ask = [&] {
-    return asked.deadline ? there->least_by(poses, *asked.deadline / 1000) : there->least_per_part(poses, 1);
-  };
-  report.found = ranks ? ranks->together(ask, poses, seen, asked.model == model_kind::triangles) : ask();
-  if (!speaks) return 0;
+  report.found = asked.deadline ? there->least_by(poses, *asked.deadline / 1000) : there->least_per_part(poses, 1);
   report.query = there->query;
   if (!asked.zones.empty())
     report.zones = there->zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
@@ -157,6 +154,8 @@ int run(const query_options& asked, all_ranks* ranks) {
     report.gradients = gradients(asked, robot, joints, poses, there->witnesses(poses, report.found.parts));
   std::optional<point_distances> distances;
   if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max, asked.is_signed);
+  if (ranks) ranks->part();
+  if (!speaks) return 0;
   report.build = there->build;
   report.upload += there->upload;
   if (report.found.unseen == 0)  // otherwise it is unknown which of them were seen

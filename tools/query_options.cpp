@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <map>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -153,8 +154,8 @@ std::vector<double> thresholds(const std::string& option, const std::string& tex
   return values;
 }
 
-/// Throws if `option` is used with another question: it only works for the least distance.
-void check_alone(const std::string& option, const query_options& o) {
+/// Throws if --deadline is used with another question: it only works for the least distance.
+void check_alone(const query_options& o) {
   const std::pair<const char*, bool> others[] = {{"--zones", !o.zones.empty()},
                                                  {"--distances", !o.distances.empty()},
                                                  {"--self-filter", o.self_filter.has_value()},
@@ -163,25 +164,28 @@ void check_alone(const std::string& option, const query_options& o) {
                                                  {"--gradient", o.gradient}};
   for (const auto& [other, asked] : others)
     if (asked)
-      throw usage_error(option, std::string("is for the least distance alone, and cannot be mixed with ") + other);
+      throw usage_error("--deadline",
+                        std::string("is for the least distance alone, and cannot be mixed with ") + other);
 }
 
-/// How the least distance is asked: until when, and by which ranks.
+/// How is asked: until when, and by which ranks.
 void read_deadline(const raw_options& raw, query_options& o) {
   if (!raw.deadline.empty()) {
     const double milliseconds = number("--deadline", raw.deadline);
     if (!(milliseconds >= 0 && milliseconds <= 1e9))
       throw usage_error("--deadline", "must be from 0 to 1e9 (milliseconds)");
     o.deadline = milliseconds + 0.0;  // no -0
-    check_alone("--deadline", o);
+    check_alone(o);
     if (o.volume != usual_volume(o.model))
       throw usage_error("--volume", std::string("cannot be ") + to_string(o.volume) + " with --deadline, which has " +
                                         to_string(usual_volume(o.model)) + " for --model " + to_string(o.model));
   }
   o.shard = raw.shard;
-  if (!o.shard) return;
-  check_alone("--shard", o);
-  if (o.deadline) throw usage_error("--shard", "cannot be mixed with --deadline: ranks wait for one another");
+  if (o.shard && o.support)
+    throw usage_error("--shard",
+                      "cannot be mixed with --min-support: points of different ranks may confirm one another");
+  if (o.shard && o.deadline)
+    throw usage_error("--shard", "cannot be mixed with --deadline: ranks wait for one another");
 }
 
 /// Throws if an option is about spheres, but the model has none.
@@ -397,6 +401,11 @@ const char* const of_clouds =
     "--camera-pose, --camera-link, --intrinsics, --depth-scale, --range, --use-viewpoint and --zero-is-missing hold\n"
     "for all clouds if given before the first --cloud, else for the --cloud before them.";
 
+void add_shard(CLI::App& app, raw_options& raw) {
+  app.add_flag("--shard", raw.shard,
+               "Under mpirun: each rank asks about its share of every cloud, and rank 0 prints the one answer");
+}
+
 void add_plan_questions(CLI::App& app, raw_options& raw) {
   app.add_option("--d-max", raw.d_max,
                  "Metres: configurations that are farther from every point are only said to be so, which is quicker");
@@ -405,6 +414,7 @@ void add_plan_questions(CLI::App& app, raw_options& raw) {
                "nearer than its lower end at any time; "
                "--check is about the ways, too");
   app.add_flag("--csv", raw.csv, "Print CSV; without it, one JSON object per configuration and a last one about all");
+  add_shard(app, raw);
   app.footer(std::string(of_clouds) + "\nThe exit code is 3 without a valid point, also with --check.");
 }
 
@@ -460,12 +470,20 @@ void add_query_questions(CLI::App& app, raw_options& raw) {
       "--deadline", raw.deadline,
       "Milliseconds for the least distance: what is known by then is the answer, with how many points are unseen, "
       "which may be anywhere; parts have none");
-  app.add_flag("--shard", raw.shard,
-               "Under mpirun: each rank asks about its share of every cloud, and rank 0 prints the one answer");
+  add_shard(app, raw);
   app.footer(std::string(of_clouds) + '\n' + exit_codes);
 }
 
 }  // namespace
+
+std::string questions_of(const query_options& asked) {
+  std::ostringstream all;
+  all << std::hexfloat << to_string(asked.model) << !asked.configurations.empty() << ' '
+      << asked.self_filter.value_or(-1) << ' ' << asked.min_points << ' ' << asked.nearest << ' ' << asked.d_max << ' '
+      << asked.gradient << !asked.distances.empty() << asked.is_signed << asked.between << asked.margin.value_or(-1);
+  for (const double threshold : asked.zones) all << ' ' << threshold;
+  return all.str();
+}
 
 std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   auto raw = std::make_shared<raw_options>();

@@ -103,5 +103,8 @@ struct query_options {
 
 enum class asking { query, run, plan };
 
+/// What ranks must be asked alike, as a text; poses and clouds are not in it.
+std::string questions_of(const query_options& asked);
+
 /// Declares a subcommand's options; the returned function reads them after parsing. Throws usage_error.
 std::function<query_options()> add_query_options(CLI::App& app, asking how);

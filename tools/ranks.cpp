@@ -1,14 +1,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ranks.hpp"
 
+#include "stopwatch.hpp"
+
+#include <clearance/io/digest.hpp>
+#include <clearance/io/joint_motion.hpp>
+#include <clearance/motion_clearance.hpp>
 #include <clearance/mpi/ranks.hpp>
 #include <clearance/points/sharded.hpp>
+#include <clearance/query/pieces.hpp>
+#include <clearance/questions/distances.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
+#include <clearance/questions/min_distances.hpp>
+#include <clearance/questions/nearest_k.hpp>
+#include <clearance/questions/part_witnesses.hpp>
+#include <clearance/questions/self_filter.hpp>
+#include <clearance/questions/zones.hpp>
 
 #include <cstdlib>
 
 using namespace clearance;
 
 namespace {
+
+/// Parts, as far as joining answers depends on them: spheres, and triangles with a solid.
+struct parts_of_spheres {
+  using interior_type = no_interior;
+};
+struct parts_of_triangles {
+  struct interior_type {};
+};
+
+/// Joins the witnesses of each rank's own minima.
+struct joined_witnesses {
+  std::vector<part_witness> all;
+
+  void add(const std::vector<part_witness>& its, const piece_place& place) {
+    all.resize(its.size());
+    for (std::size_t k = 0; k < its.size(); ++k) {
+      if (its[k].part == none) continue;
+      all[k] = its[k];
+      all[k].point += place.first[all[k].cloud];
+    }
+  }
+  std::vector<part_witness> result() { return std::move(all); }
+};
 
 class mpi_ranks final : public all_ranks {
  public:
@@ -25,46 +61,185 @@ class mpi_ranks final : public all_ranks {
 
   bool speaks() const override { return rank_ == 0; }
 
-  std::vector<seen_points> share(std::vector<seen_points> clouds) const override {
-    for (std::size_t i = 0; i < clouds.size(); ++i) {
-      if (auto* points = std::get_if<point_span>(&clouds[i].points))
-        *points = piece_of(*points, std::size_t(rank_), std::size_t(ranks_));
-      else if (i % std::size_t(ranks_) != std::size_t(rank_))
-        std::get<depth_image<std::uint16_t>>(clouds[i].points).height = 0;
-    }
-    return clouds;
-  }
+  std::unique_ptr<backend_robot> together(std::unique_ptr<backend_robot> mine, const asked_model& asked,
+                                          const std::string& questions) override;
 
-  reply together(const std::function<reply()>& ask, poses_of poses, const std::vector<seen_points>& share,
-                 bool solid) override {
-    std::vector<std::variant<placed<point_span>, placed<depth_image<std::uint16_t>>>> mine;
-    for (const seen_points& cloud : share)
-      std::visit([&](const auto& source) { mine.push_back(placed{source, cloud.pose}); }, cloud.points);
+  void part() override {
     meet({});
-    mpi::question all(MPI_COMM_WORLD);
-    all.agree(poses.size(), poses, mine);
-    reply out;
-    all.attempt([&] { out = ask(); });
-    out.result = all.answer(out.result, out.parts, solid);
-    return out;
+    parted_ = true;
   }
-
-  /// Waits until all are here. Throws an error of this rank or of another.
+  /// Waits for all others, wherever they meet next. Throws an error of this rank or of another.
   void meet(std::exception_ptr failure) {
-    met_ = true;
-    mpi::question here(MPI_COMM_WORLD);
-    here.attempt([&] {
-      if (failure) std::rethrow_exception(failure);
+    at_once([&](mpi::together& here) {
+      here.attempt([&] {
+        if (failure) std::rethrow_exception(failure);
+      });
+      here.agree(0, {}, std::vector<point_span>{});
     });
-    here.agree(0, {}, std::vector<point_span>{});
-    here.answer({}, {}, false);
   }
-  bool met() const { return met_; }
+  /// What all do together. If it throws, all ranks know.
+  template <class Work>
+  std::invoke_result_t<Work, mpi::together&> at_once(const Work& work) {
+    try {
+      mpi::together here(MPI_COMM_WORLD);
+      return work(here);
+    } catch (...) {
+      parted_ = true;
+      throw;
+    }
+  }
+  bool parted() const { return parted_; }
+
+  std::size_t rank() const { return std::size_t(rank_); }
+  std::size_t ranks() const { return std::size_t(ranks_); }
 
  private:
   int rank_ = 0, ranks_ = 1;
-  bool met_ = false;
+  bool parted_ = false;
 };
+
+class robot_of_ranks final : public backend_robot {
+ public:
+  robot_of_ranks(mpi_ranks& all, std::unique_ptr<backend_robot> mine, const asked_model& asked,
+                 const std::string& questions)
+      : all_(all), mine_(std::move(mine)), asked_(asked), questions_(questions) {}
+
+  double see(const std::vector<seen_points>& clouds) override {
+    std::vector<seen_points> shares;
+    share_.clear(), first_.clear();
+    std::string sizes;
+    for (const seen_points& cloud : clouds) {
+      std::visit(
+          [&](const auto& source) {
+            sizes += ' ' + std::to_string(source.size());
+            take_share(source);
+          },
+          cloud.points);
+      std::visit(
+          [&](auto& mine) {
+            mine.pose = cloud.pose;
+            shares.push_back({mine.source, cloud.pose});
+          },
+          share_.back());
+    }
+    all_.at_once([&](mpi::together& here) {
+      here.agree(asked_.bodies->size(), {}, share_);
+      const io::digest mine = io::digest_of(questions_ + sizes);
+      const std::vector<io::digest> each = mpi::gather(MPI_COMM_WORLD, int(all_.ranks()), &mine, 1);
+      for (std::size_t r = 1; r < each.size(); ++r)
+        if (each[r] != each[0])
+          throw std::invalid_argument("rank " + std::to_string(r) +
+                                      " has other questions than rank 0, or clouds of other sizes");
+    });
+    return mine_->see(shares);
+  }
+
+  reply least(poses_of) override { none_of_ranks(); }
+  reply least_by(poses_of, double) override { none_of_ranks(); }
+  supported_distance supported(poses_of, const min_distance_supported&) override { none_of_ranks(); }
+
+  reply least_per_part(poses_of poses, int repeat) override {
+    const auto found = joined<min_distance_per_part>(poses, [&] {
+      const reply its = mine_->least_per_part(poses, repeat);
+      return min_distance_per_part_result{its.result, its.parts};
+    });
+    return {found.all, found.parts};
+  }
+  zones_result zones(poses_of poses, const clearance::zones& options) override {
+    return joined<clearance::zones>(poses, [&] { return mine_->zones(poses, options); });
+  }
+  point_distances distances(poses_of poses, double d_max, bool is_signed) override {
+    return joined<clearance::distances>(poses, [&] { return mine_->distances(poses, d_max, is_signed); });
+  }
+  nearest_k_result nearest(poses_of poses, std::size_t k, double d_max) override {
+    return joined<nearest_k>(poses, [&] { return mine_->nearest(poses, k, d_max); });
+  }
+  self_filter_result own_points(poses_of poses, double padding) override {
+    return joined<self_filter>(poses, [&] { return mine_->own_points(poses, padding); });
+  }
+  std::vector<part_witness> witnesses(poses_of poses, std::span<const part_minimum> minima) override {
+    std::vector<part_minimum> own(minima.begin(), minima.end());
+    for (part_minimum& its : own) {
+      if (its.cloud == none) continue;
+      const std::size_t count = std::visit([](const auto& cloud) { return cloud.source.size(); }, share_[its.cloud]);
+      its.point -= std::uint32_t(first_[its.cloud]);
+      if (its.point >= count) its = {};  // it is another rank's
+    }
+    return joined(joined_witnesses{}, poses, [&] { return mine_->witnesses(poses, own); });
+  }
+  min_distances_result plan(poses_of poses, double d_max) override {
+    return joined<min_distances>(poses, [&] { return mine_->plan(poses, d_max); });
+  }
+  std::vector<motion_clearance_result> ways(std::span<const io::joint_motion> ways,
+                                            const motion_clearance_options& options) override;
+  std::span<const part_facts> facts() override { return mine_->facts(); }
+
+ private:
+  using placed_points = std::variant<placed<point_span>, placed<depth_image<std::uint16_t>>>;
+
+  void take_share(const point_span& cloud) {
+    first_.push_back(first_of_piece(cloud, all_.rank(), all_.ranks()));
+    share_.push_back(placed{piece_of(cloud, all_.rank(), all_.ranks())});
+  }
+  /// One rank has the whole image; the others have no point of it, but its error, as brackets are about all clouds.
+  void take_share(const depth_image<std::uint16_t>& image) {
+    const bool mine = share_.size() % all_.ranks() == all_.rank();
+    first_.push_back(0);
+    if (mine) return share_.push_back(placed{image});
+    point_span none_of_it;
+    none_of_it.off = image.rounding();
+    share_.push_back(placed{none_of_it});
+  }
+
+  /// This rank's answer about its share, joined with those of all others.
+  template <class Joined, class Ask>
+  auto joined(Joined answer, poses_of poses, const Ask& ask) -> decltype(answer.result()) {
+    return all_.at_once([&](mpi::together& here) {
+      here.agree(asked_.bodies->size(), poses, share_);
+      decltype(ask()) mine{};
+      here.attempt([&] { mine = ask(); });
+      here.join(answer, mine);
+      query = mine_->query, build = mine_->build, upload = mine_->upload;
+      return answer.result();
+    });
+  }
+  template <class Q, class Ask>
+  typename Q::result joined(poses_of poses, const Ask& ask) {
+    const std::span<const part_facts> facts;  // none of these answers needs them to be joined
+    if (asked_.model == model_kind::spheres)
+      return joined(clearance::detail::joined_of<Q, parts_of_spheres>(Q{}, facts), poses, ask);
+    return joined(clearance::detail::joined_of<Q, parts_of_triangles>(Q{}, facts), poses, ask);
+  }
+
+  [[noreturn]] static void none_of_ranks() { throw std::logic_error("ranks are not asked this"); }
+
+  mpi_ranks& all_;
+  std::unique_ptr<backend_robot> mine_;
+  asked_model asked_;
+  std::string questions_;
+  std::vector<placed_points> share_;  // of each cloud,
+  std::vector<std::size_t> first_;    // and the number of its first point
+};
+
+std::vector<motion_clearance_result> robot_of_ranks::ways(std::span<const io::joint_motion> ways,
+                                                          const motion_clearance_options& options) {
+  const std::span<const part_facts> facts = mine_->facts();
+  stopwatch clock;
+  std::vector<motion_clearance_result> all;
+  const auto ask = [&](poses_of poses) {
+    reply found = least_per_part(poses, 1);
+    return min_distance_per_part_result{found.result, std::move(found.parts)};
+  };
+  for (const io::joint_motion& way : ways)
+    all.push_back(clearance::detail::over_motion(ask, facts, way, share_, options));
+  query = clock.lap();
+  return all;
+}
+
+std::unique_ptr<backend_robot> mpi_ranks::together(std::unique_ptr<backend_robot> mine, const asked_model& asked,
+                                                   const std::string& questions) {
+  return std::make_unique<robot_of_ranks>(*this, std::move(mine), asked, questions);
+}
 
 }  // namespace
 
@@ -73,7 +248,7 @@ int on_all_ranks(const std::function<int(all_ranks&)>& work) {
   try {
     return work(all);
   } catch (...) {
-    if (!all.met()) all.meet(std::current_exception());  // the others wait for it
+    if (!all.parted()) all.meet(std::current_exception());  // the others wait for it
     throw;
   }
 }

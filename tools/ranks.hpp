@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// `clearance query --shard`: the processes started by mpirun answer together.
+// `--shard`: the processes started by mpirun answer together.
 
 #include "backends.hpp"
 
@@ -14,15 +14,17 @@ class all_ranks {
   /// Does this rank print the answer?
   virtual bool speaks() const = 0;
 
-  /// This rank's share of each cloud's points: a contiguous piece, but a whole image goes to one rank.
-  virtual std::vector<seen_points> share(std::vector<seen_points> clouds) const = 0;
+  /// The robot of all ranks. All show it the same clouds, and ask it the same in the same order; each has its own
+  /// robot, `mine`, asked about its share of each cloud's points: a contiguous piece, but a whole image goes to one
+  /// rank. All get the answer about all points. It throws on all ranks if they differ in clouds, poses or `questions`,
+  /// a text.
+  virtual std::unique_ptr<backend_robot> together(std::unique_ptr<backend_robot> mine, const asked_model& asked,
+                                                  const std::string& questions) = 0;
 
-  /// Each rank calls this once. It joins the results of every rank's `ask` about its share into one answer about all
-  /// points. `solid`: points may be inside.
-  virtual reply together(const std::function<reply()>& ask, poses_of poses, const std::vector<seen_points>& share,
-                         bool solid) = 0;
+  /// Each rank calls this after its last question. It waits until all have their answers.
+  virtual void part() = 0;
 };
 
-/// Returns what `work` returns on this rank. If it throws on one rank before or while all ask together, it ends on all:
-/// that one throws its error, the others its sentence. Throws usage_error if built without MPI.
+/// Returns what `work` returns on this rank. If it throws on one rank before `part`, it ends on all: that one throws
+/// its error, the others its sentence. Throws usage_error if built without MPI.
 int on_all_ranks(const std::function<int(all_ranks&)>& work);

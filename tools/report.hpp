@@ -8,9 +8,9 @@
 #include "robot_bodies.hpp"
 
 #include <clearance/gradient.hpp>
-#include <clearance/questions/min_distances.hpp>
-#include <clearance/questions/min_distance_supported.hpp>
 #include <clearance/motion_clearance.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
+#include <clearance/questions/min_distances.hpp>
 #include <clearance/questions/nearest_k.hpp>
 #include <clearance/questions/self_filter.hpp>
 #include <clearance/questions/zones.hpp>

@@ -48,7 +48,8 @@ void same_bits(benchmark::State& state, const clearance::min_distance_result& r)
   const auto at = known.find(state.range(0));
   const auto e = at != known.end()
                      ? at->second
-                     : clearance::ask(host{}, robot(), s.poses, point_span(cloud(std::size_t(state.range(0)))), s.world_from_camera, clearance::min_distance{});
+                     : clearance::ask(host{}, robot(), s.poses, point_span(cloud(std::size_t(state.range(0)))),
+                                      s.world_from_camera, clearance::min_distance{});
   known[state.range(0)] = e;
   const auto equal = [](const auto& a, const auto& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
   if (!(r.state == e.state && equal(r.distance, e.distance) && equal(r.lower, e.lower) && equal(r.upper, e.upper) &&
@@ -62,7 +63,7 @@ template <class On, class C>
 void ask(benchmark::State& state, const On& on, C source, bool next) {
   const auto model = robot().on(on);
   chunked in_chunks(std::move(source), std::size_t(state.range(1)));
-  clearance::chunked_query query(on, model);
+  clearance::chunked_query query(on, model, clearance::min_distance{});
   const scene& s = the_scene();
   clearance::min_distance_result r;
   percentiles(

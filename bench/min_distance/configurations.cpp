@@ -48,8 +48,9 @@ void each_part(benchmark::State& state) {
   const auto poses = bench::random_configurations(std::size_t(state.range(1)));
   clearance::min_distances_result found;
   for (auto _ : state)
-    found.of =
-        clearance::ask(cpu, spheres(), poses, placed{point_span(s.cloud), s.world_from_camera}, clearance::min_distances_per_part{}).all;
+    found.of = clearance::ask(cpu, spheres(), poses, placed{point_span(s.cloud), s.world_from_camera},
+                              clearance::min_distances_per_part{})
+                   .all;
   report(state, found);
 }
 

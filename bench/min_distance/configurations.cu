@@ -7,8 +7,8 @@
 #include "device.cuh"
 
 #include <clearance/backend/own_stream.cuh>
-#include <clearance/questions/in_collisions.hpp>
 #include <clearance/device.cuh>
+#include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -96,7 +96,7 @@ void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::I
   const device gpu = stream.on();
   clearance::query query(gpu, model, clearance::min_distances{});
   ask(state, gpu, query, poses, frames, warm,
-      [d_max](auto& its, const auto& cloud) { return its.enqueue(cloud, {d_max}); });
+      [d_max](auto& its, const auto& cloud) { return its.enqueue(cloud, clearance::min_distances{d_max}); });
 }
 
 template <class Make>
@@ -114,12 +114,11 @@ void states(benchmark::State& state, Make make, double margin) {
   const auto model = make(s);
   clearance::query query(gpu, model, clearance::in_collisions{});
   ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
-      [margin](auto& its, const auto& cloud) { return its.enqueue(cloud, margin); });
+      [margin](auto& its, const auto& cloud) { return its.enqueue(cloud, clearance::in_collisions{{margin}}); });
 }
-/// The frame as a depth image: nearly the same points, but its tree needs no sort. `enqueue(query, cloud)` asks a
-/// `Query`.
-template <template <class, class> class Query, class Enqueue>
-void ask_image(benchmark::State& state, Enqueue enqueue) {
+/// The frame as a depth image: nearly the same points, but its tree needs no sort.
+template <class Q>
+void ask_image(benchmark::State& state, const Q& q) {
   if (no_device(state)) return;
   const scene& s = the_scene();
   const clearance::own_stream stream(0);
@@ -129,18 +128,12 @@ void ask_image(benchmark::State& state, Enqueue enqueue) {
   const auto there = gpu.copy_in(std::span<const float>(depths));
   const clearance::depth_image seen(there.data(), 640, 480, {525, 525, 319.5, 239.5});
   const auto model = spheres(s);
-  Query query(gpu, model);
+  clearance::query query(gpu, model, q);
   ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
-      [&](auto& its, const auto&) { return enqueue(its, placed{seen, s.world_from_camera}); });
+      [&](auto& its, const auto&) { return its.enqueue(placed{seen, s.world_from_camera}, q); });
 }
-void image(benchmark::State& state, float d_max) {
-  ask_image<clearance::min_distances_query>(
-      state, [d_max](auto& its, const auto& cloud) { return its.enqueue(cloud, {d_max}); });
-}
-void image_states(benchmark::State& state, double margin) {
-  ask_image<clearance::in_collisions_query>(
-      state, [margin](auto& its, const auto& cloud) { return its.enqueue(cloud, margin); });
-}
+void image(benchmark::State& state, float d_max) { ask_image(state, clearance::min_distances{d_max}); }
+void image_states(benchmark::State& state, double margin) { ask_image(state, clearance::in_collisions{{margin}}); }
 void monitor(benchmark::State& state, float d_max) {
   if (no_device(state)) return;
   const scene& s = the_scene();
@@ -164,7 +157,9 @@ void waited(benchmark::State& state, Ask ask) {
 }
 void call(benchmark::State& state) {
   waited(state, [](const device& gpu, const auto& model) {
-    return [&](const auto& poses, const auto& cloud) { return clearance::ask(gpu, model, poses, cloud, clearance::min_distances{}).of; };
+    return [&](const auto& poses, const auto& cloud) {
+      return clearance::ask(gpu, model, poses, cloud, clearance::min_distances{}).of;
+    };
   });
 }
 /// Each part's least distances, to compare with `call`'s one for all parts.

@@ -4,8 +4,8 @@
 #include "device.cuh"
 
 #include <clearance/deadline.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 
 namespace deadline_bench {
@@ -30,7 +30,8 @@ void ask(benchmark::State& state, const On& on, const Model& model, const cleara
       const auto r = clearance::ask_by(query, s.poses, cloud, deadline, clearance::min_distance{});
       const double its = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
       if (k < 20) continue;
-      took.push_back(its), late.push_back(its - us), seen.push_back(double(r.seen) / double(r.seen + r.unseen));
+      took.push_back(its), late.push_back(its - us),
+          seen.push_back(double(r.result.seen) / double(r.result.seen + r.unseen));
     }
   }
   for (auto* all : {&took, &late, &seen}) std::sort(all->begin(), all->end());

@@ -4,8 +4,8 @@
 #include "device_clock.cuh"
 #include "scene.hpp"
 
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
+#include <clearance/questions/min_distance.hpp>
 
 #include <benchmark/benchmark.h>
 

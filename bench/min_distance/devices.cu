@@ -143,7 +143,10 @@ void one_call(benchmark::State& state, which w) {
   clearance::min_distance_result r;
   percentiles(
       state, 300, 20,
-      [&](std::size_t) { r = clearance::ask(*on, model, s.poses, *cloud.view, s.world_from_camera, clearance::min_distance{}); }, [] {});
+      [&](std::size_t) {
+        r = clearance::ask(*on, model, s.poses, *cloud.view, s.world_from_camera, clearance::min_distance{});
+      },
+      [] {});
   same_bits(state, r);
 }
 

@@ -4,10 +4,10 @@
 #include "device.cuh"
 #include "shell.hpp"
 
-#include <clearance/questions/distances.hpp>
 #include <clearance/device.cuh>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -33,9 +33,9 @@ void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::I
   const auto frame = [&](const Source& source) {
     const clearance::placed cloud{source, pose};
     if (warm)
-      query.enqueue(poses, cloud, {out.data()}, counts.data(), d_max);
+      query.enqueue(poses, cloud, {.d_max = d_max}, {{out.data()}, counts.data()});
     else
-      once.enqueue(poses, cloud, {out.data()}, d_max, counts.data(), clearance::minimum::as_it_is{});
+      once.enqueue(poses, cloud, {out.data()}, d_max, counts.data(), clearance::frames::as_it_is{});
   };
   frame(second);
   for (bool odd = true; auto _ : state)

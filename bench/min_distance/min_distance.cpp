@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One frame on the CPU: 307,200 points and the whole robot, by model and volume. *warm* is a prepared query that
-// remembers the last frame, *cold* one that does not, *plain* min_distance, *parts* warm with every part's minimum.
+// remembers the last frame, *cold* one that does not, *plain* one call, *parts* warm with every part's minimum.
 #include "crowds.hpp"
 
 #include <clearance/questions/min_distance.hpp>
@@ -21,12 +21,12 @@ void ask(benchmark::State& state, const Model& model, const Source& source, kind
   const clearance::host cpu{.threads = unsigned(state.range(0))};
   const clearance::placed<Source> cloud{source, s.world_from_camera};
   clearance::query query(cpu, model, clearance::min_distance{});
-  std::vector<clearance::part_minimum> minima(how == parts ? model.size() : 0);
+  clearance::query each(cpu, model, clearance::min_distance_per_part{});
   clearance::min_distance_result r;
   for (auto _ : state) {
     if (how == cold) query.forget();
     r = how == plain   ? clearance::ask(cpu, model, s.poses, cloud, clearance::min_distance{})
-        : how == parts ? query.per_part(s.poses, cloud, minima)
+        : how == parts ? each(s.poses, cloud).all
                        : query(s.poses, cloud);
   }
   state.counters["distance_mm"] = r.distance * 1e3;

@@ -28,7 +28,7 @@ class cache_flush {
 struct manner {
   bool cold = false;     ///< Nothing is known about the last frame.
   bool plain = false;    ///< The loop over points with a traversal.
-  bool once = false;     ///< By min_distance_async, unprepared.
+  bool once = false;     ///< In one call, unprepared.
   bool each = false;     ///< Also every part's minimum.
   bool flushed = false;  ///< The cache is cold.
   bool queued = false;   ///< Behind other work.
@@ -68,6 +68,7 @@ void ask(benchmark::State& state, const bench::scene& s, const Model& model, man
   const clearance::point_span view(there.data(), points.size());
   const auto placed_there = model.on(gpu);
   clearance::query query(gpu, placed_there, clearance::min_distance{});
+  clearance::query each(gpu, placed_there, clearance::min_distance_per_part{});
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
   const clearance::device_buffer<clearance::part_minimum> minima(s.poses.size(), gpu.id);
   const device_clock clock(how.queued);
@@ -75,17 +76,18 @@ void ask(benchmark::State& state, const bench::scene& s, const Model& model, man
   const clearance::placed cloud{view, s.world_from_camera};
   const auto frame = [&] {
     if (how.plain)
-      clearance::enqueue(clearance::plain{gpu, clearance::near_first{}}, placed_there, s.poses, cloud, clearance::min_distance{}, result.data());
+      clearance::enqueue(clearance::plain{gpu, clearance::near_first{}}, placed_there, s.poses, cloud,
+                         clearance::min_distance{}, result.data());
     else if (how.once)
       clearance::enqueue(gpu, placed_there, s.poses, cloud, clearance::min_distance{}, result.data());
     else if (how.each)
-      query.enqueue_per_part(s.poses, cloud, result.data(), minima.data());
+      each.enqueue(s.poses, cloud, {result.data(), minima.data()});
     else
       query.enqueue(s.poses, cloud, result.data());
   };
   frame();
   for (auto _ : state) {
-    if (how.cold) query.forget();
+    if (how.cold) how.each ? each.forget() : query.forget();
     if (how.flushed) flush();
     state.SetIterationTime(clock.seconds(frame));
   }

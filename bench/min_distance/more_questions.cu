@@ -6,18 +6,18 @@
 #include "more_questions.hpp"
 
 #include <clearance/compacted.cuh>
-#include <clearance/questions/distances_per_part.hpp>
 #include <clearance/device.cuh>
-#include <clearance/questions/in_collision.hpp>
 #include <clearance/io/joint_chain.hpp>
-#include <clearance/questions/min_distances.hpp>
-#include <clearance/questions/min_distance_supported.hpp>
 #include <clearance/motion_clearance.hpp>
+#include <clearance/questions/distances_per_part.hpp>
+#include <clearance/questions/in_collision.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
+#include <clearance/questions/min_distances.hpp>
 #include <clearance/questions/part_witnesses.hpp>
 #include <clearance/questions/signed_distances.hpp>
-#include <clearance/volume/sphere.hpp>
 #include <clearance/questions/within.hpp>
 #include <clearance/questions/zones.hpp>
+#include <clearance/volume/sphere.hpp>
 
 namespace more_questions_bench {
 namespace {
@@ -56,7 +56,7 @@ void zones(benchmark::State& state, bool prepared) {
   clearance::query query(q.gpu, q.model, clearance::zones{});
   q.time(state, [&] {
     if (prepared)
-      query.enqueue(q.s.poses, q.cloud, options, found.data(), q.counts.data());
+      query.enqueue(q.s.poses, q.cloud, options, {found.data(), q.counts.data()});
     else
       clearance::enqueue(q.gpu, q.model, q.s.poses, q.cloud, options, {found.data(), q.counts.data()});
   });
@@ -67,16 +67,14 @@ void within(benchmark::State& state, bool prepared) {
   question q(std::size_t(state.range(0)));
   const device_buffer<clearance::pair_distance> pairs(q.points.size(), q.gpu.id);
   const device_buffer<unsigned long long> count(1, q.gpu.id);
-  const auto reaches = q.gpu.copy_in(std::span<const float>(std::vector<float>(q.model.size(), 0.1f)));
-  clearance::query query(q.gpu, q.model, clearance::within{});
+  const clearance::within near{{0.1f}};
+  const clearance::within::out to{pairs.data(), pairs.size(), count.data(), q.counts.data()};
+  clearance::query query(q.gpu, q.model, near);
   q.time(state, [&] {
-    if (prepared) {
-      query.enqueue(q.s.poses, q.cloud, 0.1f, pairs.data(), pairs.size(), count.data(), q.counts.data());
-    } else {
-      check_cuda(cudaMemsetAsync(count.data(), 0, sizeof(unsigned long long)), "cudaMemsetAsync");
-      clearance::within_async(q.gpu, q.model, q.s.poses, q.cloud, reaches.data(), pairs.data(), pairs.size(),
-                              count.data(), q.counts.data());
-    }
+    if (prepared)
+      query.enqueue(q.s.poses, q.cloud, to);
+    else
+      clearance::enqueue(q.gpu, q.model, q.s.poses, q.cloud, near, to);
   });
   state.counters["pairs"] = double(q.gpu.copy_out(count)[0]);
 }
@@ -85,13 +83,13 @@ void in_collision(benchmark::State& state, bool prepared) {
   if (no_device(state)) return;
   question q(std::size_t(state.range(0)));
   const device_buffer<clearance::collision_result> found(1, q.gpu.id);
-  const std::vector margin{0.05};
-  clearance::query query(q.gpu, q.model, clearance::in_collision{});
+  const clearance::in_collision near{{0.05}};
+  clearance::query query(q.gpu, q.model, near);
   q.time(state, [&] {
     if (prepared)
-      query.enqueue(q.s.poses, q.cloud, margin, found.data());
+      query.enqueue(q.s.poses, q.cloud, found.data());
     else
-      clearance::enqueue(q.gpu, q.model, q.s.poses, q.cloud, clearance::in_collision{{margin}}, found.data());
+      clearance::enqueue(q.gpu, q.model, q.s.poses, q.cloud, near, found.data());
   });
 }
 
@@ -99,8 +97,8 @@ void per_part(benchmark::State& state, float d_max) {
   if (no_device(state)) return;
   question q(std::size_t(state.range(0)));
   const device_buffer<float> distance(q.points.size() * q.model.size(), q.gpu.id);
-  clearance::query query(q.gpu, q.model, clearance::distances_per_part{});
-  q.time(state, [&] { query.enqueue(q.s.poses, q.cloud, distance.data(), q.counts.data(), d_max); });
+  clearance::query query(q.gpu, q.model, clearance::distances_per_part{d_max});
+  q.time(state, [&] { query.enqueue(q.s.poses, q.cloud, {distance.data(), q.counts.data()}); });
 }
 
 /// To triangles: signed, to compare with the distances that it computes first.
@@ -112,7 +110,8 @@ void to_triangles(benchmark::State& state, bool is_signed) {
   const clearance::distances_out out{.distance = distance.data()};
   q.time(state, [&] {
     if (is_signed)
-      clearance::enqueue(q.gpu, triangles, q.s.poses, q.cloud, clearance::signed_distances{0.1f}, {out, q.counts.data()});
+      clearance::enqueue(q.gpu, triangles, q.s.poses, q.cloud, clearance::signed_distances{0.1f},
+                         {out, q.counts.data()});
     else
       clearance::enqueue(q.gpu, triangles, q.s.poses, q.cloud, clearance::distances{0.1f}, {out, q.counts.data()});
   });

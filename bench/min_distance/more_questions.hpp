@@ -5,20 +5,21 @@
 #include "configurations.hpp"
 
 #include <clearance/compacted.hpp>
-#include <clearance/questions/distances_per_part.hpp>
 #include <clearance/gradient.hpp>
-#include <clearance/questions/in_collision.hpp>
 #include <clearance/io/jacobian.hpp>
+#include <clearance/motion_clearance.hpp>
+#include <clearance/questions/distances_per_part.hpp>
+#include <clearance/questions/in_collision.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/min_distance_supported.hpp>
-#include <clearance/motion_clearance.hpp>
+#include <clearance/questions/nearest_k.hpp>
 #include <clearance/questions/part_witnesses.hpp>
-#include <clearance/robot/attached.hpp>
 #include <clearance/questions/signed_distances.hpp>
-#include <clearance/volume/aabb.hpp>
-#include <clearance/volume/sphere.hpp>
 #include <clearance/questions/within.hpp>
 #include <clearance/questions/zones.hpp>
+#include <clearance/robot/attached.hpp>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/sphere.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -71,22 +72,19 @@ void for_each_gradient(const Add& add) {
         });
         state.counters["known"] = bool(found);
       });
-  add("min_distance_per_part, prepared",
-      [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-        clearance::query query(on, model, clearance::min_distance{});
-        std::vector<clearance::part_minimum> minima(model.size());
-        state.counters["mm"] =
-            1e3 * double(ask_often(state, [&] { return query.per_part(the_scene().poses, cloud, minima); }).distance);
-      });
+  add("min_distance_per_part, prepared", [](benchmark::State& state, const auto& on, const auto& model,
+                                            const auto& cloud) {
+    clearance::query query(on, model, clearance::min_distance_per_part{});
+    state.counters["mm"] = 1e3 * double(ask_often(state, [&] { return query(the_scene().poses, cloud).all; }).distance);
+  });
   add("min_distance_per_part and every part's gradient, prepared",
       [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-        clearance::query query(on, model, clearance::min_distance{});
+        clearance::query query(on, model, clearance::min_distance_per_part{});
         clearance::query where(on, model, clearance::part_witnesses{});
-        std::vector<clearance::part_minimum> minima(model.size());
         const auto found = ask_often(state, [&] {
-          query.per_part(the_scene().poses, cloud, minima);
+          const auto& least = query(the_scene().poses, cloud);
           std::size_t known = 0;
-          for (const auto& witness : where(the_scene().poses, cloud, minima))
+          for (const auto& witness : where(the_scene().poses, cloud, clearance::part_witnesses{least.parts}))
             known += witness.part != clearance::none && clearance::gradient(witness, origin_of(witness.part));
           return known;
         });
@@ -118,56 +116,33 @@ void for_each_attached(const Add& add) {
 /// Calls `add(name, row)` for each question: `row(state, on, model, cloud)`, with model and cloud on the backend.
 template <class Add>
 void for_each_question(const Add& add) {
-  const auto both = [&](const std::string& name, const auto& prepare, const auto& once, const auto& count,
-                        const auto&... how) {
+  const auto both = [&](const std::string& name, const auto& question, const auto& count) {
     add(name + ", prepared", [=](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-      auto query = prepare(on, model);
-      state.counters["found"] =
-          double(count(ask_often(state, [&] { return query(the_scene().poses, cloud, how...); })));
+      clearance::query query(on, model, question);
+      state.counters["found"] = double(count(ask_often(state, [&] { return query(the_scene().poses, cloud); })));
     });
     add(name + ", one call", [=](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-      state.counters["found"] =
-          double(count(ask_often(state, [&] { return once(on, model, the_scene().poses, cloud, how...); })));
+      state.counters["found"] = double(
+          count(ask_often(state, [&] { return clearance::ask(on, model, the_scene().poses, cloud, question); })));
     });
   };
-  both(
-      "zones of 10, 20 and 40 cm", [](const auto& on, const auto& model) { return clearance::zones_query(on, model); },
-      [](const auto&... all) { return clearance::zones(all...); },
-      [](const auto& found) {
-        std::uint64_t points = 0;
-        for (std::size_t k = 0; k < found.zones.size() / found.per_part; ++k)
-          points += found.of(k, found.per_part - 1).points;
-        return points;
-      },
-      clearance::zones{.thresholds = {0.1, 0.2, 0.4}});
-  both(
-      "within 10 cm", [](const auto& on, const auto& model) { return clearance::within_query(on, model); },
-      [](const auto&... all) { return clearance::within(all...); },
-      [](const auto& found) { return found.pairs.size(); }, 0.1f);
-  both(
-      "in_collision, 5 cm", [](const auto& on, const auto& model) { return clearance::in_collision_query(on, model); },
-      [](const auto&... all) { return clearance::in_collision(all...); },
-      [](const auto& found) { return found.point != clearance::none; }, 0.05);
-  const auto near = [](const auto& found) {
+  both("zones of 10, 20 and 40 cm", clearance::zones{.thresholds = {0.1, 0.2, 0.4}}, [](const auto& found) {
+    std::uint64_t points = 0;
+    for (std::size_t k = 0; k < found.zones.size() / found.per_part; ++k)
+      points += found.of(k, found.per_part - 1).points;
+    return points;
+  });
+  const auto listed = [](const auto& found) { return found.pairs.size(); };
+  both("within 10 cm", clearance::within{{0.1f}}, listed);
+  both("in_collision, 5 cm", clearance::in_collision{{0.05}},
+       [](const auto& found) { return found.point != clearance::none; });
+  both("distances_per_part, 10 cm", clearance::distances_per_part{.d_max = 0.1f}, [](const auto& found) {
     return std::count_if(found.distance.begin(), found.distance.end(), [](float d) { return d < clearance::infinity; });
-  };
-  both(
-      "distances_per_part, 10 cm",
-      [](const auto& on, const auto& model) { return clearance::distances_per_part_query(on, model); },
-      [](const auto&... all) { return clearance::distances_per_part(all...); }, near, 0.1f);
-  for (const std::size_t k : {10, 1000})
-    both(
-        "nearest_k, " + std::to_string(k),
-        [](const auto& on, const auto& model) { return clearance::nearest_k_query(on, model); },
-        [](const auto&... all) { return clearance::nearest_k(all...); },
-        [](const auto& found) { return found.pairs.size(); }, k);
-  both(
-      "min_distance_supported",
-      [](const auto& on, const auto& model) { return clearance::min_distance_supported_query(on, model); },
-      [](const auto&... all) { return clearance::min_distance_supported(all...); },
-      [](const auto& found) { return found.isolated; }, clearance::min_distance_supported{});
+  });
+  for (const std::size_t k : {10, 1000}) both("nearest_k, " + std::to_string(k), clearance::nearest_k{.k = k}, listed);
+  both("min_distance_supported", clearance::min_distance_supported{}, [](const auto& found) { return found.isolated; });
   add("motion_clearance", [](benchmark::State& state, const auto& on, const auto& model, const auto& cloud) {
-    clearance::query query(on, model, clearance::min_distance{});
+    clearance::query query(on, model, clearance::min_distance_per_part{});
     const auto motion = some_motion();
     const auto found = ask_often(state, [&] { return clearance::motion_clearance(query, model, motion, cloud); });
     state.counters["queries"] = double(found.queries), state.counters["lower_mm"] = 1e3 * found.lower;
@@ -175,17 +150,16 @@ void for_each_question(const Add& add) {
   for_each_gradient(add);
   for_each_attached(add);
   // The robot's triangles; signed_distances, to compare with the distances that it computes first.
-  const auto exact = [&](const char* name, const auto& ask) {
+  const auto exact = [&](const char* name, const auto& question) {
     add(name, [=](benchmark::State& state, const auto& on, const auto&, const auto& cloud) {
       const auto triangles = triangle_model<clearance::aabb>(the_scene()).on(on);
-      const auto found = ask_often(state, [&] {
-        return ask(on, triangles, the_scene().poses, cloud, clearance::distances{.d_max = 0.1f});
-      });
+      const auto found =
+          ask_often(state, [&] { return clearance::ask(on, triangles, the_scene().poses, cloud, question); });
       state.counters["inside"] = double(std::ranges::count_if(found.distance, [](float d) { return d < 0; }));
     });
   };
-  exact("distances to triangles, 10 cm", [](const auto&... all) { return clearance::distances(all...); });
-  exact("signed_distances, 10 cm", [](const auto&... all) { return clearance::signed_distances(all...); });
+  exact("distances to triangles, 10 cm", clearance::distances{.d_max = 0.1f});
+  exact("signed_distances, 10 cm", clearance::signed_distances{.d_max = 0.1f});
   add("compacted", [](benchmark::State& state, const auto& on, const auto&, const auto& cloud) {
     state.counters["points"] =
         double(ask_often(state, [&] { return clearance::compacted(on, cloud.source); }).points.size());

@@ -4,13 +4,13 @@
 // other work.
 #include "device.cuh"
 
-#include <clearance/questions/in_collision.hpp>
 #include <clearance/device.cuh>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/in_collision.hpp>
 #include <clearance/questions/self_filter.hpp>
-#include <clearance/volume/sphere.hpp>
 #include <clearance/questions/within.hpp>
 #include <clearance/questions/zones.hpp>
+#include <clearance/volume/sphere.hpp>
 
 namespace questions_bench {
 namespace {
@@ -56,7 +56,7 @@ struct question {
       clearance::check_cuda(
           cudaMemcpyAsync(words.data(), start.data(), words.size() * sizeof(T), cudaMemcpyDeviceToDevice),
           "cudaMemcpyAsync");
-      query.enqueue(s.poses, cloud, answer, counts.data(), clearance::minimum::as_it_is{});
+      query.enqueue(s.poses, cloud, answer, counts.data(), clearance::frames::as_it_is{});
     };
     frame();
     for (auto _ : state) state.SetIterationTime(clock.seconds(frame));
@@ -101,10 +101,10 @@ void in_collision(benchmark::State& state, float margin) {
 void every_part(benchmark::State& state) {
   if (no_device(state)) return;
   question q(state);
-  clearance::query query(q.gpu, q.model, clearance::min_distance{});
+  clearance::query query(q.gpu, q.model, clearance::min_distance_per_part{});
   const clearance::device_buffer<clearance::min_distance_result> result(1, q.gpu.id);
   const clearance::device_buffer<clearance::part_minimum> minima(q.model.size(), q.gpu.id);
-  const auto frame = [&] { query.enqueue_per_part(q.s.poses, q.cloud, result.data(), minima.data()); };
+  const auto frame = [&] { query.enqueue(q.s.poses, q.cloud, {result.data(), minima.data()}); };
   frame();
   for (auto _ : state) state.SetIterationTime(q.clock.seconds(frame));
 }
@@ -121,9 +121,10 @@ void own(benchmark::State& state, bool minimum, bool prepared) {
   clearance::query filter(q.gpu, q.model, clearance::self_filter{});
   const auto frame = [&] {
     if (prepared)
-      filter.enqueue(q.s.poses, q.cloud, {.padding = {0.05}}, labels.data(), counts.data());
+      filter.enqueue(q.s.poses, q.cloud, {.padding = {0.05}}, {labels.data(), counts.data()});
     else
-      clearance::enqueue(q.gpu, q.model, q.s.poses, q.cloud, clearance::self_filter{.padding = {0.05}}, {labels.data(), counts.data()});
+      clearance::enqueue(q.gpu, q.model, q.s.poses, q.cloud, clearance::self_filter{.padding = {0.05}},
+                         {labels.data(), counts.data()});
     if (minimum) query.enqueue(q.s.poses, rest, result.data());
   };
   frame();

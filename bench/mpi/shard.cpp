@@ -50,7 +50,8 @@ int main(int count, char** arguments) {
     for (std::size_t i = 0; i < points; ++i)
       cloud.push_back({3 * across(bits), 3 * across(bits), 0.5f + across(bits) * 0.05f});
     clearance::query alone(clearance::host{1}, arm, clearance::min_distance{});
-    clearance::query together(clearance::mpi::shard{MPI_COMM_WORLD, clearance::host{1}}, arm, clearance::min_distance{});
+    clearance::query together(clearance::mpi::shard{MPI_COMM_WORLD, clearance::host{1}}, arm,
+                              clearance::min_distance{});
     const int calls = points > 100000 ? 200 : 2000;
     const double slowest = median(calls, [&] { alone(poses, cloud); }),
                  all = median(calls, [&] { together(poses, cloud); });

@@ -17,7 +17,7 @@ class frames {
       : l_(l),
         binary_(binary),
         views_(l.gpu.copy_out(binary.view().parts, binary.size())),
-        query_(l.gpu, model),
+        query_(l.gpu, model, {}),
         pinned_(l.points.size(), l.gpu.id),
         filtered_(l.points.size() * model.size(), l.gpu.id),
         sets_(l.points.size() * model.size(), l.gpu.id) {
@@ -75,7 +75,7 @@ class frames {
   lab& l_;
   const Binary& binary_;
   std::vector<typename Binary::view_type> views_;
-  clearance::min_distance_query<clearance::device, typename Model::view_type> query_;
+  clearance::query<clearance::min_distance, clearance::device, typename Model::view_type> query_;
   clearance::pinned_buffer<clearance::vec3> pinned_, filtered_;
   clearance::device_buffer<clearance::vec3> sets_;
   std::size_t copied_ = 0;

@@ -27,7 +27,8 @@ void host_competitors(report& out, const scenario& scene, std::size_t count, con
   const clearance::placed<clearance::point_span> placed{cloud, scene.world_from_cloud};
   const auto view = model.view();
   const clearance::frames::cloud_frame frame(view.facts, poses, scene.world_from_cloud);
-  const double reference = clearance::ask(clearance::host{.threads = 1}, model, poses, placed, clearance::min_distance{}).distance;
+  const double reference =
+      clearance::ask(clearance::host{.threads = 1}, model, poses, placed, clearance::min_distance{}).distance;
 
   out.begin("competitors", scene.name, count);
   if (quick) out.expect("brute force", brute_force(model, frame, cloud), reference);
@@ -83,7 +84,8 @@ void host_along_motion(report& out, const scenario& scene, std::size_t count, co
   for (int step = 0; step < steps; ++step) {
     const auto poses = scene.poses(double(step) / (steps - 1));
     out.begin("motion", scene.name, count, step);
-    const double reference = clearance::ask(clearance::host{}, model, poses, placed, clearance::min_distance{}).distance;
+    const double reference =
+        clearance::ask(clearance::host{}, model, poses, placed, clearance::min_distance{}).distance;
     out.row("distance", "m", reference);
     if (quick) {
       const clearance::frames::cloud_frame frame(model.view().facts, poses, scene.world_from_cloud);

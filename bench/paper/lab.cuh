@@ -8,8 +8,8 @@
 #include "scenes.hpp"
 #include "sequential.hpp"
 
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/traversal/recursive.hpp>
 #include <clearance/traversal/stack.hpp>
 

@@ -99,7 +99,10 @@ double milliseconds() {
 clearance::min_distances_result distances(const question& asked, std::span<const clearance::vec3> cloud) {
   static const auto few = clearance::make_model<clearance::sphere>(::packings(40)),
                     many = clearance::make_model<clearance::sphere>(::packings(2048));
-  return clearance::ask(clearance::host{.threads = asked.threads}, asked.packings.data() == ::packings(40).data() ? few : many, poses(), clearance::placed{clearance::point_span(cloud), bench::the_scene().world_from_camera}, clearance::min_distances{asked.margin});
+  return clearance::ask(clearance::host{.threads = asked.threads},
+                        asked.packings.data() == ::packings(40).data() ? few : many, poses(),
+                        clearance::placed{clearance::point_span(cloud), bench::the_scene().world_from_camera},
+                        clearance::min_distances{asked.margin});
 }
 std::vector<clearance::vec3> as_ours(const std::vector<point>& cloud) {
   std::vector<clearance::vec3> all;

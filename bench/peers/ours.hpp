@@ -4,8 +4,8 @@
 
 #include "min_distance/scene_files.hpp"
 
-#include <clearance/questions/distances.hpp>
 #include <clearance/io/robot.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 
@@ -31,7 +31,8 @@ inline void ours_every_point(benchmark::State& state) {
   std::vector<clearance::real> distance(scene().cloud.size());
   clearance::point_counts counts;
   for (auto _ : state)
-    clearance::enqueue(clearance::host{.threads = 1}, model, scene().poses, cloud, clearance::distances{}, {{distance.data()}, &counts});
+    clearance::enqueue(clearance::host{.threads = 1}, model, scene().poses, cloud, clearance::distances{},
+                       {{distance.data()}, &counts});
   clearance::real least = clearance::infinity;
   for (const clearance::real d : distance) least = clearance::min(least, d);
   state.counters["distance_mm"] = least * 1e3;

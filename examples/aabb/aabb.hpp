@@ -3,8 +3,8 @@
 // Triangles in axis-aligned boxes: how near does a depth image come to a cube? The same source on CPU and GPU.
 
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/points/depth_image.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/solid/close_mesh.hpp>
 #include <clearance/volume/aabb.hpp>
 
@@ -38,6 +38,7 @@ int example(const Backend& on) {
   const bool right = std::abs(r.distance - 0.3f) < 1e-6f && r.point == 20 * 64 + 40 && r.valid == 64 * 48 - 1;
 
   pose.translation().z() = 1.2;  // now the finger is inside: the cube is closed, so that is noticed
-  const bool noticed = clearance::ask(on, part, pose, image, clearance::min_distance{}).state == clearance::state::collision;
+  const bool noticed =
+      clearance::ask(on, part, pose, image, clearance::min_distance{}).state == clearance::state::collision;
   return right && noticed && r.state == clearance::state::free ? 0 : 1;
 }

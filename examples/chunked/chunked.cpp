@@ -5,8 +5,8 @@
 #include <clearance/chunked_query.hpp>
 #include <clearance/io/mapped_cloud.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <chrono>
@@ -49,7 +49,7 @@ int main(int count, char** arguments) {
     const auto arm = clearance::make_model<clearance::sphere>(std::vector<std::vector<clearance::inner_sphere>>{row});
     // [ask]
     clearance::chunked street(clearance::io::map_points(file));  // x, y, z in floats; map_pcd takes a PCD file
-    clearance::chunked_query ask(clearance::host{}, arm);
+    clearance::chunked_query ask(clearance::host{}, arm, clearance::min_distance{});
     for (const double along : {-80.0, -79.0, 0.0, 0.1}) {
       const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d(Eigen::Translation3d(along, 0, 0))};
       const auto start = std::chrono::steady_clock::now();
@@ -59,8 +59,10 @@ int main(int count, char** arguments) {
                   double(r.distance), r.point, static_cast<unsigned long long>(r.seen),
                   static_cast<unsigned long long>(ask.loaded()), seconds);
       // [ask]
-      wrong += points <= 10000000 &&
-               r.point != clearance::ask(clearance::host{}, arm, poses, street.cloud().source, clearance::min_distance{}).point;
+      wrong +=
+          points <= 10000000 &&
+          r.point !=
+              clearance::ask(clearance::host{}, arm, poses, street.cloud().source, clearance::min_distance{}).point;
     }
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());

@@ -2,10 +2,10 @@
 #pragma once
 // An answer in time: what is known of a large cloud when the control cycle is over, and how much of it that is about.
 
-#include <clearance/make_model.hpp>
 #include <clearance/deadline.hpp>
-#include <clearance/questions/min_distance.hpp>
+#include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>
@@ -27,15 +27,15 @@ int example(const Backend& on) {
   const auto all = clearance::ask(on, arm, poses, hall, clearance::min_distance{});
   bool right = true;
   for (const std::chrono::duration<double> deadline : {0us, 1000us, 5000us, 10000000us}) {
-    const auto r = clearance::ask_by(on, arm, poses, hall, deadline, clearance::min_distance{});
+    const auto [r, unseen] = clearance::ask_by(on, arm, poses, hall, deadline, clearance::min_distance{});
     std::printf("%8.1f ms: %3.0f %% of the points, %s, %.3f m; certainly at least %.3f m\n", 1e3 * deadline.count(),
-                100 * double(r.seen) / double(r.seen + r.unseen), to_string(r.state), double(r.distance),
+                100 * double(r.seen) / double(r.seen + unseen), to_string(r.state), double(r.distance),
                 double(r.lower));
-    right = right && r.lower <= all.lower && all.upper <= r.upper && (r.unseen == 0 || !(r.lower > 0));
+    right = right && r.lower <= all.lower && all.upper <= r.upper && (unseen == 0 || !(r.lower > 0));
   }
   // [deadline]
-  const auto patient = clearance::ask_by(on, arm, poses, hall, 10s, clearance::min_distance{});
-  return right && patient.unseen == 0 && patient.distance == all.distance && patient.point == all.point &&
+  const auto [patient, unseen] = clearance::ask_by(on, arm, poses, hall, 10s, clearance::min_distance{});
+  return right && unseen == 0 && patient.distance == all.distance && patient.point == all.point &&
                  patient.lower == all.lower
              ? 0
              : 1;

@@ -3,8 +3,8 @@
 // A cloud too large for one GPU to be quick about, before an arm: the same lines on CPU threads, one GPU, or several.
 
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>

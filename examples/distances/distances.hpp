@@ -2,10 +2,10 @@
 #pragma once
 // How far is every point of a cloud from a robot, and from which of its links?
 
-#include <clearance/questions/distances.hpp>
-#include <clearance/questions/distances_per_part.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/distances.hpp>
+#include <clearance/questions/distances_per_part.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ int example(const Backend& on) {
 
   // [distances]
   const auto robot = clearance::make_model<clearance::sphere>(links).on(on);
-  const auto all = clearance::ask(on, robot, poses, wall, clearance::distances{.d_max = 0.5f, .which = true});
+  const auto all = clearance::ask(on, robot, poses, wall, clearance::distances{.d_max = 0.5, .which = true});
   const auto near = std::ranges::count_if(
       all.distance, [&](clearance::real d) { return d <= 0.5f && !(all.certain.lower(d) > 0.25f); });
   const auto first = std::size_t(std::ranges::min_element(all.distance) - all.distance.begin());
@@ -34,7 +34,8 @@ int example(const Backend& on) {
   // [distances]
 
   // [parts]
-  const auto each = clearance::ask(on, robot, poses, wall, clearance::distances_per_part{});  // of every link to every point
+  const auto each =
+      clearance::ask(on, robot, poses, wall, clearance::distances_per_part{});  // of every link to every point
   std::printf("that point is %.1f cm from link 0 and %.1f cm from link 1\n", 100.0 * each.of(0)[first],
               100.0 * each.of(1)[first]);
   // [parts]

@@ -2,8 +2,8 @@
 // A type that cannot be changed as a bounding volume: Eigen's own box, taught to the library from outside.
 #include <clearance/backend/host.hpp>
 #include <clearance/bvh/build.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 
 #include <Eigen/Geometry>

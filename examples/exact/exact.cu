@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/questions/signed_distances.hpp>
 #include <clearance/device.cuh>
 
 #include "exact.hpp"

@@ -23,7 +23,7 @@ int example(const Backend& on) {
   // [exact]
   const auto tool = clearance::make_model<clearance::aabb>(std::vector{clearance::close_mesh(block)}).on(on);
   const std::vector<Eigen::Isometry3d> poses(1, Eigen::Isometry3d::Identity());
-  const auto all = clearance::ask(on, tool, poses, bench, clearance::signed_distances{.d_max = 0.1f, .which = true});
+  const auto all = clearance::ask(on, tool, poses, bench, clearance::signed_distances{.d_max = 0.1, .which = true});
   const auto inside = std::ranges::count_if(all.distance, [](clearance::real d) { return d < 0; });
   const auto deepest = std::size_t(std::ranges::min_element(all.distance) - all.distance.begin());
   std::printf("%zd of %zu points are inside; the deepest is %.1f mm from triangle %u\n", std::ptrdiff_t(inside),

@@ -4,9 +4,9 @@
 
 #include <clearance/gradient.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/part_witnesses.hpp>
-#include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>

@@ -3,8 +3,8 @@
 // From a mesh to a distance with a certificate: inner spheres in bounding spheres.
 
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
 
 #include "live_loop.hpp"

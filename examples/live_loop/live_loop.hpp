@@ -4,8 +4,8 @@
 // next.
 
 #include <clearance/bvh/build.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <chrono>

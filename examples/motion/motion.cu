@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/motion_clearance.hpp>
 #include <clearance/device.cuh>
 
 #include "motion.hpp"

@@ -2,11 +2,11 @@
 #pragma once
 // Is any point closer than a margin, and which points are?
 
-#include <clearance/questions/in_collision.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
-#include <clearance/volume/sphere.hpp>
+#include <clearance/questions/in_collision.hpp>
 #include <clearance/questions/within.hpp>
+#include <clearance/volume/sphere.hpp>
 
 #include <cstdio>
 
@@ -27,12 +27,12 @@ int example(const Backend& on) {
   std::printf("closer than 12 cm: %s, point %u is near link %u\n", to_string(touched.state), touched.point,
               touched.part);
 
-  const auto near = clearance::ask(on, robot, poses, shelf, clearance::within{{0.12f}});
+  const auto near = clearance::ask(on, robot, poses, shelf, clearance::within{{0.12}});
   for (std::size_t k = 0; k < links.size(); ++k)
     std::printf("link %zu: %zu points within 12 cm\n", k, near.offsets[k + 1] - near.offsets[k]);
 
-  clearance::query ask(on, robot, clearance::in_collision{});  // in every frame: it keeps its memory; within_query likewise
-  const auto again = ask(poses, shelf, 0.12);
+  clearance::query ask(on, robot, clearance::in_collision{{0.12}});  // for every frame: it keeps its memory
+  const auto again = ask(poses, shelf);
   // [near]
 
   std::size_t expected = 0, first = shelf.size();

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/questions/min_distance_supported.hpp>
 #include <clearance/device.cuh>
 
 #include "nearest.hpp"

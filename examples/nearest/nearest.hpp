@@ -3,9 +3,9 @@
 // The nearest points of each link, and how far the nearest thing is that is more than a grain of dust.
 
 #include <clearance/make_model.hpp>
+#include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/min_distance_supported.hpp>
 #include <clearance/questions/nearest_k.hpp>
-#include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>
@@ -23,12 +23,13 @@ int example(const Backend& on) {
   // [nearest]
   const std::vector<Eigen::Isometry3d> poses(2, Eigen::Isometry3d::Identity());
   const auto robot = clearance::make_model<clearance::sphere>(links).on(on);
-  const auto near = clearance::ask(on, robot, poses, seen, clearance::nearest_k{.k = 100, .d_max = 0.5f});
+  const auto near = clearance::ask(on, robot, poses, seen, clearance::nearest_k{.k = 100, .d_max = 0.5});
   for (std::size_t k = 0; k < links.size(); ++k)
     std::printf("link %zu: the nearest of 100 is %.3f m away, the last %.3f m\n", k,
                 double(near.of(k).front().distance), double(near.of(k).back().distance));
 
-  const auto solid = clearance::ask(on, robot, poses, seen, clearance::min_distance_supported{.min_points = 5, .radius = 0.02});
+  const auto solid =
+      clearance::ask(on, robot, poses, seen, clearance::min_distance_supported{.min_points = 5, .radius = 0.02});
   std::printf("%.3f m to point %u; %llu nearer points are alone, the first %.3f m away\n", double(solid.distance),
               solid.point, static_cast<unsigned long long>(solid.isolated), double(solid.nearest_isolated.distance));
   // [nearest]

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "obb.hpp"
 
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
 
 int main() { return example(clearance::device{.id = 0}); }

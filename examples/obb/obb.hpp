@@ -3,8 +3,8 @@
 // Spheres in oriented boxes: an arm of two links, the distance of each, and the nearest of all.
 
 #include <clearance/bvh/build.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/obb.hpp>
 
 #include <cstdio>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/questions/collect.hpp>
 #include <clearance/device.cuh>
 
 #include "own_answer.hpp"

@@ -2,10 +2,10 @@
 #pragma once
 // An answer of one's own: for each part of a robot, how many points are nearer than 5, 10 and 20 cm.
 
-#include <clearance/questions/collect.hpp>
 #include <clearance/ground/ordered.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/collect.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>
@@ -46,7 +46,8 @@ int example(const Backend& on) {
   // [ask]
   const auto counts =
       on.copy_in(std::span<const unsigned long long>(std::vector<unsigned long long>(3 * robot.size())));
-  const clearance::point_counts seen = clearance::ask(on, robot, poses, clearance::point_span(cloud), clearance::collect{crowding{const_cast<unsigned long long*>(counts.data())}});
+  const crowding answer{const_cast<unsigned long long*>(counts.data())};
+  const clearance::point_counts seen = clearance::ask(on, robot, poses, cloud, clearance::collect{answer});
   const auto near = on.copy_out(counts);
   // [ask]
 

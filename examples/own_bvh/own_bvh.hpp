@@ -5,8 +5,8 @@
 #include "their_tree.hpp"
 
 #include <clearance/bvh/flat_list.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 
 #include <bit>

@@ -4,8 +4,8 @@
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/ground/read_only.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>

@@ -2,8 +2,8 @@
 // A solid of one's own, packed without any mesh: a dome by its formula.
 #include <clearance/backend/host.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cmath>
@@ -31,7 +31,8 @@ int main() {
   std::printf("%zu spheres, certified gap %.2f mm\n", packed.spheres.size(), 1000 * packed.gap);
   for (int k = 0; k < 200; ++k) {
     const clearance::vec3 p{0.001f * k - 0.1f, 0.0005f * k, 0.05f + 0.0005f * k};
-    const auto r = clearance::ask(clearance::host{}, part, Eigen::Isometry3d::Identity(), std::vector{p}, clearance::min_distance{});
+    const auto r = clearance::ask(clearance::host{}, part, Eigen::Isometry3d::Identity(), std::vector{p},
+                                  clearance::min_distance{});
     const double exact = std::max(0.0, std::hypot(p.x, p.y, p.z) - 0.1);  // above the flat face
     if (!(r.lower <= exact && exact <= r.upper)) return 1;
   }

@@ -3,8 +3,8 @@
 // A bounding volume of one's own. Nothing of it is in the library, and the library needs no change for it.
 
 #include <clearance/bvh/build.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 
 #include <cstdio>

@@ -2,10 +2,10 @@
 #pragma once
 // Is a planned trajectory still free in the newest frame, and where is it not?
 
-#include <clearance/questions/in_collisions.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/in_collisions.hpp>
+#include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>
@@ -29,10 +29,10 @@ int example(const Backend& on) {
       trajectory.push_back(Eigen::Isometry3d::Identity());
       trajectory.back().translation().x() = link * (0.3 + 0.01 * waypoint);  // it reaches out
     }
-  clearance::query ask(on, arm, clearance::min_distances{});
+  clearance::query ask(on, arm, clearance::min_distances{.d_max = 0.2});  // farther away: only that fact is reported
   std::size_t stops = 0;
   for (const auto& frame : {wall, room}) {
-    const auto found = ask(trajectory, frame, {.d_max = 0.2f});  // farther away: only that fact is reported
+    const auto found = ask(trajectory, frame);
     stops = found.first_below(0.05);
     if (stops < found.of.size())
       std::printf("waypoint %zu comes %.3f m near to point %u, with part %u\n", stops, double(found.of[stops].distance),
@@ -44,13 +44,14 @@ int example(const Backend& on) {
   }
 
   // [in_collisions]
-  clearance::query touches(on, arm, clearance::in_collisions{});  // one state per configuration
-  const auto& states = touches(trajectory, wall, 0.05);
+  clearance::query touches(on, arm, clearance::in_collisions{{0.05}});  // one state per configuration
+  const auto& states = touches(trajectory, wall);
   const std::size_t not_free = states.first_not_free();
   if (not_free < states.of.size())
     std::printf("waypoint %zu is the first that may be within 5 cm: %s\n", not_free, to_string(states.of[not_free]));
   // [in_collisions]
-  if (not_free != 73 || clearance::ask(on, arm, trajectory, wall, clearance::in_collisions{{0.05}}).of != states.of) return 1;
+  if (not_free != 73 || clearance::ask(on, arm, trajectory, wall, clearance::in_collisions{{0.05}}).of != states.of)
+    return 1;
 
   // [parts]
   const auto each = clearance::ask(on, arm, trajectory, wall, clearance::min_distances_per_part{});
@@ -67,7 +68,7 @@ int example(const Backend& on) {
   std::vector<double> q;  // two trajectories, one number per waypoint
   for (int waypoint = 0; waypoint < 200; ++waypoint)
     q.push_back(waypoint < 100 ? 0.01 * waypoint : 0.001 * (waypoint - 100));
-  const auto of_joints = ask(chain, q, wall, {.d_max = 0.2f});
+  const auto of_joints = ask(chain, q, wall);
   const auto first = of_joints.first_below(0.05, 100);
   std::printf("the first trajectory stops at waypoint %zu of 100, the second at %zu\n", first[0], first[1]);
   // [joints]

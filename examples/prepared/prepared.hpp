@@ -3,8 +3,8 @@
 // A robot in a loop: the prepared query keeps its scratch memory, and where the last minimum was, from frame to frame.
 
 #include <clearance/bvh/build.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>
@@ -27,7 +27,8 @@ int example(const Backend& on) {
     const clearance::min_distance_result r = ask(std::vector{shoulder, elbow}, wall);
     if (!(r.lower > 0.05)) ++stops;  // also if there was no valid point
     // [frames]
-    const auto same = clearance::ask(clearance::host{}, clearance::model(std::vector{link, link}), std::vector{shoulder, elbow}, wall, clearance::min_distance{});
+    const auto same = clearance::ask(clearance::host{}, clearance::model(std::vector{link, link}),
+                                     std::vector{shoulder, elbow}, wall, clearance::min_distance{});
     if (r.distance != same.distance || r.point != same.point || r.primitive != same.primitive) return 1;
   }
   std::printf("%d of 20 frames were too close\n", stops);

@@ -5,6 +5,7 @@
 #include <clearance/mpi/shard.hpp>
 #include <clearance/points/sharded.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>

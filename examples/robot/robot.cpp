@@ -3,9 +3,9 @@
 #include <clearance/backend/host.hpp>
 #include <clearance/io/robot.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/points/depth_image.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>

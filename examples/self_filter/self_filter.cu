@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <clearance/compacted.cuh>  // how a device does it
-#include <clearance/questions/self_filter.hpp>
 #include <clearance/device.cuh>
 
 #include "self_filter.hpp"

@@ -5,8 +5,8 @@
 #include <clearance/compacted.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance_filtered.hpp>
 #include <clearance/robot/attached.hpp>
-#include <clearance/questions/self_filter.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstdio>
@@ -28,16 +28,15 @@ int example(const Backend& on) {
 
   // [self_filter]
   const auto arm = clearance::make_model<clearance::sphere>(links).on(on);
-  const clearance::self_filter options{
-      .padding = {0.02}};  // metres: noise, calibration, and the gap of the spheres
-  const auto bare = clearance::min_distance_filtered(on, arm, poses, seen, options);
+  const clearance::self_filter filter{.padding = {0.02}};  // metres: noise, calibration, and the gap of the spheres
+  const auto bare = clearance::min_distance_filtered(on, arm, poses, seen, filter);
 
   const auto tool =
       clearance::make_model<clearance::sphere>(box).on(on);  // grasped: one more part, and nothing is built anew
   const auto holding = clearance::attach(on, arm, tool);
   auto its_poses = poses;
   its_poses.push_back(poses[1] * hand);  // world-from-link * link-from-object
-  const auto r = clearance::min_distance_filtered(on, holding, its_poses, seen, options);
+  const auto r = clearance::min_distance_filtered(on, holding, its_poses, seen, filter);
   std::printf("%llu of %zu points are the robot's; it is %.3f m from point %u\n", r.filter.counts.own, seen.size(),
               double(r.rest.distance), r.rest.point);
   // [self_filter]

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
-#include <clearance/questions/part_witnesses.hpp>
-#include <clearance/questions/zones.hpp>
 
 #include "zones.hpp"
 

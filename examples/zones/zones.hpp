@@ -4,12 +4,12 @@
 // And approach: as slow as leaves time before a collision.
 
 #include <clearance/make_model.hpp>
+#include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/part_witnesses.hpp>
-#include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/zones.hpp>
 #include <clearance/separation.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/questions/zones.hpp>
 
 #include <cstdio>
 
@@ -25,20 +25,20 @@ int example(const Backend& on) {
 
   // [zones]
   const auto arm = clearance::make_model<clearance::sphere>(links).on(on);
-  const clearance::zones options{.thresholds = {0.1, 0.3, 0.6}, .min_points = 5};  // stop, slow down, warn
-  clearance::query ask(on, arm, clearance::zones{});  // once; a single call is ask(on, arm, poses, person, options)
+  const clearance::zones zones{.thresholds = {0.1, 0.3, 0.6}, .min_points = 5};  // stop, slow down, warn
+  clearance::query ask(on, arm, zones);  // once; a single call is clearance::ask(on, arm, poses, person, zones)
   std::size_t wrong = 0, expected = 3;
   for (const double reached : {0.0, 0.3, 0.5, 0.7}) {
     std::vector<Eigen::Isometry3d> poses(2, Eigen::Isometry3d::Identity());
     poses[1].translation().x() = reached;
-    const auto seen = ask(poses, person, options);
+    const auto seen = ask(poses, person);
     const char* const what[] = {"stop", "slow down", "warn", "go on"};
     std::printf("%.1f m: %s; %llu points in the warning zone of the last link, the nearest %.2f m away\n", reached,
                 what[seen.innermost()], static_cast<unsigned long long>(seen.of(1, 2).points),
                 double(seen.of(1, 2).nearest));
     // [zones]
     wrong += seen.innermost() != expected-- ||
-             clearance::ask(on, arm, poses, person, options).of(1, 2).points != seen.of(1, 2).points;
+             clearance::ask(on, arm, poses, person, zones).of(1, 2).points != seen.of(1, 2).points;
   }
 
   for (const double x : {0.5, -0.5}) {

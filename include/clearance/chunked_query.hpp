@@ -75,7 +75,8 @@ class chunk_engine {
     return cloud.where([&](const extent& seen) {
       const extent box{seen.lower - frame.origin, seen.upper - frame.origin};
       for (std::size_t k = 0; k < facts_.size(); ++k)
-        if (scan::may_reach(frame.places[k].around, q.reach(k, facts_.size(), facts_[k], frame.error), box)) return true;
+        if (scan::may_reach(frame.places[k].around, q.reach(k, facts_.size(), facts_[k], frame.error), box))
+          return true;
       return false;
     });
   }
@@ -97,15 +98,14 @@ struct chunk_engine_of<Q, On, PartView> {
   struct type : one_robot<On, PartView>, Q::template chunks<On, PartView> {
     template <class Robot>
     type(const On& on, const Robot& robot, const Q&)
-        : one_robot<On, PartView>(on, robot),
-          Q::template chunks<On, PartView>(on, one_robot<On, PartView>::view()) {}
+        : one_robot<On, PartView>(on, robot), Q::template chunks<On, PartView>(on, one_robot<On, PartView>::view()) {}
   };
 };
 
 }  // namespace detail
 
-/// A prepared question about a `chunked` cloud. The answer is that of `ask` about the whole cloud in memory, to the bit.
-/// The robot must outlive the object; use it from one thread.
+/// A prepared question about a `chunked` cloud. The answer is that of `ask` about the whole cloud in memory, to the
+/// bit. The robot must outlive the object; use it from one thread.
 template <question Q, class On, class PartView>
 class chunked_query {
  public:
@@ -132,7 +132,6 @@ class chunked_query {
   Q asked_;
 };
 template <class On, class Robot, class Q>
-chunked_query(const On&, const Robot&, const Q&)
-    -> chunked_query<Q, On, typename detail::part_view_of<Robot>::type>;
+chunked_query(const On&, const Robot&, const Q&) -> chunked_query<Q, On, typename detail::part_view_of<Robot>::type>;
 
 }  // namespace clearance

@@ -36,9 +36,7 @@ struct compact_body {
 /// On a backend without a scan of its own. One thread is as fast as memory.
 template <class On>
 struct compacts_on {
-  static_assert(
-      !requires { typename On::own_scan; },
-      "a device does it otherwise: include <clearance/compacted.cuh>");
+  static_assert(!requires { typename On::own_scan; }, "a device does it otherwise: include <clearance/compacted.cuh>");
 
   template <point_source S>
   static void enqueue(const On& on, const S& source, vec3* points, std::uint32_t* numbers, std::uint32_t* count) {

@@ -5,6 +5,7 @@
 #include <clearance/concepts/answer.hpp>
 #include <clearance/concepts/backend.hpp>
 #include <clearance/concepts/question.hpp>
+#include <clearance/concepts/tally.hpp>
 #include <clearance/concepts/traversal.hpp>
 #include <clearance/concepts/tree.hpp>
 #include <clearance/point_source.hpp>

@@ -10,8 +10,8 @@
 
 namespace clearance {
 
-/// The result about the points that there was time for. What it says is about all points: while some are unseen, nothing
-/// is `free`. `result` says what is certain; `unseen` points were not looked at.
+/// The result about the points that there was time for. What it says is about all points: while some are unseen,
+/// nothing is `free`. `result` says what is certain; `unseen` points were not looked at.
 template <class Result>
 struct so_far {
   Result result;
@@ -63,8 +63,7 @@ so_far<typename Q::result> ask_while(query<Q, On, PartView>& ask, const Poses& p
   static_assert(explain_given<Clouds>());
   static_assert(partial_question<Q>,
                 "while points are unseen this question has no answer: it needs so_far(result&, std::uint64_t unseen)");
-  static_assert(
-      !requires { typename On::several; }, "a deadline is for a host or a device, not for several");
+  static_assert(!requires { typename On::several; }, "a deadline is for a host or a device, not for several");
   detail::piece_numbers numbers;
   numbers.look(clouds);
   constexpr std::size_t usual = requires { typename On::own_scan; } ? 1 << 22 : 1 << 18;
@@ -99,8 +98,8 @@ so_far<typename Q::result> ask_by(query<Q, On, PartView>& ask, const Poses& pose
 }
 
 /// The answer, or what is known of it when `deadline` has passed since the call. Pieces are asked one after another,
-/// spread over the clouds. If there is time for all, the result is that of `ask`, to the bit; if for none (0), nothing is
-/// known. Throws std::invalid_argument as `ask`, and if the deadline is negative or NaN.
+/// spread over the clouds. If there is time for all, the result is that of `ask`, to the bit; if for none (0), nothing
+/// is known. Throws std::invalid_argument as `ask`, and if the deadline is negative or NaN.
 template <class On, class Robot, class Poses, class Clouds, class Q>
 so_far<typename Q::result> ask_by(const On& on, const Robot& robot, const Poses& poses, const Clouds& clouds,
                                   std::chrono::duration<double> deadline, const Q& q,

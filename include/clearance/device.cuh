@@ -9,3 +9,12 @@
 #include <clearance/plan/device_engine.cuh>
 #include <clearance/pointwise/device_engine.cuh>
 #include <clearance/query/on_devices.cuh>
+
+namespace clearance::detail {
+
+template <>
+inline constexpr bool has_scan<device> = true;
+template <>
+inline constexpr bool has_scan<devices> = true;
+
+}  // namespace clearance::detail

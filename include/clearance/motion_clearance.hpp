@@ -152,14 +152,17 @@ motion_clearance_result motion_clearance(query<min_distance_per_part, On, PartVi
                                          const Motion& motion, const Clouds& clouds,
                                          const motion_clearance_options& options = {}) {
   static_assert(explain_robot<Robot>() && explain_clouds<Clouds>());
+  static_assert(
+      !requires(const On& on) { on.comm; },
+      "ranks would ask at different times of a motion: ask them min_distance_per_part yourself, or one rank alone");
   const auto at = [&](std::span<const Eigen::Isometry3d> poses) -> decltype(auto) { return ask(poses, clouds); };
   return detail::over_motion(at, detail::facts_of(robot), motion, clouds, options);
 }
 
 /// A lower bound of the clearance over a motion, never above it. Every part's least distance is asked at times where
-/// the bound is lowest; between them a part can come nearer only by as much as it moves. `clouds` as for `ask`; they are
-/// asked many times, so clouds for a device should be there. Throws std::invalid_argument as `ask` and the motion do,
-/// and if a tolerance or a margin is negative or not a number.
+/// the bound is lowest; between them a part can come nearer only by as much as it moves. `clouds` as for `ask`; they
+/// are asked many times, so clouds for a device should be there. Throws std::invalid_argument as `ask` and the motion
+/// do, and if a tolerance or a margin is negative or not a number.
 template <class On, class Robot, motion Motion, class Clouds>
 motion_clearance_result motion_clearance(const On& on, const Robot& robot, const Motion& motion, const Clouds& clouds,
                                          const motion_clearance_options& options = {}) {

@@ -5,15 +5,16 @@
 // wraps: cudaDeviceSynchronize cudaStreamSynchronize _Znwm
 #include "support/product_device.cuh"
 
-#include <clearance/questions/distances.hpp>
 #include <clearance/device.cuh>
+#include <clearance/questions/collect.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/questions/distances_per_part.hpp>
 #include <clearance/questions/in_collision.hpp>
 #include <clearance/questions/part_witnesses.hpp>
 #include <clearance/questions/self_filter.hpp>
-#include <clearance/volume/sphere.hpp>
 #include <clearance/questions/within.hpp>
 #include <clearance/questions/zones.hpp>
+#include <clearance/volume/sphere.hpp>
 
 namespace allocation_test {
 
@@ -82,11 +83,13 @@ TEST_CASE("Prepared questions allocate nothing, and do not wait, after their fir
   const placed here{all.span, s.cloud_pose}, cloud{all.span.at(points.data()), s.cloud_pose};
   const std::tuple clouds{cloud, placed{all.raw.at(pixels.data()), all.camera_pose}};
   clearance::query query(gpu, model, clearance::min_distance{});
+  clearance::query per_part(gpu, model, clearance::min_distance_per_part{});
+  clearance::query enqueued(gpu, model, clearance::min_distance{});  // it is never waited for
   const clearance::devices twice{0, 0};
   const auto on_both = make_model<clearance::sphere>(s, {}, clearance::wrapped{}).on(twice);
   clearance::query together(twice, on_both, clearance::min_distance{});
+  clearance::query together_per_part(twice, on_both, clearance::min_distance_per_part{});
   clearance::pointwise::device_points<typename decltype(model)::view_type> each(gpu, model.view());
-  std::vector<clearance::part_minimum> minima(model.size());
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
   const clearance::device_buffer<clearance::part_minimum> there(model.size(), gpu.id);
   const clearance::device_buffer<clearance::world_transform> poses(s.poses.size(), gpu.id);
@@ -96,18 +99,23 @@ TEST_CASE("Prepared questions allocate nothing, and do not wait, after their fir
   gpu.stage(std::span(world), poses.data());
   const auto frames = [&] {
     query(s.poses, cloud), query(s.poses, clouds), query(s.poses, here);  // the last from host memory
-    query.per_part(s.poses, clouds, minima);
-    together(s.poses, clouds), together(s.poses, here), together.per_part(s.poses, clouds, minima);
-    query.enqueue(s.poses, clouds, result.data());
-    query.enqueue_per_part(s.poses, cloud, result.data(), there.data());
+    per_part(s.poses, clouds);
+    together(s.poses, clouds), together(s.poses, here);
+    query.enqueue(s.poses, clouds, result.data()), enqueued.enqueue(s.poses, clouds, result.data());
+    per_part.enqueue(s.poses, cloud, {result.data(), there.data()});
     query.enqueue(poses.data(), cloud.source, nullptr, result.data());
-    each.enqueue(s.poses, clouds, {distance.data()}, 0.5f, counts.data(), clearance::minimum::as_it_is{});
+    per_part.enqueue(poses.data(), cloud.source, nullptr,
+                     clearance::min_distance_per_part::out{result.data(), there.data()});
+    each.enqueue(s.poses, clouds, {distance.data()}, 0.5f, counts.data(), clearance::frames::as_it_is{});
   };
-  frames(), frames();
+  const auto of_several = [&] { together_per_part(s.poses, clouds); };  // its result has memory of its own
+  frames(), frames(), of_several(), of_several();
   const counted before;
   for (int k = 0; k < 5; ++k) frames();
   CHECK(before.nothing());
-  query.forget();
+  for (int k = 0; k < 5; ++k) of_several();
+  CHECK(before.nothing(false));
+  query.forget(), per_part.forget();
   const counted cold;
   frames();
   CHECK(cold.nothing());
@@ -120,6 +128,9 @@ namespace {
 struct pair_options {
   double near;
   clearance::zones zones = {.thresholds = {near, 2 * near}};
+  clearance::within within = {.radius = {real(near)}};
+  clearance::in_collision in_collision = {.margins = {near}};
+  clearance::distances_per_part per_part = {.d_max = real(near)};
   clearance::self_filter own = {.padding = {near}};
 };
 
@@ -135,7 +146,6 @@ void ask_about_pairs(const scene<inner_sphere>& s, std::size_t clouds) {
   clearance::query within(gpu, model, clearance::within{});
   clearance::query in_collision(gpu, model, clearance::in_collision{});
   clearance::query per_part(gpu, model, clearance::distances_per_part{});
-  clearance::query collect(gpu, model, clearance::collect{});
   clearance::query filter(gpu, model, clearance::self_filter{});
   clearance::query where(gpu, model, clearance::part_witnesses{});
   const clearance::device_buffer<clearance::part_minimum> minima(model.size(), gpu.id);
@@ -149,16 +159,17 @@ void ask_about_pairs(const scene<inner_sphere>& s, std::size_t clouds) {
   const clearance::device_buffer<clearance::point_label> labels(clouds * all.span.size(), gpu.id);
   const clearance::device_buffer<clearance::self_filter_counts> own(1, gpu.id);
   const auto reaches = gpu.copy_in(std::span<const real>(std::vector<real>(model.size(), 0.2f)));
+  const clearance::collect answer{
+      clearance::pairwise::listed{pairs.data(), count.data(), pairs.size(), reaches.data()}};
+  clearance::query collect(gpu, model, answer);
   const auto frame = [&](const auto& asked, const pair_options& now) {
-    zones.enqueue(s.poses, asked, now.zones, zone.data(), counts.data());
-    within.enqueue(s.poses, asked, real(now.near), pairs.data(), pairs.size(), count.data(), counts.data());
-    in_collision.enqueue(s.poses, asked, now.near, result.data());
-    per_part.enqueue(s.poses, asked, distance.data(), counts.data(), real(now.near));
-    collect.enqueue(s.poses, asked,
-                    clearance::pairwise::listed{pairs.data(), count.data(), pairs.size(), reaches.data()},
-                    counts.data());
-    filter.enqueue(s.poses, asked, now.own, labels.data(), own.data());
-    where.enqueue(s.poses, asked, minima.data(), witnesses.data());
+    zones.enqueue(s.poses, asked, now.zones, {zone.data(), counts.data()});
+    within.enqueue(s.poses, asked, now.within, {pairs.data(), pairs.size(), count.data(), counts.data()});
+    in_collision.enqueue(s.poses, asked, now.in_collision, result.data());
+    per_part.enqueue(s.poses, asked, now.per_part, {distance.data(), counts.data()});
+    collect.enqueue(s.poses, asked, answer, {counts.data()});
+    filter.enqueue(s.poses, asked, now.own, {labels.data(), own.data()});
+    where.enqueue(s.poses, asked, {minima.data(), witnesses.data()});
   };
   gpu.stage(std::span<const clearance::part_minimum>(std::vector<clearance::part_minimum>(model.size())),
             minima.data());
@@ -168,8 +179,9 @@ void ask_about_pairs(const scene<inner_sphere>& s, std::size_t clouds) {
   for (const pair_options& now : each) frame(several, now), frame(cloud, now);
   CHECK(before.nothing());
   const auto waited_for = [&] {
-    zones(s.poses, s.points, each[0].zones), within(s.poses, s.points, 0.1f), in_collision(s.poses, s.points, 0.1);
-    per_part(s.poses, s.points, 0.1f), filter(s.poses, s.points, each[0].own);
+    zones(s.poses, s.points, each[0].zones), within(s.poses, s.points, each[0].within);
+    in_collision(s.poses, s.points, each[0].in_collision), per_part(s.poses, s.points, each[0].per_part);
+    filter(s.poses, s.points, each[0].own);
   };
   waited_for();
   const std::size_t known = on_device;
@@ -206,7 +218,7 @@ TEST_CASE("One call takes one block of memory in the order of its stream, and wa
   CHECK(waits == before.before_waits);
   const clearance::device_buffer<clearance::collision_result> found(1, gpu.id);
   const auto collide = [&] {
-    clearance::enqueue(gpu, model, s.poses, cloud, clearance::in_collision{{std::vector{0.1}}}, found.data());
+    clearance::enqueue(gpu, model, s.poses, cloud, clearance::in_collision{{0.1}}, found.data());
   };
   collide();
   const counted collided;

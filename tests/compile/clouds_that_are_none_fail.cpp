@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // expected-error: a point source needs: CLEARANCE_HD sample operator[](std::size_t) const
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 struct points {
@@ -11,6 +11,7 @@ struct points {
 };
 
 clearance::real ask(const std::vector<std::vector<clearance::inner_sphere>>& bodies) {
-  return clearance::ask(clearance::host{}, clearance::make_model<clearance::sphere>(bodies), std::vector{Eigen::Isometry3d::Identity()}, points{}, clearance::min_distance{})
+  return clearance::ask(clearance::host{}, clearance::make_model<clearance::sphere>(bodies),
+                        std::vector{Eigen::Isometry3d::Identity()}, points{}, clearance::min_distance{})
       .distance;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// expected-error: a device has a scan of its own: include <clearance/min_distance.cuh>, not the .hpp
+// expected-error: a device is asked with nvcc: include <clearance/device.cuh>
 #include <clearance/bvh/build.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 // Like clearance::device, so that this also works with a compiler without CUDA.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// expected-error: a device has a scan of its own: include <clearance/distances.cuh>, not the .hpp
-#include <clearance/questions/distances.hpp>
+// expected-error: a device is asked with nvcc: include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/volume/sphere.hpp>
 
 // Like clearance::device, so that this also works with a compiler without CUDA.
@@ -12,5 +12,6 @@ struct card : clearance::host {
 
 clearance::point_distances ask(const std::vector<std::vector<clearance::inner_sphere>>& bodies,
                                const std::vector<clearance::vec3>& points) {
-  return clearance::ask(card{}, clearance::make_model<clearance::sphere>(bodies), std::vector{Eigen::Isometry3d::Identity()}, points, clearance::distances{});
+  return clearance::ask(card{}, clearance::make_model<clearance::sphere>(bodies),
+                        std::vector{Eigen::Isometry3d::Identity()}, points, clearance::distances{});
 }

@@ -94,7 +94,8 @@ TEST_CASE("Sphere parts are as far as FCL's spheres are, sphere by sphere and po
         fcl::DistanceResultd result;
         least = std::min(least, fcl::distance(&ball, there, &point, here, request, result));
       }
-    const auto r = clearance::ask(clearance::host{}, clearance::make_part(clearance::build<clearance::sphere>(spheres)), pose, points, clearance::min_distance{});
+    const auto r = clearance::ask(clearance::host{}, clearance::make_part(clearance::build<clearance::sphere>(spheres)),
+                                  pose, points, clearance::min_distance{});
     CHECK(std::abs(r.distance - least) <= tolerance(pose, 6, 1.3));
     CHECK((r.lower <= least && least <= r.upper));
   }
@@ -109,7 +110,8 @@ TEST_CASE("Robots of sphere parts are as far from a cloud as FCL's broad phase s
     const auto points = outside(d, 2000, 2, 4);
     std::vector<decltype(clearance::make_part(clearance::build<clearance::aabb>(parts[0])))> own;
     for (const auto& p : parts) own.push_back(clearance::make_part(clearance::build<clearance::aabb>(p)));
-    const auto r = clearance::ask(clearance::host{}, clearance::model(std::move(own)), poses, points, clearance::min_distance{});
+    const auto r =
+        clearance::ask(clearance::host{}, clearance::model(std::move(own)), poses, points, clearance::min_distance{});
     const double truth = by_broad_phase(parts, poses, points);
     CHECK(std::abs(r.distance - truth) <= tolerance(poses[r.part], 4, 1));
     CHECK((r.lower <= truth && truth <= r.upper));
@@ -124,8 +126,12 @@ TEST_CASE("Triangle parts are as far from a cloud as FCL's meshes are") {
     const Isometry3d pose = d.pose(1);
     const auto points = outside(d, 1500, 2.8, 5);
     const double truth = by_meshes(faces, pose, points);
-    const auto in_boxes = clearance::ask(clearance::host{}, clearance::make_part(clearance::build<clearance::obb>(faces)), pose, points, clearance::min_distance{});
-    const auto in_spheres = clearance::ask(clearance::host{}, clearance::make_part(clearance::build<clearance::sphere>(faces)), pose, points, clearance::min_distance{});
+    const auto in_boxes =
+        clearance::ask(clearance::host{}, clearance::make_part(clearance::build<clearance::obb>(faces)), pose, points,
+                       clearance::min_distance{});
+    const auto in_spheres =
+        clearance::ask(clearance::host{}, clearance::make_part(clearance::build<clearance::sphere>(faces)), pose,
+                       points, clearance::min_distance{});
     CHECK(std::abs(in_boxes.distance - truth) <= tolerance(pose, 5, 1) + 1e-10);
     CHECK(same_bits(in_boxes.distance, in_spheres.distance));
     CHECK((in_boxes.lower <= truth + 1e-10 && truth <= in_boxes.upper));

@@ -6,8 +6,8 @@
 #include <clearance/backend/host.hpp>
 #include <clearance/io/ist.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstring>
@@ -99,7 +99,8 @@ TEST_CASE("a packing comes back from an .ist file to the bit, and gives the same
     for (int k = 0; k < 500; ++k)
       cloud.push_back({0.3f * std::sin(k * 1.1f), 0.4f * std::sin(k * 0.7f), 0.2f * std::cos(k * 0.3f)});
     const auto ask = [&](const packing& p) {
-      return ask(host{}, make_part<sphere>(p, {.tolerance = parts[i].tolerance}), Eigen::Isometry3d::Identity(), cloud, min_distance{});
+      return clearance::ask(host{}, make_part<sphere>(p, {.tolerance = parts[i].tolerance}),
+                            Eigen::Isometry3d::Identity(), cloud, min_distance{});
     };
     const auto a = ask(parts[i].spheres), b = ask(loaded[i].spheres);
     CHECK(same_bits(a.distance, b.distance));

@@ -15,7 +15,7 @@ namespace jacobian_test {
 
 using namespace testing;
 using namespace clearance::io;
-using clearance::host;
+using clearance::host, clearance::min_distance_per_part, clearance::part_witnesses;
 
 namespace {
 
@@ -38,13 +38,13 @@ void against_differences() {
       return all;
     };
     const auto here = poses(q);
-    const auto minima = ask(host{}, model, here, points, min_distance_per_part{}).second;
+    const auto minima = ask(host{}, model, here, points, min_distance_per_part{}).parts;
     const auto witnesses = ask(host{}, model, here, points, part_witnesses{minima});
     for (std::size_t i = 0; i < q.size(); ++i) {
       const auto ask = [&](double step) {
         auto there = q;
         there[i] += step;
-        return ask(host{}, model, poses(there), points, min_distance_per_part{}).second;
+        return clearance::ask(host{}, model, poses(there), points, min_distance_per_part{}).parts;
       };
       const auto before = ask(-h), after = ask(h);
       for (std::size_t k = 0; k < minima.size(); ++k) {

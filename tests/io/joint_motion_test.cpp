@@ -16,8 +16,7 @@ namespace joint_motion_test {
 
 using namespace testing;
 using namespace clearance::io;
-using clearance::host, clearance::min_distance_query, clearance::motion_clearance, clearance::part_travel,
-    clearance::state;
+using clearance::host, clearance::motion_clearance, clearance::part_travel, clearance::state;
 
 namespace {
 
@@ -81,7 +80,7 @@ TEST_CASE("No time of a joint motion has less than its clearance") {
     const auto points = d.points(30, 2);
     const joint_motion motion(tree, all_links(tree), from, to);
     const auto r = motion_clearance(host{}, model, motion, points, {.tolerance = 0.01, .most_queries = 20000});
-    query query(host{}, model, min_distance{});
+    clearance::query query(host{}, model, clearance::min_distance{});
     double least = clearance::infinity;
     for (int i = 0; i <= 1000; ++i) {
       std::vector<double> q;

@@ -50,7 +50,7 @@ const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()};
 template <class Cloud>
 void same(Cloud cloud, const std::vector<vec3>& points) {
   chunked in_chunks(std::move(cloud), 5000);
-  clearance::chunked_query query(host{}, arm());
+  clearance::chunked_query query(host{}, arm(), clearance::min_distance{});
   const auto expected = clearance::ask(host{}, arm(), poses, points, clearance::min_distance{});
   CHECK(same_result(query(poses, in_chunks), expected));
   CHECK(same_result(query(poses, in_chunks), expected));
@@ -172,7 +172,7 @@ TEST_CASE("A file that changes its size, and a disk that fails, are told, and th
   const auto points = some_points(30011);
   const scratch_file raw(".raw", bytes_of(points));
   chunked cloud(clearance::io::map_points(raw.path), 5000);
-  clearance::chunked_query query(host{}, arm());
+  clearance::chunked_query query(host{}, arm(), clearance::min_distance{});
   const auto expected = clearance::ask(host{}, arm(), poses, points, clearance::min_distance{});
   const auto ask = [&] { query(poses, cloud); };
   std::filesystem::resize_file(raw.path, points.size() * 12 - 12);

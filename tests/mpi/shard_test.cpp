@@ -6,6 +6,8 @@
 #include <clearance/make_model.hpp>
 #include <clearance/mpi/shard.hpp>
 #include <clearance/points/sharded.hpp>
+#include <clearance/questions/in_collision.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -13,18 +15,18 @@
 namespace shard_test {
 
 using namespace testing;
-using clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::part_minimum,
-    clearance::placed, clearance::point_span, clearance::slice;
+using clearance::host, clearance::in_collision, clearance::min_distance, clearance::min_distance_per_part,
+    clearance::part_minimum, clearance::placed, clearance::point_span, clearance::slice;
 namespace mpi = clearance::mpi;
 
 // As MPI does in a communicator that returns its errors.
-bool gathering_fails = false, reducing_fails = false;
+bool gathering_fails = false, sending_fails = false;
 extern "C" int MPI_Allgather(const void* from, int n, MPI_Datatype type, void* to, int m, MPI_Datatype their,
                              MPI_Comm comm) {
   return gathering_fails ? MPI_ERR_OTHER : PMPI_Allgather(from, n, type, to, m, their, comm);
 }
-extern "C" int MPI_Allreduce(const void* from, void* to, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm) {
-  return reducing_fails ? MPI_ERR_OTHER : PMPI_Allreduce(from, to, n, type, op, comm);
+extern "C" int MPI_Bcast(void* data, int n, MPI_Datatype type, int by, MPI_Comm comm) {
+  return sending_fails ? MPI_ERR_OTHER : PMPI_Bcast(data, n, type, by, comm);
 }
 
 namespace {
@@ -75,16 +77,16 @@ std::string refused(F f) {
 template <class Model, class Mine, class Whole>
 void ask_often(const Model& model, std::vector<Eigen::Isometry3d> poses, const Mine& mine, const Whole& whole,
                verdict& v, const std::string& what) {
-  clearance::query query(on, model, clearance::min_distance{});
-  std::vector<part_minimum> minima(poses.size());
+  clearance::query query(on, model, min_distance{});
+  clearance::query per_part(on, model, min_distance_per_part{});
   for (int round = 0; round < 3; ++round) {
     const auto expected = ask(host{1}, model, poses, whole, min_distance{});
     v.require(same_result(query(poses, mine), expected), what, ", round ", round, ": another answer");
     v.require(same_result(ask(on, model, poses, mine, min_distance{}), expected), what, ", round ", round,
               ": another answer of one call");
     const auto [robot, each] = ask(host{1}, model, poses, whole, min_distance_per_part{});
-    v.require(same_result(query.per_part(poses, mine, minima), robot), what, ", round ", round,
-              ": another answer by parts");
+    const auto [prepared, minima] = per_part(poses, mine);
+    v.require(same_result(prepared, robot), what, ", round ", round, ": another answer by parts");
     v.require(std::ranges::equal(minima, each, same_minimum), what, ", round ", round, ": some part's minimum differs");
     const auto [again, theirs] = ask(on, model, poses, mine, min_distance_per_part{});
     v.require(same_result(again, robot) && std::ranges::equal(theirs, each, same_minimum), what, ", round ", round,
@@ -158,17 +160,18 @@ TEST_CASE("A rank that throws ends all with its sentence, and all can ask again"
       std::vector<std::vector<inner_sphere>>{random_primitives<inner_sphere>(d, 30, 0.3, 0.1)});
   const auto points = d.points(500, 2);
   const std::vector<Eigen::Isometry3d> poses = {shifted(0, 0, 0)};
-  clearance::query query(on, model, clearance::min_distance{});
+  clearance::query query(on, model, min_distance{});
   const int last = ranks() - 1;
   const auto mine = piece_of(point_span(points), std::size_t(rank()), std::size_t(ranks()));
   const auto expected = ask(host{1}, model, poses, points, min_distance{});
 
-  mpi::question asked(MPI_COMM_WORLD);
+  mpi::together asked(MPI_COMM_WORLD);
   asked.agree(1, poses, mine);
   asked.attempt([&] {
     if (rank() == last) throw std::invalid_argument("clearance: the disk is full");
   });
-  const std::string told = refused([&] { asked.answer({}, {}, false); });
+  clearance::detail::joined_of<min_distance, decltype(model)::view_type> joined({}, {});
+  const std::string told = refused([&] { asked.join(joined, clearance::min_distance_result{}); });
   if (rank() == last)
     CHECK(told == "clearance: the disk is full");
   else
@@ -199,18 +202,20 @@ TEST_CASE("A rank that throws ends all with its sentence, and all can ask again"
     CHECK(refused([&] { query(poses, clouds); }) ==
           "clearance: rank " + std::to_string(last) + " asks about 2 clouds, rank 0 about 1");
   }
-  std::vector<part_minimum> room(rank() == last ? 2 : 1);
-  CHECK(refused([&] {
-          query.per_part(poses, mine, room);
-        }).find("clearance: there are 1 parts, but room for 2 minima") != std::string::npos);
+  clearance::query touches(on, model, in_collision{});
+  const std::vector<double> margins(rank() == last ? 2 : 1, 0.1);
+  CHECK(refused([&] { touches(poses, mine, {margins}); }).find("clearance: there are 1 parts, but 2 margins") !=
+        std::string::npos);
   CHECK(refused([&] { query(poses, unplugged{mine, rank() == last}); }).find("clearance: the camera is unplugged") !=
         std::string::npos);
   const point_span huge(points.data(), (std::size_t(1) << 32) / std::size_t(ranks()));  // never read
   CHECK(refused([&] { query(poses, huge); }) == "clearance: more than 2^32 - 2 points on all ranks together");
-  CHECK(refused([&] { mpi::question none(MPI_COMM_NULL); }).find("no communicator") != std::string::npos);
-  for (bool* const call : {&gathering_fails, &reducing_fails}) {
+  CHECK(refused([&] { mpi::together none(MPI_COMM_NULL); }).find("no communicator") != std::string::npos);
+  for (bool* const call : {&gathering_fails, &sending_fails}) {
     *call = true;
-    CHECK(refused([&] { query(poses, mine); }).find("clearance: MPI_All") == 0);
+    CHECK(refused([&] {
+            query(poses, mine);
+          }).find(call == &sending_fails ? "clearance: MPI_Bcast: " : "clearance: MPI_Allgather: ") == 0);
     *call = false;
   }
   CHECK(same_result(query(poses, mine), expected));

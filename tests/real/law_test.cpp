@@ -9,8 +9,8 @@
 #include <clearance/io/mesh.hpp>
 #include <clearance/io/robot.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/volume/sphere.hpp>

@@ -39,7 +39,7 @@ std::vector<seen_frame> frames() {
   return all;
 }
 
-using answer = std::pair<clearance::min_distance_result, std::vector<clearance::part_minimum>>;
+using answer = clearance::min_distance_per_part_result;
 
 template <class Model>
 answer ask(const Model& model, const std::vector<Eigen::Isometry3d>& poses, const seen_frame& frame,
@@ -49,12 +49,12 @@ answer ask(const Model& model, const std::vector<Eigen::Isometry3d>& poses, cons
 }
 
 void require_same(const answer& a, const answer& b, verdict& v, const std::string& what) {
-  const auto& [r, s] = std::pair(a.first, b.first);
+  const auto& [r, s] = std::pair(a.all, b.all);
   v.require(same_bits(r.distance, s.distance) && r.point == s.point && r.part == s.part && r.primitive == s.primitive &&
                 r.state == s.state && same_bits(r.lower, s.lower) && same_bits(r.upper, s.upper),
             what, ": volumes disagree:", r.distance, " and", s.distance);
-  for (std::size_t k = 0; k < a.second.size(); ++k)
-    v.require(same_bits(a.second[k].distance, b.second[k].distance) && a.second[k].point == b.second[k].point, what,
+  for (std::size_t k = 0; k < a.parts.size(); ++k)
+    v.require(same_bits(a.parts[k].distance, b.parts[k].distance) && a.parts[k].point == b.parts[k].point, what,
               ": minima of part", k);
 }
 
@@ -79,15 +79,15 @@ void check_robot(const char* urdf, std::size_t parts, robot_geometry geometry = 
       require_same(triangles, ask(t_aabb, poses, frame, camera), v, what + ", triangles in boxes");
       require_same(spheres, ask(s_aabb, poses, frame, camera), v, what + ", spheres in boxes");
       require_same(spheres, ask(s_obb, poses, frame, camera), v, what + ", spheres in oriented boxes");
-      const auto &t = triangles.first, &s = spheres.first;
+      const auto &t = triangles.all, &s = spheres.all;
       v.require(t.seen == 640 * 480 && t.valid == s.valid && t.valid > 0, what, ": counts");
       v.require(std::max(t.lower, s.lower) <= std::min(t.upper, s.upper), what, ": brackets do not meet:", t.lower,
                 t.upper, s.lower, s.upper);
       v.require(t.state != state::no_data && s.state != state::no_data, what, ": no data");
       // No sphere reaches out of its solid, and none leaves more than the gap.
       const double room = 1e-5;
-      for (std::size_t k = 0; k < triangles.second.size(); ++k) {
-        const double exact = triangles.second[k].distance, inner = spheres.second[k].distance,
+      for (std::size_t k = 0; k < triangles.parts.size(); ++k) {
+        const double exact = triangles.parts[k].distance, inner = spheres.parts[k].distance,
                      gap = robot.packings[k].gap;
         v.require(std::max(inner, 0.0) >= exact - room, what, ": spheres of part", k, " reach out of the solid:", inner,
                   " but", exact);
@@ -138,11 +138,13 @@ TEST_CASE("A real robot before every 997th pixel of a real frame is brute force,
       });
       const auto poses = robot.poses(shifted(0, 0, 0), 0.4);
       const auto expected = brute_force(parts, poses, {brute_cloud(clearance::point_span(some), camera)});
-      const auto [r, minima] = ask(host{}, model, poses, placed{clearance::point_span(some), camera}, min_distance_per_part{});
+      const auto [r, minima] =
+          ask(host{}, model, poses, placed{clearance::point_span(some), camera}, min_distance_per_part{});
       require_equal(r, expected, v, frame.name);
       require_equal(minima, expected, v, frame.name);
-      require_equal(clearance::ask(host{}, model, poses, placed{clearance::point_span(some), camera}, clearance::min_distance{}),
-                    expected, v, frame.name);
+      require_equal(
+          clearance::ask(host{}, model, poses, placed{clearance::point_span(some), camera}, clearance::min_distance{}),
+          expected, v, frame.name);
     }
 }
 

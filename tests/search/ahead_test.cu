@@ -3,10 +3,10 @@
 // every bit.
 #include "support/product_device.cuh"
 
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
 #include <clearance/points/ray_image.hpp>
 #include <clearance/points/slice.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <cstring>

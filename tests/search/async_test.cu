@@ -14,8 +14,7 @@
 namespace async_test {
 
 using namespace testing;
-using clearance::device, clearance::min_distance, clearance::min_distance_async, clearance::min_distance_result,
-    clearance::point_span;
+using clearance::device, clearance::min_distance, clearance::min_distance_result, clearance::point_span;
 
 namespace {
 
@@ -62,7 +61,7 @@ TEST_CASE(
     const answer result(pinned);
     const auto enqueue = [&] {
       auto poses = given.s.poses;
-      enqueue(gpu, model, poses, cloud, min_distance{}, result.at);
+      clearance::enqueue(gpu, model, poses, cloud, min_distance{}, result.at);
       brake<<<1, 1, 0, stream.handle>>>(result.at, speed);
       check(cudaGetLastError());
       for (auto& pose : poses) pose.setIdentity();  // what was passed may go
@@ -89,10 +88,11 @@ TEST_CASE("Part minima arrive in device memory too") {
   const auto points = gpu.copy_in(std::span<const vec3>(given.s.points));
   const answer result(true);
   auto minima = gpu.make_scratch<clearance::part_minimum>(model.size());
-  clearance::enqueue(gpu, model, given.s.poses, point_span(points.data(), points.size()), clearance::min_distance_per_part{}, {result.at, minima.data()});
+  clearance::enqueue(gpu, model, given.s.poses, point_span(points.data(), points.size()),
+                     clearance::min_distance_per_part{}, {result.at, minima.data()});
   const auto got = gpu.copy_out(minima.data(), minima.size());
-  const auto [r, expected] =
-      clearance::ask(clearance::host{}, given.on_host, given.s.poses, point_span(given.s.points), clearance::min_distance_per_part{});
+  const auto [r, expected] = clearance::ask(clearance::host{}, given.on_host, given.s.poses, point_span(given.s.points),
+                                            clearance::min_distance_per_part{});
   CHECK(same_result(result.read(), r));
   REQUIRE(got.size() == expected.size());
   for (std::size_t k = 0; k < got.size(); ++k) CHECK(same_bytes(got[k], expected[k]));
@@ -109,7 +109,8 @@ TEST_CASE("Several streams at once, one of them held, do not disturb one another
   gate held(streams[0].handle);
   for (int round = 0; round < 20; ++round)
     for (int k = 0; k < 3; ++k)
-      enqueue(device{0, streams[k].handle}, model, given.s.poses, point_span(points.data(), points.size()), min_distance{}, results[k].at);
+      enqueue(device{0, streams[k].handle}, model, given.s.poses, point_span(points.data(), points.size()),
+              min_distance{}, results[k].at);
   check(cudaStreamSynchronize(streams[1].handle));
   check(cudaStreamSynchronize(streams[2].handle));
   CHECK(cudaStreamQuery(streams[0].handle) == cudaErrorNotReady);
@@ -126,11 +127,12 @@ TEST_CASE("Points may lie in pageable, pinned or device memory") {
   vec3* pinned = nullptr;
   check(cudaMallocHost(&pinned, given.s.points.size() * sizeof(vec3)));
   std::copy(given.s.points.begin(), given.s.points.end(), pinned);
-  CHECK(
-      same_result(ask(gpu, model, given.s.poses, point_span(pinned, given.s.points.size()), min_distance{}), given.expected));
+  CHECK(same_result(ask(gpu, model, given.s.poses, point_span(pinned, given.s.points.size()), min_distance{}),
+                    given.expected));
   cudaFreeHost(pinned);
   const auto there = gpu.copy_in(std::span<const vec3>(given.s.points));
-  CHECK(same_result(ask(gpu, model, given.s.poses, point_span(there.data(), there.size()), min_distance{}), given.expected));
+  CHECK(same_result(ask(gpu, model, given.s.poses, point_span(there.data(), there.size()), min_distance{}),
+                    given.expected));
 }
 
 TEST_CASE("Every device works, whichever is current, and the current one stays") {
@@ -184,7 +186,8 @@ TEST_CASE(
     std::size_t after = 0;
     check(cudaDeviceGetLimit(&after, cudaLimitStackSize));
     CHECK(after == limit);
-    CHECK(ask(clearance::plain{gpu, clearance::stack{}}, model, poses, points, min_distance{}).primitive == 57);  // needs none
+    CHECK(ask(clearance::plain{gpu, clearance::stack{}}, model, poses, points, min_distance{}).primitive ==
+          57);  // needs none
   }
   const deep_stack enough(clearance::recursive::device_stack(tree.view().depth()));
   const auto r = ask(clearance::plain{gpu, clearance::recursive{}}, model, poses, points, min_distance{});
@@ -202,8 +205,9 @@ TEST_CASE("A tree too deep for a stack is refused before anything is launched") 
   CHECK_THROWS_AS(
       ask(clearance::plain{gpu, clearance::near_first{}}, model, poses, std::vector<vec3>{{1, 2, 3}}, min_distance{}),
       std::invalid_argument);
-  CHECK_THROWS_AS(ask(clearance::plain{gpu, clearance::stack{}}, model, poses, std::vector<vec3>{{1, 2, 3}}, min_distance{}),
-                  std::invalid_argument);
+  CHECK_THROWS_AS(
+      ask(clearance::plain{gpu, clearance::stack{}}, model, poses, std::vector<vec3>{{1, 2, 3}}, min_distance{}),
+      std::invalid_argument);
 }
 
 TEST_CASE("A model may go as soon as its queries are enqueued") {
@@ -248,8 +252,8 @@ TEST_CASE("Clouds of different kinds share one search on the device too") {
                                       {brute_cloud(all.raw, all.camera_pose), brute_cloud(all.span, s.cloud_pose),
                                        brute_cloud(all.span, s.cloud_pose)});
     require_equal(ask(gpu, model, s.poses, clouds, min_distance{}), expected, v, s.name);
-    require_equal(ask(clearance::plain{gpu, clearance::near_first{}}, model, s.poses, clouds, min_distance{}), expected, v,
-                  s.name + ", plain");
+    require_equal(ask(clearance::plain{gpu, clearance::near_first{}}, model, s.poses, clouds, min_distance{}), expected,
+                  v, s.name + ", plain");
   }
 }
 

@@ -20,7 +20,8 @@ auto unit_ball(real gap, real tolerance = 0) {
                               tolerance);
 }
 auto ask(real gap, real x, real tolerance = 0) {
-  return ask(host{}, unit_ball(gap, tolerance), Eigen::Isometry3d::Identity(), std::vector<vec3>{{x, 0, 0}}, min_distance{});
+  return ask(host{}, unit_ball(gap, tolerance), Eigen::Isometry3d::Identity(), std::vector<vec3>{{x, 0, 0}},
+             min_distance{});
 }
 
 /// A cube of half edge 1 as triangles, and its inside.
@@ -121,7 +122,7 @@ TEST_CASE("The lower end is the least over all parts, not the winner's") {
   CHECK(shared.lower <= each.lower);
   // One part without a certificate spoils it for all.
   const auto half = clearance::model(std::vector{unit_ball(0.125f), unit_ball(infinity)});
-  CHECK(ask(host{}, half, poses, points, min_distance_per_part{}).first.lower == 0);
+  CHECK(ask(host{}, half, poses, points, min_distance_per_part{}).all.lower == 0);
   CHECK(ask(host{}, half, poses, points, min_distance{}).lower == 0);
 }
 
@@ -144,7 +145,8 @@ TEST_CASE("No valid point is no data, never far away") {
 
 TEST_CASE("A valid point inside a triangle part makes its distance 0, and certainly a collision if it is well inside") {
   const auto ask = [](vec3 p, real tolerance = 0) {
-    return ask(host{}, cube_part(tolerance), Eigen::Isometry3d::Identity(), std::vector<vec3>{{5, 0, 0}, p}, min_distance{});
+    return clearance::ask(host{}, cube_part(tolerance), Eigen::Isometry3d::Identity(), std::vector<vec3>{{5, 0, 0}, p},
+                          min_distance{});
   };
   const auto deep = ask({0.5f, 0.25f, 0});
   CHECK(deep.distance == 0);

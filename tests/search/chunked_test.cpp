@@ -64,7 +64,7 @@ TEST_CASE("Records that are read have the answer of those in memory, and a failu
   CHECK(most == 8192 * sizeof(vec3));
 
   const auto expected = ask(host{}, model, arm_poses, cloud, min_distance{});
-  clearance::chunked_query query(host{}, model);
+  clearance::chunked_query query(host{}, model, min_distance{});
   for (const int k : {0, 1, 12}) {
     in_chunks.forget();
     reads = 0, fails_at = k;
@@ -79,7 +79,7 @@ TEST_CASE("The second question about a cloud reads what can matter") {
   const auto cloud = wall(400000);
   const auto model = arm();
   chunked in_chunks(point_span(cloud), 16384);
-  clearance::chunked_query query(host{}, model);
+  clearance::chunked_query query(host{}, model, min_distance{});
   query(arm_poses, in_chunks);
   CHECK(query.loaded() == cloud.size());
   const auto again = query(arm_poses, in_chunks);
@@ -135,7 +135,7 @@ TEST_CASE("A cloud that loads what was not asked for is refused, and one that gr
     }
   };
   const auto model = arm();
-  clearance::chunked_query query(host{}, model);
+  clearance::chunked_query query(host{}, model, min_distance{});
   for (const int more : {-1, 1}) {
     chunked in_chunks(liar{&points, more}, 4096);
     CHECK_THROWS_WITH(query(arm_poses, in_chunks),
@@ -171,9 +171,9 @@ TEST_CASE("More points than numbers are refused, and so are poses that are none"
   for (const std::size_t all_at_once : {~std::size_t(0), ~std::size_t(0) - 4096})
     CHECK(chunked(point_span(cloud), all_at_once).all().size() == 1);
   chunked in_chunks{point_span(cloud)};
-  clearance::chunked_query query(host{}, model);
+  clearance::chunked_query query(host{}, model, min_distance{});
   for (int round = 0; round < 2; ++round) {
-    CHECK_THROWS_AS(query({arm_poses.data(), 1}, in_chunks), std::invalid_argument);
+    CHECK_THROWS_AS(query(std::span(arm_poses).first(1), in_chunks), std::invalid_argument);
     Eigen::Isometry3d skewed = arm_poses[0];
     skewed.linear() *= 1.01;
     CHECK_THROWS_AS(query(arm_poses, in_chunks, skewed), std::invalid_argument);

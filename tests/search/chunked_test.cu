@@ -50,7 +50,7 @@ TEST_CASE("From pageable, pinned and device memory, and from a reader that may f
       ask_often(device{}, robot, arm_poses, e, pageable, shifted(0.1, 0, 0), v, what + ", read");
       if (n < 5000 || chunk > 20000) continue;
       const auto model = robot.on(device{});
-      clearance::chunked_query query(device{}, model);
+      clearance::chunked_query query(device{}, model, min_distance{});
       for (const int k : {0, 5}) {
         e.forget(), reads = 0, fails_at = k;
         CHECK_THROWS_WITH(query(arm_poses, e), "the link is down");

@@ -3,8 +3,9 @@
 #include "support/product.hpp"
 #include "support/tallied.hpp"
 
-#include <clearance/questions/collect.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/collect.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -12,7 +13,7 @@
 namespace collect_test {
 
 using namespace testing;
-using clearance::host, clearance::placed, clearance::point_span;
+using clearance::collect, clearance::host, clearance::placed, clearance::point_span;
 
 namespace {
 
@@ -26,25 +27,24 @@ void collect_all_scenes() {
       brute_tally(s, s.points, s.cloud_pose, 0, farthest, nothing_inside, expected);
       const placed cloud{point_span(s.points), s.cloud_pose};
       const std::string what = s.name + ", within " + std::to_string(farthest);
-      const auto counts = clearance::ask(host{}, model, s.poses, cloud, clearance::collect{tallied{farthest, found.words}});
+      const auto counts = clearance::ask(host{}, model, s.poses, cloud, collect{tallied{farthest, found.words}});
       v.require(found == expected, what, ": other pairs than brute force's");
       const auto r = clearance::ask(host{}, model, s.poses, cloud, clearance::min_distance{});
       v.require(counts.seen == r.seen && counts.valid == r.valid && std::ranges::equal(counts.dropped, r.dropped), what,
                 ": other counts");
-      clearance::ask(host{1}, model, s.poses, cloud, clearance::collect{tallied{farthest, one_thread.words}});
+      clearance::ask(host{1}, model, s.poses, cloud, collect{tallied{farthest, one_thread.words}});
       v.require(one_thread == expected, what, ": other pairs with one thread");
-      clearance::query query(host{}, model, clearance::collect{});
+      clearance::query query(host{}, model, collect{tallied{farthest, found.words}});
       for (int frame = 0; frame < 2; ++frame) {
         tally_of_pairs prepared, enqueued;
         clearance::point_counts seen;
-        v.require(
-            query(s.poses, cloud, tallied{farthest, prepared.words}).valid == counts.valid && prepared == expected,
-            what, ": other pairs, prepared");
-        query.enqueue(s.poses, cloud, tallied{farthest, enqueued.words}, &seen);
+        v.require(query(s.poses, cloud, {{farthest, prepared.words}}).valid == counts.valid && prepared == expected,
+                  what, ": other pairs, prepared");
+        query.enqueue(s.poses, cloud, {{farthest, enqueued.words}}, {&seen});
         v.require(seen.valid == counts.valid && enqueued == expected, what, ": other pairs, enqueued");
       }
       brute_tally(s, s.points, s.cloud_pose, 1, farthest, nothing_inside, expected);
-      clearance::ask(host{}, model, s.poses, std::vector(2, cloud), clearance::collect{tallied{farthest, of_two.words}});
+      clearance::ask(host{}, model, s.poses, std::vector(2, cloud), collect{tallied{farthest, of_two.words}});
       v.require(of_two == expected, what, ": other pairs of two clouds");
     }
   }
@@ -79,7 +79,8 @@ TEST_CASE("A point inside a solid is a pair of distance 0 without a primitive") 
     const auto interior = model.parts()[0].interior.view();
     brute_tally(
         s, s.points, s.cloud_pose, 0, farthest, [&](std::uint32_t, vec3 q) { return interior.inside(q); }, expected);
-    clearance::ask(host{}, model, s.poses, placed{point_span(s.points), s.cloud_pose}, clearance::collect{tallied{farthest, found.words}});
+    clearance::ask(host{}, model, s.poses, placed{point_span(s.points), s.cloud_pose},
+                   collect{tallied{farthest, found.words}});
     CHECK(found == expected);
     CHECK((farthest < 0 || found.words[0] > 100));
   }

@@ -3,9 +3,9 @@
 #include "support/product_device.cuh"
 #include "support/tallied.hpp"
 
-#include <clearance/questions/collect.hpp>
 #include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/collect.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -23,7 +23,8 @@ void same_pairs(const Model& on_host, const std::vector<Eigen::Isometry3d>& pose
   const device gpu;
   const auto model = on_host.on(gpu);
   tally_of_pairs expected;
-  const auto counts = clearance::ask(host{}, on_host, poses, clouds, clearance::collect{tallied{farthest, expected.words}});
+  const auto counts =
+      clearance::ask(host{}, on_host, poses, clouds, clearance::collect{tallied{farthest, expected.words}});
   auto words = gpu.make_scratch<unsigned long long>(2);
   gpu.stage(std::span<const unsigned long long>(tally_of_pairs{}.words), words.data());
   const auto seen = clearance::ask(gpu, model, poses, clouds, clearance::collect{tallied{farthest, words.data()}});

@@ -3,8 +3,9 @@
 #include "support/brute_distances.hpp"
 #include "support/frames.hpp"
 
-#include <clearance/questions/in_collision.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/in_collision.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -82,7 +83,9 @@ TEST_CASE("What rounding leaves open of a depth is possible, too") {
     const double computed = ball[0].distance(p);
     const auto error = clearance::ask(host{}, robot, poses, point_span(point), clearance::distances{}).certain.error;
     const double off = error.at(real(computed));
-    const auto ask = [&](double margin) { return ask(host{}, robot, poses, point_span(point), in_collision{{margin}}).state; };
+    const auto ask = [&](double margin) {
+      return clearance::ask(host{}, robot, poses, point_span(point), in_collision{{margin}}).state;
+    };
     for (const double part : {0.2, 0.9, 0.999}) {
       v.require(ask(computed - part * off) == state::possible, computed, " m deep, margin less by ", part,
                 " of its error: ", to_string(ask(computed - part * off)));
@@ -101,7 +104,7 @@ TEST_CASE("What gap and tolerance leave open is possible, and no point says noth
   const auto ask = [&](double gap, double tolerance, const std::vector<vec3>& points, double margin) {
     const clearance::model robot{
         std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball), gap, tolerance)}};
-    return ask(host{}, robot, poses, point_span(points), in_collision{{margin}});
+    return clearance::ask(host{}, robot, poses, point_span(points), in_collision{{margin}});
   };
   CHECK(ask(0, 0, far, 0.49).state == state::free);
   CHECK((ask(0.02, 0, far, 0.49).state == state::possible && ask(0.02, 0, far, 0.49).point == 1));
@@ -112,7 +115,8 @@ TEST_CASE("What gap and tolerance leave open is possible, and no point says noth
   CHECK(ask(0, 0, {}, 1).state == state::no_data);
   CHECK_THROWS_AS(ask(0, 0, far, clearance::not_a_number), std::invalid_argument);
   const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball))}};
-  CHECK_THROWS_AS(ask(host{}, robot, poses, point_span(far), in_collision{{std::vector{0.1, 0.2}}}), std::invalid_argument);
+  CHECK_THROWS_AS(clearance::ask(host{}, robot, poses, point_span(far), in_collision{{0.1, 0.2}}),
+                  std::invalid_argument);
 }
 
 TEST_CASE("Of a robot without parts nothing is known, whatever is asked") {
@@ -121,7 +125,7 @@ TEST_CASE("Of a robot without parts nothing is known, whatever is asked") {
   const clearance::model_view<decltype(robot)::view_type> no_parts{nullptr, {}, 0, 0};
   const std::span<const Eigen::Isometry3d> no_poses;
   const std::vector<vec3> point{{1.5f, 0, 0}};
-  const auto nearest = ask(host{}, no_parts, no_poses, point_span(point), min_distance{});
+  const auto nearest = ask(host{}, no_parts, no_poses, point_span(point), clearance::min_distance{});
   const auto near = ask(host{}, no_parts, no_poses, point_span(point), in_collision{{0.1}});
   CHECK((nearest.state == state::no_data && nearest.valid == 1));
   CHECK((near.state == state::no_data && near.counts.valid == 1 && near.point == clearance::none));
@@ -132,7 +136,7 @@ TEST_CASE(
   verdict v;
   moving_frames f(5, 113);
   const auto model = f.model();
-  clearance::query query(host{}, model, clearance::in_collision{});
+  clearance::query query(host{}, model, in_collision{});
   const auto same = [](const clearance::collision_result& a, const clearance::collision_result& b) {
     return a.state == b.state && a.cloud == b.cloud && a.point == b.point && a.part == b.part &&
            a.counts.valid == b.counts.valid;
@@ -142,13 +146,14 @@ TEST_CASE(
     const std::vector<double> margins(f.number % 2 ? 5 : 1, f.number < 4 ? 0.01 : -0.05);
     const auto expected = ask(host{}, model, f.s.poses, f.here(), in_collision{{margins}});
     ++states[int(expected.state)];
-    v.require(same(query(f.s.poses, f.here(), margins), expected), "frame ", f.number, ": ", to_string(expected.state));
+    v.require(same(query(f.s.poses, f.here(), {margins}), expected), "frame ", f.number, ": ",
+              to_string(expected.state));
     clearance::collision_result enqueued;
-    query.enqueue(f.s.poses, f.here(), margins, &enqueued);
+    query.enqueue(f.s.poses, f.here(), {margins}, &enqueued);
     v.require(same(enqueued, expected), "frame ", f.number, ", enqueued: ", to_string(enqueued.state), " and not ",
               to_string(expected.state));
-    CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
-    CHECK_THROWS_AS(query(f.s.poses, f.here(), std::vector{0.1, 0.2}), std::invalid_argument);
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), {{clearance::not_a_number}}), std::invalid_argument);
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), {{0.1, 0.2}}), std::invalid_argument);
   }
   CHECK((states[int(state::free)] > 0 && states[int(state::collision)] > 0 && states[int(state::no_data)] == 1));
 }

@@ -4,9 +4,9 @@
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
-#include <clearance/questions/in_collision.hpp>
 #include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/in_collision.hpp>
 #include <clearance/volume/sphere.hpp>
 
 namespace collision_test {
@@ -46,7 +46,8 @@ TEST_CASE("In a crowd the first point is found again and again") {
   for (const double margin : {0.0, 0.001, 0.3}) {
     const auto expected = ask(host{}, model, s.poses, point_span(s.points), in_collision{{margin}});
     CHECK(expected.state == state::collision);
-    for (int k = 0; k < 5; ++k) CHECK(same(ask(gpu, there, s.poses, point_span(s.points), in_collision{{margin}}), expected));
+    for (int k = 0; k < 5; ++k)
+      CHECK(same(ask(gpu, there, s.poses, point_span(s.points), in_collision{{margin}}), expected));
   }
 }
 
@@ -62,7 +63,7 @@ TEST_CASE("A prepared question of collision says on a device in every frame what
     clearance::query query(gpu, there, clearance::in_collision{});
     const auto result = room_on<clearance::collision_result>(gpu, 1);
     const auto look = [&](const std::vector<double>& margins, const std::string& when) {
-      const auto expected = ask(host{}, model, f.s.poses, f.here(), in_collision{{margins}});
+      const auto expected = ask(host{}, model, f.s.poses, f.here(), in_collision{margins});
       v.require(same(gpu.copy_out(result)[0], expected), parts, " parts, ", when,
                 ", enqueued: differs from the host's");
       ++states[int(expected.state)];
@@ -71,14 +72,14 @@ TEST_CASE("A prepared question of collision says on a device in every frame what
     for (; f.there(); f.next()) {
       const std::vector<double> margins(f.number % 2 ? std::size_t(parts) : 1, f.number < 4 ? 0.01 : -0.05);
       const frame_there seen(gpu, f);
-      query.enqueue(f.s.poses, seen.all, margins, result.data());
+      query.enqueue(f.s.poses, seen.all, {margins}, result.data());
       const auto expected = look(margins, "frame " + std::to_string(f.number));
-      v.require(same(query(f.s.poses, f.here(), margins), expected), parts, " parts, frame ", f.number,
+      v.require(same(query(f.s.poses, f.here(), {margins}), expected), parts, " parts, frame ", f.number,
                 ": differs from the host's");
-      CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
+      CHECK_THROWS_AS(query(f.s.poses, f.here(), {{clearance::not_a_number}}), std::invalid_argument);
     }
     replay(
-        stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, 0.02, result.data()); },
+        stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, {{0.02}}, result.data()); },
         [&](const std::string& what) { look({0.02}, what); });
   }
   CHECK((states[int(state::free)] > 0 && states[int(state::collision)] > 0 && states[int(state::no_data)] > 0));

@@ -1,19 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Several devices together give the host's answer, in every bit. One GPU is named more than once, as are several of
 // them; if there are two, both are asked, and the second alone.
+#include "support/closed.hpp"
+#include "support/configurations.hpp"
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"
+#include "support/too_close_frame.hpp"
 
-#include <clearance/make_model.hpp>
 #include <clearance/device.cuh>
+#include <clearance/make_model.hpp>
+#include <clearance/questions/distances.hpp>
+#include <clearance/questions/distances_per_part.hpp>
+#include <clearance/questions/in_collision.hpp>
+#include <clearance/questions/in_collisions.hpp>
+#include <clearance/questions/min_distances.hpp>
+#include <clearance/questions/min_distances_per_part.hpp>
+#include <clearance/questions/nearest_k.hpp>
+#include <clearance/questions/part_witnesses.hpp>
+#include <clearance/questions/self_filter.hpp>
+#include <clearance/questions/signed_distances.hpp>
+#include <clearance/questions/within.hpp>
+#include <clearance/questions/zones.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
 namespace devices_test {
 
 using namespace testing;
-using clearance::device, clearance::devices, clearance::host, clearance::min_distance, clearance::placed,
-    clearance::point_span, clearance::sharded;
+using clearance::device, clearance::devices, clearance::host, clearance::min_distance, clearance::min_distance_per_part,
+    clearance::placed, clearance::point_span, clearance::sharded;
 
 namespace {
 
@@ -52,28 +67,29 @@ template <class Model, class Clouds, class Same>
 void ask_often(const devices& on, const Model& on_host, std::vector<Eigen::Isometry3d> poses, const Clouds& clouds,
                const Same& same, verdict& v, const std::string& what) {
   const auto model = on_host.on(on);
-  clearance::query query(on, model, clearance::min_distance{});
-  const auto ask = [&](const std::string& when) {
+  clearance::query query(on, model, min_distance{});
+  clearance::query per_part(on, model, min_distance_per_part{});
+  const auto compare = [&](const std::string& when) {
     const auto expected = ask(host{}, on_host, poses, same, min_distance{});
     v.require(same_result(query(poses, clouds), expected), what, ", ", when, ": differs from the host's result");
-    const auto [robot, each] = clearance::ask(host{}, on_host, poses, same, clearance::min_distance_per_part{});
-    std::vector<clearance::part_minimum> minima(poses.size());
-    v.require(same_result(query.per_part(poses, clouds, minima), robot), what, ", ", when,
-              ": differs from the host's result by parts");
+    const auto [robot, each] = ask(host{}, on_host, poses, same, min_distance_per_part{});
+    const auto [found, minima] = per_part(poses, clouds);
+    v.require(same_result(found, robot), what, ", ", when, ": differs from the host's result by parts");
     v.require(std::ranges::equal(minima, each, same_minimum), what, ", ", when, ": some part's minimum differs");
   };
-  ask("cold");
-  ask("warm");
+  compare("cold");
+  compare("warm");
   poses[0].translation().x() += 0.01;
-  ask("moved a little");
+  compare("moved a little");
   poses.back().translation().z() -= 5;
-  ask("moved far");
-  query.forget();
-  ask("cold again");
-  v.require(same_result(ask(on, model, poses, clouds, min_distance{}), ask(host{}, on_host, poses, same, min_distance{})), what,
-            ": one call differs");
-  const auto [robot, each] = clearance::ask(on, model, poses, clouds, clearance::min_distance_per_part{});
-  const auto [expected, its] = clearance::ask(host{}, on_host, poses, same, clearance::min_distance_per_part{});
+  compare("moved far");
+  query.forget(), per_part.forget();
+  compare("cold again");
+  v.require(
+      same_result(ask(on, model, poses, clouds, min_distance{}), ask(host{}, on_host, poses, same, min_distance{})),
+      what, ": one call differs");
+  const auto [robot, each] = ask(on, model, poses, clouds, min_distance_per_part{});
+  const auto [expected, its] = ask(host{}, on_host, poses, same, min_distance_per_part{});
   v.require(same_result(robot, expected) && std::ranges::equal(each, its, same_minimum), what,
             ": one call differs by parts");
 }
@@ -299,7 +315,8 @@ TEST_CASE("One device, whose memory the cloud is not in, copies it, too") {
   const auto there = device{1}.copy_in(std::span<const vec3>(points));
   const auto model = robot.on(device{0});
   clearance::query query(device{0}, model, clearance::min_distance{});
-  CHECK(same_result(query(poses, point_span(there.data(), there.size())), ask(host{}, robot, poses, points, min_distance{})));
+  CHECK(same_result(query(poses, point_span(there.data(), there.size())),
+                    ask(host{}, robot, poses, points, min_distance{})));
 }
 
 TEST_CASE("Streams of the caller's are taken, and the caller's device stays", "[concurrent]") {
@@ -417,25 +434,30 @@ TEST_CASE("What cannot be is refused with a sentence, and leaves nothing behind"
   const auto poses = poses_of(d, 2);
   const auto cloud = d.points(1000, 2);
   const auto model = robot.on(on), on_three = robot.on(devices{0, 0, 0});
-  CHECK(refused([&] { clearance::min_distance_query(on, on_three); }) ==
+  const auto alone = robot.on(device{});
+  CHECK(refused([&] { clearance::query(on, on_three, min_distance{}); }) ==
         "clearance: the robot is on 3 devices, but 2 are asked");
   if (there > 1)
-    CHECK(refused([&] { clearance::min_distance_query(devices{0, 1}, model); }) ==
+    CHECK(refused([&] { clearance::query(devices{0, 1}, model, min_distance{}); }) ==
           "clearance: the robot is not on device 1, which is asked");
   counting_resource first, second;
   const std::vector<std::pmr::memory_resource*> both = {&first, &second};
-  CHECK(refused([&] { clearance::min_distance_query(on, model, std::span(both).first(1)); }) ==
+  CHECK(refused([&] { clearance::query(on, model, min_distance{}, std::span(both).first(1)); }) ==
         "clearance: 1 memory resources for 2 devices");
   {
     clearance::query query(on, model, clearance::min_distance{}, both);
     const auto expected = ask(host{}, robot, poses, cloud, min_distance{});
     CHECK(same_result(query(poses, cloud), expected));
     CHECK((first.held > 500 * sizeof(vec3) && second.held > 500 * sizeof(vec3)));
+    clearance::query per_part(on, model, min_distance_per_part{}, both);
+    const auto each = ask(host{}, robot, poses, cloud, min_distance_per_part{});
+    CHECK(same_result(per_part(poses, cloud).all, each.all));
+    CHECK((first.held > 1000 * sizeof(vec3) && second.held > 1000 * sizeof(vec3)));
     const std::size_t asked = first.asked + second.asked;
     const auto three = clearance::shard(devices{0, 0, 0}, cloud);
     Eigen::Isometry3d skewed = poses[0];
     skewed.linear() *= 1.01;
-    std::vector<clearance::part_minimum> minima(3);
+    const std::vector<clearance::part_minimum> minima(3);
     for (int round = 0; round < 3; ++round) {
       CHECK(refused([&] { query(poses, three.view()); }) == "clearance: a cloud of 3 pieces for 2 devices");
       CHECK(refused([&] { query(std::span(poses).first(1), cloud); }).find("2 parts, but 1 poses") !=
@@ -445,12 +467,234 @@ TEST_CASE("What cannot be is refused with a sentence, and leaves nothing behind"
       CHECK(refused([&] {
               query(poses, std::vector{placed{point_span(cloud), poses[0]}, placed{point_span(cloud), skewed}});
             }).find("clearance: ") == 0);
-      CHECK(refused([&] { query.per_part(poses, cloud, minima); }).find("room for 3 minima") != std::string::npos);
+      CHECK(refused([&] { per_part(poses, three.view()); }) == "clearance: a cloud of 3 pieces for 2 devices");
+      CHECK(refused([&] { per_part(std::span(poses).first(1), cloud); }).find("2 parts, but 1 poses") !=
+            std::string::npos);
+      CHECK(refused([&] {
+              ask(device{}, alone, poses, cloud, clearance::part_witnesses{minima});
+            }).find("room for 3 minima") != std::string::npos);
       CHECK(same_result(query(poses, cloud), expected));
+      CHECK(same_result(per_part(poses, cloud).all, each.all));
     }
     CHECK(first.asked + second.asked == asked);
   }
   CHECK((first.held == 0 && second.held == 0));
+}
+
+namespace {
+
+auto fields(const clearance::point_counts& c) { return std::tuple(c.seen, c.valid, std::span(c.dropped)); }
+auto fields(const clearance::distance_certainty& c) { return std::tuple(c.error.here, c.error.per_metre, c.slop); }
+auto fields(const clearance::zone& z) {
+  return std::tie(z.points, z.nearest, z.nearest_cloud, z.nearest_point, z.first_cloud, z.first_point);
+}
+auto fields(const clearance::pair_distance& p) { return std::tie(p.cloud, p.point, p.part, p.primitive, p.distance); }
+auto fields(const clearance::self_filter_counts& c) { return std::tie(c.points, c.own, c.uncertain); }
+auto fields(const clearance::zones_result& r) {
+  return std::tie(r.per_part, r.min_points, r.zones, r.counts, r.unseen);
+}
+auto fields(const clearance::within_result& r) { return std::tie(r.offsets, r.pairs, r.counts, r.certain); }
+auto fields(const clearance::collision_result& r) { return std::tie(r.state, r.cloud, r.point, r.part, r.counts); }
+auto fields(const clearance::point_distances& r) {
+  return std::tie(r.distance, r.part, r.primitive, r.counts, r.certain);
+}
+auto fields(const clearance::part_distances& r) { return std::tie(r.distance, r.points, r.counts, r.certain); }
+auto fields(const clearance::nearest_k_result& r) { return std::tie(r.per_part, r.pairs, r.counts, r.certain); }
+auto fields(const clearance::self_filter_result& r) { return std::tie(r.labels, r.offsets, r.rest, r.counts); }
+auto fields(const clearance::min_distances_result& r) { return std::tie(r.of); }
+auto fields(const clearance::in_collisions_result& r) { return std::tie(r.of, r.counts); }
+auto fields(const clearance::min_distances_per_part_result& r) { return std::tie(r.all, r.parts); }
+
+/// Compares every field of two results, numbers by their bits.
+template <class T>
+bool same(const T& a, const T& b) {
+  if constexpr (std::is_same_v<T, clearance::min_distance_result>)
+    return same_result(a, b);
+  else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
+    return same_bytes(a, b);
+  else if constexpr (requires { a.begin(); })
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return same(x, y); });
+  else
+    return std::apply(
+        [&](const auto&... of_a) {
+          return std::apply([&](const auto&... of_b) { return (same(of_a, of_b) && ...); }, fields(b));
+        },
+        fields(a));
+}
+
+/// Asks several devices and one: prepared, cold, warm and moved, and in one call. `alone` and `here` are for the one.
+template <class Q, class There, class Alone, class Clouds, class Here>
+void like_one(const devices& on, const There& there, const Alone& alone, std::vector<Eigen::Isometry3d> poses,
+              const Clouds& clouds, const Here& here, const Q& q, verdict& v, const std::string& what) {
+  clearance::query query(on, there, q);
+  typename Q::result expected = ask(device{}, alone, poses, here, q);
+  for (const char* when : {", cold", ", warm"})
+    v.require(same(query(poses, clouds), expected), what, when, ": differs from one device's result");
+  poses[0].translation().x() += 0.01, poses.back().translation().z() += 0.3;
+  expected = ask(device{}, alone, poses, here, q);
+  v.require(same(query(poses, clouds), expected), what, ", moved: differs from one device's result");
+  v.require(same(ask(on, there, poses, clouds, q), expected), what, ", one call: differs from one device's result");
+}
+
+/// Two clouds, so that there are few points for some devices, or none.
+struct two_given {
+  std::string name;
+  std::vector<vec3> first, second;
+  Eigen::Isometry3d poses[2];
+
+  std::vector<placed<point_span>> here() const {
+    return {{point_span(first, {.farthest = 2.5f}), poses[0]}, {point_span(second), poses[1]}};
+  }
+};
+
+std::vector<two_given> pairs_of_clouds(dice& d, std::size_t most) {
+  std::vector<two_given> all;
+  const auto add = [&](const std::string& name, std::vector<vec3> first, std::vector<vec3> second) {
+    if (first.size() > 100) first[first.size() / 3].y = clearance::not_a_number;
+    all.push_back({name, std::move(first), std::move(second), {d.pose(0.2), d.pose(0.2)}});
+  };
+  add("one of two is empty", d.points(most, 1.5), {});
+  add("the first of two is empty", {}, d.points(most, 1.5));
+  add("one of two is small", d.points(most, 1.5), d.points(3, 1));
+  add("the first of two is a point", d.points(1, 0.5), d.points(most + 7, 1.5));
+  add("both are small", d.points(2, 0.5), d.points(5, 0.5));
+  add("both are empty", {}, {});
+  add("many are equally near", std::vector<vec3>(501, vec3{0.7f, 0.2f, 0.1f}), d.points(9, 1.5));
+  add("the errors of one are in all brackets", d.points(most, 1.5), d.points(2, 1));
+  all.back().poses[1] = shifted(1e5, 0, 0);
+  return all;
+}
+
+/// Asks about the same points in host memory; on their devices, in about equal shards; and in shards of which some are
+/// empty.
+template <class Q, class Model>
+void like_one(const Model& robot, const std::vector<Eigen::Isometry3d>& poses, const std::vector<two_given>& given,
+              const Q& q, verdict& v, const std::string& what) {
+  const auto alone = robot.on(device{});
+  for (const auto& [name, on] : all_devices()) {
+    const auto there = robot.on(on);
+    for (const two_given& two : given) {
+      const auto here = two.here();
+      const std::string which = what + ", " + two.name + ", on " + name;
+      like_one(on, there, alone, poses, here, here, q, v, which);
+      const auto first = clearance::shard(on, here[0].source), second = clearance::shard(on, here[1].source);
+      const std::vector<placed<sharded<point_span>>> shards = {{first.view(), here[0].pose},
+                                                               {second.view(), here[1].pose}};
+      like_one(on, there, alone, poses, shards, here, q, v, which + ", in shards");
+      std::vector<std::size_t> cuts(on.size() + 1, 1), none(on.size() + 1, 0);
+      cuts[0] = 0, cuts.back() = none.back() = ~std::size_t(0);
+      const cut_by_hand most_in_last(on, two.first, cuts), all_in_last(on, two.second, none);
+      const std::vector<placed<point_span>> plain = {{point_span(two.first), two.poses[0]},
+                                                     {point_span(two.second), two.poses[1]}};
+      const std::vector<placed<sharded<point_span>>> unequal = {{most_in_last.view(), two.poses[0]},
+                                                                {all_in_last.view(), two.poses[1]}};
+      like_one(on, there, alone, poses, unequal, plain, q, v, which + ", in unequal shards");
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Several devices say of pairs of points and parts what one says, in every bit", "[slow]") {
+  dice d(18);
+  verdict v;
+  for (const int parts : {3, 130}) {
+    const auto robot = robot_of(d, parts, parts > 100 ? 5 : 60);
+    const auto poses = poses_of(d, parts);
+    auto given = pairs_of_clouds(d, 3001);
+    if (parts > 100) given.resize(3);
+    const auto each = [&](const auto& q, const std::string& what) {
+      like_one(robot, poses, given, q, v, what + ", " + std::to_string(parts) + " parts");
+    };
+    std::vector<double> growing, radii, margins, paddings;
+    for (int k = 0; k < parts; ++k) {
+      growing.push_back(0.01 * k), growing.push_back(0.02 * k + 0.05);
+      radii.push_back(0.3 / (k + 1)), margins.push_back(0.001 * k - 0.02), paddings.push_back(0.002 * (k % 9));
+    }
+    each(clearance::zones{.thresholds = {0, 0.05, 0.4}}, "zones");
+    each(clearance::zones{.thresholds = growing, .each_part = true, .min_points = 3}, "zones of each part");
+    each(clearance::within{{0.1}}, "within");
+    each(clearance::within{radii}, "within, of each part");
+    for (const double margin : {-0.05, 0.0, 0.05}) each(clearance::in_collision{{margin}}, "in_collision");
+    each(clearance::in_collision{margins}, "in_collision, of each part");
+    each(clearance::distances_per_part{}, "distances_per_part");
+    each(clearance::distances_per_part{0.3}, "distances_per_part, near ones");
+    each(clearance::self_filter{}, "self_filter");
+    each(clearance::self_filter{paddings}, "self_filter, of each part");
+  }
+}
+
+TEST_CASE("Several devices say of every point, and of the nearest, what one says, in every bit", "[slow]") {
+  dice d(19);
+  verdict v;
+  for (const int parts : {3, 130}) {
+    const auto robot = robot_of(d, parts, parts > 100 ? 5 : 60);
+    const auto poses = poses_of(d, parts);
+    auto given = pairs_of_clouds(d, 3001);
+    if (parts > 100) given.resize(3);
+    const auto each = [&](const auto& q, const std::string& what) {
+      like_one(robot, poses, given, q, v, what + ", " + std::to_string(parts) + " parts");
+    };
+    each(clearance::distances{.which = true}, "distances");
+    each(clearance::distances{.d_max = 0.2, .which = true}, "distances, near ones");
+    each(clearance::distances{.d_max = 0.2}, "distances alone");
+    for (const std::size_t k : {1, 7, 400}) each(clearance::nearest_k{k}, "nearest_k");
+    each(clearance::nearest_k{.k = 7, .d_max = 0.2}, "nearest_k, near ones");
+  }
+}
+
+TEST_CASE("Several devices say of many configurations what one says, in every bit", "[slow]") {
+  dice d(20);
+  verdict v;
+  scene<inner_sphere> s;
+  for (int part = 0; part < 3; ++part)
+    s.parts.push_back(random_primitives<inner_sphere>(d, 40, 0.3, 0.05)), s.poses.push_back(d.pose(0.5));
+  const auto robot = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const configurations poses = configurations_of(s, d, 9);
+  const auto given = pairs_of_clouds(d, 3001);
+  for (const double d_max : {double(clearance::infinity), 0.2}) {
+    like_one(robot, poses, given, clearance::min_distances{d_max}, v, "min_distances");
+    like_one(robot, poses, given, clearance::min_distances_per_part{d_max}, v, "min_distances_per_part");
+  }
+  for (const double margin : {-0.02, 0.0, 0.1})
+    like_one(robot, poses, given, clearance::in_collisions{{margin}}, v, "in_collisions");
+  like_one(robot, poses, given, clearance::in_collisions{{0.2, 0.0, 0.1}}, v, "in_collisions, of each part");
+}
+
+TEST_CASE("Several devices say how deep points are in solids as one says, in every bit") {
+  dice d(21);
+  verdict v;
+  const auto [meshes, poses] = closed_scene(63);
+  const auto robot = clearance::make_model<clearance::aabb>(meshes);
+  auto given = pairs_of_clouds(d, 2001);
+  given.push_back({"a crowd inside", d.points(4001, 0.4), d.points(3, 0.1), {d.pose(0.1), d.pose(0.1)}});
+  for (const bool which : {true, false})
+    for (const double d_max : {0.1, double(clearance::infinity)})
+      like_one(robot, poses, given, clearance::signed_distances{d_max, which}, v, "signed_distances");
+}
+
+TEST_CASE("Of several devices one sees what is too close, and nothing is free; each pixel has its own distance") {
+  verdict v;
+  const auto robot = clearance::make_model<clearance::sphere>(ball_before_it);
+  const auto alone = robot.on(device{});
+  const std::vector<Eigen::Isometry3d> poses = {shifted(0, 0, 0)};
+  for (const std::size_t near : {0, 1, 400}) {
+    const too_close_frame frame(near, 50, 3);
+    const std::tuple clouds(placed{frame.image(), shifted(0, 0, 0)}, placed{point_span(), shifted(0, 0, 0)});
+    for (const auto& [name, on] : all_devices()) {
+      const std::string what = std::to_string(near) + " too close, on " + name;
+      const auto there = robot.on(on);
+      const auto each = [&](const auto& q) { like_one(on, there, alone, poses, clouds, clouds, q, v, what); };
+      each(clearance::in_collision{{0.1}});
+      each(clearance::in_collisions{{0.1}});
+      each(clearance::zones{.thresholds = {0.1, 0.4}});
+      each(clearance::distances{.which = true});
+      each(clearance::self_filter{});
+      v.require(ask(on, there, poses, clouds, clearance::in_collision{{0.1}}).state ==
+                    (near == 0 ? clearance::state::free : clearance::state::possible),
+                what, ": another state");
+    }
+  }
 }
 
 }  // namespace devices_test

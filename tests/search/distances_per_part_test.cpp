@@ -9,7 +9,7 @@
 namespace distances_per_part_test {
 
 using namespace testing;
-using clearance::host, clearance::distances_per_part;
+using clearance::distances_per_part, clearance::host;
 
 TEST_CASE("Every part's distance to every point is brute force's, to the bit, and their least that of distances") {
   verdict v;
@@ -22,7 +22,7 @@ TEST_CASE("Every part's distance to every point is brute force's, to the bit, an
       const std::string what = s.name + ", d_max " + std::to_string(d_max);
       const auto found = ask(host{}, model, s.poses, two, distances_per_part{d_max});
       require_same(found, brute_per_part(s, two, d_max, nothing_inside), v, what);
-      const auto least = clearance::ask(host{}, model, s.poses, two, clearance::distances{.d_max = d_max});
+      const auto least = ask(host{}, model, s.poses, two, clearance::distances{d_max});
       for (std::size_t i = 0; i < found.points; ++i) {
         real nearest = found.of(0)[i];
         for (std::size_t k = 1; k < s.parts.size(); ++k) nearest = found.of(k)[i] < nearest ? found.of(k)[i] : nearest;
@@ -51,17 +51,17 @@ TEST_CASE("Prepared, every part's distances are in every frame what one call say
   verdict v;
   moving_frames f(5, 116);
   const auto model = f.model();
-  clearance::query query(host{}, model, clearance::distances_per_part{});
+  clearance::query query(host{}, model, distances_per_part{});
   for (; f.there(); f.next()) {
     const real d_max = f.number % 2 ? 0.3f : clearance::infinity;
     const auto expected = ask(host{}, model, f.s.poses, f.here(), distances_per_part{d_max});
     const std::string what = "frame " + std::to_string(f.number);
-    require_same(query(f.s.poses, f.here(), d_max), expected, v, what);
+    require_same(query(f.s.poses, f.here(), {d_max}), expected, v, what);
     clearance::part_distances enqueued = expected;
     std::fill(enqueued.distance.begin(), enqueued.distance.end(), real(-1)), enqueued.counts = {};
-    query.enqueue(f.s.poses, f.here(), enqueued.distance.data(), &enqueued.counts, d_max);
+    query.enqueue(f.s.poses, f.here(), {d_max}, {enqueued.distance.data(), &enqueued.counts});
     require_same(enqueued, expected, v, what + ", enqueued");
-    CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), {clearance::not_a_number}), std::invalid_argument);
   }
 }
 

@@ -4,9 +4,9 @@
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
-#include <clearance/questions/distances_per_part.hpp>
 #include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/distances_per_part.hpp>
 #include <clearance/volume/sphere.hpp>
 
 namespace distances_per_part_test {
@@ -51,13 +51,14 @@ TEST_CASE("Prepared, every part's distances are on a device in every frame the h
     for (; f.there(); f.next()) {
       const real d_max = f.number % 2 ? 0.3f : clearance::infinity;
       const frame_there seen(gpu, f);
-      query.enqueue(f.s.poses, seen.all, distance.data(), counts.data(), d_max);
+      query.enqueue(f.s.poses, seen.all, {d_max}, {distance.data(), counts.data()});
       const auto expected = look(d_max, "frame " + std::to_string(f.number));
-      require_same(query(f.s.poses, f.here(), d_max), expected, v, "waited for");
-      CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
+      require_same(query(f.s.poses, f.here(), {d_max}), expected, v, "waited for");
+      CHECK_THROWS_AS(query(f.s.poses, f.here(), {clearance::not_a_number}), std::invalid_argument);
     }
     replay(
-        stream, gpu, f, [&](const clouds& all) { query.enqueue(f.s.poses, all, distance.data(), counts.data(), 0.3f); },
+        stream, gpu, f,
+        [&](const clouds& all) { query.enqueue(f.s.poses, all, {0.3f}, {distance.data(), counts.data()}); },
         [&](const std::string& what) { look(0.3f, what); });
   }
 }

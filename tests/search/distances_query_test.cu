@@ -3,11 +3,11 @@
 #include "support/brute_distances.hpp"
 #include "support/product_device.cuh"
 
-#include <clearance/questions/distances.hpp>
 #include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/ray_image.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 

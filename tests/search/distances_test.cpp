@@ -3,8 +3,8 @@
 #include "support/brute_distances.hpp"
 #include "support/volumes.hpp"
 
-#include <clearance/questions/distances.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -12,7 +12,7 @@
 namespace distances_test {
 
 using namespace testing;
-using clearance::distances, clearance::host, clearance::placed, clearance::plain;
+using clearance::distances, clearance::host, clearance::placed;
 
 namespace {
 
@@ -107,20 +107,20 @@ TEST_CASE("A prepared question of distances on the host says the same") {
   for (const auto& s : scenes<triangle>()) {
     const sources<triangle> all(s);
     const auto model = make_model<clearance::aabb>(s, {}, clearance::wrapped{});
-    clearance::query query(host{}, model, clearance::distances{});
+    clearance::query query(host{}, model, distances{});
     const placed cloud{all.span, s.cloud_pose};
     for (const real d_max : {real(0.2), clearance::infinity}) {
       const auto expected = brute_distances(s, all.span, s.cloud_pose, d_max, nothing_inside);
       require_same(query(s.poses, cloud, {d_max, true}), expected, v, s.name);
       clearance::point_distances found = expected;
       std::ranges::fill(found.distance, -1.0f), found.part.clear(), found.primitive.clear(), found.counts = {};
-      query.enqueue(s.poses, cloud, {found.distance.data()}, &found.counts, d_max);
+      query.enqueue(s.poses, cloud, {d_max}, {{found.distance.data()}, &found.counts});
       require_same(found, expected, v, s.name + ", enqueued");
       query.forget();
     }
   }
   const auto model = make_model<clearance::aabb>(scenes<triangle>()[0], {}, clearance::wrapped{});
-  clearance::query query(host{}, model, clearance::distances{});
+  clearance::query query(host{}, model, distances{});
   CHECK_THROWS_AS(query(scenes<triangle>()[0].poses, std::vector<vec3>{}, {clearance::not_a_number}),
                   std::invalid_argument);
 }

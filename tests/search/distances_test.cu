@@ -3,9 +3,9 @@
 #include "support/brute_distances.hpp"
 #include "support/product_device.cuh"
 
-#include <clearance/questions/distances.hpp>
 #include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>

@@ -11,7 +11,8 @@
 namespace edge_test {
 
 using namespace testing;
-using clearance::host, clearance::min_distance, clearance::min_distance_query, clearance::placed, clearance::point_span;
+using clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::placed,
+    clearance::point_span;
 
 namespace {
 
@@ -35,13 +36,13 @@ void ask(const Model& model, const scene<inner_sphere>& s, verdict& v, const std
   const auto parts = brute_parts(s);
   auto poses = s.poses;
   const placed cloud{point_span(s.points), s.cloud_pose};
-  query query(host{2}, model, min_distance{}), alone(host{1}, model);
+  clearance::query query(host{2}, model, min_distance{});
+  clearance::query alone(host{1}, model, min_distance_per_part{});
   brute_answer expected;
   const auto same = [&](const std::string& when) {
     require_equal(ask(host{}, model, poses, cloud, min_distance{}), expected, v, what + ", plain, " + when);
     require_equal(query(poses, cloud), expected, v, what + ", " + when);
-    std::vector<clearance::part_minimum> minima(model.size());
-    const auto r = alone.per_part(poses, cloud, minima);
+    const auto& [r, minima] = alone(poses, cloud);
     require_equal(r, expected, v, what + ", per part, " + when);
     require_equal(minima, expected, v, what + ", " + when);
   };
@@ -102,15 +103,16 @@ TEST_CASE("Where every point is inside a solid the distance is 0, at the first p
     const std::vector<Eigen::Isometry3d> poses = {d.pose(0.1), shifted(off, 0, 0) * d.pose(0.1), d.pose(0.1)};
     auto points = d.points(20000, 0.5);
     points[0].z = clearance::not_a_number;
-    query query(host{2}, model, min_distance{});
+    clearance::query query(host{2}, model, min_distance{});
+    clearance::query by_parts(host{2}, model, min_distance_per_part{});
     const auto expected = brute_force(brute, poses, {brute_cloud(point_span(points))});
     for (const char* when : {"cold", "warm"}) {
       const auto r = query(poses, points);
       require_equal(r, expected, v, when);
       CHECK((r.distance == 0 && r.point == 1 && r.part == 0 && r.state == clearance::state::collision && r.upper == 0 &&
              r.lower == 0));
-      std::vector<clearance::part_minimum> minima(3);
-      require_equal(query.per_part(poses, points, minima), expected, v, when);
+      const auto& [robot, minima] = by_parts(poses, points);
+      require_equal(robot, expected, v, when);
       require_equal(minima, expected, v, when);
     }
   }
@@ -120,7 +122,7 @@ TEST_CASE(
     "Poses so far away that distances in float would overflow are refused; up to there every distance is finite") {
   const auto s = small_robot();
   const auto model = edge_model(s);
-  query query(host{}, model, min_distance{});
+  clearance::query query(host{}, model, min_distance{});
   const auto ask = [&](double robot, double cloud) {
     auto poses = s.poses;
     for (auto& pose : poses) pose.translation().setConstant(robot);
@@ -148,7 +150,7 @@ TEST_CASE("Ten million points: the one that is near is found wherever it is", "[
   std::vector<vec3> cloud(n);
   for (std::size_t i = 0; i < n; ++i) cloud[i] = endless_points{n}[i].position;
   REQUIRE(expected.best.distance < 2);
-  query query(host{}, model, min_distance{});
+  clearance::query query(host{}, model, min_distance{});
   for (const std::size_t at : {std::size_t(0), std::size_t(7), n / 2, n - 2, n - 1}) {
     const endless_points all{n, at};
     const vec3 before = cloud[at];

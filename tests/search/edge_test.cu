@@ -3,9 +3,9 @@
 #include "search/edge_scenes.hpp"
 #include "support/product_device.cuh"
 
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/questions/min_distance.hpp>
-#include <clearance/device.cuh>
 #include <clearance/volume/obb.hpp>
 
 #include <optional>
@@ -28,9 +28,12 @@ void ask(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const std::
   const auto model = on_host.on(gpu);
   const auto there = gpu.copy_in(std::span<const vec3>(points));
   const placed here{point_span(points), pose}, cloud{point_span(there.data(), points.size()), pose};
-  using prepared = clearance::min_distance_query<device, typename decltype(model.view())::part_type>;
-  std::optional<prepared> query;
-  if (poses.size() <= 128) query.emplace(gpu, model.view());
+  using part_view = typename decltype(model.view())::part_type;
+  std::optional<clearance::query<min_distance, device, part_view>> query;
+  std::optional<clearance::query<clearance::min_distance_per_part, device, part_view>> per_part;
+  if (poses.size() <= 128)
+    query.emplace(gpu, model.view(), min_distance{}),
+        per_part.emplace(gpu, model.view(), clearance::min_distance_per_part{});
   const auto same = [&](const std::string& when, int times) {
     const auto expected = ask(host{}, on_host, poses, here, min_distance{});
     const auto [robot, each] = clearance::ask(host{}, on_host, poses, here, clearance::min_distance_per_part{});
@@ -42,10 +45,9 @@ void ask(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const std::
     for (int k = 0; query && k < times; ++k) {
       const std::string at = ", " + when + std::to_string(k);
       v.require(same_result((*query)(poses, cloud), expected), what, at, ": differs from the host's result");
-      std::vector<clearance::part_minimum> minima(poses.size());
-      v.require(same_result(query->per_part(poses, cloud, minima), robot), what, at,
-                ": differs from the host's result by parts");
-      v.require(std::ranges::equal(minima, each, same_minimum), what, at, ": some part's minimum differs");
+      const auto& found = (*per_part)(poses, cloud);
+      v.require(same_result(found.all, robot), what, at, ": differs from the host's result by parts");
+      v.require(std::ranges::equal(found.parts, each, same_minimum), what, at, ": some part's minimum differs");
     }
   };
   const auto first = poses;
@@ -53,7 +55,7 @@ void ask(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const std::
   poses[0].translation().x() += 0.01, poses.back().translation().z() -= 5;
   same("moved", 2);
   poses = first;
-  if (query) query->forget();
+  if (query) query->forget(), per_part->forget();
   same("cold again", 1);
 }
 
@@ -133,7 +135,7 @@ TEST_CASE("A hundred million points: the one that is near is found wherever it i
   const auto near = ask(host{}, on_host, s.poses, s.points, min_distance{});
   REQUIRE(near.distance < 2);
   clearance::query query(gpu, model, clearance::min_distance{});
-  std::vector<clearance::part_minimum> minima(3);
+  clearance::query per_part(gpu, model, clearance::min_distance_per_part{});
   verdict v;
   // Where floats stop counting, pieces and blocks end, and no point was before.
   for (const std::size_t at : {std::size_t(0), std::size_t(16'777'217), std::size_t(67'108'871), n / 2, n - 2, n - 1}) {
@@ -147,14 +149,14 @@ TEST_CASE("A hundred million points: the one that is near is found wherever it i
     for (const char* when : {", before this one was there", ", warm"})
       v.require(same_result(query(s.poses, all), plain), what, when);
     const auto [robot, each] = clearance::ask(gpu, model, s.poses, all, clearance::min_distance_per_part{});
-    v.require(
-        same_result(query.per_part(s.poses, all, minima), robot) && std::ranges::equal(minima, each, same_minimum),
-        what, ": by parts");
+    const auto& found = per_part(s.poses, all);
+    v.require(same_result(found.all, robot) && std::ranges::equal(found.parts, each, same_minimum), what, ": by parts");
     if (at == n - 1) {
       v.require(same_result(ask(host{}, on_host, s.poses, endless_points{n, at}, min_distance{}), plain), what,
                 ": differs from the host's result");
       const point_span but_one(cloud.data() + 1, n - 1);
-      v.require(same_result(query(s.poses, but_one), ask(gpu, model, s.poses, but_one, min_distance{})), what, ": unaligned");
+      v.require(same_result(query(s.poses, but_one), ask(gpu, model, s.poses, but_one, min_distance{})), what,
+                ": unaligned");
       put(n / 2, endless_points::near());
       v.require(query(s.poses, all).point == n / 2, what, ": of two that are equally near the first is the answer");
     } else {
@@ -162,7 +164,7 @@ TEST_CASE("A hundred million points: the one that is near is found wherever it i
     }
   }
   clearance::check_cuda(cudaMemset(cloud.data(), 0xff, n * sizeof(vec3)), "cudaMemset");  // all bits set: no numbers
-  const auto r = query.per_part(s.poses, all, minima);
+  const auto& [r, minima] = per_part(s.poses, all);
   CHECK((r.state == clearance::state::no_data && r.seen == n && r.valid == 0 &&
          r.dropped[int(clearance::drop_reason::not_finite)] == n));
   CHECK((minima[0].point == clearance::none && minima[2].point == clearance::none));

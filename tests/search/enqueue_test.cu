@@ -7,14 +7,14 @@
 #include "support/tallied.hpp"
 
 #include <clearance/backend/pinned_buffer.cuh>
-#include <clearance/questions/collect.hpp>
 #include <clearance/device.cuh>
+#include <clearance/questions/collect.hpp>
 #include <clearance/questions/distances.hpp>
 #include <clearance/questions/in_collision.hpp>
 #include <clearance/questions/min_distance.hpp>
-#include <clearance/volume/sphere.hpp>
 #include <clearance/questions/within.hpp>
 #include <clearance/questions/zones.hpp>
+#include <clearance/volume/sphere.hpp>
 
 namespace enqueue_test {
 
@@ -41,7 +41,10 @@ struct given {
   clearance::pinned_buffer<clearance::world_transform> poses{s.poses.size() + 1, 0};
   clearance::pinned_buffer<unsigned long long> words{2, 0};
   clearance::pinned_buffer<clearance::point_counts> counts{1, 0};
-  clearance::min_distance_query<device, typename decltype(model)::view_type> query{gpu, model};
+  clearance::query<clearance::min_distance, device, typename decltype(model)::view_type> query{
+      gpu, model, clearance::min_distance{}};
+  clearance::query<clearance::min_distance_per_part, device, typename decltype(model)::view_type> per_part{
+      gpu, model, clearance::min_distance_per_part{}};
 
   given() {
     for (std::size_t k = 0; k < s.poses.size(); ++k) poses.data()[k] = clearance::world_transform(s.poses[k]);
@@ -55,24 +58,30 @@ struct given {
     const std::tuple both(here, placed{all.raw, all.camera_pose});
     const auto one = [&](const auto& there, const auto& same, const std::string& what) {
       each(
-          "min_distance_async" + what,
+          "once" + what,
           [&] { clearance::enqueue(gpu, model, s.poses, there, clearance::min_distance{}, result.data()); }, same);
       each(
-          "min_distance_per_part_async" + what,
-          [&] { clearance::enqueue(gpu, model, s.poses, there, clearance::min_distance_per_part{}, {result.data(), minima.data()}); },
+          "once, per_part" + what,
+          [&] {
+            clearance::enqueue(gpu, model, s.poses, there, clearance::min_distance_per_part{},
+                               {result.data(), minima.data()});
+          },
           same);
-      each("enqueue" + what, [&] { query.enqueue(s.poses, there, result.data()); }, same);
+      each("prepared" + what, [&] { query.enqueue(s.poses, there, result.data()); }, same);
       each(
-          "enqueue_per_part" + what, [&] { query.enqueue_per_part(s.poses, there, result.data(), minima.data()); },
-          same);
+          "prepared, per_part" + what, [&] { per_part.enqueue(s.poses, there, {result.data(), minima.data()}); }, same);
     };
     one(cloud, here, "");
     one(clouds, both, " of two clouds");
     const auto* const of_cloud = poses.data() + s.poses.size();
-    each("enqueue of poses there", [&] { query.enqueue(poses.data(), cloud.source, of_cloud, result.data()); }, here);
+    each("prepared, of poses there", [&] { query.enqueue(poses.data(), cloud.source, of_cloud, result.data()); }, here);
     each(
-        "enqueue_per_part of poses there",
-        [&] { query.enqueue_per_part(poses.data(), cloud.source, of_cloud, result.data(), minima.data()); }, here);
+        "prepared, per_part, of poses there",
+        [&] {
+          per_part.enqueue(poses.data(), cloud.source, of_cloud,
+                           clearance::min_distance_per_part::out{result.data(), minima.data()});
+        },
+        here);
   }
 };
 
@@ -84,8 +93,9 @@ TEST_CASE("Every frame that is enqueued returns while its stream is held, and is
   verdict v;
   g.every_way([&](const std::string& name, auto enqueue, const auto& same) {
     const bool per_part = name.find("per_part") != std::string::npos;
-    const auto expected = per_part ? clearance::ask(host{}, g.on_host, g.s.poses, same, clearance::min_distance_per_part{}).first
-                                   : clearance::ask(host{}, g.on_host, g.s.poses, same, clearance::min_distance{});
+    const auto expected =
+        per_part ? clearance::ask(host{}, g.on_host, g.s.poses, same, clearance::min_distance_per_part{}).all
+                 : clearance::ask(host{}, g.on_host, g.s.poses, same, clearance::min_distance{});
     enqueue();  // once, as loading a kernel may wait for everything
     g.gpu.wait();
     *g.result.data() = {};
@@ -103,7 +113,8 @@ TEST_CASE("An answer of one's own is enqueued without waiting, too", "[concurren
   const std::tuple both(placed{g.all.span, g.s.cloud_pose}, placed{g.all.raw, g.all.camera_pose});
   clearance::ask(host{}, g.on_host, g.s.poses, both, clearance::collect{tallied{1, expected.words}});
   const auto enqueue = [&] {
-    clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, clearance::collect{tallied{1, g.words.data()}}, {g.counts.data()});
+    clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, clearance::collect{tallied{1, g.words.data()}},
+                       {g.counts.data()});
   };
   enqueue();
   g.gpu.wait();
@@ -114,12 +125,12 @@ TEST_CASE("An answer of one's own is enqueued without waiting, too", "[concurren
   held.release();
   CHECK((g.words.data()[0] == expected.words[0] && g.words.data()[1] == expected.words[1]));
 
-  clearance::query query(g.gpu, g.model, clearance::collect{});
+  clearance::query query(g.gpu, g.model, clearance::collect{tallied{1, g.words.data()}});
   g.words.data()[0] = g.words.data()[1] = 0;
-  const auto counts = query(g.s.poses, both, tallied{1, g.words.data()});
+  const auto counts = query(g.s.poses, both);
   CHECK((g.words.data()[0] == expected.words[0] && g.words.data()[1] == expected.words[1] &&
          counts.valid == g.counts.data()->valid));
-  query.enqueue(g.s.poses, g.clouds, tallied{1, g.words.data()}, g.counts.data());
+  query.enqueue(g.s.poses, g.clouds, clearance::collect{tallied{1, g.words.data()}}, {g.counts.data()});
   g.gpu.wait();
   CHECK((g.words.data()[0] == 2 * expected.words[0] && g.words.data()[1] == 2 * expected.words[1] &&
          counts.valid == g.counts.data()->valid));
@@ -144,7 +155,8 @@ TEST_CASE("Distances are enqueued without waiting, too", "[concurrent]") {
   const auto expected = clearance::ask(host{}, g.on_host, g.s.poses, both, clearance::distances{.d_max = 1});
   clearance::pinned_buffer<real> distance(expected.distance.size(), 0);
   const auto enqueue = [&] {
-    return clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, clearance::distances{1}, {{distance.data()}, g.counts.data()});
+    return clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, clearance::distances{1},
+                              {{distance.data()}, g.counts.data()});
   };
   enqueue();
   g.gpu.wait();
@@ -163,10 +175,11 @@ TEST_CASE("Every frame that is enqueued by a prepared query can be captured and 
   given g;
   verdict v;
   g.every_way([&](const std::string& name, auto enqueue, const auto& same) {
-    if (name.find("async") != std::string::npos) return;  // asks for memory
+    if (name.find("once") != std::string::npos) return;  // asks for memory
     const bool per_part = name.find("per_part") != std::string::npos;
-    const auto expected = per_part ? clearance::ask(host{}, g.on_host, g.s.poses, same, clearance::min_distance_per_part{}).first
-                                   : clearance::ask(host{}, g.on_host, g.s.poses, same, clearance::min_distance{});
+    const auto expected =
+        per_part ? clearance::ask(host{}, g.on_host, g.s.poses, same, clearance::min_distance_per_part{}).all
+                 : clearance::ask(host{}, g.on_host, g.s.poses, same, clearance::min_distance{});
     enqueue();
     g.gpu.wait();
     const captured_graph graph(g.stream.handle, enqueue);
@@ -188,7 +201,7 @@ TEST_CASE("Questions that want memory for a call are enqueued without waiting, a
   const std::vector margin{0.05 * g.s.size};
   const auto distances = clearance::ask(host{}, g.on_host, g.s.poses, both, clearance::distances{});
   const auto zones = clearance::ask(host{}, g.on_host, g.s.poses, both, thresholds);
-  const auto collision = clearance::ask(host{}, g.on_host, g.s.poses, both, clearance::in_collision{{margin}});
+  const auto collision = clearance::ask(host{}, g.on_host, g.s.poses, both, clearance::in_collision{margin});
   clearance::pinned_buffer<real> distance(distances.distance.size(), 0);
   clearance::pinned_buffer<clearance::zone> zone(zones.zones.size(), 0);
   clearance::pinned_buffer<clearance::collision_result> found(1, 0);
@@ -209,9 +222,10 @@ TEST_CASE("Questions that want memory for a call are enqueued without waiting, a
               what, ": in_collision differs");
   };
   const auto enqueue = [&] {
-    clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, clearance::distances{}, {{distance.data()}, g.counts.data()});
+    clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, clearance::distances{},
+                       {{distance.data()}, g.counts.data()});
     clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, thresholds, {zone.data(), g.counts.data()});
-    clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, clearance::in_collision{{margin}}, found.data());
+    clearance::enqueue(g.gpu, g.model, g.s.poses, g.clouds, clearance::in_collision{margin}, found.data());
   };
   enqueue();
   g.gpu.wait();

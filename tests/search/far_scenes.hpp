@@ -5,10 +5,10 @@
 #include "support/laws.hpp"
 
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/ray_image.hpp>
 #include <clearance/points/strided_points.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 

@@ -23,7 +23,7 @@ struct ask_host {
     const wide distance = t.distance(robot, poses);
     const placed cloud{source, t.pose};
     require_bracket(clearance::ask(host{}, model, poses, cloud, clearance::min_distance{}), distance, v, name);
-    require_bracket(clearance::ask(host{}, model, poses, cloud, clearance::min_distance_per_part{}).first, distance, v,
+    require_bracket(clearance::ask(host{}, model, poses, cloud, clearance::min_distance_per_part{}).all, distance, v,
                     name + ", by parts");
     clearance::query query(host{}, model, clearance::min_distance{});
     for (const char* when : {", cold", ", warm"}) require_bracket(query(poses, cloud), distance, v, name + when);

@@ -5,8 +5,8 @@
 #include "search/far_scenes.hpp"
 #include "support/product_device.cuh"
 
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
+#include <clearance/questions/min_distance.hpp>
 
 namespace far_test {
 
@@ -25,7 +25,7 @@ struct ask_device {
     const wide distance = t.distance(robot, poses);
     const placed cloud{source, t.pose};
     const auto expected = clearance::ask(host{}, on_host, poses, cloud, clearance::min_distance{});
-    const auto by_parts = clearance::ask(host{}, on_host, poses, cloud, clearance::min_distance_per_part{}).first;
+    const auto by_parts = clearance::ask(host{}, on_host, poses, cloud, clearance::min_distance_per_part{}).all;
     const device gpu;
     const auto model = on_host.on(gpu);
     const auto check = [&](const clearance::min_distance_result& r, const clearance::min_distance_result& as,
@@ -36,12 +36,13 @@ struct ask_device {
     // A table of rays is read where it lies: such a source is asked on the host alone.
     if constexpr (!requires { source.rays; }) {
       check(clearance::ask(gpu, model, poses, cloud, clearance::min_distance{}), expected, ", plain");
-      check(clearance::ask(gpu, model, poses, cloud, clearance::min_distance_per_part{}).first, by_parts, ", plain, by parts");
+      check(clearance::ask(gpu, model, poses, cloud, clearance::min_distance_per_part{}).all, by_parts,
+            ", plain, by parts");
       clearance::query query(gpu, model, clearance::min_distance{});
-      std::vector<clearance::part_minimum> minima(poses.size());
+      clearance::query per_part(gpu, model, clearance::min_distance_per_part{});
       for (const char* when : {", cold", ", warm"}) {
         check(query(poses, cloud), expected, when);
-        check(query.per_part(poses, cloud, minima), by_parts, when);
+        check(per_part(poses, cloud).all, by_parts, when);
       }
       const std::vector<placed<Source>> twice = {cloud, {source, t.pose}};
       check(query(poses, twice), clearance::ask(host{}, on_host, poses, twice, clearance::min_distance{}), ", twice");

@@ -8,9 +8,9 @@
 
 #include <clearance/bvh/any_tree.hpp>
 #include <clearance/bvh/flat_list.hpp>
-#include <clearance/questions/distances.hpp>
 #include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -40,14 +40,15 @@ void ask(const Here& on_host, const There& model, const std::vector<Eigen::Isome
             ", one call, per part: differs");
   for (const real d_max : {real(0.3), clearance::infinity})
     require_same(clearance::ask(gpu, model, poses, cloud, clearance::distances{d_max, true}),
-                 clearance::ask(host{}, on_host, poses, cloud, clearance::distances{d_max, true}), v, what + ", distances");
+                 clearance::ask(host{}, on_host, poses, cloud, clearance::distances{d_max, true}), v,
+                 what + ", distances");
   clearance::query query(gpu, model, clearance::min_distance{});
-  std::vector<clearance::part_minimum> minima(poses.size());
+  clearance::query per_part(gpu, model, clearance::min_distance_per_part{});
   for (const char* when : {", cold", ", warm"}) {
     v.require(same_result(query(poses, cloud), expected), what + when, ": differs from the host's result");
-    v.require(same_result(query.per_part(poses, cloud, minima), robot), what + when,
-              ": differs from the host's result by parts");
-    v.require(std::ranges::equal(minima, each, same_minimum), what + when, ": some part's minimum differs");
+    const auto& found = per_part(poses, cloud);
+    v.require(same_result(found.all, robot), what + when, ": differs from the host's result by parts");
+    v.require(std::ranges::equal(found.parts, each, same_minimum), what + when, ": some part's minimum differs");
   }
 }
 

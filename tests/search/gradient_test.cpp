@@ -57,7 +57,7 @@ void against_differences() {
     const auto ask = [&](double time) {
       auto poses = s.poses;
       for (auto& pose : poses) pose = moved(pose, velocity, turning, about, time);
-      return ask(host{}, model, poses, cloud, min_distance_per_part{}).second;
+      return clearance::ask(host{}, model, poses, cloud, min_distance_per_part{}).parts;
     };
     const auto before = ask(-h), after = ask(h);
     for (std::size_t k = 0; k < minima.size(); ++k) {
@@ -117,13 +117,13 @@ void of_all_scenes() {
     };
     v.require(same(ask(clearance::host{1}, model, s.poses, std::tuple(two[0], two[1]), part_witnesses{minima})), s.name,
               ", clouds of several kinds");
-    clearance::query query(host{}, model, clearance::part_witnesses{});
-    query(s.poses, two[0], ask(host{}, model, s.poses, two[0], min_distance_per_part{}).second);
-    v.require(same(query(s.poses, two, minima)), s.name, ", prepared");
+    clearance::query query(host{}, model, part_witnesses{});
+    query(s.poses, two[0], {ask(host{}, model, s.poses, two[0], min_distance_per_part{}).parts});
+    v.require(same(query(s.poses, two, {minima})), s.name, ", prepared");
     std::vector<part_witness> room(minima.size());
-    query.enqueue(s.poses, two, minima.data(), room.data());
+    query.enqueue(s.poses, two, {minima.data(), room.data()});
     v.require(same(room), s.name, ", enqueued");
-    query.enqueue(s.poses, std::vector<vec3>(), minima.data(), room.data());
+    query.enqueue(s.poses, std::vector<vec3>(), {minima.data(), room.data()});
     v.require(std::all_of(room.begin(), room.end(), [](const part_witness& w) { return w.part == clearance::none; }),
               s.name, ", of another cloud");
   }
@@ -174,8 +174,8 @@ TEST_CASE("What has no gradient says why, and has no numbers") {
   const auto ask = [&](const auto& part, vec3 p) {
     const std::vector points{p};
     const clearance::model robot{std::vector{part}};
-    const auto [r, minima] = ask(host{}, robot, poses, points, min_distance_per_part{});
-    const auto of_part = gradient(ask(host{}, robot, poses, points, part_witnesses{minima})[0], origin);
+    const auto [r, minima] = clearance::ask(host{}, robot, poses, points, min_distance_per_part{});
+    const auto of_part = gradient(clearance::ask(host{}, robot, poses, points, part_witnesses{minima})[0], origin);
     const auto of_robot = gradient(r, origin);
     CHECK(of_part.state == of_robot.state);
     return of_robot;
@@ -198,7 +198,7 @@ TEST_CASE("Witnesses of minima that are of something else are refused") {
   const auto s = sparse<inner_sphere>(d);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const clearance::point_span cloud(s.points);
-  const auto minima = ask(host{}, model, s.poses, cloud, min_distance_per_part{}).second;
+  const auto minima = ask(host{}, model, s.poses, cloud, min_distance_per_part{}).parts;
   const auto refused = [&](std::vector<part_minimum> changed, const auto& poses, const auto& clouds) {
     CHECK_THROWS_AS(ask(host{}, model, poses, clouds, part_witnesses{changed}), std::invalid_argument);
   };

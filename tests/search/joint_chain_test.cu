@@ -4,10 +4,10 @@
 #include "support/same_result.hpp"
 #include "support/scenes.hpp"
 
-#include <clearance/questions/in_collisions.hpp>
 #include <clearance/device.cuh>
 #include <clearance/io/joint_chain.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distances.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -65,7 +65,7 @@ TEST_CASE("Joint vectors on a device have the host's answers, from the host's me
     same(on_host(chain, q, points).of, "on the host");
     const auto states = clearance::ask(host{}, model, chain.poses(q), points, clearance::in_collisions{{0.1}});
     clearance::query in(gpu, there, clearance::in_collisions{});
-    v.require(in(moved, q, points, 0.1).of == states.of, "within a margin");
+    v.require(in(moved, q, points, {{0.1}}).of == states.of, "within a margin");
     turned += std::size_t(std::ranges::count(states.of, clearance::state::collision));
   }
   CHECK(turned > 10);
@@ -89,7 +89,7 @@ TEST_CASE("A joint vector on a device that is not allowed is refused, and never 
   query.place(moved, q_there.data(), 2);
   CHECK_THROWS_WITH(query(points), Catch::Contains("a joint vector is not finite or beyond its joint's limits"));
   const auto points_there = gpu.copy_in(std::span<const vec3>(points));
-  const auto* results = query.enqueue(clearance::point_span(points_there.data(), 1));
+  const auto* results = query.enqueue(clearance::point_span(points_there.data(), 1), clearance::min_distances{});
   const auto found = gpu.copy_out(results, 2);
   CHECK((found[0].state == clearance::state::free && found[0].distance == Approx(2.9)));
   CHECK((found[1].state == clearance::state::possible && std::isnan(found[1].distance)));

@@ -2,8 +2,8 @@
 // Answers about pieces of a cloud, and about separate clouds, merge into the answer about all of them.
 #include "support/product.hpp"
 
-#include <clearance/minimum/merge.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/minimum/merge.hpp>
 #include <clearance/points/slice.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -11,8 +11,9 @@
 namespace merge_test {
 
 using namespace testing;
-using clearance::host, clearance::merge, clearance::min_distance, clearance::min_distance_result,
-    clearance::part_minimum, clearance::placed, clearance::point_span, clearance::renumbered, clearance::slice;
+using clearance::host, clearance::merge, clearance::min_distance, clearance::min_distance_per_part,
+    clearance::min_distance_result, clearance::part_minimum, clearance::placed, clearance::point_span,
+    clearance::renumbered, clearance::slice;
 
 namespace {
 
@@ -37,15 +38,16 @@ void cut(const Model& model, const std::vector<Eigen::Isometry3d>& poses, const 
          const Eigen::Isometry3d& pose, dice& d, verdict& v, const std::string& what) {
   const placed whole{source, pose};
   const auto expected = ask(host{}, model, poses, whole, min_distance{});
-  const auto [by_parts, own] = clearance::ask(host{}, model, poses, whole, clearance::min_distance_per_part{});
+  const auto [by_parts, own] = ask(host{}, model, poses, whole, min_distance_per_part{});
   std::vector<min_distance_result> pieces, piece_by_parts;
   std::vector<std::vector<part_minimum>> minima;
   for (std::size_t begin = 0; begin < source.size() || begin == 0;) {
     const std::size_t end = std::min(source.size(), begin + 1 + d.below(unsigned(source.size())));
     const auto piece = slice(source, begin, end);
     v.require(piece.size() == end - begin, what, ": a piece of another size");
-    pieces.push_back(renumbered(ask(host{}, model, poses, placed{piece, pose}, min_distance{}), 0, std::uint32_t(begin)));
-    auto [r, each] = clearance::ask(host{}, model, poses, placed{piece, pose}, clearance::min_distance_per_part{});
+    pieces.push_back(
+        renumbered(ask(host{}, model, poses, placed{piece, pose}, min_distance{}), 0, std::uint32_t(begin)));
+    auto [r, each] = ask(host{}, model, poses, placed{piece, pose}, min_distance_per_part{});
     piece_by_parts.push_back(renumbered(r, 0, std::uint32_t(begin)));
     for (auto& m : each) m = renumbered(m, 0, std::uint32_t(begin));
     minima.push_back(each);
@@ -112,7 +114,9 @@ TEST_CASE("Some point certainly inside is a collision of all, and no valid point
   const auto model = clearance::make_model<clearance::sphere>(std::vector<std::vector<inner_sphere>>{one});
   const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d::Identity()};
   const std::vector<vec3> inside = {{0.1f, 0, 0}}, apart = {{3, 0, 0}}, none = {{clearance::not_a_number, 0, 0}};
-  const auto ask = [&](const std::vector<vec3>& points) { return ask(host{}, model, poses, points, min_distance{}); };
+  const auto ask = [&](const std::vector<vec3>& points) {
+    return clearance::ask(host{}, model, poses, points, min_distance{});
+  };
   const auto hit = merge(ask(apart), renumbered(ask(inside), 1));
   CHECK((hit.state == clearance::state::collision && hit.upper == 0 && hit.lower == 0 && hit.cloud == 1 &&
          hit.valid == 2));

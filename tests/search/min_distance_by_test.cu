@@ -3,10 +3,10 @@
 #include "support/closed.hpp"
 #include "support/product_device.cuh"
 
-#include <clearance/make_model.hpp>
 #include <clearance/deadline.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
+#include <clearance/make_model.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -14,8 +14,7 @@ namespace min_distance_by_test {
 
 using namespace testing;
 using namespace std::chrono_literals;
-using clearance::device, clearance::host, clearance::min_distance, clearance::min_distance_by,
-    clearance::min_distance_query, clearance::min_distance_while, clearance::placed, clearance::point_span;
+using clearance::device, clearance::host, clearance::infinity, clearance::min_distance, clearance::placed;
 
 namespace {
 
@@ -25,18 +24,19 @@ void same_cuts(const Model& on_host, const std::vector<Eigen::Isometry3d>& poses
                std::size_t piece, verdict& v, const std::string& what) {
   const device gpu;
   const auto model = on_host.on(gpu);
-  query query(gpu, model, min_distance{});
-  query expected(host{1}, on_host, min_distance{});
+  clearance::query query(gpu, model, min_distance{});
+  clearance::query expected(host{1}, on_host, min_distance{});
   for (std::size_t pieces = 0, unseen = 1; unseen != 0; pieces = 2 * pieces + 1) {
     const auto go_on = [pieces] { return [left = pieces]() mutable { return left-- > 0; }; };
     const auto r = ask_while(query, poses, clouds, go_on(), min_distance{}, {.piece = piece});
     const auto e = ask_while(expected, poses, clouds, go_on(), min_distance{}, {.piece = piece});
-    v.require(same_result(r, e) && r.unseen == e.unseen, what, " after", pieces, " pieces");
+    v.require(same_result(r.result, e.result) && r.unseen == e.unseen, what, " after", pieces, " pieces");
     unseen = r.unseen;
   }
   v.require(same_result(query(poses, clouds), ask(host{1}, on_host, poses, clouds, min_distance{})), what,
             ": a frame without a deadline, afterwards");
-  v.require(same_result(ask_by(gpu, model, poses, clouds, 1h, min_distance{}), ask(host{1}, on_host, poses, clouds, min_distance{})),
+  v.require(same_result(ask_by(gpu, model, poses, clouds, 1h, min_distance{}).result,
+                        ask(host{1}, on_host, poses, clouds, min_distance{})),
             what, ", one call");
 }
 
@@ -71,8 +71,9 @@ TEST_CASE("A device has no time, or deadlines that are none") {
   const std::vector poses{Eigen::Isometry3d::Identity()};
   const std::vector<vec3> points(100000, vec3{3, 0, 0});
   const auto none = ask_by(gpu, model, poses, points, 0s, min_distance{});
-  CHECK((none.unseen == 100000 && none.seen == 0 && none.state == clearance::state::no_data && none.lower == 0 &&
-         none.upper == infinity));
+  const auto& r = none.result;
+  CHECK((none.unseen == 100000 && r.seen == 0 && r.state == clearance::state::no_data && r.lower == 0 &&
+         r.upper == infinity));
   CHECK_THROWS_AS(ask_by(gpu, model, poses, points, -1s, min_distance{}), std::invalid_argument);
   CHECK_THROWS_AS(ask_by(gpu, model, std::vector(2, poses[0]), points, 0s, min_distance{}), std::invalid_argument);
 }

@@ -8,8 +8,8 @@
 #include "support/volumes.hpp"
 #include "support/wide_tree.hpp"
 
-#include <clearance/questions/in_collisions.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
@@ -18,8 +18,8 @@
 namespace min_distances_test {
 
 using namespace testing;
-using clearance::host, clearance::infinity, clearance::min_distance, clearance::min_distances, clearance::placed,
-    clearance::point_span, clearance::state;
+using clearance::host, clearance::in_collisions, clearance::infinity, clearance::min_distance, clearance::min_distances,
+    clearance::min_distances_per_part, clearance::placed, clearance::point_span, clearance::state;
 
 namespace {
 
@@ -27,13 +27,13 @@ namespace {
 template <class Model, class Clouds>
 void check(const Model& model, std::size_t parts, const configurations& poses, const Clouds& clouds, double size,
            verdict& v, const std::string& what) {
-  clearance::query query(host{}, model, clearance::min_distances{});
+  clearance::query query(host{}, model, min_distances{});
   const auto one = [&](auto own) { return ask(host{1}, model, own, clouds, min_distance{}); };
   for (const double d_max : {-0.05, 0.0, 0.2, 1.0, double(infinity)}) {
-    const clearance::min_distances options{real(d_max * size)};
-    const std::string which = what + ", d_max " + std::to_string(options.d_max);
-    require_same(query(poses, clouds, options), poses, parts, options.d_max, one, v, which + ", prepared");
-    require_same(ask(host{1}, model, poses, clouds, options), poses, parts, options.d_max, one, v, which);
+    const real most = real(d_max * size);
+    const std::string which = what + ", d_max " + std::to_string(most);
+    require_same(query(poses, clouds, {most}), poses, parts, most, one, v, which + ", prepared");
+    require_same(ask(host{1}, model, poses, clouds, min_distances{most}), poses, parts, most, one, v, which);
   }
 }
 
@@ -66,11 +66,11 @@ void all_parts() {
     const std::size_t parts = s.parts.size();
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
     const auto clouds = std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}));
-    clearance::query query(host{}, model, clearance::min_distances_per_part{});
+    clearance::query query(host{}, model, min_distances_per_part{});
     for (const double d_max : {0.2, double(infinity)}) {
-      const clearance::min_distances options{real(d_max * s.size)};
-      const auto found = clearance::ask(host{1}, model, poses, clouds, options);
-      const auto& prepared = query(poses, clouds, options);
+      const real most = real(d_max * s.size);
+      const auto found = ask(host{1}, model, poses, clouds, min_distances_per_part{most});
+      const auto& prepared = query(poses, clouds, {most});
       v.require(found.size() == poses.size() / parts && prepared.size() == found.size(), s.name,
                 ": another number of configurations");
       for (std::size_t k = 0; k < parts; ++k) {
@@ -87,7 +87,7 @@ void all_parts() {
           own.push_back(poses[c * parts + k]);
         }
         require_same(
-            its, own, 1, options.d_max,
+            its, own, 1, most,
             [&](auto pose) { return ask(host{1}, model.parts()[k], pose[0], clouds, min_distance{}); }, v,
             s.name + ", part " + std::to_string(k));
       }
@@ -99,17 +99,17 @@ void all_parts() {
 template <class Model, class Clouds>
 void check_states(const Model& model, std::size_t parts, const configurations& poses, const Clouds& clouds, double size,
                   verdict& v, const std::string& what, std::size_t (&states)[4]) {
-  clearance::query query(host{}, model, clearance::in_collisions{});
+  clearance::query query(host{}, model, in_collisions{});
   for (const double margin : {-0.1, -0.01, 0.0, 1e-7, 0.02, 0.3, double(infinity)})
     for (const bool own : {false, true}) {
       std::vector<double> margins(own ? parts : 1, margin * size);
       if (own) margins[0] *= 3;
-      const auto found = clearance::ask(host{1}, model, poses, clouds, clearance::in_collisions{{margins}});
-      v.require(found.of.size() * parts == poses.size() && query(poses, clouds, margins).of == found.of, what,
+      const auto found = ask(host{1}, model, poses, clouds, in_collisions{{margins}});
+      v.require(found.of.size() * parts == poses.size() && query(poses, clouds, {margins}).of == found.of, what,
                 ": another number, or other states if prepared");
       for (std::size_t c = 0; c < found.of.size(); ++c) {
         const auto one =
-            clearance::ask(host{1}, model, std::span(poses).subspan(c * parts, parts), clouds, clearance::in_collision{{margins}});
+            ask(host{1}, model, std::span(poses).subspan(c * parts, parts), clouds, clearance::in_collision{{margins}});
         v.require(found.of[c] == one.state, what, ", margin", margins[0], ", configuration", c, ": ",
                   to_string(found.of[c]), " and not ", to_string(one.state));
         v.require(found.counts.seen == one.counts.seen && found.counts.valid == one.counts.valid, what,
@@ -272,7 +272,7 @@ TEST_CASE("The monitor of a trajectory: every frame is new, and its answer does 
   configurations poses;
   for (int c = 0; c < 50; ++c)
     for (const auto& pose : s.poses) poses.push_back(shifted(0.02 * c, 0, 0) * pose);
-  clearance::query query(host{}, model, clearance::min_distances{});
+  clearance::query query(host{}, model, min_distances{});
   for (const std::size_t points : {300, 10, 2000, 0, 500}) {
     const auto cloud = d.points(points, 2);
     const auto one = [&](auto own) { return ask(host{}, model, own, cloud, min_distance{}); };
@@ -321,14 +321,14 @@ TEST_CASE("What is no batch is refused, and an empty one is one") {
   CHECK_THROWS_AS(ask(host{}, model, poses, cloud, min_distances{clearance::not_a_number}), std::invalid_argument);
   CHECK_THROWS_AS(ask(host{}, model, poses, placed{cloud, Eigen::Isometry3d(Eigen::Scaling(2.0))}, min_distances{}),
                   std::invalid_argument);
-  CHECK(clearance::ask(host{}, model, configurations{}, cloud, clearance::min_distances_per_part{}).size() == 0);
-  CHECK_THROWS_WITH(clearance::ask(host{}, model, std::span(poses).first(4), cloud, clearance::min_distances_per_part{}),
+  CHECK(ask(host{}, model, configurations{}, cloud, min_distances_per_part{}).size() == 0);
+  CHECK_THROWS_WITH(ask(host{}, model, std::span(poses).first(4), cloud, min_distances_per_part{}),
                     "clearance: 4 poses are no whole configurations of 3 parts");
-  CHECK_THROWS_AS(clearance::ask(host{}, model, poses, cloud, clearance::min_distances_per_part{clearance::not_a_number}),
+  CHECK_THROWS_AS(ask(host{}, model, poses, cloud, min_distances_per_part{clearance::not_a_number}),
                   std::invalid_argument);
   poses[4].linear() *= 1.5;
   CHECK_THROWS_WITH(
-      clearance::ask(host{}, model, poses, cloud, clearance::min_distances_per_part{}),
+      ask(host{}, model, poses, cloud, min_distances_per_part{}),
       Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
   CHECK_THROWS_WITH(
       ask(host{}, model, poses, cloud, min_distances{}),
@@ -344,23 +344,23 @@ TEST_CASE(
   configurations poses;
   for (const double x : {0.0, 2.0, 2.475, 2.485, 2.5, 2.6, 3.0}) poses.push_back(shifted(x, 0, 0));
   const std::vector<vec3> wall{{3, 0, 0}};
-  const auto found = clearance::ask(host{}, model, poses, wall, clearance::in_collisions{{0.005}});
+  const auto found = ask(host{}, model, poses, wall, in_collisions{{0.005}});
   CHECK((found.of == std::vector{state::free, state::free, state::possible, state::possible, state::possible,
                                  state::collision, state::collision}));
   CHECK((found.first_not_free() == 2 && found.counts.valid == 1));
-  CHECK(clearance::ask(host{}, model, poses, std::vector<vec3>{}, clearance::in_collisions{}).of == std::vector(7, state::no_data));
+  CHECK(ask(host{}, model, poses, std::vector<vec3>{}, in_collisions{}).of == std::vector(7, state::no_data));
   const float pixels[] = {3, -infinity};
   const clearance::depth_image image(pixels, 2, 1, {1, 1, 0, 0});
-  CHECK(clearance::ask(host{}, model, poses, image, clearance::in_collisions{}).of == std::vector(7, state::possible));
-  CHECK(clearance::ask(own_backend{}, model, poses, wall, clearance::in_collisions{{0.005}}).of == found.of);
-  CHECK(clearance::ask(host{}, model, configurations{}, wall, clearance::in_collisions{}).of.empty());
-  CHECK_THROWS_WITH(clearance::ask(host{}, model, poses, wall, clearance::in_collisions{{clearance::not_a_number}}),
+  CHECK(ask(host{}, model, poses, image, in_collisions{}).of == std::vector(7, state::possible));
+  CHECK(ask(own_backend{}, model, poses, wall, in_collisions{{0.005}}).of == found.of);
+  CHECK(ask(host{}, model, configurations{}, wall, in_collisions{}).of.empty());
+  CHECK_THROWS_WITH(ask(host{}, model, poses, wall, in_collisions{{clearance::not_a_number}}),
                     "clearance: the margin of part 0 is not a number");
-  CHECK_THROWS_WITH(clearance::ask(host{}, model, poses, wall, clearance::in_collisions{{std::vector{0.1, 0.2}}}),
+  CHECK_THROWS_WITH(ask(host{}, model, poses, wall, in_collisions{{0.1, 0.2}}),
                     "clearance: there are 1 parts, but 2 margins");
   poses[4].linear() *= 1.5;
   CHECK_THROWS_WITH(
-      clearance::ask(host{}, model, poses, wall, clearance::in_collisions{}),
+      ask(host{}, model, poses, wall, in_collisions{}),
       Catch::Matchers::StartsWith("clearance: the pose of configuration 4's part 0 is not rigid: its axes"));
 }
 
@@ -390,14 +390,14 @@ TEST_CASE("Results of several trajectories are taken apart by their horizon") {
   CHECK_THROWS_AS(found.first_below(0.08, 4), std::invalid_argument);
   CHECK_THROWS_AS(found.first_below(0.08, 0), std::invalid_argument);
   CHECK_THROWS_AS(found.trajectory(3, 2), std::invalid_argument);
-  const auto states = clearance::ask(host{}, model, poses, std::vector<vec3>{{2, 0, 0}}, clearance::in_collisions{{0.08}});
+  const auto states = ask(host{}, model, poses, std::vector<vec3>{{2, 0, 0}}, in_collisions{{0.08}});
   CHECK(states.first_not_free() == 2);
   CHECK(states.first_not_free(3) == std::vector<std::size_t>{2, 0});
   CHECK(states.first_not_free(2) == std::vector<std::size_t>{2, 0, 2});
   CHECK(states.trajectory(1, 2)[1] == states.of[3]);
   CHECK_THROWS_AS(states.first_not_free(4), std::invalid_argument);
   CHECK_THROWS_AS(states.trajectory(3, 2), std::invalid_argument);
-  const auto none = clearance::ask(host{}, model, std::vector<Eigen::Isometry3d>{}, std::vector<vec3>{}, clearance::min_distances{});
+  const auto none = ask(host{}, model, std::vector<Eigen::Isometry3d>{}, std::vector<vec3>{}, min_distances{});
   CHECK(none.first_below(0, 7).empty());
 }
 
@@ -434,8 +434,8 @@ void check_crowds(const Model& model, verdict& v, const std::string& what) {
   for (const auto& [name, points] : crowds(d, 20000)) {
     const auto one = [&, &points = points](auto own) { return ask(host{}, model, own, points, min_distance{}); };
     for (const double d_max : {0.5, double(infinity)})
-      require_same(ask(host{}, model, poses, points, min_distances{real(d_max)}), poses, model.size(), real(d_max), one, v,
-                   what + ", " + name);
+      require_same(ask(host{}, model, poses, points, min_distances{real(d_max)}), poses, model.size(), real(d_max), one,
+                   v, what + ", " + name);
   }
 }
 

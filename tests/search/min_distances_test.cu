@@ -4,9 +4,9 @@
 #include "support/brute_pairs.hpp"
 #include "support/configurations.hpp"
 
-#include <clearance/questions/in_collisions.hpp>
 #include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distances.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -51,13 +51,13 @@ void check(const Model& model, const configurations& poses, const Clouds& clouds
   for (const double margin : {-0.05, 0.0, 0.02, 0.3}) {
     std::vector<double> margins(view_of(model).size(), margin * size);
     margins[0] *= 3;
-    const auto expected = clearance::ask(host{}, model, poses, clouds, clearance::in_collisions{{margins}});
-    const auto& found = states(clouds, margins);
+    const auto expected = clearance::ask(host{}, model, poses, clouds, clearance::in_collisions{margins});
+    const auto& found = states(clouds, {margins});
     v.require(found.of == expected.of, what, ", margin", margin, ": other states");
     v.require(found.counts.valid == expected.counts.valid && found.counts.seen == expected.counts.seen, what,
               ": other counts");
     if (margin > 0.1)
-      v.require(clearance::ask(gpu, there, poses, clouds, clearance::in_collisions{{margins}}).of == expected.of, what,
+      v.require(clearance::ask(gpu, there, poses, clouds, clearance::in_collisions{margins}).of == expected.of, what,
                 ", in one call: other states");
   }
 }
@@ -70,7 +70,7 @@ void check_parts(const Model& model, const configurations& poses, const Clouds& 
   const auto there = model.on(gpu);
   clearance::query query(gpu, there, clearance::min_distances_per_part{});
   for (const double d_max : {0.2, double(infinity)}) {
-    const clearance::min_distances options{real(d_max * size)};
+    const clearance::min_distances_per_part options{real(d_max * size)};
     const auto expected = clearance::ask(host{}, model, poses, clouds, options);
     require_results(query(poses, clouds, options).all, expected.all, v,
                     what + ", each part, prepared, d_max " + std::to_string(options.d_max));
@@ -164,8 +164,8 @@ TEST_CASE("A tree of a few hundred thousand points has all its levels") {
   s.points = d.points(200000, 2);
   const device gpu;
   const point_span cloud(s.points);
-  require_results(ask(gpu, model.on(gpu), poses, cloud, min_distances{}).of, ask(host{}, model, poses, cloud, min_distances{}).of, v,
-                  "many points");
+  require_results(ask(gpu, model.on(gpu), poses, cloud, min_distances{}).of,
+                  ask(host{}, model, poses, cloud, min_distances{}).of, v, "many points");
 }
 
 TEST_CASE("Points inside solids are 0 away of every configuration, on a device") {
@@ -204,7 +204,7 @@ TEST_CASE("What is no batch is refused on a device, and a pose that is not rigid
   const auto points = gpu.copy_in(std::span<const vec3>(s.points));
   clearance::query query(gpu, model, clearance::min_distances{});
   query.place(poses);
-  const auto r = gpu.copy_out(query.enqueue(point_span(points.data(), points.size()), {0.1f}), 2);
+  const auto r = gpu.copy_out(query.enqueue(point_span(points.data(), points.size()), min_distances{0.1f}), 2);
   CHECK((r[1].state == state::possible && r[1].distance != r[1].distance && r[1].lower == 0));
   CHECK((r[0].state != state::no_data && (r[0].distance == infinity || r[0].part != clearance::none)));
   CHECK_THROWS_WITH(
@@ -212,9 +212,9 @@ TEST_CASE("What is no batch is refused on a device, and a pose that is not rigid
       Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
   clearance::query ask(gpu, model, clearance::in_collisions{});
   ask.place(poses);
-  CHECK((gpu.copy_out(ask.enqueue(point_span(points.data(), points.size()), 1e9), 2) ==
+  CHECK((gpu.copy_out(ask.enqueue(point_span(points.data(), points.size()), clearance::in_collisions{{1e9}}), 2) ==
          std::vector{state::collision, state::possible}));
-  CHECK_THROWS_AS(ask(cloud, clearance::not_a_number), std::invalid_argument);
+  CHECK_THROWS_AS(ask(cloud, {{clearance::not_a_number}}), std::invalid_argument);
   CHECK(clearance::ask(gpu, model, configurations{}, cloud, clearance::in_collisions{}).of.empty());
 }
 
@@ -222,9 +222,9 @@ TEST_CASE("A robot without parts has no configurations, on a device") {
   using view = clearance::part_view<clearance::bvh_view<clearance::sphere, inner_sphere>>;
   const clearance::model_view<view> nothing{nullptr, {}, 0, 0};
   CHECK(ask(device{}, nothing, configurations{}, std::vector<vec3>{{1, 2, 3}}, min_distances{}).of.empty());
-  CHECK_THROWS_AS(
-      ask(device{}, nothing, configurations(2, Eigen::Isometry3d::Identity()), std::vector<vec3>{{1, 2, 3}}, min_distances{}),
-      std::invalid_argument);
+  CHECK_THROWS_AS(ask(device{}, nothing, configurations(2, Eigen::Isometry3d::Identity()), std::vector<vec3>{{1, 2, 3}},
+                      min_distances{}),
+                  std::invalid_argument);
 }
 
 }  // namespace min_distances_test

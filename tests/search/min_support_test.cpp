@@ -26,7 +26,7 @@ void all_scenes() {
     const auto two = two_clouds(s);
     for (const std::uint32_t min_points : {1, 2, 4})
       for (const double radius : {0.0, 0.05, 0.3}) {
-        const clearance::min_distance_supported options{.min_points = min_points, .radius = radius * s.size, .most = 1 << 14};
+        const min_distance_supported options{.min_points = min_points, .radius = radius * s.size, .most = 1 << 14};
         const auto r = ask(host{}, model, s.poses, two, options);
         require_same(r, brute_support(s, two, options), v,
                      s.name + ", " + std::to_string(min_points) + " within " + std::to_string(options.radius));
@@ -59,7 +59,8 @@ TEST_CASE("A grain of dust is told apart from a wall, whichever camera sees it")
   std::vector<vec3> points{{1.02f, 0, 0}, {0, 1.5f, 0}, {3, 0, 0}, {3, 0.01f, 0}, {clearance::not_a_number, 0, 0}};
   const std::vector<vec3> other{{3, 0, 0.01f}};
   const auto ask = [&](std::uint32_t n, std::size_t most = 4096) {
-    return ask(host{}, robot, poses, std::tuple(points, other), min_distance_supported{.min_points = n, .radius = 0.0141f, .most = most});
+    return clearance::ask(host{}, robot, poses, std::tuple(points, other),
+                          min_distance_supported{.min_points = n, .radius = 0.0141f, .most = most});
   };
   const auto wall = ask(3);
   CHECK((wall.state == clearance::state::free && wall.point == 2 && wall.cloud == 0 && wall.distance == 2 &&
@@ -73,14 +74,15 @@ TEST_CASE("A grain of dust is told apart from a wall, whichever camera sees it")
   const auto few = ask(3, 2);
   CHECK((few.state == clearance::state::possible && few.distance != few.distance && few.cloud == clearance::none &&
          few.isolated == 2));
-  CHECK(ask(host{}, robot, poses, std::vector<vec3>{}, min_distance_supported{}).state == clearance::state::no_data);
+  CHECK(clearance::ask(host{}, robot, poses, std::vector<vec3>{}, min_distance_supported{}).state ==
+        clearance::state::no_data);
   points = {{0.5f, 0, 0}, {0.51f, 0, 0}, {0.5f, 0, 0}};
   CHECK(ask(3).state == clearance::state::collision);
 }
 
 TEST_CASE("What confirms nothing is refused") {
-  const auto ask = [](clearance::min_distance_supported options) {
-    return ask(host{}, robot, poses, std::vector<vec3>{{2, 0, 0}}, options);
+  const auto ask = [](const min_distance_supported& options) {
+    return clearance::ask(host{}, robot, poses, std::vector<vec3>{{2, 0, 0}}, options);
   };
   CHECK_THROWS_AS(ask({.min_points = 0}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.radius = -1}), std::invalid_argument);
@@ -95,9 +97,9 @@ TEST_CASE("Prepared, the nearest confirmed point is in every frame what one call
   verdict v;
   moving_frames f(5, 115);
   const auto model = f.model();
-  clearance::query query(host{}, model, clearance::min_distance_supported{});
+  clearance::query query(host{}, model, min_distance_supported{});
   for (; f.there(); f.next()) {
-    const clearance::min_distance_supported options{.min_points = f.number % 2 ? 2u : 3u, .radius = 0.1};
+    const min_distance_supported options{.min_points = f.number % 2 ? 2u : 3u, .radius = 0.1};
     const auto expected = ask(host{}, model, f.s.poses, f.here(), options);
     require_same(query(f.s.poses, f.here(), options), expected, v, "frame " + std::to_string(f.number));
     CHECK_THROWS_AS(query(f.s.poses, f.here(), {.min_points = 0}), std::invalid_argument);
@@ -115,7 +117,7 @@ TEST_CASE("More points than there are confirm nothing, which is known at once") 
   const clouds cloud{{point_span(s.points)}};
   for (const std::uint32_t n : {1u, 2u, 499u, 500u, 501u, 502u, 4'000'000'000u})
     for (const double radius : {0.5, 5.9, 10.0}) {
-      const clearance::min_distance_supported options{.min_points = n, .radius = radius, .most = 8};
+      const min_distance_supported options{.min_points = n, .radius = radius, .most = 8};
       const auto r = ask(host{}, model, s.poses, cloud, options);
       const auto expected = brute_support(s, cloud, {.min_points = n, .radius = radius});
       const std::string what = std::to_string(n) + " within " + std::to_string(radius);
@@ -142,7 +144,8 @@ TEST_CASE("As many points are asked as are to be, however many parts are near ea
   REQUIRE((whole.point == 299 && whole.isolated > 100));
   for (const std::size_t most : {std::size_t(1), std::size_t(17), std::size_t(whole.isolated),
                                  std::size_t(whole.isolated + 1), std::size_t(4096)}) {
-    const auto r = ask(host{}, model, s.poses, cloud, min_distance_supported{.min_points = 2, .radius = 0, .most = most});
+    const auto r =
+        ask(host{}, model, s.poses, cloud, min_distance_supported{.min_points = 2, .radius = 0, .most = most});
     INFO(most);
     CHECK(r.isolated == std::min<std::size_t>(most, whole.isolated));
     CHECK((r.point == whole.point) == (most > whole.isolated));
@@ -157,7 +160,7 @@ TEST_CASE(
   const clearance::model solid{std::vector{cube}};
   std::vector<vec3> points(600, vec3{0.95f, 0, 0});  // inside, but by less than the tolerance
   const auto ask = [&](std::uint32_t n) {
-    return ask(host{}, solid, poses, points, min_distance_supported{.min_points = n, .radius = 0.001});
+    return clearance::ask(host{}, solid, poses, points, min_distance_supported{.min_points = n, .radius = 0.001});
   };
   CHECK((ask(3).state == clearance::state::possible && ask(3).distance == 0 && ask(3).point == 0));
   points.push_back({0.5f, 0, 0});

@@ -4,9 +4,9 @@
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/questions/min_distance_supported.hpp>
-#include <clearance/device.cuh>
 #include <clearance/volume/sphere.hpp>
 
 namespace min_support_test {
@@ -26,8 +26,7 @@ TEST_CASE("On a device the nearest point that others confirm is the host's") {
     for (const std::uint32_t min_points : {1, 4})
       for (const double radius : {0.0, 0.1}) {
         const clearance::min_distance_supported options{.min_points = min_points, .radius = radius * s.size};
-        const auto a = ask(gpu, there, s.poses, both, options),
-                   b = ask(host{}, model, s.poses, both, options);
+        const auto a = ask(gpu, there, s.poses, both, options), b = ask(host{}, model, s.poses, both, options);
         require_same(a, b, v, s.name + ", " + std::to_string(min_points) + " within " + std::to_string(options.radius));
         v.require(a.state == b.state && same_bits(a.lower, b.lower) && a.counts.valid == b.counts.valid, s.name,
                   ": state, bracket or counts");
@@ -47,8 +46,7 @@ TEST_CASE("Prepared, the nearest confirmed point is on a device in every frame t
     clearance::query query(gpu, there, clearance::min_distance_supported{});
     for (; f.there(); f.next()) {
       const clearance::min_distance_supported options{.min_points = f.number % 2 ? 2u : 3u, .radius = 0.1};
-      require_same(query(f.s.poses, f.here(), options),
-                   ask(host{}, model, f.s.poses, f.here(), options), v,
+      require_same(query(f.s.poses, f.here(), options), ask(host{}, model, f.s.poses, f.here(), options), v,
                    std::to_string(parts) + " parts, frame " + std::to_string(f.number));
       CHECK_THROWS_AS(query(f.s.poses, f.here(), {.min_points = 0}), std::invalid_argument);
     }

@@ -12,7 +12,7 @@
 namespace motion_test {
 
 using namespace testing;
-using clearance::host, clearance::min_distance_query, clearance::motion_clearance, clearance::part_facts,
+using clearance::host, clearance::min_distance, clearance::motion_clearance, clearance::part_facts,
     clearance::point_span, clearance::state, clearance::straight_motion;
 
 namespace {
@@ -22,7 +22,7 @@ using poses_type = std::vector<Eigen::Isometry3d>;
 /// The least distance at `times` times, by asking for each.
 template <class Model, class Motion, class Clouds>
 double sampled(const Model& model, const Motion& motion, const Clouds& clouds, int times) {
-  query query(host{}, model, min_distance{});
+  clearance::query query(host{}, model, min_distance{});
   double least = clearance::infinity;
   for (int i = 0; i <= times; ++i)
     least = std::min(least, double(query(motion.at(double(i) / times, model.view().facts).poses, clouds).distance));
@@ -67,7 +67,7 @@ void against_samples() {
     v.require(there.point == r.nearest.point && same_bits(there.distance, r.nearest.distance), "trial", trial,
               ": the witness is that of its time");
     free += r.state == state::free, big += trial % 2 == 0 && r.lower > 0;
-    query query(host{}, model, min_distance{});
+    clearance::query query(host{}, model, clearance::min_distance_per_part{});
     const auto by_query = motion_clearance(query, model, motion, cloud, {.tolerance = 0.004});
     const auto plain = motion_clearance(clearance::plain{host{1}, clearance::near_first{}}, model, motion,
                                         clearance::placed{cloud}, {.tolerance = 0.004});

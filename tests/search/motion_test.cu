@@ -4,8 +4,8 @@
 #include "support/product.hpp"
 #include "support/same_result.hpp"
 
-#include <clearance/motion_clearance.hpp>
 #include <clearance/device.cuh>
+#include <clearance/motion_clearance.hpp>
 #include <clearance/questions/part_witnesses.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -25,9 +25,9 @@ void like_the_host() {
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
     const auto there = model.on(on);
     const placed<point_span> cloud{point_span(s.points), s.cloud_pose};
-    const auto minima = ask(host{}, model, s.poses, cloud, min_distance_per_part{}).second;
-    const auto expected = ask(host{}, model, s.poses, cloud, part_witnesses{minima}),
-               found = ask(on, there, s.poses, cloud, part_witnesses{minima});
+    const auto minima = ask(host{}, model, s.poses, cloud, clearance::min_distance_per_part{}).parts;
+    const auto expected = ask(host{}, model, s.poses, cloud, clearance::part_witnesses{minima}),
+               found = ask(on, there, s.poses, cloud, clearance::part_witnesses{minima});
     for (std::size_t k = 0; k < expected.size(); ++k)
       v.require(same_witness(found[k], expected[k]), s.name, ": the witness of part", k);
     std::vector<Eigen::Isometry3d> to;

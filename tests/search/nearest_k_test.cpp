@@ -25,8 +25,8 @@ void all_scenes() {
         const real most = d_max * real(s.size);
         const std::string what = s.name + ", " + std::to_string(k) + " within " + std::to_string(most);
         const auto expected = brute_nearest(s, two, k, most);
-        require_same(ask(host{}, model, s.poses, two, nearest_k{.k = k, most}), expected, v, what);
-        require_same(ask(host{1}, model, s.poses, two, nearest_k{.k = k, most}), expected, v, what + ", one thread");
+        require_same(ask(host{}, model, s.poses, two, nearest_k{k, most}), expected, v, what);
+        require_same(ask(host{1}, model, s.poses, two, nearest_k{k, most}), expected, v, what + ", one thread");
       }
   }
 }
@@ -65,23 +65,23 @@ TEST_CASE("How many and how far are numbers, and no point is no pair") {
   CHECK((r.of(0)[0].point == 1 && r.of(0)[1].point == 0 && r.of(0)[2].point == clearance::none &&
          r.of(0)[2].distance == clearance::infinity));
   CHECK((r.counts.seen == 3 && r.counts.valid == 2 && r.certain.lower(r.of(0)[0].distance) > 0.99f));
-  CHECK(ask(host{}, robot, poses, points, nearest_k{.k = 2, 1.5f}).of(0)[1].point == clearance::none);
+  CHECK(ask(host{}, robot, poses, points, nearest_k{2, 1.5f}).of(0)[1].point == clearance::none);
   CHECK(ask(host{}, robot, poses, std::vector<vec3>{}, nearest_k{1}).of(0)[0].cloud == clearance::none);
   CHECK_THROWS_AS(ask(host{}, robot, poses, points, nearest_k{0}), std::invalid_argument);
   CHECK_THROWS_AS(ask(host{}, robot, poses, points, nearest_k{std::size_t(1) << 21}), std::invalid_argument);
-  CHECK_THROWS_AS(ask(host{}, robot, poses, points, nearest_k{.k = 1, clearance::not_a_number}), std::invalid_argument);
+  CHECK_THROWS_AS(ask(host{}, robot, poses, points, nearest_k{1, clearance::not_a_number}), std::invalid_argument);
 }
 
 TEST_CASE("Prepared, the nearest are in every frame what one call says, and after one that is refused") {
   verdict v;
   moving_frames f(5, 114);
   const auto model = f.model();
-  clearance::query query(host{}, model, clearance::nearest_k{});
+  clearance::query query(host{}, model, nearest_k{});
   for (; f.there(); f.next()) {
     const std::size_t k = f.number < 4 ? 500 : 3;  // what is known of a frame is of use in some, and in some not
-    require_same(query(f.s.poses, f.here(), k), ask(host{}, model, f.s.poses, f.here(), nearest_k{k}), v,
+    require_same(query(f.s.poses, f.here(), {k}), ask(host{}, model, f.s.poses, f.here(), nearest_k{k}), v,
                  "frame " + std::to_string(f.number));
-    CHECK_THROWS_AS(query(f.s.poses, f.here(), 0), std::invalid_argument);
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), {0}), std::invalid_argument);
   }
   for (const double away :
        {0.0, 0.0, 0.01, 0.5, 0.0,
@@ -91,8 +91,8 @@ TEST_CASE("Prepared, the nearest are in every frame what one call says, and afte
     for (const std::size_t k : {40, 7, 100}) {
       const std::string what = std::to_string(k) + " after " + std::to_string(away) + " m";
       for (const real d_max : {clearance::infinity, 0.5f})
-        require_same(query(f.s.poses, f.here(), k, {d_max}), ask(host{}, model, f.s.poses, f.here(), nearest_k{.k = k, d_max}),
-                     v, what);
+        require_same(query(f.s.poses, f.here(), {k, d_max}),
+                     ask(host{}, model, f.s.poses, f.here(), nearest_k{k, d_max}), v, what);
     }
   }
 }
@@ -112,7 +112,7 @@ TEST_CASE("Of a robot of many parts before a frame of many points the nearest ar
   const clouds two{{point_span(s.points)}, {point_span(s.points), d.pose(0.3)}};
   for (const std::size_t k : {1, 50, 2000})
     for (const real d_max : {clearance::infinity, 0.4f})
-      require_same(ask(host{}, model, s.poses, two, nearest_k{.k = k, d_max}), brute_nearest(s, two, k, d_max), v,
+      require_same(ask(host{}, model, s.poses, two, nearest_k{k, d_max}), brute_nearest(s, two, k, d_max), v,
                    std::to_string(k) + " within " + std::to_string(d_max));
 }
 

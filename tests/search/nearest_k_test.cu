@@ -4,9 +4,9 @@
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/questions/nearest_k.hpp>
-#include <clearance/device.cuh>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -28,8 +28,8 @@ void all_scenes() {
     const std::tuple both(placed{all.span, s.cloud_pose}, placed{all.raw, all.camera_pose});
     for (const std::size_t k : {1, 7, 400})
       for (const real d_max : {real(-0.02), real(0.3), clearance::infinity})
-        require_same(ask(gpu, there, s.poses, both, nearest_k{.k = k, d_max}),
-                     ask(host{}, model, s.poses, both, nearest_k{.k = k, d_max}), v, s.name + ", " + std::to_string(k));
+        require_same(ask(gpu, there, s.poses, both, nearest_k{k, d_max}),
+                     ask(host{}, model, s.poses, both, nearest_k{k, d_max}), v, s.name + ", " + std::to_string(k));
   }
 }
 
@@ -64,9 +64,9 @@ TEST_CASE("Prepared, the nearest are on a device in every frame the host's") {
     clearance::query query(gpu, there, clearance::nearest_k{});
     for (; f.there(); f.next()) {
       const std::size_t k = f.number < 4 ? 500 : 3;  // what is known of a frame is of use in some, and in some not
-      require_same(query(f.s.poses, f.here(), k), ask(host{}, model, f.s.poses, f.here(), nearest_k{k}), v,
+      require_same(query(f.s.poses, f.here(), {k}), ask(host{}, model, f.s.poses, f.here(), nearest_k{k}), v,
                    std::to_string(parts) + " parts, frame " + std::to_string(f.number));
-      CHECK_THROWS_AS(query(f.s.poses, f.here(), 0), std::invalid_argument);
+      CHECK_THROWS_AS(query(f.s.poses, f.here(), {0}), std::invalid_argument);
     }
   }
 }

@@ -72,7 +72,7 @@ TEST_CASE("facts that are none are refused in a model, in a part that is asked a
     const model_view<std::remove_const_t<decltype(view)>> by_hand{
         &view, {&bad, 1}, view.tree.depth(), view.tree.width()};
     CHECK_THROWS_AS(ask(host{}, by_hand, poses, points, min_distance{}), std::invalid_argument);
-    CHECK_THROWS_AS(min_distance_query(host{}, by_hand), std::invalid_argument);
+    CHECK_THROWS_AS(query(host{}, by_hand, min_distance{}), std::invalid_argument);
     CHECK_THROWS_AS(attach(host{}, by_hand, by_hand), std::invalid_argument);
   }
   part_facts bad = good;

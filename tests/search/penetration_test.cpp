@@ -6,8 +6,8 @@
 #include "support/random.hpp"
 
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -31,7 +31,8 @@ double depth(const clearance::triangle_mesh& convex, const Vector3d& at) {
 
 double ask(const clearance::packing& p, const std::vector<vec3>& points) {
   const auto part = clearance::make_part<clearance::sphere>(p);
-  const auto r = clearance::ask(clearance::host{}, part, Eigen::Isometry3d::Identity(), points, clearance::min_distance{});
+  const auto r =
+      clearance::ask(clearance::host{}, part, Eigen::Isometry3d::Identity(), points, clearance::min_distance{});
   CHECK(r.lower == 0);
   CHECK((r.distance < -1e-5f ? r.state == clearance::state::collision : true));
   return r.distance;

@@ -29,7 +29,8 @@ thread_local std::size_t allocations = 0;
 namespace prepared_test {
 
 using namespace testing;
-using clearance::host, clearance::min_distance, clearance::min_distance_query, clearance::placed, clearance::point_span;
+using clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::placed,
+    clearance::point_span;
 
 namespace {
 
@@ -39,12 +40,13 @@ void ask_often(const Model& model, const scene<P>& s, const S& source, const Eig
                verdict& v, const std::string& what) {
   auto poses = s.poses;
   const auto parts = brute_parts(s);
-  query query(host{threads}, model, min_distance{});
+  clearance::query query(host{threads}, model, min_distance{});
+  clearance::query by_parts(host{threads}, model, min_distance_per_part{});
   const auto same = [&](const std::string& when) {
     const auto expected = brute_force(parts, poses, {brute_cloud(source, pose)});
     require_equal(query(poses, source, pose), expected, v, what + ", " + when);
-    std::vector<clearance::part_minimum> minima(model.size());
-    require_equal(query.per_part(poses, placed<S>{source, pose}, minima), expected, v, what + ", per part, " + when);
+    const auto& [robot, minima] = by_parts(poses, placed<S>{source, pose});
+    require_equal(robot, expected, v, what + ", per part, " + when);
     require_equal(minima, expected, v, what + ", " + when);
   };
   same("cold");
@@ -53,7 +55,7 @@ void ask_often(const Model& model, const scene<P>& s, const S& source, const Eig
   same("moved a little");
   poses.back().translation().z() -= 5;
   same("moved far");
-  query.forget();
+  query.forget(), by_parts.forget();
   same("cold again");
 }
 
@@ -164,7 +166,7 @@ TEST_CASE("Frames of another size, none, and several at once follow one another 
   const scene<inner_sphere> s = robot(d);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto parts = brute_parts(s);
-  query query(host{2}, model, min_distance{});
+  clearance::query query(host{2}, model, min_distance{});
   for (const std::size_t n : {9000, 40, 0, 1, 9000, 300}) {
     const auto near = d.points(n, 2, {0, 0, 3}), far = d.points(n / 2, 2, {0, 3, 3});
     const std::vector<placed<point_span>> clouds = {{far, shifted(0, 0, 0.5)}, {near}, {far}};
@@ -180,36 +182,38 @@ TEST_CASE("After its first frames a prepared query asks for no memory") {
   const scene<inner_sphere> s = robot(d);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto points = d.points(20000, 2, {0, 0, 3});
-  query query(host{1}, model, min_distance{});
-  std::vector<clearance::part_minimum> minima(model.size());
+  clearance::query query(host{1}, model, min_distance{});
+  clearance::query by_parts(host{1}, model, min_distance_per_part{});
   auto poses = s.poses;
   std::size_t before = 0;
   for (int frame = 0; frame < 8; ++frame) {
     if (frame == 2) before = allocations;
     poses[0].translation().x() += 0.01;
     query(poses, points);
-    query.per_part(poses, points, minima);
+    by_parts(poses, points);
   }
   CHECK(before > 0);
   CHECK(allocations == before);
 }
 
-TEST_CASE(
-    "Room for another number of minima, and a wrong number of poses, are refused, and the next frame is answered") {
+TEST_CASE("A wrong number of poses, and a pose that is not rigid, are refused, and the next frame is answered") {
   dice d(12);
   const scene<inner_sphere> s = robot(d);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto points = d.points(500, 2, {0, 0, 3});
-  query query(host{}, model, min_distance{});
-  std::vector<clearance::part_minimum> minima(3);
-  CHECK_THROWS_AS(query.per_part(s.poses, points, minima), std::invalid_argument);
-  CHECK_THROWS_AS(query(std::vector(s.poses.begin(), s.poses.begin() + 1), points), std::invalid_argument);
+  clearance::query query(host{}, model, min_distance{});
+  clearance::query by_parts(host{}, model, min_distance_per_part{});
+  const std::vector one(s.poses.begin(), s.poses.begin() + 1);
+  CHECK_THROWS_AS(query(one, points), std::invalid_argument);
+  CHECK_THROWS_AS(by_parts(one, points), std::invalid_argument);
   auto bent = s.poses;
   bent[1].linear() *= 2;
   CHECK_THROWS_AS(query(bent, points), std::invalid_argument);
+  CHECK_THROWS_AS(by_parts(bent, points), std::invalid_argument);
   verdict v;
-  require_equal(query(s.poses, points), brute_force(brute_parts(s), s.poses, {brute_cloud(point_span(points))}), v,
-                "after errors");
+  const auto expected = brute_force(brute_parts(s), s.poses, {brute_cloud(point_span(points))});
+  require_equal(query(s.poses, points), expected, v, "after errors");
+  require_equal(by_parts(s.poses, points).parts, expected, v, "after errors");
 }
 
 }  // namespace prepared_test

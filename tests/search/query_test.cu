@@ -3,9 +3,10 @@
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"
 
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/questions/min_distance.hpp>
-#include <clearance/device.cuh>
+#include <clearance/questions/part_witnesses.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -28,16 +29,16 @@ void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const
   const device gpu;
   const auto model = on_host.on(gpu);
   clearance::query query(gpu, model, clearance::min_distance{});
+  clearance::query per_part(gpu, model, clearance::min_distance_per_part{});
   const clearance::placed<S> cloud{source, pose};
   const auto same = [&](const std::string& when) {
     const auto expected = ask(host{}, on_host, poses, cloud, min_distance{});
     v.require(same_result(query(poses, source, pose), expected), what + ", " + when,
               ": differs from the host's result");
     const auto [robot, each] = clearance::ask(host{}, on_host, poses, cloud, clearance::min_distance_per_part{});
-    std::vector<clearance::part_minimum> minima(poses.size());
-    v.require(same_result(query.per_part(poses, cloud, minima), robot), what + ", " + when,
-              ": differs from the host's result by parts");
-    v.require(std::ranges::equal(minima, each, same_minimum), what + ", " + when, ": some part's minimum differs");
+    const auto& found = per_part(poses, cloud);
+    v.require(same_result(found.all, robot), what + ", " + when, ": differs from the host's result by parts");
+    v.require(std::ranges::equal(found.parts, each, same_minimum), what + ", " + when, ": some part's minimum differs");
   };
   same("cold");
   same("warm");
@@ -45,7 +46,7 @@ void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const
   same("moved a little");
   poses.back().translation().z() -= 5;
   same("moved far");
-  query.forget();
+  query.forget(), per_part.forget();
   same("cold again");
 }
 
@@ -153,6 +154,7 @@ TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are cou
   const auto on_host = robot_of<clearance::sphere>(d, 5, 60);
   const auto model = on_host.on(gpu);
   clearance::query query(gpu, model, clearance::min_distance{});
+  clearance::query per_part(gpu, model, clearance::min_distance_per_part{});
   std::vector<Eigen::Isometry3d> poses;
   for (int k = 0; k < 5; ++k) poses.push_back(d.pose(1));
   const std::vector<vec3> blind(300, vec3{clearance::not_a_number, 0, 0}), none;
@@ -162,12 +164,11 @@ TEST_CASE("Several clouds share one frame's bounds; empty and blind ones are cou
   for (int rotation = 0; rotation < 5; ++rotation, std::rotate(clouds.begin(), clouds.begin() + 1, clouds.end()))
     for (const char* when : {"first", "again"}) {
       const auto [robot, each] = clearance::ask(host{}, on_host, poses, clouds, clearance::min_distance_per_part{});
-      std::vector<clearance::part_minimum> minima(5);
       v.require(same_result(query(poses, clouds), ask(host{}, on_host, poses, clouds, min_distance{})),
                 std::to_string(rotation) + when, ": differs");
-      v.require(same_result(query.per_part(poses, clouds, minima), robot), std::to_string(rotation) + when,
-                ": differs by parts");
-      v.require(std::ranges::equal(minima, each, same_minimum), std::to_string(rotation) + when,
+      const auto& found = per_part(poses, clouds);
+      v.require(same_result(found.all, robot), std::to_string(rotation) + when, ": differs by parts");
+      v.require(std::ranges::equal(found.parts, each, same_minimum), std::to_string(rotation) + when,
                 ": some part's minimum differs");
     }
   const std::vector<clearance::placed<clearance::point_span>> no_cloud;
@@ -195,7 +196,7 @@ TEST_CASE(
   const device gpu{.stream = stream.handle};
   const auto on_host = robot_of<clearance::sphere>(d, 14, 60);
   const auto model = on_host.on(gpu);
-  clearance::query query(gpu, model, clearance::min_distance{});
+  clearance::query query(gpu, model, clearance::min_distance_per_part{});
   const auto points = d.points(30000, 2);
   const auto there = gpu.copy_in(std::span<const vec3>(points));
   const clearance::point_span view(there.data(), points.size());
@@ -203,7 +204,8 @@ TEST_CASE(
   const clearance::pinned_buffer<clearance::min_distance_result> result(1, gpu.id);
   const clearance::pinned_buffer<clearance::part_minimum> minima(14, gpu.id);
   const captured_graph graph(stream.handle, [&] {
-    query.enqueue_per_part(poses.data(), view, poses.data() + 14, result.data(), minima.data());
+    query.enqueue(poses.data(), view, poses.data() + 14,
+                  clearance::min_distance_per_part::out{result.data(), minima.data()});
   });
   const auto run = [&] {
     graph.launch();
@@ -218,7 +220,8 @@ TEST_CASE(
     }
     run();
     const clearance::placed cloud{clearance::point_span(points), at[14]};
-    const auto [robot, each] = clearance::ask(host{}, on_host, std::span(at).first(14), cloud, clearance::min_distance_per_part{});
+    const auto [robot, each] =
+        clearance::ask(host{}, on_host, std::span(at).first(14), cloud, clearance::min_distance_per_part{});
     v.require(same_result(*result.data(), robot), "replay " + std::to_string(k), ": differs from the host's result");
     v.require(std::ranges::equal(std::span(minima.data(), 14), each, same_minimum), "replay " + std::to_string(k),
               ": some part's minimum differs");
@@ -264,7 +267,8 @@ TEST_CASE("A prepared query takes its memory from the caller's resource, and non
     REQUIRE(same_result(query(poses, cloud), ask(host{}, on_host, poses, cloud, min_distance{})));
     REQUIRE(memory.held > 3000 * sizeof(vec3));  // the cloud's copy too
     const std::size_t first = memory.most;
-    for (int k = 0; k < 3; ++k) REQUIRE(same_result(query(poses, cloud), ask(host{}, on_host, poses, cloud, min_distance{})));
+    for (int k = 0; k < 3; ++k)
+      REQUIRE(same_result(query(poses, cloud), ask(host{}, on_host, poses, cloud, min_distance{})));
     REQUIRE(memory.most == first);
   }
   REQUIRE(memory.held == 0);
@@ -297,8 +301,10 @@ TEST_CASE("A query in a stream of its own leaves the caller's device alone, and 
   const std::vector<Eigen::Isometry3d> poses = {d.pose(1), d.pose(1)};
   const auto cloud = d.points(100, 2);
   REQUIRE_THROWS_AS(query(std::span(poses).first(1), clearance::point_span(cloud)), std::invalid_argument);
-  std::vector<clearance::part_minimum> three(3);
-  REQUIRE_THROWS_AS(query.per_part(poses, cloud, three), std::invalid_argument);
+  clearance::query per_part(gpu, model, clearance::min_distance_per_part{});
+  REQUIRE_THROWS_AS(per_part(std::span(poses).first(1), cloud), std::invalid_argument);
+  const std::vector<clearance::part_minimum> three(3);
+  REQUIRE_THROWS_AS(ask(gpu, model, poses, cloud, clearance::part_witnesses{three}), std::invalid_argument);
   Eigen::Isometry3d skewed = poses[0];
   skewed.linear() *= 1.01;
   REQUIRE_THROWS_AS(query(std::vector{skewed, poses[1]}, clearance::point_span(cloud)), std::invalid_argument);

@@ -24,7 +24,7 @@ void all_scenes() {
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
     const auto two = two_clouds(s);
     std::vector<std::vector<vec3>> kept;
-    clearance::query prepared(host{}, model, clearance::self_filter{});
+    clearance::query prepared(host{}, model, self_filter{});
     for (const double padding : {0.0, 0.02, 0.4}) {
       std::vector<double> each(s.parts.size(), padding * s.size);
       const std::string what = s.name + ", padding " + std::to_string(padding);
@@ -61,7 +61,7 @@ TEST_CASE("What gap and tolerance leave open is uncertain, and not hidden") {
   const auto ask = [&](double gap, double tolerance) {
     const clearance::model robot{
         std::vector{clearance::make_part(clearance::build<clearance::sphere>(one_ball), gap, tolerance)}};
-    return ask(host{}, robot, poses, point_span(points), self_filter{.padding = {0.5}});
+    return clearance::ask(host{}, robot, poses, point_span(points), self_filter{.padding = {0.5}});
   };
   using enum point_label;
   CHECK(ask(0, 0).labels == std::vector{own, own, rest, rest, no_point});

@@ -4,10 +4,11 @@
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"
 
-#include <clearance/make_model.hpp>
-#include <clearance/robot/attached.hpp>
-#include <clearance/questions/self_filter.hpp>
 #include <clearance/device.cuh>
+#include <clearance/make_model.hpp>
+#include <clearance/questions/min_distance_filtered.hpp>
+#include <clearance/questions/self_filter.hpp>
+#include <clearance/robot/attached.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -78,7 +79,8 @@ TEST_CASE("A crowd around three parts, one of them held by the others: filter an
       gpu.copy_in(std::span<const clearance::min_distance_result>(std::vector<clearance::min_distance_result>(1)));
   const auto enqueue = [&] {
     clearance::enqueue(gpu, there, s.poses, cloud, options, {labels.data(), counts.data()});
-    clearance::enqueue(gpu, there, s.poses, clearance::masked_clouds(cloud, labels.data()), clearance::min_distance{}, result.data());
+    clearance::enqueue(gpu, there, s.poses, clearance::masked_clouds(cloud, labels.data()), clearance::min_distance{},
+                       result.data());
   };
   enqueue();  // once, as loading a kernel is not for a graph
   gpu.wait();
@@ -124,7 +126,7 @@ TEST_CASE(
       return six;
     };
     const auto expected = ask(host{}, model, s.poses, in_six(points.data()), options);
-    filter.enqueue(s.poses, in_six(points_there.data()), options, labels.data(), counts.data());
+    filter.enqueue(s.poses, in_six(points_there.data()), options, {labels.data(), counts.data()});
     v.require(gpu.copy_out(labels) == expected.labels, "frame ", frame, ": some label differs");
     const auto found = gpu.copy_out(counts)[0];
     v.require(found.own == expected.counts.own && found.uncertain == expected.counts.uncertain &&
@@ -132,7 +134,7 @@ TEST_CASE(
               "frame ", frame, ": ", found.own, " own, and not ", expected.counts.own);
     std::vector<point_label> labels_here(count);
     clearance::self_filter_counts counts_here;
-    here.enqueue(s.poses, in_six(points.data()), options, labels_here.data(), &counts_here);
+    here.enqueue(s.poses, in_six(points.data()), options, {labels_here.data(), &counts_here});
     v.require(labels_here == expected.labels && counts_here.own == expected.counts.own, "frame ", frame,
               ": the host's prepared one differs");
     require_same(filter(s.poses, in_six(points.data()), options), expected, v,

@@ -115,7 +115,8 @@ TEST_CASE("Pieces of any size answer as one cloud; none, and too many, are refus
     for (int k = 0; k < 4; ++k) pieces.emplace_back(s.points.data() + cuts[k], cuts[k + 1] - cuts[k]);
     const sharded cloud(pieces);
     const auto a = clearance::ask(host{}, model, s.poses, cloud, s.cloud_pose, clearance::min_distance{});
-    const auto b = clearance::ask(host{}, model, s.poses, clearance::point_span(s.points), s.cloud_pose, clearance::min_distance{});
+    const auto b = clearance::ask(host{}, model, s.poses, clearance::point_span(s.points), s.cloud_pose,
+                                  clearance::min_distance{});
     v.require(same_bits(a.distance, b.distance) && a.point == b.point && a.part == b.part &&
                   a.primitive == b.primitive && a.valid == b.valid,
               s.name, ": another answer");

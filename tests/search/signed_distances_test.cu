@@ -3,9 +3,9 @@
 #include "support/brute_signed.hpp"
 #include "support/product_device.cuh"
 
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
 #include <clearance/questions/signed_distances.hpp>
-#include <clearance/device.cuh>
 #include <clearance/volume/aabb.hpp>
 
 namespace signed_distances_test {

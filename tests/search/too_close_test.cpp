@@ -4,16 +4,16 @@
 #include "support/laws.hpp"
 #include "support/too_close_frame.hpp"
 
-#include <clearance/minimum/merge.hpp>
-#include <clearance/questions/in_collision.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
-#include <clearance/questions/min_distances.hpp>
-#include <clearance/questions/min_distance_supported.hpp>
+#include <clearance/minimum/merge.hpp>
 #include <clearance/motion_clearance.hpp>
+#include <clearance/questions/in_collision.hpp>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
+#include <clearance/questions/min_distances.hpp>
+#include <clearance/questions/zones.hpp>
 #include <clearance/traversal/near_first.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/questions/zones.hpp>
 
 namespace too_close_test {
 
@@ -57,7 +57,8 @@ TEST_CASE("Nothing is free in a frame with something too close") {
   CHECK((free.state == state::free && free.lower > 1.7f));
   CHECK((r.state == state::possible && r.lower == 0 && r.distance == free.distance &&
          r.dropped[int(drop_reason::too_close)] == 1));
-  CHECK(clearance::ask(host{}, robot, poses, blocked.image(), clearance::min_distance_per_part{}).first.state == state::possible);
+  CHECK(clearance::ask(host{}, robot, poses, blocked.image(), clearance::min_distance_per_part{}).all.state ==
+        state::possible);
   CHECK(ask(clearance::plain{host{}, clearance::near_first{}}, robot, poses, blocked.image(), min_distance{}).state ==
         state::possible);
   auto told = blocked.image();
@@ -79,7 +80,8 @@ TEST_CASE("Nothing is free in a frame with something too close") {
   CHECK(motion_clearance(host{}, robot, still, clear.image()).state == state::free);
   const auto moving = motion_clearance(host{}, robot, still, blocked.image());
   CHECK((moving.state == state::possible && moving.lower == 0));
-  const auto supported = clearance::ask(host{}, robot, poses, blocked.image(), clearance::min_distance_supported{.radius = 0.1});
+  const auto supported =
+      clearance::ask(host{}, robot, poses, blocked.image(), clearance::min_distance_supported{.radius = 0.1});
   CHECK((supported.state == state::possible && supported.lower == 0 && supported.distance == free.distance));
 }
 
@@ -89,7 +91,8 @@ TEST_CASE("One camera that is covered leaves nothing free for all") {
   CHECK(ask(host{}, robot, poses, both, min_distance{}).state == state::possible);
   const std::vector<float> covered(64 * 48, -clearance::infinity);
   const clearance::depth_image<float> nothing(covered.data(), 64, 48, {60, 60, 31.5, 23.5});
-  const auto a = ask(host{}, robot, poses, clear.image(), min_distance{}), b = ask(host{}, robot, poses, nothing, min_distance{});
+  const auto a = ask(host{}, robot, poses, clear.image(), min_distance{}),
+             b = ask(host{}, robot, poses, nothing, min_distance{});
   CHECK((a.state == state::free && b.state == state::no_data &&
          b.dropped[int(drop_reason::too_close)] == covered.size()));
   CHECK((merge(a, b).state == state::possible && merge(b, a).lower == 0));

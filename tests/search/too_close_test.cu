@@ -3,9 +3,9 @@
 #include "support/product_device.cuh"
 #include "support/too_close_frame.hpp"
 
-#include <clearance/questions/in_collision.hpp>
 #include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/in_collision.hpp>
 #include <clearance/volume/sphere.hpp>
 
 namespace too_close_test {
@@ -24,8 +24,8 @@ TEST_CASE("On a device what is too close is counted, and leaves nothing free") {
     CHECK(same_result(r, ask(host{}, robot, poses, frame.image(), min_distance{})));
     CHECK(r.dropped[int(drop_reason::too_close)] == near);
     CHECK(r.state == (near == 0 ? state::free : state::possible));
-    CHECK(same_result(clearance::ask(gpu, there, poses, frame.image(), clearance::min_distance_per_part{}).first,
-                      clearance::ask(host{}, robot, poses, frame.image(), clearance::min_distance_per_part{}).first));
+    CHECK(same_result(clearance::ask(gpu, there, poses, frame.image(), clearance::min_distance_per_part{}).all,
+                      clearance::ask(host{}, robot, poses, frame.image(), clearance::min_distance_per_part{}).all));
     CHECK(clearance::ask(gpu, there, poses, frame.image(), clearance::in_collision{{0.1}}).state ==
           (near == 0 ? state::free : state::possible));
   }

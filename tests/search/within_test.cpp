@@ -26,7 +26,7 @@ void all_scenes() {
       const std::string what = s.name + ", within " + std::to_string(radius);
       require_same(ask(host{}, model, s.poses, two, within{{own[0]}}), brute_within(s, two, own), v, what);
       own[0] *= 2;
-      const auto r = ask(host{1}, model, s.poses, two, within{{own}});
+      const auto r = ask(host{1}, model, s.poses, two, within{{own.begin(), own.end()}});
       require_same(r, brute_within(s, two, own), v, what + ", one a part");
       found += r.pairs.size();
     }
@@ -53,38 +53,36 @@ TEST_CASE("A list longer than its first room is whole, and one of the caller's s
   const std::vector cloud{placed{point_span(s.points)}};
   const auto all = ask(host{}, model, s.poses, cloud, within{{10}});
   CHECK(all.pairs.size() == 100000);
-  const std::vector<real> reaches(2, 10);
   std::vector<clearance::pair_distance> pairs(100);
   unsigned long long count = 0;
   clearance::point_counts counts;
-  clearance::within_async(host{}, model, s.poses, cloud, reaches.data(), pairs.data(), pairs.size(), &count, &counts);
+  enqueue(host{}, model, s.poses, cloud, within{{10, 10}}, {pairs.data(), pairs.size(), &count, &counts});
   CHECK((count == 100000 && counts.valid == 50000 && pairs[99].distance > 0));
   CHECK_THROWS_AS(ask(host{}, model, s.poses, cloud, within{{clearance::not_a_number}}), std::invalid_argument);
-  CHECK_THROWS_AS(ask(host{}, model, s.poses, cloud, within{{std::vector<real>(3, 1)}}), std::invalid_argument);
+  CHECK_THROWS_AS(ask(host{}, model, s.poses, cloud, within{{1, 1, 1}}), std::invalid_argument);
 }
 
 TEST_CASE("A prepared list says in every frame what one call says, and goes on after one that is refused") {
   verdict v;
   moving_frames f(5, 112);
   const auto model = f.model();
-  clearance::query query(host{}, model, clearance::within{});
+  clearance::query query(host{}, model, within{});
   std::size_t listed = 0;
   for (; f.there(); f.next()) {
-    const std::vector<real> radii(
-        f.number % 2 ? 5 : 1,
-        f.number == 4 ? 10 : 0.3f);  // that of frame 4 is a longer list than there is room for at first
-    const auto expected = ask(host{}, model, f.s.poses, f.here(), within{{radii}});
+    // That of frame 4 is a longer list than there is room for at first.
+    const within question{std::vector<double>(f.number % 2 ? 5 : 1, f.number == 4 ? 10 : 0.3f)};
+    const auto expected = ask(host{}, model, f.s.poses, f.here(), question);
     listed = std::max(listed, expected.pairs.size());
     const std::string what = "frame " + std::to_string(f.number);
-    require_same(query(f.s.poses, f.here(), radii), expected, v, what);
+    require_same(query(f.s.poses, f.here(), question), expected, v, what);
     std::vector<clearance::pair_distance> pairs(expected.pairs.size());
     unsigned long long count = 77;
     clearance::point_counts counts;
-    query.enqueue(f.s.poses, f.here(), radii, pairs.data(), pairs.size(), &count, &counts);
+    query.enqueue(f.s.poses, f.here(), question, {pairs.data(), pairs.size(), &count, &counts});
     require_listed(pairs, count, expected, v, what + ", enqueued");
     CHECK(counts.valid == expected.counts.valid);
-    CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
-    CHECK_THROWS_AS(query(f.s.poses, f.here(), std::vector<real>(3, 1)), std::invalid_argument);
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), {{clearance::not_a_number}}), std::invalid_argument);
+    CHECK_THROWS_AS(query(f.s.poses, f.here(), {{1, 1, 1}}), std::invalid_argument);
   }
   CHECK(listed > 1 << 16);
 }

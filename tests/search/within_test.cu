@@ -4,10 +4,10 @@
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
-#include <clearance/make_model.hpp>
-#include <clearance/volume/sphere.hpp>
-#include <clearance/questions/within.hpp>
 #include <clearance/device.cuh>
+#include <clearance/make_model.hpp>
+#include <clearance/questions/within.hpp>
+#include <clearance/volume/sphere.hpp>
 
 namespace within_test {
 
@@ -21,7 +21,8 @@ TEST_CASE("On a device points within a distance are the host's, and a long list 
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     const auto two = two_clouds(s);
     for (const real radius : {real(0), real(0.1), clearance::infinity})
-      require_same(ask(gpu, model.on(gpu), s.poses, two, within{{radius}}), ask(host{}, model, s.poses, two, within{{radius}}), v,
+      require_same(ask(gpu, model.on(gpu), s.poses, two, within{{radius}}),
+                   ask(host{}, model, s.poses, two, within{{radius}}), v,
                    s.name + ", within " + std::to_string(radius));
   }
   dice d(99);
@@ -31,7 +32,8 @@ TEST_CASE("On a device points within a distance are the host's, and a long list 
   s.points = d.points(50000, 1);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const std::vector cloud{placed{point_span(s.points)}};
-  require_same(ask(gpu, model.on(gpu), s.poses, cloud, within{{10}}), ask(host{}, model, s.poses, cloud, within{{10}}), v, "many");
+  require_same(ask(gpu, model.on(gpu), s.poses, cloud, within{{10}}), ask(host{}, model, s.poses, cloud, within{{10}}),
+               v, "many");
 }
 
 TEST_CASE("A prepared list says on a device in every frame what the host says, and in a graph") {
@@ -48,7 +50,7 @@ TEST_CASE("A prepared list says on a device in every frame what the host says, a
     const auto count = room_on<unsigned long long>(gpu, 1);
     const auto counts = room_on<clearance::point_counts>(gpu, 1);
     const auto look = [&](const std::vector<real>& radii, const std::string& when) {
-      const auto expected = ask(host{}, model, f.s.poses, f.here(), within{{radii}});
+      const auto expected = ask(host{}, model, f.s.poses, f.here(), within{{radii.begin(), radii.end()}});
       const std::string what = std::to_string(parts) + " parts, " + when;
       const auto found = gpu.copy_out(count)[0];
       require_listed(gpu.copy_out(pairs.data(), std::min<std::size_t>(found, capacity)), found, expected, v,
@@ -59,16 +61,17 @@ TEST_CASE("A prepared list says on a device in every frame what the host says, a
     for (; f.there(); f.next()) {
       // That of frame 4 is a longer list than there is room for at first.
       const std::vector<real> radii(f.number % 2 ? std::size_t(parts) : 1, f.number == 4 ? 0.8f : 0.1f);
+      const within asked{{radii.begin(), radii.end()}};
       const frame_there seen(gpu, f);
-      query.enqueue(f.s.poses, seen.all, radii, pairs.data(), capacity, count.data(), counts.data());
+      query.enqueue(f.s.poses, seen.all, asked, {pairs.data(), capacity, count.data(), counts.data()});
       const auto expected = look(radii, "frame " + std::to_string(f.number));
-      require_same(query(f.s.poses, f.here(), radii), expected, v, "waited for");
-      CHECK_THROWS_AS(query(f.s.poses, f.here(), clearance::not_a_number), std::invalid_argument);
+      require_same(query(f.s.poses, f.here(), asked), expected, v, "waited for");
+      CHECK_THROWS_AS(query(f.s.poses, f.here(), {{clearance::not_a_number}}), std::invalid_argument);
     }
     replay(
         stream, gpu, f,
         [&](const clouds& all) {
-          query.enqueue(f.s.poses, all, 0.1f, pairs.data(), capacity, count.data(), counts.data());
+          query.enqueue(f.s.poses, all, {{0.1f}}, {pairs.data(), capacity, count.data(), counts.data()});
         },
         [&](const std::string& what) { look({0.1f}, what); });
   }

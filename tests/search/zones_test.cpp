@@ -24,7 +24,7 @@ void all_scenes() {
     const clouds one{two[0]};
     const std::vector<std::vector<double>> same(s.parts.size(), {0, 0.05 * s.size, 0.5 * s.size});
     std::vector<std::vector<double>> own;
-    clearance::zones options{same[0]}, of_each{.thresholds = {}, .each_part = true};
+    zones options{same[0]}, of_each{.thresholds = {}, .each_part = true};
     for (std::size_t k = 0; k < s.parts.size(); ++k) {
       own.push_back({0.1 * double(k + 1) * s.size, 0.3 * double(k + 1) * s.size});
       of_each.thresholds.insert(of_each.thresholds.end(), own[k].begin(), own[k].end());
@@ -54,7 +54,7 @@ TEST_CASE("What may be nearer by gap and tolerance is in the zone") {
   const auto ask = [&](double gap, double tolerance) {
     const clearance::model robot{
         std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball), gap, tolerance)}};
-    return ask(host{}, robot, poses, point_span(points), zones{.thresholds = {0.3, 0.5}}).zones;
+    return clearance::ask(host{}, robot, poses, point_span(points), zones{.thresholds = {0.3, 0.5}}).zones;
   };
   CHECK((ask(0, 0)[0].points == 0 && ask(0, 0)[1].points == 1));
   CHECK(
@@ -67,33 +67,36 @@ TEST_CASE("The innermost zone, few points, no point, and what cannot be asked") 
   const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball))}};
   const std::vector poses{Eigen::Isometry3d::Identity()};
   const std::vector<vec3> points{{1.1f, 0, 0}, {1.4f, 0, 0}, {0, 1.4f, 0}, {9, 0, 0}};
-  const auto ask = [&](clearance::zones options) {
-    return ask(host{}, robot, poses, point_span(points), options);
+  const auto ask = [&](const zones& options) {
+    return clearance::ask(host{}, robot, poses, point_span(points), options);
   };
   CHECK(ask({.thresholds = {0.05, 0.2, 0.5}}).innermost() == 1);
   CHECK(ask({.thresholds = {0.05, 0.2, 0.5}, .min_points = 2}).innermost() == 2);
   CHECK(ask({.thresholds = {0.05, 0.2, 0.5}, .min_points = 4}).innermost() == 3);
-  CHECK(ask(host{}, robot, poses, std::vector<vec3>{}, zones{.thresholds = {0.1}}).innermost() == 0);
+  CHECK(clearance::ask(host{}, robot, poses, std::vector<vec3>{}, zones{.thresholds = {0.1}}).innermost() == 0);
   CHECK_THROWS_AS(ask({}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.thresholds = {0.1}, .min_points = 0}), std::invalid_argument);
   clearance::zone one;
   clearance::point_counts counts;
-  for (const clearance::zones& none : {clearance::zones{}, {.thresholds = {0.1}, .min_points = 0}}) {
-    clearance::query query(host{}, robot, clearance::zones{});
+  for (const zones& none : {zones{}, {.thresholds = {0.1}, .min_points = 0}}) {
+    clearance::query query(host{}, robot, zones{});
     CHECK_THROWS_AS(query(poses, point_span(points), none), std::invalid_argument);
-    CHECK_THROWS_AS(query.enqueue(poses, point_span(points), none, &one, &counts), std::invalid_argument);
+    CHECK_THROWS_AS(query.enqueue(poses, point_span(points), none, {&one, &counts}), std::invalid_argument);
     CHECK_THROWS_AS(enqueue(host{}, robot, poses, point_span(points), none, {&one, &counts}), std::invalid_argument);
   }
   CHECK_THROWS_AS(ask({.thresholds = {0.2, 0.1}}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.thresholds = {-0.1}}), std::invalid_argument);
   CHECK_THROWS_AS(ask({.thresholds = {clearance::not_a_number}}), std::invalid_argument);
   const clearance::model_view<decltype(robot)::view_type> no_parts{nullptr, {}, 0, 0};
-  CHECK_THROWS_AS(ask(host{}, no_parts, std::span<const Eigen::Isometry3d>(), point_span(points), zones{.thresholds = {0.1}, .each_part = true}),
+  CHECK_THROWS_AS(clearance::ask(host{}, no_parts, std::span<const Eigen::Isometry3d>(), point_span(points),
+                                 zones{.thresholds = {0.1}, .each_part = true}),
                   std::invalid_argument);
-  CHECK(ask(host{}, no_parts, std::span<const Eigen::Isometry3d>(), point_span(points), zones{.thresholds = {0.1}})
+  CHECK(clearance::ask(host{}, no_parts, std::span<const Eigen::Isometry3d>(), point_span(points),
+                       zones{.thresholds = {0.1}})
             .innermost() == 0);
   const clearance::model two{std::vector{robot.parts()[0], robot.parts()[0]}};
-  CHECK_THROWS_AS(ask(host{}, two, std::vector(2, poses[0]), point_span(points), zones{.thresholds = {0.1, 0.2, 0.3}, .each_part = true}),
+  CHECK_THROWS_AS(clearance::ask(host{}, two, std::vector(2, poses[0]), point_span(points),
+                                 zones{.thresholds = {0.1, 0.2, 0.3}, .each_part = true}),
                   std::invalid_argument);
 }
 
@@ -102,17 +105,17 @@ TEST_CASE(
   verdict v;
   moving_frames f(5, 111);
   const auto model = f.model();
-  clearance::query query(host{}, model, clearance::zones{});
+  clearance::query query(host{}, model, zones{});
   for (; f.there(); f.next()) {
-    const clearance::zones options{.thresholds =
-                                               f.number % 2 ? std::vector{0.02, 0.3} : std::vector{0.0, 0.05, 0.4}};
+    const zones options{.thresholds = f.number % 2 ? std::vector{0.02, 0.3} : std::vector{0.0, 0.05, 0.4}};
     const auto expected = ask(host{}, model, f.s.poses, f.here(), options);
     const std::string what = "frame " + std::to_string(f.number);
     require_same(query(f.s.poses, f.here(), options), expected, v, what);
     clearance::zones_result enqueued = expected;
     std::fill(enqueued.zones.begin(), enqueued.zones.end(), clearance::zone{.points = 77});
     enqueued.counts = {};
-    enqueued.per_part = query.enqueue(f.s.poses, f.here(), options, enqueued.zones.data(), &enqueued.counts);
+    enqueued.per_part = options.per_part(f.s.parts.size());
+    query.enqueue(f.s.poses, f.here(), options, {enqueued.zones.data(), &enqueued.counts});
     require_same(enqueued, expected, v, what + ", enqueued");
     v.require(
         enqueued.counts.valid == expected.counts.valid && expected.counts.valid + 1 >= moving_frames::sizes[f.number],

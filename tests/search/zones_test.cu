@@ -4,11 +4,11 @@
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"
 
+#include <clearance/device.cuh>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/zones.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
-#include <clearance/questions/zones.hpp>
-#include <clearance/device.cuh>
 
 namespace zones_test {
 
@@ -22,8 +22,7 @@ TEST_CASE("Zones on a device hold what they hold on the host") {
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     const auto two = two_clouds(s);
     const clearance::zones options{.thresholds = {0, 0.05 * s.size, 0.5 * s.size}};
-    require_same(ask(gpu, model.on(gpu), s.poses, two, options), ask(host{}, model, s.poses, two, options), v,
-                 s.name);
+    require_same(ask(gpu, model.on(gpu), s.poses, two, options), ask(host{}, model, s.poses, two, options), v, s.name);
   }
 }
 
@@ -79,14 +78,15 @@ TEST_CASE("A prepared question of zones says on a device in every frame what the
     for (; f.there(); f.next()) {
       const auto& options = f.number % 2 ? narrow : wide;
       const frame_there seen(gpu, f);
-      CHECK(query.enqueue(f.s.poses, seen.all, options, zone_there.data(), counts.data()) == options.thresholds.size());
+      CHECK(options.per_part(std::size_t(parts)) == options.thresholds.size());
+      query.enqueue(f.s.poses, seen.all, options, {zone_there.data(), counts.data()});
       const auto expected = look(options, "frame " + std::to_string(f.number));
       require_same(query(f.s.poses, f.here(), options), expected, v, "waited for");
       CHECK_THROWS_AS(query(f.s.poses, f.here(), {.thresholds = {0.2, 0.1}}), std::invalid_argument);
     }
     replay(
         stream, gpu, f,
-        [&](const clouds& all) { query.enqueue(f.s.poses, all, wide, zone_there.data(), counts.data()); },
+        [&](const clouds& all) { query.enqueue(f.s.poses, all, wide, {zone_there.data(), counts.data()}); },
         [&](const std::string& what) { look(wide, what); });
   }
 }

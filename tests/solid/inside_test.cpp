@@ -7,8 +7,8 @@
 #include "support/laws.hpp"
 
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 

@@ -5,7 +5,7 @@
 #include "support/brute_distances.hpp"
 #include "support/brute_pairs.hpp"
 
-#include <clearance/questions/self_filter.hpp>
+#include <clearance/questions/min_distance_filtered.hpp>
 
 namespace testing {
 

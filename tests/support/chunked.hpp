@@ -23,16 +23,17 @@ void ask_often(const On& on, const Model& on_host, std::vector<Eigen::Isometry3d
                const S& source, const Eigen::Isometry3d& pose, verdict& v, const std::string& what) {
   const auto model = on_host.on(on);
   const clearance::host host;
-  clearance::chunked_query query(on, model);
-  std::vector<clearance::part_minimum> minima(poses.size());
+  clearance::chunked_query query(on, model, clearance::min_distance{});
+  clearance::chunked_query by_parts(on, model, clearance::min_distance_per_part{});
   for (int round = 0; round < 4; ++round) {
     const clearance::placed<S> whole{source, pose};
-    v.require(same_result(query(poses, cloud, pose), clearance::ask(host, on_host, poses, whole, clearance::min_distance{})), what,
-              ", round ", round, ": another answer");
+    v.require(
+        same_result(query(poses, cloud, pose), clearance::ask(host, on_host, poses, whole, clearance::min_distance{})),
+        what, ", round ", round, ": another answer");
     v.require(round > 0 || query.loaded() == source.size(), what, ": the first question did not read all");
     const auto [robot, each] = clearance::ask(host, on_host, poses, whole, clearance::min_distance_per_part{});
-    v.require(same_result(query.per_part(poses, cloud, pose, minima), robot), what, ", round ", round,
-              ": another answer by parts");
+    const auto [found, minima] = by_parts(poses, cloud, pose);
+    v.require(same_result(found, robot), what, ", round ", round, ": another answer by parts");
     v.require(std::ranges::equal(minima, each, same_minimum), what, ", round ", round, ": some part's minimum differs");
     poses[0].translation().x() += round == 1 ? 3 : 0.02;
   }

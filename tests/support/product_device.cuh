@@ -6,8 +6,8 @@
 #include "support/product.hpp"
 #include "support/same_result.hpp"
 
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
+#include <clearance/questions/min_distance.hpp>
 
 namespace testing {
 

@@ -681,25 +681,52 @@ TEST_CASE("what is wrong with a deadline or with ranks is one sentence that name
   refuses(q.ask + " --deadline 5 --deadline 5", "--deadline");
   refuses(q.ask + " --deadline 5 --volume aabb",
           "--volume: cannot be aabb with --deadline, which has obb for --model triangles");
-  for (const std::string option : {"--deadline 5", "--shard"}) {
-    const std::string name = option.substr(0, option.find(' '));
-    for (const std::string other :
-         {"--zones 0.1", "--distances x.ply", "--self-filter 0.1", "--min-support 3@0.1", "--gradient"})
-      refuses(q.ask + ' ' + option + ' ' + other,
-              name + ": is for the least distance alone, and cannot be mixed with " + other.substr(0, other.find(' ')));
-    refuses("run --robot x --frames y " + option, name);
-    refuses("plan --robot x --cloud y --configurations z " + option, name);
-  }
+  for (const std::string other :
+       {"--zones 0.1", "--distances x.ply", "--self-filter 0.1", "--min-support 3@0.1", "--nearest 2", "--gradient"})
+    refuses(q.ask + " --deadline 5 " + other, "--deadline: is for the least distance alone, and cannot be mixed with " +
+                                                  other.substr(0, other.find(' ')));
+  refuses("plan --robot x --cloud y --configurations z --deadline 5", "--deadline");
+  for (const std::string option : {"--deadline 5", "--shard"})
+    refuses("run --robot x --frames y " + option, option.substr(0, option.find(' ')));
   refuses(q.ask + " --shard --deadline 5", "--shard: cannot be mixed with --deadline");
+  refuses(q.ask + " --shard --min-support 3@0.1", "--shard: cannot be mixed with --min-support");
+  refuses(q.ask + " --shard --zones 0.1 --support-limit 5", "--support-limit: is for --min-support");
 }
 
 TEST_CASE("--shard without mpirun is one rank, or refused where there is no MPI") {
   const question q;
-  const outcome o = run_command(q.ask + " --shard");
-  if (o.code != 0) return refuses(q.ask + " --shard", "--shard: this clearance was built without MPI");
-  auto one = parsed(o), plain = parsed(run_command(q.ask));
-  for (auto* each : {&one, &plain}) each->erase("seconds");
-  CHECK(one == plain);
+  const moving m;
+  const scratch_file rows(".csv", "slide,turn\n0,0\n0.4,1\n1,2\n"), ply(".ply");
+  const std::string plan = "plan --configurations " + rows.path + " --cloud " + m.cloud.path + m.robot;
+  if (const outcome o = run_command(q.ask + " --shard"); o.code != 0) {
+    for (const std::string& ask : {q.ask, plan})
+      refuses(ask + " --shard", "--shard: this clearance was built without MPI");
+    return;
+  }
+  const std::string moved = m.ask + " --joint slide=0.1 --joint turn=1";
+  for (const std::string& ask : {
+           q.ask,
+           q.ask + " --zones 0.1,0.3,9 --min-points 2",
+           q.ask + " --nearest 2 --d-max 1",
+           q.ask + " --self-filter 0.21 --zones 0.1",
+           moved + " --gradient",
+           moved + " --attach claw=" + m.cube.path + " --self-filter 0.1 --nearest 9 --gradient",
+           q.ask + " --distances " + ply.path + " --signed --d-max 3",
+           plan,
+           plan + " --d-max 0.25 --check 0.1",
+           plan + " --between --check 0.1 --csv",
+       }) {
+    const auto without_times = [](std::string text) {
+      const std::size_t begin = text.find("\"seconds\"");
+      return begin == text.npos ? text : text.erase(begin, text.find('}', begin) - begin);
+    };
+    const outcome one = run_command(ask + " --shard"), plain = run_command(ask);
+    INFO(ask);
+    CHECK(one.code == plain.code);
+    CHECK(one.err.find(plain.err) != std::string::npos);
+    CHECK(!one.out.empty());
+    CHECK(without_times(one.out) == without_times(plain.out));
+  }
 }
 
 TEST_CASE("--nearest lists the nearest points of every part, with what is certain") {

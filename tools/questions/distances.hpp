@@ -11,11 +11,12 @@
 
 template <class Backend>
 clearance::point_distances robot_on_backend<Backend>::distances(poses_of poses, double d_max, bool is_signed) {
-  const clearance::distances options{.d_max = clearance::real(d_max), .which = true};
+  const double most = clearance::real(d_max);
   return with_usual_trees([&](const auto& trees) {
-    if (!is_signed) return clearance::ask(on_, trees, poses, clouds_, options);
+    if (!is_signed)
+      return clearance::ask(on_, trees, poses, clouds_, clearance::distances{.d_max = most, .which = true});
     if constexpr (clearance::scan::has_interior<typename decltype(clearance::view_of(trees))::part_type>)
-      return clearance::ask(on_, trees, poses, clouds_, options);
+      return clearance::ask(on_, trees, poses, clouds_, clearance::signed_distances{.d_max = most, .which = true});
     else
       throw std::logic_error("distances to spheres are signed already");
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/questions/distances.hpp>
 #include <clearance/device.cuh>
+#include <clearance/questions/distances.hpp>
 #include <clearance/questions/part_witnesses.hpp>
 #include <clearance/questions/signed_distances.hpp>
 

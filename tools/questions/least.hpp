@@ -15,20 +15,21 @@ template <class Backend, class Model>
 class query_of final : public prepared_query {
  public:
   query_of(const Backend& on, const Model& model, std::shared_ptr<const Model> keeps = {})
-      : keeps_(std::move(keeps)), query_(on, model) {}
+      : keeps_(std::move(keeps)), least_(on, model, {}), each_(on, model, {}) {}
 
   clearance::min_distance_result least(poses_of poses, const std::vector<placed_points>& clouds) override {
-    return query_(poses, clouds);
+    return least_(poses, clouds);
   }
-  clearance::min_distance_result least_per_part(poses_of poses, const std::vector<placed_points>& clouds,
-                                                std::span<clearance::part_minimum> parts) override {
-    return query_.per_part(poses, clouds, parts);
+  reply least_per_part(poses_of poses, const std::vector<placed_points>& clouds) override {
+    const auto& [all, parts] = each_(poses, clouds);
+    return {all, parts};
   }
-  void forget() override { query_.forget(); }
+  void forget() override { each_.forget(); }
 
  private:
   std::shared_ptr<const Model> keeps_;
-  decltype(clearance::min_distance_query(std::declval<const Backend&>(), std::declval<const Model&>())) query_;
+  prepared_for<clearance::min_distance, Backend, Model> least_;
+  prepared_for<clearance::min_distance_per_part, Backend, Model> each_;
 };
 
 template <class Backend>
@@ -65,13 +66,12 @@ template <class Backend>
 reply robot_on_backend<Backend>::least_per_part(poses_of poses, int repeat) {
   prepared_query& asked = prepared();
   reply out;
-  out.parts.resize(asked_.bodies->size());
   double spent = 0;
   stopwatch clock;
   for (int round = 0; round < repeat && spent < 0.3; ++round) {
     asked.forget();
     clock.lap();
-    out.result = asked.least_per_part(poses, clouds_, out.parts);
+    out = asked.least_per_part(poses, clouds_);
     const double seconds = clock.lap();
     spent += seconds;
     query = round == 0 ? seconds : std::min(query, seconds);
@@ -83,13 +83,13 @@ template <class Backend>
 reply robot_on_backend<Backend>::least_by(poses_of poses, double deadline) {
   double seconds = 0;
   reply out = with_usual_trees([&](const auto& trees) {
-    clearance::query asked(on_, trees, clearance::min_distance{});  // prepared before the clock starts
-    stopwatch clock;
     // With every part's, as in `least_per_part`: a complete answer then has the same lower end.
-    const auto known =
-        clearance::ask_by(asked, poses, clouds_, std::chrono::duration<double>(deadline), clearance::min_distance{}, {.per_part = true});
+    const clearance::min_distance_per_part each;
+    clearance::query asked(on_, trees, each);  // prepared before the clock starts
+    stopwatch clock;
+    const auto known = clearance::ask_by(asked, poses, clouds_, std::chrono::duration<double>(deadline), each);
     seconds = clock.lap();
-    return reply{known, {}, known.unseen};
+    return reply{known.result.all, {}, known.unseen};
   });
   out.parts.resize(asked_.bodies->size());
   query = seconds;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <clearance/deadline.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
+#include <clearance/questions/min_distance.hpp>
 
 #include "least.hpp"
 

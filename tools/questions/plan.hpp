@@ -11,7 +11,7 @@
 template <class Backend, class Model>
 class plan_of final : public prepared_plan {
  public:
-  plan_of(const Backend& on, const Model& model) : query_(on, model) {}
+  plan_of(const Backend& on, const Model& model) : query_(on, model, {}) {}
 
   const clearance::min_distances_result& ask(poses_of poses, const std::vector<placed_points>& clouds,
                                              double d_max) override {
@@ -28,7 +28,7 @@ class plan_of final : public prepared_plan {
   }
 
  private:
-  decltype(clearance::min_distances_query(std::declval<const Backend&>(), std::declval<const Model&>())) query_;
+  prepared_for<clearance::min_distances, Backend, Model> query_;
   std::vector<Eigen::Isometry3d> placed_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/questions/min_distances.hpp>
 #include <clearance/device.cuh>
+#include <clearance/questions/min_distances.hpp>
 
 #include "plan.hpp"
 

@@ -5,9 +5,10 @@
 #include "../backends.hpp"
 #include "../stopwatch.hpp"
 
-#include <clearance/minimum/search_on.hpp>
+#include <clearance/frame/readable.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/primitive/triangle.hpp>
+#include <clearance/query/query.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/solid/winding.hpp>
 #include <clearance/volume/obb.hpp>
@@ -19,13 +20,17 @@
 using placed_points =
     std::variant<clearance::placed<clearance::point_span>, clearance::placed<clearance::depth_image<std::uint16_t>>>;
 
+/// The library's prepared question.
+template <class Q, class Backend, class Model>
+using prepared_for =
+    decltype(clearance::query(std::declval<const Backend&>(), std::declval<const Model&>(), std::declval<const Q&>()));
+
 /// The prepared query of a model, whatever its trees.
 struct prepared_query {
   virtual ~prepared_query() = default;
   virtual clearance::min_distance_result least(poses_of poses, const std::vector<placed_points>& clouds) = 0;
-  virtual clearance::min_distance_result least_per_part(poses_of poses, const std::vector<placed_points>& clouds,
-                                                        std::span<clearance::part_minimum> parts) = 0;
-  virtual void forget() = 0;
+  virtual reply least_per_part(poses_of poses, const std::vector<placed_points>& clouds) = 0;
+  virtual void forget() = 0;  // the last frame, for `least_per_part`
 };
 
 /// The prepared query for many configurations.
@@ -44,7 +49,7 @@ class robot_on_backend final : public backend_robot {
     stopwatch clock;
     copies_.clear();
     clouds_.clear();
-    const clearance::minimum::readable_on<Backend> readable{on_, copies_};
+    const clearance::frames::readable_on<Backend> readable{on_, copies_};
     for (const seen_points& cloud : clouds)
       std::visit(
           [&](const auto& source) {
@@ -68,6 +73,9 @@ class robot_on_backend final : public backend_robot {
   clearance::min_distances_result plan(poses_of poses, double d_max) override;
   std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
                                                        const clearance::motion_clearance_options& options) override;
+  std::span<const clearance::part_facts> facts() override {
+    return with_usual_trees([](const auto& trees) { return trees.view().facts; });
+  }
 
  private:
   using sphere_trees =
@@ -111,5 +119,5 @@ class robot_on_backend final : public backend_robot {
   std::unique_ptr<prepared_query> prepared_;
   std::unique_ptr<prepared_plan> planned_;
   std::vector<placed_points> clouds_;
-  clearance::minimum::cloud_copies<Backend> copies_;
+  clearance::frames::cloud_copies<Backend> copies_;
 };

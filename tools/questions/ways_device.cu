@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/motion_clearance.hpp>
 #include <clearance/device.cuh>
+#include <clearance/motion_clearance.hpp>
 
 #include "ways.hpp"
 

@@ -16,15 +16,15 @@ clearance::zones_result robot_on_backend<Backend>::zones(poses_of poses, const c
 
 template <class Backend>
 clearance::self_filter_result robot_on_backend<Backend>::own_points(poses_of poses, double padding) {
-  return with_usual_trees(
-      [&](const auto& trees) { return clearance::ask(on_, trees, poses, clouds_, clearance::self_filter{.padding = {padding}}); });
+  return with_usual_trees([&](const auto& trees) {
+    return clearance::ask(on_, trees, poses, clouds_, clearance::self_filter{.padding = {padding}});
+  });
 }
 
 template <class Backend>
 clearance::supported_distance robot_on_backend<Backend>::supported(poses_of poses,
                                                                    const clearance::min_distance_supported& options) {
-  return with_usual_trees(
-      [&](const auto& trees) { return clearance::ask(on_, trees, poses, clouds_, options); });
+  return with_usual_trees([&](const auto& trees) { return clearance::ask(on_, trees, poses, clouds_, options); });
 }
 
 template <class Backend>

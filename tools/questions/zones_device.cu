@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/questions/min_distance_supported.hpp>
 #include <clearance/device.cuh>
+#include <clearance/questions/min_distance_supported.hpp>
 #include <clearance/questions/nearest_k.hpp>
 #include <clearance/questions/self_filter.hpp>
 #include <clearance/questions/zones.hpp>

@@ -20,10 +20,6 @@ struct alignas(16) memory_unit {
 /// Where memory comes from. This is for any backend but a device.
 template <class On>
 class memory_of {
-  static_assert(
-      !requires { typename On::own_scan; },
-      "a device is asked with nvcc: include <clearance/device.cuh>");
-
  public:
   using piece = typename On::template scratch<memory_unit>;
 

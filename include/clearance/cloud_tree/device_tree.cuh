@@ -6,7 +6,7 @@
 #include <clearance/cloud_tree/morton.hpp>
 #include <clearance/cloud_tree/pixel_order.hpp>
 #include <clearance/cloud_tree/tree_view.hpp>
-#include <clearance/scan/tally.hpp>
+#include <clearance/scan/drops.hpp>
 #include <clearance/scan/threads.cuh>
 
 #include <cub/device/device_radix_sort.cuh>
@@ -49,7 +49,7 @@ struct encode_body {
   scan::drop_counts* dropped;
 
   CLEARANCE_HD void operator()(indices range) const {
-    scan::tally mine;
+    scan::drop_tally mine;
     const morton_grid cells = *grid;
     for (std::size_t i = range.begin; i < range.end; i += range.step) {
       const sample s = source[i];
@@ -125,7 +125,7 @@ __global__ void __launch_bounds__(tile_threads)
   const std::uint32_t t = threadIdx.x, i = blockIdx.x * tile_threads + t, tile = i / siblings;
   numbered_point p{{not_a_number, not_a_number, not_a_number}, ~0u};
   extent box;
-  scan::tally mine;
+  scan::drop_tally mine;
   if (i < tree.count) {
     if (const std::uint32_t number = number_of(i); number != none) {
       const sample s = source[number];

@@ -5,7 +5,7 @@
 #include <clearance/backend/host.hpp>
 #include <clearance/cloud_tree/morton.hpp>
 #include <clearance/cloud_tree/tree_view.hpp>
-#include <clearance/scan/tally.hpp>
+#include <clearance/scan/drops.hpp>
 
 #include <algorithm>
 #include <tuple>
@@ -48,7 +48,7 @@ class host_tree {
     const std::size_t n = source.size();
     read_.resize(n), kept_.assign(pieces(n) + 1, 0);
     workers.for_pieces(n, piece, [&](std::size_t begin, std::size_t end) {
-      scan::tally mine;
+      scan::drop_tally mine;
       std::size_t to = begin;
       for (std::size_t i = begin; i < end; ++i)
         if (const sample s = source[i]; mine.counts(s)) read_[to++] = {s.position, std::uint32_t(i)};

@@ -26,16 +26,14 @@ struct piece_place {
 /// Law: `merge(all, other)` makes `all` the result of one call about the points of both. It is associative, and it
 /// does not matter which came first. `place_in_whole(result, place)` gives points their numbers in whole clouds.
 template <class Q>
-concept merging_question = question<Q> && requires(typename Q::result& all, const typename Q::result& other) {
-  Q::merge(all, other);
-};
+concept merging_question =
+    question<Q> && requires(typename Q::result& all, const typename Q::result& other) { Q::merge(all, other); };
 
 /// A question whose result tells something while points are unseen.
 /// Law: `so_far(result, unseen)` leaves only what holds wherever the unseen points are.
 template <class Q>
-concept partial_question = question<Q> && requires(typename Q::result& all, std::uint64_t unseen) {
-  Q::so_far(all, unseen);
-};
+concept partial_question =
+    question<Q> && requires(typename Q::result& all, std::uint64_t unseen) { Q::so_far(all, unseen); };
 
 /// `question<Q>` with reasons.
 template <class Q>

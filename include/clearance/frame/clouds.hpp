@@ -111,12 +111,17 @@ consteval bool explain_clouds() {
 /// The same for everything that a call is given as clouds.
 template <class First, class... Rest>
 consteval bool explain_given() {
-  static_assert(sizeof...(Rest) == 0 ||
-                    (sizeof...(Rest) == 1 && (std::is_convertible_v<const Rest&, const Eigen::Isometry3d&> && ...)),
+  constexpr bool fits = sizeof...(Rest) == 0 ||
+                        (sizeof...(Rest) == 1 && (std::is_convertible_v<const Rest&, const Eigen::Isometry3d&> && ...));
+  static_assert(fits,
                 "several clouds are a vector or a tuple of placed ones, and one may be followed by its pose, an "
                 "Eigen::Isometry3d");
-  if constexpr (sizeof...(Rest) == 1) return explain_point_source<First>();
-  return explain_clouds<First>();
+  if constexpr (!fits)
+    return false;
+  else if constexpr (sizeof...(Rest) == 1)
+    return explain_point_source<First>();
+  else
+    return explain_clouds<First>();
 }
 
 /// The clouds of a call, as they were given. A source and its pose become a placed source.

@@ -44,11 +44,10 @@ struct frame_ahead {
   /// The facts of all clouds together.
   template <class Clouds>
   const frame_facts& look(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses,
-                                  const Clouds& clouds) {
+                          const Clouds& clouds) {
     first.clear();
-    points = std::size_t(for_each_turn(frame, facts, poses, clouds, [&](const auto&, const turn& now) {
-      first.push_back(now.first);
-    }));
+    points = std::size_t(
+        for_each_turn(frame, facts, poses, clouds, [&](const auto&, const turn& now) { first.push_back(now.first); }));
     return frame;
   }
 };

@@ -35,7 +35,7 @@ struct float_cloud {
 };
 
 /// Points in the file's order, one per record, with the file's coordinates (metres). An invalid record stays in its
-/// place as NaN. A query needs floats: `min_distance(on, model, poses, cloud.near(poses, world_from_cloud).view())`.
+/// place as NaN. A query needs floats: `ask(on, robot, poses, cloud.near(poses, world_from_cloud).view(), q)`.
 struct cloud {
   std::string name;
   std::vector<Eigen::Vector3d> points;

@@ -29,17 +29,17 @@ __device__ Record least_of_warp(const Record& r) {
 }
 
 /// Keeps the better of the block's best and `r`. Improvements are rare (a record process), so a lock costs nothing.
-template <class Answer>
-__device__ void keep_best(typename Answer::block& s, const typename Answer::record& r,
-                          const typename Answer::primitive_type& primitive) {
-  const std::uint32_t slot = Answer::slot(r.part);
+template <class Tally>
+__device__ void keep_best(typename Tally::block& s, const typename Tally::record& r,
+                          const typename Tally::primitive_type& primitive) {
+  const std::uint32_t slot = Tally::slot(r.part);
   auto& kept = s.answer.best[slot];
   for (bool offered = false; !offered;) {
     if (atomicCAS(&s.answer.lock[slot], 0u, 1u) != 0) continue;
     __threadfence_block();
     if (before(r, kept)) {
       kept = r;
-      if constexpr (!Answer::bound_per_part) s.answer.nearest = primitive;
+      if constexpr (!Tally::bound_per_part) s.answer.nearest = primitive;
     }
     __threadfence_block();
     atomicExch(&s.answer.lock[slot], 0u);
@@ -49,18 +49,18 @@ __device__ void keep_best(typename Answer::block& s, const typename Answer::reco
 
 /// All lanes of a warp call it. For one minimum the warp agrees on its best first. With one minimum per part, the lanes
 /// that share a part agree, and then the block by an atomic minimum. So few lanes reach the lock.
-template <class Answer>
-__device__ void best_of_warp(typename Answer::block& s, const typename Answer::record& r,
-                             const typename Answer::primitive_type& primitive) {
-  if constexpr (Answer::bound_per_part) {
+template <class Tally>
+__device__ void best_of_warp(typename Tally::block& s, const typename Tally::record& r,
+                             const typename Tally::primitive_type& primitive) {
+  if constexpr (Tally::bound_per_part) {
     const std::uint32_t mine = std::uint32_t(r.key >> 32);
     const std::uint32_t least = scan::least_of(__match_any_sync(scan::all_lanes, r.part), mine);
     if (r.key == no_key || mine != least || r.key > atomicMin(&s.answer.least[r.part], r.key)) return;
   } else {
     if (!same(r, least_of_warp(r))) return;
   }
-  Answer::lower(s, r.part, key_distance(r.key));
-  keep_best<Answer>(s, r, primitive);
+  Tally::lower(s, r.part, key_distance(r.key));
+  keep_best<Tally>(s, r, primitive);
 }
 
 }  // namespace clearance::minimum

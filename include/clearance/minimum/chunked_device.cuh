@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/minimum/device_search.cuh>
 #include <clearance/backend/pinned_buffer.cuh>
 #include <clearance/backend/staging_ring.cuh>
 #include <clearance/minimum/chunked_search.hpp>
+#include <clearance/minimum/device_search.cuh>
 #include <clearance/scan/boxes.cuh>
 
 #include <optional>

@@ -14,9 +14,7 @@ namespace clearance::minimum {
 /// each piece.
 template <class On, class PartView>
 class chunked_search {
-  static_assert(
-      !requires { typename On::own_scan; },
-      "a device is asked with nvcc: include <clearance/device.cuh>");
+  static_assert(!sizeof(On), "a host or a device reads a least distance in chunks, no other backend");
 };
 
 /// On the CPU: one chunk is searched while the next is loaded. Ranges of a cloud in one place are searched as one, all

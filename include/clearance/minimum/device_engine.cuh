@@ -15,6 +15,8 @@ namespace clearance::minimum {
 template <class PartView, class Q>
 class engine<device, PartView, Q> {
  public:
+  static constexpr bool takes_pinned = true;
+
   /// Throws std::invalid_argument if there are more parts than a kernel takes, or trees too deep or wide for its
   /// stacks.
   engine(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr,
@@ -65,8 +67,8 @@ class engine<device, PartView, Q> {
     search_.template enqueue<Q::per_part>(poses, clouds, result, minima, frames::as_it_is{});
   }
   /// The same with poses in device or pinned memory: one per part, and the cloud's (null: the world's). The frame reads
-  /// them when it runs, so a graph that captures this sees the memory of each launch. A pose that is not rigid makes the
-  /// state `possible` and the distance NaN, because a device cannot throw.
+  /// them when it runs, so a graph that captures this sees the memory of each launch. A pose that is not rigid makes
+  /// the state `possible` and the distance NaN, because a device cannot throw.
   template <point_source S>
   void start_with(const world_transform* poses, const S& source, const world_transform* cloud_pose,
                   const typename Q::out& to) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/frame/clouds.hpp>
 #include <clearance/minimum/least.cuh>
 #include <clearance/minimum/of_pieces.hpp>
-#include <clearance/frame/clouds.hpp>
 #include <clearance/scan/launch.cuh>
 
 namespace clearance::minimum {

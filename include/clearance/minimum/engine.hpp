@@ -21,9 +21,6 @@ auto minima_of(const typename Q::out& to) {
 template <class On, class PartView, class Q>
 class engine {
   using there = detail::backend_of_t<On>;
-  static_assert(
-      !requires { typename On::own_scan; },
-      "a device is asked with nvcc: include <clearance/device.cuh>");
 
  public:
   engine(const On& on, const model_view<PartView>& model) : on_(on), model_(model) {}

@@ -2,35 +2,35 @@
 #pragma once
 // From a record to the answer: its witness, and what is certain.
 
-#include <clearance/minimum/best.cuh>
 #include <clearance/frame/bracket.hpp>
+#include <clearance/minimum/best.cuh>
 #include <clearance/minimum/witness.hpp>
-#include <clearance/scan/tally.hpp>
+#include <clearance/scan/drops.hpp>
 
 namespace clearance::minimum {
 
 /// The point and the primitive of a record.
-template <class Answer>
+template <class Tally>
 struct evidence {
-  using part_type = typename Answer::part_type;
-  using primitive_type = typename Answer::primitive_type;
-  using arguments = scan::scan_arguments<Answer>;
-  using steps = scan::tree_steps<Answer>;
+  using part_type = typename Tally::part_type;
+  using primitive_type = typename Tally::primitive_type;
+  using arguments = scan::scan_arguments<Tally>;
+  using steps = scan::tree_steps<Tally>;
 
-  typename Answer::record r;
+  typename Tally::record r;
   vec3 p;  ///< In the cloud's frame.
   primitive_type primitive;
 
   evidence() = default;
   template <class Source>
-  __device__ evidence(const arguments& a, const Source& source, const typename Answer::record& of) : r(of) {
+  __device__ evidence(const arguments& a, const Source& source, const typename Tally::record& of) : r(of) {
     if (r.key == no_key || key_index(r.key) < a.first) return;
     if (r.id != none) primitive = steps::primitive(r.part, r.place);
     p = source[key_index(r.key) - a.first].position;
   }
   /// From a witness whose point is in this cloud.
   template <class Source>
-  __device__ evidence(const arguments& a, const Source& source, const typename Answer::witness_type& w)
+  __device__ evidence(const arguments& a, const Source& source, const typename Tally::witness_type& w)
       : r(w.r), p(source[key_index(w.r.key) - a.first].position), primitive(w.primitive) {}
 
   __device__ vec3 in_part() const { return steps::place(r.part).part_from_cloud(p - steps::here().origin); }
@@ -41,7 +41,7 @@ struct evidence {
     if constexpr (scan::has_interior<part_type>)
       if (r.id == none) {
         nearest_primitive<primitive_type> nearest{infinity};
-        scan::walk_alone<Answer>{}(steps::view(r.part).tree, in_part(), nearest);
+        scan::walk_alone<Tally>{}(steps::view(r.part).tree, in_part(), nearest);
         r.id = nearest.id, primitive = nearest.primitive;
         return nearest.within > 0;
       }
@@ -67,17 +67,17 @@ struct evidence {
 };
 
 /// The minimum `best` with its bracket, after all clouds. `certain`: some point is certainly inside.
-template <class Answer>
-__device__ min_distance_result bracket_of(const scan::scan_arguments<Answer>& a, const typename Answer::record& best,
+template <class Tally>
+__device__ min_distance_result bracket_of(const scan::scan_arguments<Tally>& a, const typename Tally::record& best,
                                           bool certain) {
-  using parts = scan::frame_parts<Answer>;
+  using parts = scan::frame_parts<Tally>;
   const auto& s = parts::here().answer;
   const frames::frame_facts& frame = a.facts();
   min_distance_result r;
   if (best.key == no_key) return r;
   r.distance = key_distance(best.key), r.part = best.part;
   double lower;
-  if constexpr (Answer::bound_per_part)
+  if constexpr (Tally::bound_per_part)
     lower = certain_distance(
         a.parts, [&](std::uint32_t k) { return key_distance(s.best[k].key); },
         [](std::uint32_t k) -> const part_facts& { return parts::view(k).facts; }, frame.error);
@@ -93,22 +93,22 @@ struct counted {
   bool certain;  ///< Some point is certainly inside.
 
   counted() = default;
-  template <class Answer>
-  explicit __device__ counted(const scan::scan_arguments<Answer>& a) {
+  template <class Tally>
+  explicit __device__ counted(const scan::scan_arguments<Tally>& a) {
     for (int k = 0; k < drop_reasons; ++k) dropped[k] = scan::fresh(a.state->dropped[k]);
     certain = scan::fresh(a.answer.state->certain) != 0;
   }
 };
 
 /// Writes bracket and counts to the result, and a blank witness if there is no minimum.
-template <class Answer>
-__device__ void write_bracket(const scan::scan_arguments<Answer>& a, min_distance_result r, const counted& all) {
+template <class Tally>
+__device__ void write_bracket(const scan::scan_arguments<Tally>& a, min_distance_result r, const counted& all) {
   min_distance_result& out = *a.answer.result;
   if (r.part == none) out = r;
   scan::count(r, all.dropped, std::uint64_t(a.first) + a.points);
   allow_for_too_close(r);
   // If a pose on the device is not rigid, nothing is known. This state stops a robot.
-  if (!scan::memory_of_block<Answer>().rigid) r.state = clearance::state::possible;
+  if (!scan::memory_of_block<Tally>().rigid) r.state = clearance::state::possible;
   out.state = r.state, out.distance = r.distance, out.lower = r.lower, out.upper = r.upper, out.seen = r.seen,
   out.valid = r.valid;
   for (int k = 0; k < drop_reasons; ++k) out.dropped[k] = r.dropped[k];

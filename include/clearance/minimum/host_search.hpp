@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/minimum/plain_search.hpp>
 #include <clearance/backend/host.hpp>
+#include <clearance/minimum/plain_search.hpp>
 #include <clearance/traversal/any_depth.hpp>
 
 #include <utility>

@@ -23,7 +23,7 @@ CLEARANCE_HD inline bool nearer(const min_distance_result& a, const min_distance
 /// Witness and bracket of both; the counts are a's.
 CLEARANCE_HD inline min_distance_result merged(const min_distance_result& a, const min_distance_result& b) {
   const bool lost = (a.part == none && a.state == state::possible) ||
-                    (b.part == none && b.state == state::possible);  // a pose was not rigid
+                    (b.part == none && b.state == state::possible);                    // a pose was not rigid
   const bool nothing = a.part == none && b.part == none && a.state == state::no_data;  // b may know that all are far
   min_distance_result r = nothing || nearer(b, a) ? b : a;
   r.seen = a.seen, r.valid = a.valid;

@@ -8,13 +8,13 @@
 namespace clearance::minimum {
 
 /// Drafts the answer from `best`, by three warps: where the point is, what is nearest to it, and the bracket.
-template <class Answer, class Source>
-__forceinline__ __device__ void draft_answer(const scan::scan_arguments<Answer>& a, const Source& source) {
-  auto& block = scan::memory_of_block<Answer>();
+template <class Tally, class Source>
+__forceinline__ __device__ void draft_answer(const scan::scan_arguments<Tally>& a, const Source& source) {
+  auto& block = scan::memory_of_block<Tally>();
   auto& s = block.answer;
   if (threadIdx.x % 32 != 0) return;
-  evidence<Answer> e;
-  if (threadIdx.x / 32 != 3) e = {a, source, typename Answer::witness_type{s.best[0], s.nearest}};
+  evidence<Tally> e;
+  if (threadIdx.x / 32 != 3) e = {a, source, typename Tally::witness_type{s.best[0], s.nearest}};
   switch (threadIdx.x / 32) {
     case 1:
       s.answer.at = e.at(a);
@@ -34,12 +34,12 @@ __forceinline__ __device__ void draft_answer(const scan::scan_arguments<Answer>&
   }
 }
 
-template <class Answer>
+template <class Tally>
 struct one_minimum {
   /// Hands the block's best to the last block. Done by the first four warps.
   template <class Source>
-  static __device__ void hand_in(const scan::scan_arguments<Answer>& a, const Source& source) {
-    auto& block = scan::memory_of_block<Answer>();
+  static __device__ void hand_in(const scan::scan_arguments<Tally>& a, const Source& source) {
+    auto& block = scan::memory_of_block<Tally>();
     auto& s = block.answer;
     const std::uint32_t t = threadIdx.x;
     if (t >= 128) return;
@@ -58,13 +58,13 @@ struct one_minimum {
 
   /// Called by the last block: writes the answer, and what is kept for the next frame.
   template <class Source>
-  static __device__ void answer(const scan::scan_arguments<Answer>& a, const Source& source) {
-    auto& block = scan::memory_of_block<Answer>();
+  static __device__ void answer(const scan::scan_arguments<Tally>& a, const Source& source) {
+    auto& block = scan::memory_of_block<Tally>();
     auto& s = block.answer;
     auto& state = *a.answer.state;
     const std::uint32_t t = threadIdx.x, blocks = gridDim.x;
     const distance_key key = block.rigid ? scan::fresh(state.best_key) : no_key;
-    typename Answer::witness_type mine;
+    typename Tally::witness_type mine;
     if (t < blocks) mine = a.answer.candidates[t];
     for (std::uint32_t b = t + scan::block_threads; b < blocks; b += scan::block_threads)
       if (const auto c = a.answer.candidates[b]; before(c.r, mine.r)) mine = c;
@@ -87,7 +87,7 @@ struct one_minimum {
         r.state = s.answer.state, r.part = s.answer.part, r.distance = s.answer.distance, r.lower = s.answer.lower,
         r.upper = s.answer.upper;
       else
-        r = bracket_of(a, key != no_key ? state.best[0] : typename Answer::record{}, false);
+        r = bracket_of(a, key != no_key ? state.best[0] : typename Tally::record{}, false);
       if (all.certain && r.part != none) r.state = clearance::state::collision, r.lower = r.upper = 0;
       write_bracket(a, r, all);
     }

@@ -6,21 +6,21 @@
 
 namespace clearance::minimum {
 
-template <class Answer>
+template <class Tally>
 struct part_minima {
-  using record = typename Answer::record;
+  using record = typename Tally::record;
 
   template <class Source>
-  static __device__ void hand_in(const scan::scan_arguments<Answer>& a, const Source&) {
-    auto& s = scan::memory_of_block<Answer>().answer;
+  static __device__ void hand_in(const scan::scan_arguments<Tally>& a, const Source&) {
+    auto& s = scan::memory_of_block<Tally>().answer;
     if (const std::uint32_t t = threadIdx.x; t < a.parts) a.answer.records[t * gridDim.x + blockIdx.x] = s.best[t];
     __syncthreads();
   }
 
   /// Called by the last block. Independent steps have a thread each.
   template <class Source>
-  static __device__ void answer(const scan::scan_arguments<Answer>& a, const Source& source) {
-    auto& s = scan::memory_of_block<Answer>().answer;
+  static __device__ void answer(const scan::scan_arguments<Tally>& a, const Source& source) {
+    auto& s = scan::memory_of_block<Tally>().answer;
     auto& state = *a.answer.state;
     const std::uint32_t t = threadIdx.x;
     const bool concludes = t == scan::block_threads - 32 && a.last;
@@ -46,14 +46,14 @@ struct part_minima {
   }
 
  private:
-  using evidence_type = evidence<Answer>;
-  static __device__ bool rigid() { return scan::memory_of_block<Answer>().rigid; }
+  using evidence_type = evidence<Tally>;
+  static __device__ bool rigid() { return scan::memory_of_block<Tally>().rigid; }
 
   /// Puts every part's best, over all blocks and earlier clouds, into s.best, and gives the best of all to all threads.
   /// Returns the evidence of this thread's part, if it has one (the first lanes of warp w have parts w, w + 16, ...).
   template <class Source>
-  static __device__ evidence_type merge(const scan::scan_arguments<Answer>& a, const Source& source, record& best) {
-    auto& s = scan::memory_of_block<Answer>().answer;
+  static __device__ evidence_type merge(const scan::scan_arguments<Tally>& a, const Source& source, record& best) {
+    auto& s = scan::memory_of_block<Tally>().answer;
     const std::uint32_t t = threadIdx.x, lane = t & 31;
     record its;
     for (std::uint32_t slot = t / 32, k = 0; slot < a.parts; slot += scan::warps, ++k) {

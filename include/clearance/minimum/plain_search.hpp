@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/minimum/resolve.hpp>
 #include <clearance/frame/clouds.hpp>
+#include <clearance/minimum/resolve.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/scan/descend.hpp>
 #include <clearance/scan/scan_body.hpp>

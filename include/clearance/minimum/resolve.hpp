@@ -2,10 +2,10 @@
 #pragma once
 
 #include <clearance/frame/bracket.hpp>
+#include <clearance/frame/root_test.hpp>
 #include <clearance/minimum/shared_bounds.hpp>
 #include <clearance/minimum/witness.hpp>
-#include <clearance/frame/root_test.hpp>
-#include <clearance/scan/tally.hpp>
+#include <clearance/scan/drops.hpp>
 
 namespace clearance::minimum {
 

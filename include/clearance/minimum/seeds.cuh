@@ -13,18 +13,18 @@ using scan::all_lanes, scan::fresh, scan::least_of, scan::lower_of, scan::memory
 
 /// Evaluates last frame's minima and their neighbours anew: sixteen threads per minimum, or four if each part has one.
 /// None of it needs shared memory to be ready.
-template <class Answer>
+template <class Tally>
 class last_frame {
  public:
   /// Starts to read the last minima; nothing waits for them yet.
-  explicit __device__ last_frame(const scan::scan_arguments<Answer>& a)
+  explicit __device__ last_frame(const scan::scan_arguments<Tally>& a)
       : w_(a.answer.witnesses[slot()]), witnesses_(a.answer.state->witnesses) {
     if (a.first != 0 && slot() < (per_part ? a.parts : 1)) known_ = fresh(a.answer.state->bound[slot()]);
   }
 
   /// Reads the points of those minima and their neighbours.
   template <class Source>
-  __device__ void look(const scan::scan_arguments<Answer>& a, const Source& source) {
+  __device__ void look(const scan::scan_arguments<Tally>& a, const Source& source) {
     const std::uint32_t n = threadIdx.x % each, point = key_index(w_.r.key) - a.first + n - (n == 0 ? 0 : each / 2);
     const bool live =
         a.parts > w_.r.part && witnesses_ > slot() && w_.r.id != none && (!per_part || w_.r.part == slot());
@@ -32,8 +32,8 @@ class last_frame {
   }
 
   /// Writes the bounds of this block's warps, or of the parts.
-  __device__ void seed(const scan::scan_arguments<Answer>& a) const {
-    auto& s = memory_of_block<Answer>().answer;
+  __device__ void seed(const scan::scan_arguments<Tally>& a) const {
+    auto& s = memory_of_block<Tally>().answer;
     const std::uint32_t n = threadIdx.x % each;
     std::uint32_t bound = known_;
     if (p_.valid()) {
@@ -52,7 +52,7 @@ class last_frame {
   /// Returns the bound of all parts to all threads, after `seed` and a barrier. If each part has its own bound:
   /// `no_bound` if one part has none, else 0.
   static __device__ std::uint32_t found(std::uint32_t parts) {
-    auto& s = memory_of_block<Answer>().answer;
+    auto& s = memory_of_block<Tally>().answer;
     const std::uint32_t lane = threadIdx.x & 31;
     if constexpr (per_part) {
       bool all = true;
@@ -66,10 +66,10 @@ class last_frame {
   }
 
  private:
-  static constexpr bool per_part = Answer::bound_per_part;
+  static constexpr bool per_part = Tally::bound_per_part;
   static constexpr std::uint32_t each = block_threads / (per_part ? scan::most_parts : 32);
   static __device__ std::uint32_t slot() { return threadIdx.x / each; }
-  typename Answer::witness_type w_;
+  typename Tally::witness_type w_;
   std::uint32_t witnesses_, known_ = no_bound;
   sample p_{{}, drop_reason::not_finite};
 };
@@ -77,11 +77,11 @@ class last_frame {
 /// Without a last frame, eight lanes take the most promising of their points down a tree (if every part needs a bound,
 /// each eight lanes take another part). Then all blocks wait a little for one another. Only speed depends on that wait,
 /// so it gives up rather than hang.
-template <class Answer>
+template <class Tally>
 __noinline__ __device__ void seed_cold(scan::quad_points p) {
-  using parts = scan::frame_parts<Answer>;
+  using parts = scan::frame_parts<Tally>;
   constexpr int quad = scan::quad;
-  constexpr bool per_part = Answer::bound_per_part;
+  constexpr bool per_part = Tally::bound_per_part;
   const scan::eight_lanes team;
 #pragma unroll
   for (int j = 0; j < quad; ++j)
@@ -112,10 +112,10 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
   const int winner = team.first(least_power < infinity && least_power == nearest);
   k_least = team.from(winner, k_least), x = team.from(winner, x);
   const real d =
-      scan::descend(scan::steps_of_part<Answer>{k_least}, parts::place(k_least).part_from_cloud(x), winner >= 0, team);
+      scan::descend(scan::steps_of_part<Tally>{k_least}, parts::place(k_least).part_from_cloud(x), winner >= 0, team);
   std::uint32_t bound = d < infinity ? ordered(d) : no_bound;
   if constexpr (!per_part) bound = least_of(all_lanes, bound);
-  if ((per_part || (threadIdx.x & 31) == 0) && bound != no_bound) atomicMin(&s.bound[Answer::slot(k_least)], bound);
+  if ((per_part || (threadIdx.x & 31) == 0) && bound != no_bound) atomicMin(&s.bound[Tally::slot(k_least)], bound);
   __syncthreads();
   const std::uint32_t bounds = per_part ? a.parts : 1;
   for (std::uint32_t k = threadIdx.x; k < bounds; k += block_threads) atomicMin(&a.answer.state->bound[k], s.bound[k]);

@@ -35,8 +35,8 @@ std::vector<T> gather(MPI_Comm comm, int ranks, const T* values, std::size_t cou
   return all;
 }
 
-/// One call that all ranks make together. Every rank does the same steps, whatever fails: an exception on one ends it on
-/// all.
+/// One call that all ranks make together. Every rank does the same steps, whatever fails: an exception on one ends it
+/// on all.
 class together {
  public:
   explicit together(MPI_Comm comm) : comm_(comm) {
@@ -96,7 +96,8 @@ class together {
     sizes_ = std::move(table);
     std::uint64_t points = 0;
     for (const std::uint64_t its : sizes_) points += its;
-    if (points >= ~std::uint32_t(0)) throw std::invalid_argument("clearance: more than 2^32 - 2 points on all ranks together");
+    if (points >= ~std::uint32_t(0))
+      throw std::invalid_argument("clearance: more than 2^32 - 2 points on all ranks together");
   }
 
   /// Joins the results of all ranks in their order: `mine` is this rank's, in the numbers of its own clouds.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Questions about what the sensors of many machines see. Each rank of an MPI program has a piece of every cloud. Needs an
-// MPI library; no other header includes this one.
+// Questions about what the sensors of many machines see. Each rank of an MPI program has a piece of every cloud. Needs
+// an MPI library; no other header includes this one.
 
 #include <clearance/mpi/ranks.hpp>
 #include <clearance/query/pieces.hpp>
@@ -30,32 +30,26 @@ namespace clearance {
 
 /// A prepared question, with one prepared on each rank.
 template <question Q, class On, class PartView>
-class query<Q, mpi::shard<On>, PartView> {
+class query<Q, mpi::shard<On>, PartView> : public detail::callable<query<Q, mpi::shard<On>, PartView>, Q> {
  public:
   template <class Robot, class... Memory>
   query(const mpi::shard<On>& on, const Robot& robot, const Q& asked, Memory... memory)
-      : comm_(on.comm), facts_(detail::facts_of(robot)), query_(on.on, robot, asked, memory...), asked_(asked) {}
+      : detail::callable<query, Q>(asked),
+        comm_(on.comm),
+        facts_(detail::facts_of(robot)),
+        query_(on.on, robot, asked, memory...) {}
 
-  /// As on one backend. Throws std::invalid_argument if ranks do not ask the same. It also throws what this rank's own
-  /// part throws; the other ranks then throw std::runtime_error with that message.
-  template <class Poses, class Clouds>
-  typename Q::result operator()(const Poses& poses, const Clouds& clouds, const Q& q) {
-    static_assert(explain_given<Clouds>());
+  /// Throws std::invalid_argument if ranks do not ask the same. It also throws what this rank's own part throws; the
+  /// other ranks then throw std::runtime_error with that message.
+  template <class Clouds>
+  typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
     mpi::together all(comm_);
-    all.agree(facts_.size(), detail::as_poses(poses), clouds);
+    all.agree(facts_.size(), poses, clouds);
     typename Q::result mine{};
     all.attempt([&] { mine = query_(poses, clouds, q); });
     detail::joined_of<Q, PartView> joined(q, facts_);
     all.join(joined, mine);
     return joined.result();
-  }
-  template <class Poses, class Clouds>
-  typename Q::result operator()(const Poses& poses, const Clouds& clouds) {
-    return (*this)(poses, clouds, asked_);
-  }
-  template <class Poses, class S, std::same_as<Eigen::Isometry3d> Pose>
-  typename Q::result operator()(const Poses& poses, const S& source, const Pose& pose) {
-    return (*this)(poses, as_clouds(source, pose), asked_);
   }
   template <class... Arguments>
   void enqueue(const Arguments&...) {
@@ -71,7 +65,6 @@ class query<Q, mpi::shard<On>, PartView> {
   MPI_Comm comm_;
   std::span<const part_facts> facts_;
   query<Q, On, PartView> query_;
-  Q asked_;
 };
 
 }  // namespace clearance

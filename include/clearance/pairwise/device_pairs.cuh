@@ -2,8 +2,8 @@
 #pragma once
 // Gives every pair to an answer once, by the blocks of a device.
 
-#include <clearance/pairwise/labels.cuh>
 #include <clearance/pairwise/each_pair.hpp>
+#include <clearance/pairwise/labels.cuh>
 #include <clearance/scan/kernel.cuh>
 #include <clearance/scan/launch.cuh>
 #include <clearance/scan/record.hpp>

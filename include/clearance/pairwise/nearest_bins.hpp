@@ -5,8 +5,6 @@
 #include <clearance/concepts.hpp>
 #include <clearance/ground/ordered.hpp>
 
-#include <span>
-
 namespace clearance::pairwise {
 
 /// What a pass knows of one part. Distances are `ordered` words, so that bins are fine at small distances.
@@ -71,9 +69,9 @@ struct zero_words {
 struct wanted_bin {
   std::uint32_t bin = 0, before = 0, its = 0;
 };
-inline wanted_bin find_wanted(std::span<const std::uint32_t> counts, std::uint32_t wanted) {
+CLEARANCE_HD inline wanted_bin find_wanted(const std::uint32_t* counts, std::uint32_t wanted) {
   wanted_bin found;
-  for (; found.bin < counts.size(); ++found.bin) {
+  for (; found.bin < nearest_bins::bins; ++found.bin) {
     found.its = counts[found.bin];
     if (found.before + std::uint64_t(found.its) >= wanted) return found;
     found.before += found.its;
@@ -81,5 +79,46 @@ inline wanted_bin find_wanted(std::span<const std::uint32_t> counts, std::uint32
   found.its = 0;
   return found;
 }
+
+/// After a pass: sets part `p`'s window for the next one, and how near its k nearest points are.
+struct next_window {
+  const std::uint32_t* counts;
+  nearest_window* windows;
+  std::uint32_t* bounds;  ///< `ordered`, one per part.
+  int shift;
+
+  CLEARANCE_HD wanted_bin operator()(std::size_t p) const {
+    nearest_window& w = windows[p];
+    if (w.wanted == 0) return {nearest_bins::bins, 0, 0};
+    const wanted_bin found = find_wanted(counts + p * nearest_bins::bins, w.wanted);
+    if (found.bin < nearest_bins::bins) {
+      const std::uint32_t end = nearest_bins::end_of(w.low, found.bin, shift);
+      if (end < bounds[p]) bounds[p] = end;
+      w = {w.low + (found.bin << shift), w.wanted - found.before, bounds[p]};
+    } else {
+      w = {.bound = ordered(-infinity)};
+    }
+    return found;
+  }
+};
+
+/// The same as a body for a backend.
+struct decide_window {
+  next_window next;
+  CLEARANCE_HD void operator()(std::size_t p) const { next(p); }
+};
+/// Before the passes, and after them: distances as words, and words as distances.
+struct open_windows {
+  nearest_window* windows;
+  std::uint32_t *bounds, wanted, bound;
+  CLEARANCE_HD void operator()(std::size_t p) const {
+    windows[p] = {.wanted = wanted, .bound = bound}, bounds[p] = bound;
+  }
+};
+struct bounds_as_reaches {
+  const std::uint32_t* bounds;
+  real* reaches;
+  CLEARANCE_HD void operator()(std::size_t p) const { reaches[p] = from_ordered(bounds[p]); }
+};
 
 }  // namespace clearance::pairwise

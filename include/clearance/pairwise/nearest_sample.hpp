@@ -72,7 +72,7 @@ struct nearest_sample<host> {
   static extent box_of_tile(const S& source, vec3 origin, std::size_t n) {
     const std::size_t begin = n * scan::tile_points;
     extent box;
-    scan::tally uncounted;
+    scan::drop_tally uncounted;
     if (begin + scan::tile_points <= source.size() && scan::survey(source, begin, box, uncounted))
       return {box.lower - origin, box.upper - origin};
     scan::tile t;

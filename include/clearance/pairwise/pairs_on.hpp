@@ -11,9 +11,6 @@ namespace clearance::pairwise {
 /// For a backend without a scan of its own: a loop over points.
 template <class On>
 struct pairs_on {
-  static_assert(
-      !requires { typename On::own_scan; },
-      "a device is asked with nvcc: include <clearance/device.cuh>");
   static constexpr bool meets_points = false;  ///< A scan that does tells a `labelling_answer` of each.
 
   /// For one robot, frame after frame.

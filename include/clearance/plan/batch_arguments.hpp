@@ -2,8 +2,8 @@
 #pragma once
 // The arguments of a batch's kernels.
 
-#include <clearance/plan/tree_search.hpp>
 #include <clearance/frame/clouds.hpp>
+#include <clearance/plan/tree_search.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/traversal/any_depth.hpp>
 

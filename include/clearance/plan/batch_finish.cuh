@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/plan/batch_arguments.hpp>
-#include <clearance/plan/batch_walk.cuh>
 #include <clearance/minimum/beyond.hpp>
 #include <clearance/minimum/resolve.hpp>
+#include <clearance/plan/batch_arguments.hpp>
+#include <clearance/plan/batch_walk.cuh>
 #include <clearance/scan/threads.cuh>
 
 namespace clearance::minimum {

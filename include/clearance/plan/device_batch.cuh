@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/plan/batch_finish.cuh>
-#include <clearance/plan/batch_kernel.cuh>
-#include <clearance/plan/batch_place.cuh>
-#include <clearance/minimum/plain_search.hpp>
 #include <clearance/backend/raised_limits.cuh>
 #include <clearance/backend/side_stream.cuh>
 #include <clearance/cloud_tree/device_tree.cuh>
 #include <clearance/frame/clouds.hpp>
+#include <clearance/minimum/plain_search.hpp>
+#include <clearance/plan/batch_finish.cuh>
+#include <clearance/plan/batch_kernel.cuh>
+#include <clearance/plan/batch_place.cuh>
 #include <clearance/robot/model.hpp>
 
 #include <algorithm>

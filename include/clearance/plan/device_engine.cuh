@@ -42,9 +42,9 @@ class engine<device, PartView, Q> : public minimum::placed_batch<PartView, typen
     return result_;
   }
   /// Enqueues it, and returns device memory with one result per configuration, for the next work in its stream. Clouds
-  /// must be readable there. A pose that is not rigid makes the state `possible` (and the distance NaN), because a device
-  /// cannot throw. A graph that captures this keeps the current options, and is void after more configurations are
-  /// placed, or a larger cloud is asked about.
+  /// must be readable there. A pose that is not rigid makes the state `possible` (and the distance NaN), because a
+  /// device cannot throw. A graph that captures this keeps the current options, and is void after more configurations
+  /// are placed, or a larger cloud is asked about.
   template <class Clouds>
   auto start_with(const Clouds& clouds, const Q& q) {
     ask(clouds, q, frames::as_it_is{});

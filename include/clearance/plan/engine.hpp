@@ -11,10 +11,6 @@ namespace clearance::plan {
 /// For a backend without a search of its own: each configuration by itself.
 template <class On, class PartView, class Q>
 class engine {
-  static_assert(
-      !requires { typename On::own_scan; },
-      "a device is asked with nvcc: include <clearance/device.cuh>");
-
  public:
   engine(const On& on, const model_view<PartView>& model) : on_(on), model_(model) {}
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/cloud_tree/host_tree.hpp>
+#include <clearance/frame/clouds.hpp>
 #include <clearance/minimum/beyond.hpp>
 #include <clearance/minimum/resolve.hpp>
 #include <clearance/plan/walk_tree.hpp>
-#include <clearance/cloud_tree/host_tree.hpp>
-#include <clearance/frame/clouds.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/traversal/any_depth.hpp>
 

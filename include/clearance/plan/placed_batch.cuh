@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/backend/one_call.cuh>
+#include <clearance/frame/readable.cuh>
 #include <clearance/plan/configurations.hpp>
 #include <clearance/plan/device_batch.cuh>
-#include <clearance/frame/readable.cuh>
-#include <clearance/backend/one_call.cuh>
 
 namespace clearance::minimum {
 

@@ -2,8 +2,8 @@
 #pragma once
 // One configuration by branch and bound in two trees at once: the tree over the points, and a part's own.
 
-#include <clearance/plan/batch_question.hpp>
 #include <clearance/cloud_tree/tree_view.hpp>
+#include <clearance/plan/batch_question.hpp>
 #include <clearance/result.hpp>
 #include <clearance/scan/scan_body.hpp>
 
@@ -57,6 +57,7 @@ struct tree_search {
   using volume_type = typename hierarchy_type::volume_type;
   using traits = bounding_volume_traits<volume_type>;
   using pair = node_pair<typename hierarchy_type::node_type>;
+  static_assert(searching_tally<decltype(std::declval<Body>().answer)>);
   static constexpr bool solid = scan::has_interior<part_view>;
 
   const Body& body;

@@ -29,10 +29,6 @@ struct unprepared {
 /// For a backend without a scan of its own: a loop over points.
 template <class On>
 struct points_on {
-  static_assert(
-      !requires { typename On::own_scan; },
-      "a device is asked with nvcc: include <clearance/device.cuh>");
-
   template <class PartView, class Clouds, class Here>
   static distance_certainty once(const On& on, const model_view<PartView>& model,
                                  std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,

@@ -2,10 +2,10 @@
 #pragma once
 // Each point's own distance on the host.
 
-#include <clearance/pointwise/each_point.hpp>
 #include <clearance/backend/host.hpp>
 #include <clearance/frame/clouds.hpp>
 #include <clearance/ground/vectors.hpp>
+#include <clearance/pointwise/each_point.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/packet.hpp>
@@ -34,7 +34,7 @@ struct host_points {
   real d_max;
 
   void operator()(indices range) const {
-    scan::tally mine;
+    scan::drop_tally mine;
     scan::tile t;
     memory m;
     m.pending.resize(stack);

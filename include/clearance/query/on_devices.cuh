@@ -32,28 +32,26 @@ struct one_call<devices> {
 }  // namespace detail
 
 /// A prepared question on several devices, and one answer from all, which is that of one device, to the bit. The robot
-/// is on each device (`model.on(devices)`). Clouds in host memory (and in another device's) are copied in slices, one to
-/// each device; `shard`ed clouds are read where they are. Pinned memory is copied to all devices at once.
+/// is on each device (`model.on(devices)`). Clouds in host memory (and in another device's) are copied in slices, one
+/// to each device; `shard`ed clouds are read where they are. Pinned memory is copied to all devices at once.
 template <question Q, class PartView>
-class query<Q, devices, PartView> {
+class query<Q, devices, PartView> : public detail::callable<query<Q, devices, PartView>, Q> {
  public:
   /// `memory`: nothing, or for each device a resource that hands out its memory; `pinned`: a resource that hands out
   /// pinned memory. Throws std::invalid_argument if the robot is not on these devices, and as on one device.
   template <class Robot>
   query(const devices& on, const Robot& robot, const Q& asked, std::span<std::pmr::memory_resource* const> memory = {},
         std::pmr::memory_resource* pinned = kept_pinned())
-      : on_(on), asked_(asked) {
+      : detail::callable<query, Q>(asked), on_(on) {
     static_assert(
-        requires { robot.view().each; },
-        "several devices take a robot that is on each of them: model.on(devices)");
+        requires { robot.view().each; }, "several devices take a robot that is on each of them: model.on(devices)");
     if constexpr (requires { robot.view().each; }) {
       const auto view = robot.view();
       check(view.each, memory.size());
       facts_ = view.facts;
       for (std::size_t k = 0; k < on.size(); ++k) {
         std::pmr::memory_resource* const its = memory.empty() ? nullptr : memory[k];
-        if constexpr (std::is_constructible_v<one, const device&, const model_view<PartView>&, const Q&,
-                                              std::pmr::memory_resource*, std::pmr::memory_resource*>)
+        if constexpr (requires { one::takes_pinned; })
           each_.emplace_back(on.each()[k], view.each[k], asked, its, pinned);
         else
           each_.emplace_back(on.each()[k], view.each[k], asked, its);
@@ -61,20 +59,34 @@ class query<Q, devices, PartView> {
     }
   }
 
-  /// As on one backend. Throws std::invalid_argument also if a cloud is in more or fewer shards than there are devices.
-  template <class Poses, class Clouds>
-  typename Q::result operator()(const Poses& poses, const Clouds& clouds, const Q& q) {
-    static_assert(explain_given<Clouds>());
-    return run(detail::as_poses(poses), clouds, q);
+  /// Throws std::invalid_argument also if a cloud is in more or fewer shards than there are devices.
+  template <class Clouds>
+  typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
+    const std::size_t n = each_.size();
+    for_each_cloud(clouds, [&](const auto& cloud, const Eigen::Isometry3d&) { check_pieces(cloud, n); });
+    numbers_.look(clouds);
+    detail::joined_of<Q, PartView> all(q, facts_);
+    const auto piece = [&](std::size_t k) { return mapped_clouds(clouds, detail::one_piece{k, n}); };
+    const auto place = [&](std::size_t k) { return numbers_.place(clouds, detail::one_piece{k, n}); };
+    if constexpr (requires { each_[0].begin(poses, piece(0), q), each_[0].finish(); }) {
+      try {
+        for (std::size_t k = 0; k < n; ++k) each_[k].begin(poses, piece(k), q);
+        for (std::size_t k = 0; k < n; ++k) all.add(each_[k].finish(), place(k));
+      } catch (...) {
+        on_.wait_for_all();  // those that have begun read the caller's memory, and write into ours
+        throw;
+      }
+    } else {  // the host decides between passes, so each device has a thread
+      std::vector<std::future<typename Q::result>> found;
+      for (std::size_t k = 0; k < n; ++k)
+        found.push_back(
+            std::async(std::launch::async, [&, k] { return typename Q::result(each_[k](poses, piece(k), q)); }));
+      for (auto& its : found) its.wait();
+      for (std::size_t k = 0; k < n; ++k) all.add(found[k].get(), place(k));
+    }
+    return all.result();
   }
-  template <class Poses, class Clouds>
-  typename Q::result operator()(const Poses& poses, const Clouds& clouds) {
-    return (*this)(poses, clouds, asked_);
-  }
-  template <class Poses, class S, std::same_as<Eigen::Isometry3d> Pose>
-  typename Q::result operator()(const Poses& poses, const S& source, const Pose& pose) {
-    return (*this)(poses, as_clouds(source, pose), asked_);
-  }
+
   template <class... Arguments>
   void enqueue(const Arguments&...) {
     static_assert(sizeof...(Arguments) > 1000,
@@ -103,34 +115,7 @@ class query<Q, devices, PartView> {
                                     ", which is asked");
   }
 
-  template <class Clouds>
-  typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    const std::size_t n = each_.size();
-    for_each_cloud(clouds, [&](const auto& cloud, const Eigen::Isometry3d&) { check_pieces(cloud, n); });
-    numbers_.look(clouds);
-    detail::joined_of<Q, PartView> all(q, facts_);
-    const auto piece = [&](std::size_t k) { return mapped_clouds(clouds, detail::one_piece{k, n}); };
-    const auto place = [&](std::size_t k) { return numbers_.place(clouds, detail::one_piece{k, n}); };
-    if constexpr (requires { each_[0].begin(poses, piece(0), q), each_[0].finish(); }) {
-      try {
-        for (std::size_t k = 0; k < n; ++k) each_[k].begin(poses, piece(k), q);
-        for (std::size_t k = 0; k < n; ++k) all.add(each_[k].finish(), place(k));
-      } catch (...) {
-        on_.wait_for_all();  // those that have begun read the caller's memory, and write into ours
-        throw;
-      }
-    } else {  // the host decides between passes, so each device has a thread
-      std::vector<std::future<typename Q::result>> found;
-      for (std::size_t k = 0; k < n; ++k)
-        found.push_back(std::async(std::launch::async, [&, k] { return typename Q::result(each_[k](poses, piece(k), q)); }));
-      for (auto& its : found) its.wait();
-      for (std::size_t k = 0; k < n; ++k) all.add(found[k].get(), place(k));
-    }
-    return all.result();
-  }
-
   devices on_;
-  Q asked_;
   std::span<const part_facts> facts_;
   std::deque<one> each_;
   detail::piece_numbers numbers_;

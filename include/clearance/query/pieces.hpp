@@ -34,7 +34,8 @@ template <class Q, class PartView>
 struct joined_for {
   static_assert(
       requires(typename Q::result& all, const typename Q::result& other) { Q::merge(all, other); },
-      "this question cannot be asked about pieces of the clouds (several devices, chunks, ranks, a deadline): its results "
+      "this question cannot be asked about pieces of the clouds (several devices, chunks, ranks, a deadline): its "
+      "results "
       "cannot be merged. A question of your own needs: static void merge(result& all, const result& other)");
   using type = joined_by_merge<Q>;
 };

@@ -4,7 +4,7 @@
 
 #include <clearance/backend/one_call.hpp>
 #include <clearance/pairwise/engine.hpp>
-#include <clearance/query/one_robot.hpp>
+#include <clearance/query/callable.hpp>
 
 namespace clearance {
 
@@ -35,12 +35,17 @@ struct out_of<Q> {
   using type = typename Q::out;
 };
 
-/// `question<Q>`, and a robot or part, with reasons; before anything else is looked at.
+/// Is there a scan for this backend? <clearance/device.cuh> says so for devices.
+template <class On>
+inline constexpr bool has_scan = !requires { typename On::own_scan; };
+
+/// What is asked, and of whom, with reasons; before anything else is looked at.
 template <class On, class Robot, class Q>
 consteval bool explain_asked() {
-  static_assert(backend<On> || requires { typename On::several; } || requires(const On on) { on.on, on.walk; },
-                "the first argument is a backend: host{}, device{}, devices{...}, or plain{backend, traversal}");
-  return explain_robot<Robot>() && explain_question<Q>();
+  constexpr bool known = backend<On> || requires { typename On::several; } || requires(const On on) { on.on, on.walk; };
+  static_assert(known, "the first argument is a backend: host{}, device{}, devices{...}, or plain{backend, traversal}");
+  static_assert(!known || has_scan<On>, "a device is asked with nvcc: include <clearance/device.cuh>");
+  return known && has_scan<On> && explain_robot<Robot>() && explain_question<Q>();
 }
 
 }  // namespace detail
@@ -50,60 +55,23 @@ consteval bool explain_asked() {
 /// thread and one stream; the robot must outlive it. On a device, `memory` may be a std::pmr::memory_resource* that
 /// hands out device memory.
 template <question Q, class On, class PartView>
-class query : detail::one_robot<On, PartView>, public detail::engine_of<Q, On, PartView>::type {
+class query : detail::one_robot<On, PartView>,
+              public detail::engine_of<Q, On, PartView>::type,
+              public detail::callable<query<Q, On, PartView>, Q> {
   using robot_type = detail::one_robot<On, PartView>;
+  using callable = detail::callable<query, Q>;
   using engine = typename detail::engine_of<Q, On, PartView>::type;
   using out = typename detail::out_of<Q>::type;
 
  public:
   template <class Robot, class... Memory>
   query(const On& on, const Robot& robot, const Q& asked, Memory... memory)
-      : robot_type(on, robot), engine(on, robot_type::view(), memory...), asked_(asked) {}
-
-  /// Blocks until the answer is there. `poses` are world-from-part, one per part; `clouds` is a point source, a
-  /// `placed` one, a range or a tuple of those, or a source and its pose. Points that the backend cannot read are
-  /// copied. Throws std::invalid_argument if the number of poses is wrong, one is not rigid, or an option cannot be.
-  template <class Poses, class Clouds>
-  decltype(auto) operator()(const Poses& poses, const Clouds& clouds, const Q& q) {
-    static_assert(explain_given<Clouds>());
-    return engine::run(detail::as_poses(poses), clouds, q);
-  }
-  template <class Poses, class Clouds>
-  decltype(auto) operator()(const Poses& poses, const Clouds& clouds) {
-    return (*this)(poses, clouds, asked_);
-  }
-  template <class Poses, class S, std::same_as<Eigen::Isometry3d> Pose>
-  decltype(auto) operator()(const Poses& poses, const S& source, const Pose& pose, const Q& q) {
-    return (*this)(poses, as_clouds(source, pose), q);
-  }
-  template <class Poses, class S, std::same_as<Eigen::Isometry3d> Pose>
-  decltype(auto) operator()(const Poses& poses, const S& source, const Pose& pose) {
-    return (*this)(poses, as_clouds(source, pose), asked_);
+      : robot_type(on, robot), engine(on, robot_type::view(), memory...), callable(asked) {
+    static_assert(detail::explain_asked<On, Robot, Q>());
   }
 
-  /// For questions about many configurations: the same for joint vectors of a chain, one after another.
-  template <class Chain, class Clouds>
-    requires requires(const Chain& chain) { chain.parts(); }
-  decltype(auto) operator()(const Chain& chain, std::span<const double> joints, const Clouds& clouds, const Q& q) {
-    return engine::run_chain(chain, joints, clouds, q);
-  }
-  template <class Chain, class Clouds>
-    requires requires(const Chain& chain) { chain.parts(); }
-  decltype(auto) operator()(const Chain& chain, std::span<const double> joints, const Clouds& clouds) {
-    return engine::run_chain(chain, joints, clouds, asked_);
-  }
-  /// On a device: about the configurations that were placed.
-  template <class Clouds>
-  decltype(auto) operator()(const Clouds& clouds, const Q& q) {
-    return engine::run_placed(clouds, q);
-  }
-  template <class Clouds>
-  decltype(auto) operator()(const Clouds& clouds) {
-    return engine::run_placed(clouds, asked_);
-  }
-
-  /// Enqueues a frame and does not wait. Clouds must be readable where it runs; they, and all that `to` names, must stay
-  /// until it is done. On a device, a graph that captures this keeps the current poses and options.
+  /// Enqueues a frame and does not wait. Clouds must be readable where it runs; they, and all that `to` names, must
+  /// stay until it is done. On a device, a graph that captures this keeps the current poses and options.
   template <class Poses, class Clouds>
   auto enqueue(const Poses& poses, const Clouds& clouds, const Q& q, const out& to) {
     static_assert(explain_given<Clouds>());
@@ -111,7 +79,7 @@ class query : detail::one_robot<On, PartView>, public detail::engine_of<Q, On, P
   }
   template <class Poses, class Clouds>
   auto enqueue(const Poses& poses, const Clouds& clouds, const out& to) {
-    return enqueue(poses, clouds, asked_, to);
+    return enqueue(poses, clouds, callable::asked(), to);
   }
   /// The same for what an engine takes besides: poses in a device's memory, or none, for placed configurations.
   template <class First, class... Rest>
@@ -121,43 +89,33 @@ class query : detail::one_robot<On, PartView>, public detail::engine_of<Q, On, P
   }
 
   std::span<const part_facts> facts() const { return robot_type::view().facts; }
-
- private:
-  Q asked_;
 };
 template <class On, class Robot, class Q, class... Memory>
-query(const On&, const Robot&, const Q&, Memory...)
-    -> query<Q, On, typename detail::part_view_of<Robot>::type>;
+query(const On&, const Robot&, const Q&, Memory...) -> query<Q, On, typename detail::part_view_of<Robot>::type>;
 
 /// Asks once. The arguments are those of a `query` and of its call.
 template <class On, class Robot, class Poses, class Clouds, class Q>
 auto ask(const On& on, const Robot& robot, const Poses& poses, const Clouds& clouds, const Q& q) {
-  static_assert(detail::explain_asked<On, Robot, Q>() && explain_given<Clouds>());
-  using part_view = typename detail::part_view_of<Robot>::type;
-  using query_type = query<Q, On, part_view>;
-  if constexpr (requires { query_type::once(on, robot, poses, clouds, q); }) {
-    return query_type::once(on, robot, poses, clouds, q);
-  } else {
+  if constexpr (detail::explain_asked<On, Robot, Q>() && explain_given<Clouds>())
     return detail::one_call<On>::of(on, [&](auto... memory) {
-      query_type once(on, robot, q, memory...);
+      query once(on, robot, q, memory...);
       return once(poses, clouds);
     });
-  }
 }
-template <class On, class Robot, class Poses, class S, std::same_as<Eigen::Isometry3d> Pose, class Q>
+template <class On, class Robot, class Poses, class S, class Pose, class Q>
 auto ask(const On& on, const Robot& robot, const Poses& poses, const S& source, const Pose& pose, const Q& q) {
-  return ask(on, robot, poses, as_clouds(source, pose), q);
+  if constexpr (explain_given<S, Pose>()) return ask(on, robot, poses, as_clouds(source, pose), q);
 }
 
 /// Asks once and does not wait. The arguments are those of a `query` and of its `enqueue`.
 template <class On, class Robot, class Poses, class Clouds, class Q>
 auto enqueue(const On& on, const Robot& robot, const Poses& poses, const Clouds& clouds, const Q& q,
              const typename Q::out& to) {
-  static_assert(detail::explain_asked<On, Robot, Q>() && explain_given<Clouds>());
-  return detail::one_call<On>::of(on, [&](auto... memory) {
-    query<Q, On, typename detail::part_view_of<Robot>::type> once(on, robot, q, memory...);
-    return once.enqueue(poses, clouds, to);
-  });
+  if constexpr (detail::explain_asked<On, Robot, Q>() && explain_given<Clouds>())
+    return detail::one_call<On>::of(on, [&](auto... memory) {
+      query once(on, robot, q, memory...);
+      return once.enqueue(poses, clouds, to);
+    });
 }
 
 }  // namespace clearance

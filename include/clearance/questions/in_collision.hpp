@@ -58,7 +58,6 @@ struct tell_collision {
   collision_result* result;
 
   CLEARANCE_HD void operator()(std::size_t) const {
-  
     const bool too_close = result->counts.dropped[int(drop_reason::too_close)] != 0;
     result->state = result->counts.valid == 0 || parts == 0 ? state::no_data
                     : too_close                             ? state::possible

@@ -106,8 +106,8 @@ struct min_distance_per_part {
   static void so_far(result& r, std::uint64_t unseen) { minimum::allow_for_unseen(r.all, unseen); }
 };
 
-/// Asks about several robots and the same clouds, which are copied once if `on` cannot read them. `robots` is a range of
-/// models or views, `poses` a range of their parts' poses. Throws std::invalid_argument as `ask`, and if the ranges
+/// Asks about several robots and the same clouds, which are copied once if `on` cannot read them. `robots` is a range
+/// of models or views, `poses` a range of their parts' poses. Throws std::invalid_argument as `ask`, and if the ranges
 /// differ in size.
 template <class On, std::ranges::forward_range Robots, std::ranges::forward_range Poses, class Clouds>
 std::vector<min_distance_result> min_distance_per_robot(const On& on, const Robots& robots, const Poses& poses,

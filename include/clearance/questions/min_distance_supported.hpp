@@ -35,13 +35,13 @@ struct min_distance_supported {
   class engine;
 
   void check() const {
-  if (min_points == 0 || !(radius >= 0 && radius < infinity))
-    throw std::invalid_argument("clearance: a point cannot be confirmed by " + std::to_string(min_points) +
-                                " points within " + std::to_string(radius) + " m");
-  if (most == 0 || most > pairwise::most_listed)
-    throw std::invalid_argument("clearance: " + std::to_string(most) +
-                                " nearest points cannot be asked; it must be 1 to 2^20");
-}
+    if (min_points == 0 || !(radius >= 0 && radius < infinity))
+      throw std::invalid_argument("clearance: a point cannot be confirmed by " + std::to_string(min_points) +
+                                  " points within " + std::to_string(radius) + " m");
+    if (most == 0 || most > pairwise::most_listed)
+      throw std::invalid_argument("clearance: " + std::to_string(most) +
+                                  " nearest points cannot be asked; it must be 1 to 2^20");
+  }
 };
 
 namespace pairwise {
@@ -77,9 +77,8 @@ inline std::vector<std::uint32_t> numbers_of(const std::vector<std::uint32_t>& f
 
 /// Which of some points have enough others around them. Clouds must be readable where the question runs.
 template <class Passes, class Clouds>
-std::vector<std::uint32_t> count_around(Passes& passes, std::span<const Eigen::Isometry3d> poses,
-                                        const Clouds& clouds, std::span<const pair_distance> points,
-                                        const min_distance_supported& options) {
+std::vector<std::uint32_t> count_around(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                                        std::span<const pair_distance> points, const min_distance_supported& options) {
   const auto& on = passes.on;
   const auto facts = passes.model.facts;
   auto& memory = passes.memory;
@@ -102,14 +101,14 @@ std::vector<std::uint32_t> count_around(Passes& passes, std::span<const Eigen::I
     }
     const auto [near] = memory.put(balls);
     const count_support<S> each{source,
-                                          frame.world_from_cloud,
-                                          enclosing_ball(std::span<const ball>(balls)),
-                                          near,
-                                          place,
-                                          support,
-                                          std::uint32_t(points.size()),
-                                          options.min_points,
-                                          options.radius * options.radius};
+                                frame.world_from_cloud,
+                                enclosing_ball(std::span<const ball>(balls)),
+                                near,
+                                place,
+                                support,
+                                std::uint32_t(points.size()),
+                                options.min_points,
+                                options.radius * options.radius};
     if constexpr (std::is_same_v<std::remove_cvref_t<decltype(on)>, host>)
       on.for_ranges(source.size(), count_support_of_pieces<S>{each, all_within.data()});
     else
@@ -133,10 +132,9 @@ bool any_inside(Passes& passes, std::span<const Eigen::Isometry3d> poses, const 
     frames::for_each_turn(
         frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
           const auto [places] = passes.memory.put(frame.places);
-          passes.on.for_each(points.size(),
-                               find_inside<part_view, S>{model.parts, places, std::uint32_t(model.size()),
-                                                                   source, frame.origin, now.first, number, inside,
-                                                                   any_depth{stack_need(model.depth, model.width)}});
+          passes.on.for_each(points.size(), find_inside<part_view, S>{model.parts, places, std::uint32_t(model.size()),
+                                                                      source, frame.origin, now.first, number, inside,
+                                                                      any_depth{stack_need(model.depth, model.width)}});
         });
     const std::vector<std::uint32_t> found = passes.on.copy_out(inside, points.size());
     return std::ranges::find(found, 1u) != found.end();
@@ -203,8 +201,8 @@ supported_distance least_supported(Passes& passes, known_nearest& known, std::sp
 
 }  // namespace pairwise
 
-/// It remembers how near the nearest points were, which only makes it faster. It cannot be enqueued, because it depends on
-/// the first answers how many points must be asked.
+/// It remembers how near the nearest points were, which only makes it faster. It cannot be enqueued, because it depends
+/// on the first answers how many points must be asked.
 template <class On, class PartView>
 class min_distance_supported::engine {
  public:

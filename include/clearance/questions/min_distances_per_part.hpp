@@ -18,8 +18,8 @@ struct min_distances_per_part_result {
   std::span<const min_distance_result> of(std::size_t c) const { return std::span(all).subspan(c * parts, parts); }
 };
 
-/// The least distance of each part of each configuration, otherwise as min_distances. Each part is asked about as its own
-/// robot, with its own memory and structure over the clouds: a frame costs as much as min_distances for each part.
+/// The least distance of each part of each configuration, otherwise as min_distances. Each part is asked about as its
+/// own robot, with its own memory and structure over the clouds: a frame costs as much as min_distances for each part.
 struct min_distances_per_part {
   double d_max = infinity;  ///< Metres, as for min_distances.
 
@@ -39,7 +39,8 @@ template <class On, class PartView>
 class min_distances_per_part::engine {
  public:
   template <class... Memory>
-  engine(const On& on, const model_view<PartView>& model, Memory... from) : readable_(on, from...), parts_(model.size()) {
+  engine(const On& on, const model_view<PartView>& model, Memory... from)
+      : readable_(on, from...), parts_(model.size()) {
     for (std::size_t k = 0; k < parts_; ++k)
       each_.emplace_back(on, model_view<PartView>{model.parts + k, model.facts.subspan(k, 1), model.depth, model.width},
                          from...);

@@ -13,9 +13,12 @@ struct nearest_k {
   double d_max = infinity;  ///< Metres; farther points do not count.
 
   using result = nearest_k_result;
+  /// Enqueued, the backend decides how near the k nearest points of each part are, and lists all pairs that are as
+  /// near, in any order: k for each part, fewer if there are fewer, and more if some are equally far as the k-th.
+  /// `count` becomes how many there are: if that is more than `capacity`, some were cut.
+  using out = within::out;
 
-  /// It remembers how near the nearest points were, which only makes it faster. It cannot be enqueued: the host decides
-  /// by the counts of one pass whether there is another, and how much is listed.
+  /// One call remembers how near the nearest points were, which only makes the next one faster.
   template <class On, class PartView>
   class engine {
    public:
@@ -27,6 +30,31 @@ struct nearest_k {
       q.check();
       return pairwise::list_nearest(passes_, known_, poses, passes_.readable(clouds), q.k,
                                     frames::largest_within(q.d_max));
+    }
+    template <class Clouds>
+    distance_certainty start(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const nearest_k& q,
+                             const out& to) {
+      q.check();
+      using pairwise::nearest_bins;
+      const real d_max = frames::largest_within(q.d_max);
+      const auto a = passes_.look(poses, clouds);
+      const std::size_t parts = a.parts(), bins = parts * nearest_bins::bins;
+      auto* const counts = a.template room<std::uint32_t>(bins);
+      auto* const windows = a.template room<pairwise::nearest_window>(parts);
+      auto* const bounds = a.template room<std::uint32_t>(parts);
+      auto* const reaches = a.template room<real>(parts);
+      a.on.for_each(parts, pairwise::open_windows{windows, bounds, std::uint32_t(q.k), ordered(d_max)});
+      for (int pass = 0; pass < nearest_bins::passes; ++pass) {
+        const int shift = nearest_bins::shift_of(pass);
+        a.on.for_each(bins, pairwise::zero_words{counts});
+        passes_.enqueue(poses, clouds, nearest_bins{counts, windows, shift}, to.counts);
+        a.on.for_each(parts, pairwise::decide_window{{counts, windows, bounds, shift}});
+      }
+      a.on.for_each(parts, pairwise::bounds_as_reaches{bounds, reaches});
+      const unsigned long long nothing = 0;
+      a.on.stage(std::span(&nothing, 1), to.count);
+      passes_.enqueue(poses, clouds, pairwise::listed{to.pairs, to.count, to.capacity, reaches}, to.counts);
+      return a.certain();
     }
     /// Forgets the last frame. The next one starts cold; its answer is the same.
     void forget() { known_ = {}; }

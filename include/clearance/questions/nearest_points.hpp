@@ -82,8 +82,7 @@ template <class Passes, class Clouds>
 std::vector<real> bounds_of_nearest(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                     std::size_t k, real d_max) {
   std::vector<real> bounds(passes.model.size(), d_max);
-  nearest_sample<std::remove_cvref_t<decltype(passes.on)>>::lower(passes.on, passes.model, poses,
-                                                                              clouds, k, bounds);
+  nearest_sample<std::remove_cvref_t<decltype(passes.on)>>::lower(passes.on, passes.model, poses, clouds, k, bounds);
   return bounds;
 }
 
@@ -109,20 +108,14 @@ std::vector<real> radii_of_nearest(Passes& passes, std::span<const Eigen::Isomet
     const std::vector<std::uint32_t> all = on.copy_out(counts, parts * nearest_bins::bins);
     std::size_t listed = 0;
     for (std::size_t p = 0; p < parts; ++p) {
-      nearest_window& w = windows[p];
-      if (w.wanted == 0) {
+      if (windows[p].wanted == 0) {
         listed += before[p];
         continue;
       }
-      const auto found =
-          find_wanted(std::span(all).subspan(p * nearest_bins::bins, nearest_bins::bins), w.wanted);
-      const bool some = found.bin < nearest_bins::bins;
-      if (!some && again && first[p] < d_max)
+      const wanted_bin found = next_window{all.data(), windows.data(), bounds.data(), shift}(p);
+      if (found.bin == nearest_bins::bins && again && first[p] < d_max)
         return radii_of_nearest(passes, poses, clouds, k, d_max, bounds_of_nearest(passes, poses, clouds, k, d_max),
                                 false);
-      if (some) bounds[p] = std::min(bounds[p], nearest_bins::end_of(w.low, found.bin, shift));
-      w = some ? nearest_window{w.low + (found.bin << shift), w.wanted - found.before, bounds[p]}
-               : nearest_window{.bound = ordered(-infinity)};
       before[p] += found.before;
       listed += before[p] + found.its;
     }

@@ -75,8 +75,8 @@ class joined_labels {
 
 }  // namespace pairwise
 
-/// Which points are the robot itself? Refused: neither one nor as many paddings as parts, and one that is negative or not
-/// finite.
+/// Which points are the robot itself? Refused: neither one nor as many paddings as parts, and one that is negative or
+/// not finite.
 struct self_filter {
   /// Metres around a part that belong to the robot: one number for all parts, or one per part. It has to cover the
   /// error of points on the robot's surface: noise, calibration, and the gap of the part's spheres.

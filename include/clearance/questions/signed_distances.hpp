@@ -59,9 +59,10 @@ struct signed_distances {
   }
   template <class On, class PartView>
   static void check(const On&, const model_view<PartView>& model) {
-    static_assert(scan::has_interior<PartView>,
-                  "signed exact distances are to closed meshes: make the parts of closed_mesh; inner spheres are signed "
-                  "in `distances`");
+    static_assert(
+        scan::has_interior<PartView>,
+        "signed exact distances are to closed meshes: make the parts of closed_mesh; inner spheres are signed "
+        "in `distances`");
     if constexpr (requires { typename On::own_scan; }) minimum::check_stack<near_first>(model.depth, model.width);
   }
   template <class On, class PartView, class Clouds>

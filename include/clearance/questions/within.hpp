@@ -51,8 +51,8 @@ struct within {
   std::vector<double> radius;  ///< Metres: one for all parts, or one per part.
 
   using result = within_result;
-  /// Up to `capacity` pairs, in any order, in memory that the backend writes; `count` becomes how many there are: if that
-  /// is more, some were cut.
+  /// Up to `capacity` pairs, in any order, in memory that the backend writes; `count` becomes how many there are: if
+  /// that is more, some were cut.
   struct out {
     pair_distance* pairs;
     std::size_t capacity;
@@ -87,7 +87,9 @@ struct within {
   }
   template <class Asked>
   result read(const Asked& a, const out& from) const {
-    result all{{}, a.copy_out(from.pairs, std::size_t(a.copy_out(from.count, 1)[0])), a.copy_out(from.counts, 1)[0],
+    result all{{},
+               a.copy_out(from.pairs, std::size_t(a.copy_out(from.count, 1)[0])),
+               a.copy_out(from.counts, 1)[0],
                a.certain()};
     pairwise::put_in_order(all, a.parts());
     return all;

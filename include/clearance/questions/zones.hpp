@@ -18,7 +18,8 @@ struct zone {
   /// Adds the same zone's other points.
   void add(const zone& other) {
     points += other.points;
-    if (std::tie(other.nearest, other.nearest_cloud, other.nearest_point) < std::tie(nearest, nearest_cloud, nearest_point))
+    if (std::tie(other.nearest, other.nearest_cloud, other.nearest_point) <
+        std::tie(nearest, nearest_cloud, nearest_point))
       nearest = other.nearest, nearest_cloud = other.nearest_cloud, nearest_point = other.nearest_point;
     if (std::tie(other.first_cloud, other.first_point) < std::tie(first_cloud, first_point))
       first_cloud = other.first_cloud, first_point = other.first_point;

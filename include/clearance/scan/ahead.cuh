@@ -26,19 +26,19 @@ __device__ quad_points look_wide(const Source& source, std::uint32_t points, std
 }
 
 /// The rounds that are read ahead.
-template <class Source, class Answer>
+template <class Source, class Tally>
 class point_reader {
  public:
-  __device__ point_reader(const Source&, std::uint32_t, const cards<Answer>&) {}
+  __device__ point_reader(const Source&, std::uint32_t, const cards<Tally>&) {}
   __device__ void fetch(std::uint32_t) {}
   __device__ quad_points take(std::uint32_t) { return {}; }
   __device__ quad_points peek() const { return {}; }
 };
 
-template <fetched_source Source, class Answer>
-class point_reader<Source, Answer> {
+template <fetched_source Source, class Tally>
+class point_reader<Source, Tally> {
  public:
-  __device__ point_reader(const Source& source, std::uint32_t rounds, const cards<Answer>& all)
+  __device__ point_reader(const Source& source, std::uint32_t rounds, const cards<Tally>& all)
       : source_(source), rounds_(rounds), all_(all), from_(source.seek(all.index(0))) {}
 
   /// Starts to read the points of a round. Rounds come in order.
@@ -64,7 +64,7 @@ class point_reader<Source, Answer> {
 
   const Source& source_;
   std::uint32_t rounds_;
-  const cards<Answer>& all_;
+  const cards<Tally>& all_;
   typename Source::cursor from_;
   typename Source::four next_;
 };

@@ -70,10 +70,11 @@ struct placed_parts {
   world_transform world_from_part[most_parts];
 };
 
-/// What every block keeps about one cloud. `Answer` is a block's form of an answer, such as `minimum::least`.
-template <class Answer>
+/// What every block keeps about one cloud. `Tally` is what a block keeps of an answer (concepts/block_tally.cuh), such
+/// as `minimum::least`.
+template <class Tally>
 struct alignas(16) scan_head {
-  using part_type = typename Answer::part_type;
+  using part_type = typename Tally::part_type;
 
   std::uint32_t points, parts;
   std::uint32_t cloud, first;   ///< The cloud's number, and that of its first point among all clouds' points.
@@ -89,15 +90,15 @@ struct alignas(16) scan_head {
   scan_state* state;
   const part_type* views;
   const placed_parts* rest;
-  typename Answer::arguments answer;
+  typename Tally::arguments answer;
 };
 
 /// All arguments but the points. What every block reads comes first; what one block reads comes last.
-template <class Answer>
-struct scan_arguments : scan_head<Answer> {
-  using scan_head<Answer>::far;
-  using scan_head<Answer>::placed;
-  using scan_head<Answer>::rest;
+template <class Tally>
+struct scan_arguments : scan_head<Tally> {
+  using scan_head<Tally>::far;
+  using scan_head<Tally>::placed;
+  using scan_head<Tally>::rest;
 
   frame_parts_of<inline_parts> near;
   std::uint32_t* done;  ///< Pinned, written after the result with `number`; or null.

@@ -42,25 +42,25 @@ struct tree_tops<H, Bytes> {
 };
 
 /// What every block has, whatever it does with its points.
-template <class Answer>
+template <class Tally>
 struct block_memory {
-  using hierarchy_type = typename Answer::part_type::hierarchy_type;
+  using hierarchy_type = typename Tally::part_type::hierarchy_type;
 
-  scan_head<Answer> head;
-  typename Answer::memory answer;
+  scan_head<Tally> head;
+  typename Tally::memory answer;
   std::uint32_t dropped[drop_reasons];
   std::uint32_t last;       ///< Not 0 if this is the last block to finish.
   alignas(16) vec3 origin;  ///< Subtracted from points if it is not 0 (`shifted`). It is read as sixteen bytes, with
   bool rigid, shifted;      ///< these, which no thread writes any more by then.
   frames::root_test near_cluster[most_clusters], near_part[most_parts];
   frames::root_ball cluster[most_clusters];
-  tree_tops<hierarchy_type, Answer::top_bytes> tops;
+  tree_tops<hierarchy_type, Tally::top_bytes> tops;
 };
 
 /// For a block that tests pairs of a point and a part.
-template <class Answer>
-struct pair_memory : block_memory<Answer> {
-  using pending_type = pending<typename node_of<typename block_memory<Answer>::hierarchy_type>::type>;
+template <class Tally>
+struct pair_memory : block_memory<Tally> {
+  using pending_type = pending<typename node_of<typename block_memory<Tally>::hierarchy_type>::type>;
   static constexpr std::uint32_t given_capacity = 32 * warps;
 
   std::uint32_t pairs, given;
@@ -82,17 +82,17 @@ struct alignas(16) block_part {
 };
 
 /// Bytes of shared memory of a block.
-template <class Answer>
+template <class Tally>
 constexpr std::size_t memory_bytes(std::uint32_t parts) {
-  static_assert(sizeof(typename Answer::block) % 16 == 0);
-  return sizeof(typename Answer::block) + parts * sizeof(block_part<typename Answer::part_type>);
+  static_assert(sizeof(typename Tally::block) % 16 == 0);
+  return sizeof(typename Tally::block) + parts * sizeof(block_part<typename Tally::part_type>);
 }
 
 /// A block's shared memory. Functions that are not inlined call it themselves, so that its kind is known.
-template <class Answer>
-__device__ typename Answer::block& memory_of_block() {
+template <class Tally>
+__device__ typename Tally::block& memory_of_block() {
   extern __shared__ __align__(16) std::byte scan_memory[];
-  return *reinterpret_cast<typename Answer::block*>(scan_memory);
+  return *reinterpret_cast<typename Tally::block*>(scan_memory);
 }
 
 }  // namespace clearance::scan

@@ -51,7 +51,7 @@ struct boxing {
   }
 
   bool survey(std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) const {
-    tally mine;
+    drop_tally mine;
     if (!scan::survey(source, begin, box, mine)) {
       tile t;
       t.load(source, begin, tile_points, 1, mine);

@@ -8,31 +8,31 @@ namespace clearance::scan {
 
 /// Sets the root tests to the present bounds, one thread per test. `bound` is that of all parts, if they share one. No
 /// thread may be reading the tests.
-template <class Answer>
+template <class Tally>
 __device__ void sharpen(std::uint32_t thread, std::uint32_t bound) {
-  using parts = frame_parts<Answer>;
+  using parts = frame_parts<Tally>;
   auto& s = parts::here();
   if (thread < s.head.parts) {
     const frames::root_ball& root = parts::place(thread).root;
-    s.near_part[thread] = {root, frames::limit(root.around, Answer::reach_of_part(s, thread, bound))};
+    s.near_part[thread] = {root, frames::limit(root.around, Tally::reach_of_part(s, thread, bound))};
   }
   const std::uint32_t c = thread - most_parts, first = c * cluster;
   if (thread < most_parts || first >= s.head.parts) return;
   const frames::root_ball& root = s.cluster[c];
   real most = -infinity;
-  if constexpr (Answer::bound_per_part) {
+  if constexpr (Tally::bound_per_part) {
     for (std::uint32_t k = first; k < first + cluster && k < s.head.parts; ++k)
-      most = max(most, frames::limit({{}, parts::place(k).away}, Answer::reach_of_part(s, k, bound)));
+      most = max(most, frames::limit({{}, parts::place(k).away}, Tally::reach_of_part(s, k, bound)));
   } else {
-    most = frames::limit(root.around, Answer::reach_of_part(s, 0, bound));
+    most = frames::limit(root.around, Tally::reach_of_part(s, 0, bound));
   }
   s.near_cluster[c] = {root, most};
 }
 
 /// Subtracts the frame's origin.
-template <class Answer>
+template <class Tally>
 __device__ void shift(quad_points& p) {
-  const auto& s = frame_parts<Answer>::here();
+  const auto& s = frame_parts<Tally>::here();
 #pragma unroll
   for (int j = 0; j < quad; ++j) p.at[j] = p.at[j] - s.origin;
 }
@@ -46,9 +46,9 @@ struct unfinished {
 
 /// Hands over four points to the search, pair by pair, with the parts of all clusters, or with those that were `left`.
 /// Returns false if some had no room. The whole warp calls it.
-template <class Answer, class Index>
+template <class Tally, class Index>
 __device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clusters, unfinished& left) {
-  using pairs = pair_search<Answer>;
+  using pairs = pair_search<Tally>;
   const auto& s = pairs::here();
   real square[quad];
 #pragma unroll

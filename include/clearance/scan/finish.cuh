@@ -3,28 +3,28 @@
 
 #include <clearance/result.hpp>
 #include <clearance/scan/block.cuh>
-#include <clearance/scan/tally.hpp>
+#include <clearance/scan/drops.hpp>
 
 namespace clearance::scan {
 
 /// Counts this block as done. The last block gives the answer and prepares everything for the next scan.
-template <class Answer, class Source>
-__noinline__ __device__ void finish_block(const scan_arguments<Answer>& a, const Source& source) {
-  auto& s = memory_of_block<Answer>();
+template <class Tally, class Source>
+__noinline__ __device__ void finish_block(const scan_arguments<Tally>& a, const Source& source) {
+  auto& s = memory_of_block<Tally>();
   const std::uint32_t t = threadIdx.x;
   scan_state& state = *a.state;
   if (t < drop_reasons && s.dropped[t] != 0)
     atomicAdd(&state.dropped[t], static_cast<unsigned long long>(s.dropped[t]));
-  Answer::hand_in(a, source);
+  Tally::hand_in(a, source);
   if (t == 0) s.last = count_in(state.done) + 1 == gridDim.x;
   __syncthreads();
   if (!s.last) return;
-  Answer::conclude(a, source);
+  Tally::conclude(a, source);
   __syncthreads();
   if (t < drop_reasons && a.last) state.dropped[t] = 0;
   if (t != 0) return;
   state.done = state.taken = 0;
-  Answer::reset(a);
+  Tally::reset(a);
   if (a.last && a.done != nullptr) {
     __threadfence_system();
     *static_cast<volatile std::uint32_t*>(a.done) = a.number;
@@ -32,8 +32,8 @@ __noinline__ __device__ void finish_block(const scan_arguments<Answer>& a, const
 }
 
 /// Writes the point counts after the last cloud, with one thread of the last block. `counts` may be null.
-template <class Answer>
-__device__ void write_counts(const scan_arguments<Answer>& a, point_counts* counts) {
+template <class Tally>
+__device__ void write_counts(const scan_arguments<Tally>& a, point_counts* counts) {
   if (threadIdx.x != 0 || !a.last || counts == nullptr) return;
   unsigned long long dropped[drop_reasons];
   for (int k = 0; k < drop_reasons; ++k) dropped[k] = fresh(a.state->dropped[k]);

@@ -4,6 +4,7 @@
 
 #include <clearance/backend/device.cuh>
 #include <clearance/backend/raised_limits.cuh>
+#include <clearance/concepts/block_tally.cuh>
 #include <clearance/frame/clouds.hpp>
 #include <clearance/result.hpp>
 #include <clearance/robot/model.hpp>
@@ -60,10 +61,10 @@ class launcher {
   }
 
   /// The arguments for one cloud and one group of parts.
-  template <class Answer>
-  scan_arguments<Answer> begin(std::uint32_t group, const frames::turn& now,
-                               const typename Answer::arguments& answer) const {
-    scan_arguments<Answer> a{};
+  template <class Tally>
+  scan_arguments<Tally> begin(std::uint32_t group, const frames::turn& now,
+                              const typename Tally::arguments& answer) const {
+    scan_arguments<Tally> a{};
     const std::uint32_t before = group * most_parts;
     a.parts = std::min(parts_ - before, most_parts), a.views = views_.data() + before, a.state = state_.data() + group,
     a.rest = placed_.data() + group;
@@ -73,8 +74,8 @@ class launcher {
   }
 
   /// Poses that the host has prepared. Few travel with the launch; many are copied before it.
-  template <class Answer>
-  void put(const frames::cloud_frame& frame, std::uint32_t group, scan_arguments<Answer>& a) {
+  template <class Tally>
+  void put(const frames::cloud_frame& frame, std::uint32_t group, scan_arguments<Tally>& a) {
     const auto places = std::span(frame.places).subspan(group * most_parts, a.parts);
     const auto fill = [&](auto& parts, world_transform* world) {
       for (std::uint32_t k = 0; k < a.parts; ++k)
@@ -100,14 +101,14 @@ class launcher {
 
   /// All clouds of a frame against all groups. `answer(group)` gives the answer's arguments, `here(source, cloud)` a
   /// source that the device can read. Returns the facts of all clouds together.
-  template <class Answer, class Clouds, class Arguments, class Here>
+  template <class Tally, class Clouds, class Arguments, class Here>
   const frames::frame_facts& pass(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses,
                                   const Clouds& clouds, const Arguments& answer, const Here& here) {
     try {
       frames::for_each_turn(frame_, facts, poses, clouds, [&](const auto& anywhere, const frames::turn& now) {
         const auto source = here(anywhere, now.cloud);
         for (std::uint32_t group = 0; group < groups(); ++group) {
-          auto a = begin<Answer>(group, now, answer(group));
+          auto a = begin<Tally>(group, now, answer(group));
           put(frame_, group, a);
           (*this)(source, a);
         }
@@ -120,8 +121,8 @@ class launcher {
   }
 
   /// Enqueues the kernel. Throws std::invalid_argument for too many points: it numbers more than there are.
-  template <class Answer, point_source Source>
-  void operator()(const Source& source, scan_arguments<Answer>& a) {
+  template <class Tally, point_source Source>
+  void operator()(const Source& source, scan_arguments<Tally>& a) {
     const std::uint64_t end = std::uint64_t(a.first) + source.size();
     if (const std::uint32_t most = none - block_threads * 8 * processors_; end >= most)
       throw std::invalid_argument("clearance: " + std::to_string(end) +
@@ -138,12 +139,13 @@ class launcher {
     return unsigned(value);
   }
 
-  template <class Answer, class Source>
-  void start(const Source& source, scan_arguments<Answer>& a) {
-    const std::size_t shared = memory_bytes<Answer>(a.parts);
-    a.top_stride = a.parts == 0 ? 0 : std::min(decltype(block_memory<Answer>::tops)::capacity / a.parts, 128u);
-    using how = typename Answer::scan_type;
-    const auto kernel = how::template kernel<Answer, Source>();
+  template <class Tally, class Source>
+  void start(const Source& source, scan_arguments<Tally>& a) {
+    static_assert(explain_block_tally<Tally>());
+    const std::size_t shared = memory_bytes<Tally>(a.parts);
+    a.top_stride = a.parts == 0 ? 0 : std::min(decltype(block_memory<Tally>::tops)::capacity / a.parts, 128u);
+    using how = typename Tally::scan_type;
+    const auto kernel = how::template kernel<Tally, Source>();
     limits_.raise(reinterpret_cast<const void*>(kernel), most_shared_);
     const unsigned resident =
         2 * (shared + 1024) <= shared_of_processor_ && a.overflow == nullptr ? processors_ * 2 : processors_;

@@ -8,18 +8,18 @@
 
 namespace clearance::scan {
 
-template <class Answer>
-struct leaf_first : tree_steps<Answer> {
-  using frame = frame_parts<Answer>;
-  using steps = tree_steps<Answer>;
+template <class Tally>
+struct leaf_first : tree_steps<Tally> {
+  using frame = frame_parts<Tally>;
+  using steps = tree_steps<Tally>;
 
   /// All pairs of the table go down greedily at once, with eight, four, two or one lanes per pair: the fewer pairs, the
   /// more lanes. A pair is done if everything that it passed by is too far away to matter. The others are left open,
   /// with a bound for their walk. The whole block calls it.
   static __device__ void go(std::uint32_t count) {
     auto& s = frame::here();
-    if (count <= Answer::few) {
-      for (std::uint32_t i = threadIdx.x; i < count; i += block_threads) Answer::leave_open(s, i);
+    if (count <= Tally::few) {
+      for (std::uint32_t i = threadIdx.x; i < count; i += block_threads) Tally::leave_open(s, i);
     } else {
       if (count <= block_threads / 8)
         go_as<lanes<8>>(count);
@@ -31,7 +31,7 @@ struct leaf_first : tree_steps<Answer> {
         go_as<alone>(count);
       __syncthreads();  // only now: the test needs the least distances over all pairs
       for (std::uint32_t i = threadIdx.x; i < count; i += block_threads)
-        if (passed_by(i) <= Answer::reach_of_pair(s, s.part_of_pair[i], i)) Answer::leave_open(s, i);
+        if (passed_by(i) <= Tally::reach_of_pair(s, s.part_of_pair[i], i)) Tally::leave_open(s, i);
     }
     __syncthreads();
   }
@@ -47,12 +47,12 @@ struct leaf_first : tree_steps<Answer> {
       bool live = i < count;
       const pair c = live ? s.pair_table[i] : pair{};
       const std::uint32_t part = live ? s.part_of_pair[i] : 0;
-      live = live && !Answer::skips(s, part, c.point, i, c.x);
+      live = live && !Tally::skips(s, part, c.point, i, c.x);
       live = team.first(!live) < 0;  // others may be changing its inputs
       const vec3 q = frame::place(part).part_from_cloud(c.x);
-      nearest_passed others{Answer::reach_of_part(s, part, 0)};
+      nearest_passed others{Tally::reach_of_part(s, part, 0)};
       bool found = live;
-      const typename steps::node_type leaf = nearest_leaf(steps_of_part<Answer>{part}, q, found, team, others);
+      const typename steps::node_type leaf = nearest_leaf(steps_of_part<Tally>{part}, q, found, team, others);
       const std::uint32_t size = found ? steps::size(part, leaf) : 0;
       distance_key best = no_key;
 #pragma unroll 1
@@ -61,10 +61,10 @@ struct leaf_first : tree_steps<Answer> {
         const real distance = steps::primitive(part, place).distance(q);
         if (const distance_key key = make_key(distance, steps::id(part, place)); key < best) best = key;
       }
-      if (live && key_distance(best) <= Answer::reach_of_part(s, part, 0)) Answer::hear(s, part, i, best);
+      if (live && key_distance(best) <= Tally::reach_of_part(s, part, 0)) Tally::hear(s, part, i, best);
       const real passed = team.least(others.bound);
       if (i < count && team.rank() == 0)
-        passed_by(i) = !live ? not_a_number : has_interior<typename Answer::part_type> ? -infinity : passed;
+        passed_by(i) = !live ? not_a_number : has_interior<typename Tally::part_type> ? -infinity : passed;
     }
   }
 

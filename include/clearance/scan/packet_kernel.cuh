@@ -12,9 +12,9 @@
 namespace clearance::scan {
 
 /// May this lane's point be near any part? The whole warp calls it.
-template <class Answer>
+template <class Tally>
 __device__ bool near_any(vec3 x, std::uint32_t parts) {
-  const auto& s = memory_of_block<Answer>();
+  const auto& s = memory_of_block<Tally>();
   bool near = false;
 #pragma unroll 1
   for (std::uint32_t c = 0; c * cluster < parts; ++c) {
@@ -46,11 +46,11 @@ __device__ inline std::uint32_t place_in_packet(std::uint32_t b, std::uint32_t c
   return (row * tile_rows + lane / tile_columns) * columns + column * tile_columns + lane % tile_columns;
 }
 
-template <class Answer, class Source>
+template <class Tally, class Source>
 __global__ void __launch_bounds__(block_threads, 2)
-    packet_kernel(const __grid_constant__ Source source, const __grid_constant__ scan_arguments<Answer> a) {
-  using sharing = shared_walk<Answer>;
-  auto& s = memory_of_block<Answer>();
+    packet_kernel(const __grid_constant__ Source source, const __grid_constant__ scan_arguments<Tally> a) {
+  using sharing = shared_walk<Tally>;
+  auto& s = memory_of_block<Tally>();
   const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds,
                       packets = (a.points + 31) / 32;
   std::uint32_t packet = (t / 32 * gridDim.x + blockIdx.x) * row, left = row, dropped = 0;
@@ -59,9 +59,9 @@ __global__ void __launch_bounds__(block_threads, 2)
     return i < a.points ? source[i] : sample{{not_a_number, 0, 0}};
   };
   sample next;
-  frame_parts<Answer>::prepare(a, [&] { next = read(packet); });
+  frame_parts<Tally>::prepare(a, [&] { next = read(packet); });
   __syncthreads();
-  sharpen<Answer>(t, 0);
+  sharpen<Tally>(t, 0);
   __syncthreads();
   for (;;) {
     const bool own = packet < packets;
@@ -80,16 +80,16 @@ __global__ void __launch_bounds__(block_threads, 2)
     }
     const vec3 x = here.position - s.origin;
     const bool exists = i < a.points, counts = exists && here.valid();
-    auto v = Answer::visitor(s, index, counts);
+    auto v = Tally::visitor(s, index, counts);
     bool live;
     if (own) {
-      live = near_any<Answer>(x, a.parts) && counts && s.rigid;
-      if (live) Answer::remind(s, index, x, v);
+      live = near_any<Tally>(x, a.parts) && counts && s.rigid;
+      if (live) Tally::remind(s, index, x, v);
     } else {
       live = (sharing::task().live >> lane & 1) != 0;
     }
-    packet_search<Answer>::search(p, live, x, v);
-    if (sharing::last(v) && exists) Answer::take(s, index, counts, v);
+    packet_search<Tally>::search(p, live, x, v);
+    if (sharing::last(v) && exists) Tally::take(s, index, counts, v);
     if (own && left == 0) {  // a warp gets its next row only when it needs one: some rows take much longer
       if (lane == 0) packet = (all_warps + atomicAdd(&a.state->taken, 1u)) * row;
       packet = __shfl_sync(all_lanes, packet, 0), left = row;
@@ -98,23 +98,23 @@ __global__ void __launch_bounds__(block_threads, 2)
   }
   if (lane < drop_reasons && dropped != 0) atomicAdd(&s.dropped[lane], dropped);
   __syncthreads();
-  finish_block<Answer>(a, source);
+  finish_block<Tally>(a, source);
 }
 
 /// How this scan is launched.
 struct by_packets {
   static constexpr std::uint32_t in_block = block_threads;  ///< Points that a block takes at once.
 
-  template <class Answer, class Source>
+  template <class Tally, class Source>
   static auto kernel() {
-    return packet_kernel<Answer, Source>;
+    return packet_kernel<Tally, Source>;
   }
 
-  template <class Answer, class Source>
-  static void plan(const Source& source, scan_arguments<Answer>& a, unsigned blocks) {
+  template <class Tally, class Source>
+  static void plan(const Source& source, scan_arguments<Tally>& a, unsigned blocks) {
     // Packets in a row: one, so that all warps end at about the same time; or more, if most points are far away and
     // asking for each packet would take longer.
-    a.rounds = Answer::all_near(a.answer) ? 1 : std::clamp(a.points / (32 * 4 * warps * blocks), 1u, 4u);
+    a.rounds = Tally::all_near(a.answer) ? 1 : std::clamp(a.points / (32 * 4 * warps * blocks), 1u, 4u);
     a.columns = 0;
     if constexpr (image_source<Source>) {
       const std::uint32_t columns = source.columns();

@@ -18,11 +18,11 @@ struct packet_node {
   Node node;
 };
 
-template <class Answer>
-struct packet_memory : block_memory<Answer> {
-  using node_type = packet_node<typename node_of<typename block_memory<Answer>::hierarchy_type>::type>;
+template <class Tally>
+struct packet_memory : block_memory<Tally> {
+  using node_type = packet_node<typename node_of<typename block_memory<Tally>::hierarchy_type>::type>;
   alignas(16) node_type stack[warps][deepest_stack];
-  sharing_memory<Answer> sharing;
+  sharing_memory<Tally> sharing;
 
   __device__ void clear() { sharing.clear(); }
 };
@@ -30,15 +30,15 @@ struct packet_memory : block_memory<Answer> {
 /// Each lane has a point and a visitor for it:
 ///   reach(k)                                how near part k must be to the point to matter;
 ///   offer(k, place, id, distance), where `place` is the primitive's place in the tree; offer_inside(k).
-template <class Answer>
-struct packet_search : tree_steps<Answer> {
-  using frame = frame_parts<Answer>;
-  using steps = tree_steps<Answer>;
-  using hierarchy = typename Answer::part_type::hierarchy_type;
+template <class Tally>
+struct packet_search : tree_steps<Tally> {
+  using frame = frame_parts<Tally>;
+  using steps = tree_steps<Tally>;
+  using hierarchy = typename Tally::part_type::hierarchy_type;
   using traits = bounding_volume_traits<typename hierarchy::volume_type>;
   using node_type = typename steps::node_type;
   using stacked = packet_node<node_type>;
-  using sharing = shared_walk<Answer>;
+  using sharing = shared_walk<Tally>;
 
   /// Searches for this lane's point `x`, in the cloud's frame, if it is `live`. The whole warp calls it.
   template <class Visitor>
@@ -121,7 +121,7 @@ struct packet_search : tree_steps<Answer> {
   /// Is the point inside part k's solid? Then its tree need not be searched.
   template <class Visitor>
   static __device__ bool inside(std::uint32_t k, vec3 x, Visitor& v) {
-    if constexpr (has_interior<typename Answer::part_type>) {
+    if constexpr (has_interior<typename Tally::part_type>) {
       const frame_part& place = frame::place(k);
       if (frames::may_reach(place.root.around, 0, x) && frame::view(k).interior.inside(place.part_from_cloud(x)))
         return v.offer_inside(k), true;

@@ -11,13 +11,13 @@
 
 namespace clearance::scan {
 
-template <class Answer>
-struct pair_search : tree_steps<Answer> {
-  using frame = frame_parts<Answer>;
-  using steps = tree_steps<Answer>;
-  using hierarchy = typename Answer::part_type::hierarchy_type;
+template <class Tally>
+struct pair_search : tree_steps<Tally> {
+  using frame = frame_parts<Tally>;
+  using steps = tree_steps<Tally>;
+  using hierarchy = typename Tally::part_type::hierarchy_type;
   using traits = bounding_volume_traits<typename hierarchy::volume_type>;
-  using memory = typename Answer::block;
+  using memory = typename Tally::block;
   using pending = typename memory::pending_type;
   using node_type = typename steps::node_type;
   static constexpr bool any_size = node_of<hierarchy>::any_size;
@@ -46,14 +46,14 @@ struct pair_search : tree_steps<Answer> {
     memory& s = frame::here();
     if (found == 0) return;
     const std::uint32_t count = found < pair_capacity ? found : pair_capacity;
-    if constexpr (Answer::goes_ahead) {
-      leaf_first<Answer>::go(count);
-      walk(Answer::open_pairs(s));
+    if constexpr (Tally::goes_ahead) {
+      leaf_first<Tally>::go(count);
+      walk(Tally::open_pairs(s));
     } else {
       walk(count);
     }
     __syncthreads();
-    Answer::drained(s, count);
+    Tally::drained(s, count);
     if (threadIdx.x == 0) s.pairs = s.given = 0;  // a barrier comes before the next pair is kept
   }
 
@@ -66,14 +66,14 @@ struct pair_search : tree_steps<Answer> {
 
   /// Is the point in the part's solid? Then its distance is 0, and the tree need not be searched.
   static __device__ bool inside(vec3 q, std::uint32_t point, std::uint32_t k, std::uint32_t pair) {
-    if constexpr (has_interior<typename Answer::part_type>) {
+    if constexpr (has_interior<typename Tally::part_type>) {
       memory& s = frame::here();
-      if (Answer::settled(s, k, point)) return true;
+      if (Tally::settled(s, k, point)) return true;
       const auto& view = frame::view(k);
       if (!view.interior.inside(q)) return false;
-      Answer::take_inside(s, k, point, pair);
-      if (Answer::wants_certain(s) && certainly_inside(view, q, frame::place(k).error, walk_alone<Answer>{}))
-        Answer::take_certain(s);
+      Tally::take_inside(s, k, point, pair);
+      if (Tally::wants_certain(s) && certainly_inside(view, q, frame::place(k).error, walk_alone<Tally>{}))
+        Tally::take_certain(s);
       return true;
     }
     return false;
@@ -85,11 +85,11 @@ struct pair_search : tree_steps<Answer> {
     memory& s = frame::here();
     const pair c = live ? s.pair_table[i] : pair{};
     const std::uint32_t part = live ? s.part_of_pair[i] : 0;
-    live = live && s.near_part[part].passes(c.x) && !Answer::skips(s, part, c.point, i, c.x);
-    if constexpr (Answer::goes_ahead)
+    live = live && s.near_part[part].passes(c.x) && !Tally::skips(s, part, c.point, i, c.x);
+    if constexpr (Tally::goes_ahead)
       live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0;  // others may be changing its inputs
     const vec3 q = frame::place(part).part_from_cloud(c.x);
-    if constexpr (has_interior<typename Answer::part_type>) {
+    if constexpr (has_interior<typename Tally::part_type>) {
       const unsigned gone =
           __ballot_sync(all_lanes, live && lane() == 0 && inside(q, c.point, part, i)) >> group() * mates;
       live = live && (gone & 1) == 0;
@@ -100,7 +100,7 @@ struct pair_search : tree_steps<Answer> {
     if (live) root = steps::root(part);
     const bool leaf = live && steps::is_leaf(part, root);
     const std::uint32_t pair_and_part = part << 16 | i;
-    const real reach = Answer::reach_of_pair(s, part, i);
+    const real reach = Tally::reach_of_pair(s, part, i);
     top = push({-infinity, root, pair_and_part}, leaf && lane() == 0, stack, top);
     return push_children(-infinity, root, live && !leaf ? steps::size(part, root) : 0, pair_and_part, q, reach, stack,
                          top);
@@ -114,7 +114,7 @@ struct pair_search : tree_steps<Answer> {
     memory& s = frame::here();
     const std::uint32_t warp = threadIdx.x / 32;
     pending* const stack = s.stack[warp];
-    typename Answer::news elsewhere(s);
+    typename Tally::news elsewhere(s);
     std::uint32_t top = 0, row = 0;
     [[maybe_unused]] std::uint32_t below = 0;  // nodes in memory
     bool shared = false;
@@ -124,8 +124,8 @@ struct pair_search : tree_steps<Answer> {
       for (; row * warps < count && top < at_once && (!any_size || below == 0); row += at_once) {
         // A point's pairs follow one another, and so do its neighbours'. So each row begins with another warp.
         const std::uint32_t its = row + group(), i = its * warps + (its + warp) % warps;
-        if constexpr (Answer::goes_ahead)
-          top = admit(i < count ? Answer::open_pair(s, i) : 0, i < count, stack, top);
+        if constexpr (Tally::goes_ahead)
+          top = admit(i < count ? Tally::open_pair(s, i) : 0, i < count, stack, top);
         else
           top = admit(i, i < count, stack, top);
       }
@@ -228,7 +228,7 @@ struct pair_search : tree_steps<Answer> {
     const std::uint32_t part = steps::part_of(e.pair), i = steps::pair_of(e.pair);
     pair v{};
     if (e.bound == e.bound) v = s.pair_table[i];  // otherwise another warp may be writing there
-    const real reach = Answer::reach_of_pair(s, part, i);
+    const real reach = Tally::reach_of_pair(s, part, i);
     const bool live = e.bound <= reach, leaf = live && steps::is_leaf(part, e.node);
     const std::uint32_t count = live ? steps::size(part, e.node) : 0;
     std::uint32_t left = leaf ? 0 : count;  // children that are not yet pushed
@@ -282,7 +282,7 @@ struct pair_search : tree_steps<Answer> {
                               const scan::pair& v, real reach) {
 #pragma unroll 1
     for (std::uint32_t k = lane(); __any_sync(all_lanes, k < count); k += mates) {
-      typename Answer::record r;
+      typename Tally::record r;
       typename hierarchy::primitive_type primitive;
       if (k < count) {
         const auto place = steps::place_of(leaf, k);
@@ -291,7 +291,7 @@ struct pair_search : tree_steps<Answer> {
         if (const real distance = primitive.distance(v.x); distance <= reach)
           r = {make_key(distance, v.point), part, id, place};
       }
-      if (__any_sync(all_lanes, r.key != no_key)) Answer::take(frame::here(), r, primitive, pair);
+      if (__any_sync(all_lanes, r.key != no_key)) Tally::take(frame::here(), r, primitive, pair);
     }
   }
 };

@@ -8,13 +8,13 @@
 namespace clearance::scan {
 
 /// A part's place and tree.
-template <class Answer>
+template <class Tally>
 struct frame_parts {
-  using memory = typename Answer::block;
-  using view_type = typename Answer::part_type;
+  using memory = typename Tally::block;
+  using view_type = typename Tally::part_type;
   using part_type = block_part<view_type>;
 
-  static __device__ memory& here() { return memory_of_block<Answer>(); }
+  static __device__ memory& here() { return memory_of_block<Tally>(); }
   static __device__ part_type* parts() {
     extern __shared__ __align__(16) std::byte scan_memory[];
     return reinterpret_cast<part_type*>(scan_memory + sizeof(memory));
@@ -24,7 +24,7 @@ struct frame_parts {
 
   /// Copies them there. Every thread copies a share, and calls `meanwhile` once while it waits for its first words.
   template <class F>
-  static __device__ void prepare(const scan_arguments<Answer>& a, F meanwhile) {
+  static __device__ void prepare(const scan_arguments<Tally>& a, F meanwhile) {
     memory& s = here();
     const std::uint32_t t = threadIdx.x;
     // Dealt evenly to all warps, because threads of a warp read kernel arguments one after another.
@@ -38,7 +38,7 @@ struct frame_parts {
     static_assert(sizeof(s.head) % sizeof(uint4) == 0 && sizeof(frames::root_ball) % sizeof(uint2) == 0);
     if (const std::uint32_t last = block_threads - 1 - t; last < head_words)
       reinterpret_cast<uint4*>(&s.head)[last] =
-          reinterpret_cast<const uint4*>(static_cast<const scan_head<Answer>*>(&a))[last];
+          reinterpret_cast<const uint4*>(static_cast<const scan_head<Tally>*>(&a))[last];
     if (const std::uint32_t i = t - 128; i < (a.parts + cluster - 1) / cluster * ball_words)
       reinterpret_cast<uint2*>(s.cluster)[i] = reinterpret_cast<const uint2*>(a.clusters())[i];
     if (t < drop_reasons) s.dropped[t] = 0;

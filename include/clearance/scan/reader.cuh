@@ -18,7 +18,7 @@ inline constexpr unsigned no_point = 0xff;  ///< There is no such point.
 
 /// Neighbouring points are near a part together, and a block that gets many such points keeps all others waiting. So
 /// pieces of points are dealt out to the blocks like cards.
-template <class Answer>
+template <class Tally>
 class cards {
  public:
   /// Deals one row of cards after another, each from another block on. Otherwise they could all be from one column.
@@ -37,11 +37,11 @@ class cards {
   /// How many threads have neighbouring points: few, if each part has a bound and so more points are near; one, if
   /// pairs take long and nothing evens out the only round.
   __device__ std::uint32_t threads() const {
-    if constexpr (!Answer::bound_per_part)
+    if constexpr (!Tally::bound_per_part)
       return 4;
-    else if constexpr (!Answer::goes_ahead)
+    else if constexpr (!Tally::goes_ahead)
       return 2;
-    else if constexpr (Answer::few != 0)  // a block's first points may be the last that matter
+    else if constexpr (Tally::few != 0)  // a block's first points may be the last that matter
       return 2;
     else
       return once_ ? 1 : 2;

@@ -8,9 +8,9 @@
 
 namespace clearance::scan {
 
-/// Tests a range of points against every part, by one thread: the loop of any backend without its own scan. `Answer`
+/// Tests a range of points against every part, by one thread: the loop of any backend without its own scan. `Tally`
 /// says how near something must be, gives a walk its visitor, and takes what it found.
-template <class PartView, point_source Source, class Traversal, class Answer>
+template <class PartView, point_source Source, class Traversal, class Tally>
 struct scan_body {
   const PartView* parts;
   const frames::placement* places;
@@ -19,12 +19,13 @@ struct scan_body {
   vec3 origin;
   std::uint32_t first;  ///< Number of this cloud's first point among all clouds' points.
   drop_counts* counts;
-  Answer answer;
+  Tally answer;
   Traversal walk;
   std::size_t stack_bytes = 0;
 
   CLEARANCE_HD void operator()(indices range) const {
-    tally mine;
+    static_assert(explain_tally<Tally>());
+    drop_tally mine;
 #if defined(__CUDA_ARCH__)
     for (std::size_t i = range.begin; i < range.end; i += range.step)
       if (const sample s = source[i]; mine.counts(s)) visit(s.position - origin, i);

@@ -29,12 +29,12 @@ struct shared_packet {
 };
 
 /// In a block's shared memory. It holds few packets at once, because it takes its room from the cache.
-template <class Answer>
+template <class Tally>
 struct sharing_memory {
   static constexpr std::uint32_t most = 8;
   std::uint32_t idle;        ///< One bit per warp. If all are set, no warp has anything left to hand over.
   packet_task tasks[warps];  ///< In shared memory, because registers are few.
-  shared_packet<typename Answer::visitor_type> packets[most];
+  shared_packet<typename Tally::visitor_type> packets[most];
 
   __device__ void clear() {
     idle = 0;
@@ -46,9 +46,9 @@ struct sharing_memory {
 /// An answer's visitor takes what another one has found:
 ///   hear(other)  lowers the reach to the other's; returns true if its own find is nearer. `other` may be changing.
 ///   join(other)  takes the other's find if it is nearer.
-template <class Answer>
+template <class Tally>
 struct shared_walk {
-  using visitor = typename Answer::visitor_type;
+  using visitor = typename Tally::visitor_type;
 
   /// This warp's task. The whole warp calls each function here.
   static __device__ packet_task& task() { return memory().tasks[warp()]; }
@@ -100,7 +100,7 @@ struct shared_walk {
     const unsigned those = __ballot_sync(all_lanes, lane() < top && mine[lane()].bound <= most);
     if (__popc(those) < 2) return;
     const bool first = task().shared == none;
-    const std::uint32_t place = first ? warp() % sharing_memory<Answer>::most : task().shared;
+    const std::uint32_t place = first ? warp() % sharing_memory<Tally>::most : task().shared;
     std::uint32_t helper = none;
     if (lane() == 0 && (!first || atomicCAS(&s.packets[place].walkers, 0u, 1u) == 0)) {
       if (const unsigned idle = fresh(s.idle); idle != 0) {
@@ -151,7 +151,7 @@ struct shared_walk {
 
  private:
   static constexpr unsigned all_warps = (1u << warps) - 1;
-  static __device__ sharing_memory<Answer>& memory() { return memory_of_block<Answer>().sharing; }
+  static __device__ sharing_memory<Tally>& memory() { return memory_of_block<Tally>().sharing; }
   static __device__ std::uint32_t lane() { return threadIdx.x % 32; }
   static __device__ std::uint32_t warp() { return threadIdx.x / 32; }
 

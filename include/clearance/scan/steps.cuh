@@ -14,9 +14,9 @@ struct step_to {
 };
 
 /// For any tree, by its own members.
-template <class Answer, hierarchy H>
-struct steps_down : frame_parts<Answer> {
-  using parts = frame_parts<Answer>;
+template <class Tally, hierarchy H>
+struct steps_down : frame_parts<Tally> {
+  using parts = frame_parts<Tally>;
   using kind = node_of<H>;
   using node_type = typename kind::type;
   using place_type = typename kind::place;
@@ -55,9 +55,9 @@ struct steps_down : frame_parts<Answer> {
 };
 
 /// For a tree in arrays. Its top is read from shared memory.
-template <class Answer, array_hierarchy H>
-struct steps_down<Answer, H> : frame_parts<Answer> {
-  using parts = frame_parts<Answer>;
+template <class Tally, array_hierarchy H>
+struct steps_down<Tally, H> : frame_parts<Tally> {
+  using parts = frame_parts<Tally>;
   using node_type = bvh_node;
   using place_type = std::uint32_t;
   using primitive_type = typename H::primitive_type;
@@ -100,13 +100,13 @@ struct steps_down<Answer, H> : frame_parts<Answer> {
  private:
   /// Node n of part k, and its volume: from shared memory if it is one of the first.
   static __device__ bvh_node node(std::uint32_t k, std::uint32_t n) {
-    if constexpr (Answer::top_bytes > 0)
+    if constexpr (Tally::top_bytes > 0)
       if (const std::uint32_t stride = parts::here().head.top_stride; n < stride)
         return near(parts::here().tops.nodes + k * stride + n);
     return far(tree(k).nodes + n);
   }
   static __device__ volume_type volume(std::uint32_t k, std::uint32_t n) {
-    if constexpr (Answer::top_bytes > 0)
+    if constexpr (Tally::top_bytes > 0)
       if (const std::uint32_t stride = parts::here().head.top_stride; n < stride)
         return near(parts::here().tops.volumes + k * stride + n);
     return far(tree(k).volumes + n);
@@ -135,12 +135,12 @@ struct steps_down<Answer, H> : frame_parts<Answer> {
   }
   template <class T>
   static __device__ T near(const T* from) {
-    if constexpr (Answer::goes_ahead && has_pieces<T>) return in_pieces(from, [](const auto* word) { return *word; });
+    if constexpr (Tally::goes_ahead && has_pieces<T>) return in_pieces(from, [](const auto* word) { return *word; });
     return *from;
   }
   template <class T>
   static __device__ T far(const T* from) {
-    if constexpr (Answer::goes_ahead && has_pieces<T>)
+    if constexpr (Tally::goes_ahead && has_pieces<T>)
       return in_pieces(from, [](const auto* word) { return __ldg(word); });
     return read_only(from);
   }
@@ -156,7 +156,7 @@ struct steps_down<Answer, H> : frame_parts<Answer> {
   }
 };
 
-template <class Answer>
-struct tree_steps : steps_down<Answer, typename Answer::part_type::hierarchy_type> {};
+template <class Tally>
+struct tree_steps : steps_down<Tally, typename Tally::part_type::hierarchy_type> {};
 
 }  // namespace clearance::scan

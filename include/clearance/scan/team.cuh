@@ -31,11 +31,11 @@ struct lanes {
 using eight_lanes = lanes<8>;
 
 /// A part's tree as `descend` takes it.
-template <class Answer>
+template <class Tally>
 struct steps_of_part {
-  using all = tree_steps<Answer>;
+  using all = tree_steps<Tally>;
   using node_type = typename all::node_type;
-  using volume_type = typename Answer::hierarchy_type::volume_type;
+  using volume_type = typename Tally::hierarchy_type::volume_type;
   std::uint32_t part;
 
   __device__ node_type root() const { return all::root(part); }

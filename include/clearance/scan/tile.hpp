@@ -4,7 +4,7 @@
 // on every processor. Single coordinates are read only if a part may be near.
 
 #include <clearance/points/extremes.hpp>
-#include <clearance/scan/tally.hpp>
+#include <clearance/scan/drops.hpp>
 
 namespace clearance::scan {
 
@@ -21,7 +21,8 @@ struct tile {
   /// Loads `count` points: begin, begin + stride, ...; counts dropped ones. The source is a copy that no write here can
   /// change, and only this loop reads it, so that compilers can split it into its members.
   template <point_source S>
-  [[gnu::flatten]] void load(const S source, std::size_t begin, std::size_t count, std::size_t stride, tally& mine) {
+  [[gnu::flatten]] void load(const S source, std::size_t begin, std::size_t count, std::size_t stride,
+                             drop_tally& mine) {
     constexpr vec3 nowhere{not_a_number, not_a_number, not_a_number};
     for (std::size_t j = count; j < tile_points; ++j) put(j, nowhere);
     if constexpr (unfiltered_source<S>) {

@@ -88,14 +88,14 @@ inline bool beside(const extent& a, const extent& b) {
 
 /// Counts a whole tile's dropped points and finds the others' box, without loading it. False if this source cannot.
 template <point_source S>
-bool survey(const S& source, std::size_t begin, extent& box, tally& mine) {
+bool survey(const S& source, std::size_t begin, extent& box, drop_tally& mine) {
   if constexpr (surveyed_source<S>) return source.survey(begin, box, mine.dropped);
   return false;
 }
 
 /// Tests points begin .. end - 1, tile by tile. Nearly all tiles are far from every part and are done after one test.
 template <class Body>
-void scan_tiles(const Body& body, std::size_t begin, std::size_t end, tally& mine) {
+void scan_tiles(const Body& body, std::size_t begin, std::size_t end, drop_tally& mine) {
   const auto reach = [&](std::uint32_t k) { return body.answer.reach(k); };
   const extent near_robot = within_reach(body);  // spares nearly all boxes the test of every part
   for (std::size_t i = begin; i < end; i += tile_points) {
@@ -118,7 +118,7 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, tally& min
     while (k < body.part_count && !may_reach(body.places[k].around, reach(k), box)) ++k;
     if (k == body.part_count) continue;
     if (!loaded) {
-      tally uncounted;
+      drop_tally uncounted;
       t.load(body.source, i, count, 1, uncounted);
       t.subtract(body.origin);
     }
@@ -137,7 +137,7 @@ void sample_tiles(const Body& body, std::size_t tiles, Descend descend) {
   const auto index = [&](std::size_t n, std::size_t j) { return (n * tile_points + j) * stride; };
   const auto reach = [&](std::uint32_t k) { return body.answer.reach(k); };
   tile t;
-  tally uncounted;
+  drop_tally uncounted;
   for (std::size_t n = 0; n < tiles; ++n) {
     t.load(body.source, index(n, 0), tile_points, stride, uncounted);
     t.subtract(body.origin);

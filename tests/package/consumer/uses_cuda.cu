@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <clearance/bvh/build.hpp>
-#include <clearance/questions/min_distance.hpp>
 #include <clearance/device.cuh>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/obb.hpp>
 
 // Not called: the machine that builds this need not have a GPU.

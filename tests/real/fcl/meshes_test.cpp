@@ -34,7 +34,9 @@ TEST_CASE("A real robot's triangles are as far from a real frame as FCL says, li
     for (const double away : {1.5, 3.0}) {
       const Eigen::Isometry3d camera = looking_inward(away, 0.2, 0.6);
       const auto poses = robot.poses(shifted(0, 0, 0), 0.4);
-      const auto [r, minima] = clearance::ask(clearance::host{}, model, poses, clearance::placed{clearance::point_span(some), camera}, clearance::min_distance_per_part{});
+      const auto [r, minima] =
+          clearance::ask(clearance::host{}, model, poses, clearance::placed{clearance::point_span(some), camera},
+                         clearance::min_distance_per_part{});
       int compared = 0;
       for (std::size_t k = 0; k < minima.size(); ++k) {
         if (minima[k].distance < 0.01f) continue;  // FCL knows no inside

@@ -23,7 +23,7 @@ CLEARANCE_HD void count(Counts& r, const unsigned long long (&dropped)[drop_reas
 }
 
 /// What one thread met. It is added to the counts of all once.
-struct tally {
+struct drop_tally {
   std::uint32_t dropped[drop_reasons] = {};
 
   /// Is the point valid? If not, counts its reason.

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// All questions, and which forms each has, read from what it declares.
+
+#include "support/frames.hpp"
+#include "support/same_answer.hpp"
+
+#include <clearance/chunked_query.hpp>
+#include <clearance/deadline.hpp>
+#include <clearance/make_model.hpp>
+#include <clearance/questions/distances_per_part.hpp>
+#include <clearance/questions/in_collisions.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
+#include <clearance/questions/min_distances_per_part.hpp>
+#include <clearance/questions/nearest_k.hpp>
+#include <clearance/questions/part_witnesses.hpp>
+#include <clearance/questions/self_filter.hpp>
+#include <clearance/questions/signed_distances.hpp>
+#include <clearance/questions/within.hpp>
+#include <clearance/questions/zones.hpp>
+#include <clearance/solid/mesh_solid.hpp>
+#include <clearance/volume/aabb.hpp>
+
+namespace testing {
+
+template <class Q>
+struct forms_of {
+  static constexpr bool in_pieces = clearance::merging_question<Q> || requires { typename Q::template joined<int>; };
+  static constexpr bool enqueued = requires { typename Q::out; } || requires { typename Q::searched; };
+  static constexpr bool by_deadline = in_pieces && clearance::partial_question<Q>;
+};
+
+/// Calls `f(name, question)` for each question about inner spheres.
+template <class F>
+void for_each_question(const F& f) {
+  f("min_distance", clearance::min_distance{});
+  f("min_distance_per_part", clearance::min_distance_per_part{});
+  f("min_distance_supported", clearance::min_distance_supported{.min_points = 2, .radius = 0.05});
+  f("distances", clearance::distances{.d_max = 0.6, .which = true});
+  f("distances_per_part", clearance::distances_per_part{.d_max = 0.5});
+  f("in_collision", clearance::in_collision{{0.02}});
+  f("within", clearance::within{{0.1}});
+  f("nearest_k", clearance::nearest_k{.k = 7});
+  f("zones", clearance::zones{.thresholds = {0.05, 0.2, 0.6}});
+  f("self_filter", clearance::self_filter{.padding = {0.05}});
+  f("min_distances", clearance::min_distances{.d_max = 0.3});
+  f("min_distances_per_part", clearance::min_distances_per_part{.d_max = 0.3});
+  f("in_collisions", clearance::in_collisions{{0.02}});
+}
+/// And those about closed meshes.
+template <class F>
+void for_each_question_of_meshes(const F& f) {
+  f("signed_distances", clearance::signed_distances{.d_max = 0.6, .which = true});
+}
+
+/// A robot of closed boxes.
+inline auto closed_boxes(std::size_t parts) {
+  clearance::triangle_mesh box;
+  for (int k = 0; k < 8; ++k) box.vertices.push_back({0.2 * (k & 1), 0.3 * (k >> 1 & 1), 0.25 * (k >> 2)});
+  box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const auto part = clearance::make_part<clearance::aabb>(clearance::close_mesh(box));
+  return clearance::model(std::vector(parts, part));
+}
+
+/// Calls `f(name, question, model, frames)` for all of them, in each of some frames.
+template <class F>
+void ask_everything(const F& f) {
+  moving_frames frames(4, 77);
+  const auto spheres = frames.model();
+  const auto meshes = closed_boxes(4);
+  for (; frames.there(); frames.next()) {
+    for_each_question([&](const char* name, const auto& q) { f(name, q, spheres, frames); });
+    for_each_question_of_meshes([&](const char* name, const auto& q) { f(name, q, meshes, frames); });
+    f("min_distance", clearance::min_distance{}, meshes, frames);
+    f("in_collision", clearance::in_collision{{0.02}}, meshes, frames);
+    f("min_distances", clearance::min_distances{}, meshes, frames);
+  }
+}
+
+/// The table of docs/choosing.md.
+inline std::string table_of_forms() {
+  std::string table =
+      "| question | once, prepared | enqueued | several GPUs, chunks, ranks | deadline |\n| --- | --- | --- | --- | "
+      "--- |\n";
+  const auto row = [&]<class Q>(const char* name, const Q&) {
+    using forms = forms_of<Q>;
+    const auto word = [](bool has) { return has ? "yes" : "no"; };
+    table += std::string("| `") + name + "` | yes | " + word(forms::enqueued) + " | " + word(forms::in_pieces) + " | " +
+             word(forms::by_deadline) + " |\n";
+  };
+  for_each_question(row), for_each_question_of_meshes(row);
+  row("part_witnesses", clearance::part_witnesses{});
+  return table;
+}
+
+}  // namespace testing

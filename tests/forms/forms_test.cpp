@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every question has every form that its declarations allow, with the bits of one call; and the page says which.
+#include "forms/forms.hpp"
+#include "support/catch.hpp"
+
+#include <fstream>
+#include <sstream>
+
+namespace forms_test {
+
+using namespace testing;
+using clearance::host;
+
+TEST_CASE("On the host, prepared questions, chunks and complete deadlines give the bits of one call") {
+  verdict v;
+  std::size_t asked = 0;
+  ask_everything([&]<class Q>(const char* name, const Q& q, const auto& model, const moving_frames& f) {
+    const std::string what = std::string(name) + ", frame " + std::to_string(f.number);
+    const auto once = ask(host{}, model, f.s.poses, f.here(), q);
+    clearance::query prepared(host{2}, model, q);
+    v.require(same_answer(once, typename Q::result(prepared(f.s.poses, f.here()))), what, ": prepared");
+    v.require(same_answer(once, typename Q::result(prepared(f.s.poses, f.here(), q))), what, ": asked again");
+    if constexpr (forms_of<Q>::by_deadline) {
+      auto known = ask_by(prepared, f.s.poses, f.here(), std::chrono::hours(1), q, {.piece = 999});
+      v.require(known.unseen == 0 && same_answer(once, known.result), what, ": by a deadline");
+    }
+    if constexpr (forms_of<Q>::in_pieces) {
+      const auto cloud = clearance::point_span(f.points[0]);
+      const auto of_one = ask(host{}, model, f.s.poses, cloud, f.here()[0].pose, q);
+      clearance::chunked chunks(cloud, 4096);
+      clearance::chunked_query by_chunks(host{}, model, q);
+      for (const char* time : {"first", "second"})
+        v.require(same_answer(of_one, by_chunks(f.s.poses, chunks, f.here()[0].pose)), what, ": in chunks, the ", time,
+                  " time");
+    }
+    ++asked;
+  });
+  CHECK(asked == 6 * 17);
+}
+
+TEST_CASE("While points are unseen, nothing is said that another point could make false") {
+  verdict v;
+  moving_frames f(4, 78);
+  const auto model = f.model();
+  for (; f.there(); f.next()) {
+    if (f.points[0].size() < 2000) continue;
+    for_each_question([&]<class Q>(const char* name, const Q& q) {
+      if constexpr (forms_of<Q>::by_deadline) {
+        clearance::query prepared(host{}, model, q);
+        const auto whole = ask(host{}, model, f.s.poses, f.here(), q);
+        for (int pieces = 0; pieces < 6; ++pieces) {
+          int left = pieces;
+          const auto known = ask_while(prepared, f.s.poses, f.here(), [&] { return left-- > 0; }, q, {.piece = 1000});
+          const std::string what = std::string(name) + " after " + std::to_string(pieces) + " pieces";
+          v.require(known.unseen > 0, what, ": ", known.unseen, " unseen");
+          const auto state_holds = [&](clearance::state now, clearance::state then) {
+            v.require(now != clearance::state::free, what, ": free");
+            v.require(now != clearance::state::collision || then == clearance::state::collision, what, ": collision");
+          };
+          if constexpr (std::is_same_v<Q, clearance::zones>) {
+            v.require(known.result.innermost() == 0, what, ": innermost");
+            for (std::size_t i = 0; i < whole.zones.size(); ++i)
+              v.require(known.result.zones[i].points <= whole.zones[i].points, what, ": zone ", i);
+          } else if constexpr (std::is_same_v<Q, clearance::in_collision>) {
+            state_holds(known.result.state, whole.state);
+          } else if constexpr (std::is_same_v<Q, clearance::in_collisions>) {
+            for (std::size_t c = 0; c < whole.of.size(); ++c) state_holds(known.result.of[c], whole.of[c]);
+          } else if constexpr (std::is_same_v<Q, clearance::min_distance>) {
+            state_holds(known.result.state, whole.state);
+            v.require(known.result.lower == 0 && known.result.upper >= whole.upper, what, ": bracket");
+          }
+        }
+      }
+    });
+  }
+}
+
+TEST_CASE("docs/choosing.md has the table of forms that the questions declare") {
+  std::ifstream file(CLEARANCE_TEST_ROOT "/docs/choosing.md");
+  std::stringstream page;
+  page << file.rdbuf();
+  INFO("the table is:\n" << table_of_forms());
+  CHECK(page.str().find(table_of_forms()) != std::string::npos);
+}
+
+}  // namespace forms_test
