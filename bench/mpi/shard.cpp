@@ -4,6 +4,7 @@
 #include <clearance/make_model.hpp>
 #include <clearance/mpi/shard.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <chrono>

@@ -2,6 +2,7 @@
 #pragma once
 // The arguments of a question as an engine takes them.
 
+#include <clearance/backend/plain.hpp>
 #include <clearance/frame/clouds.hpp>
 #include <clearance/robot/model.hpp>
 
@@ -20,7 +21,7 @@ class one_robot {
   one_robot(const On& on, const Part& part) : view_{nullptr, {&part.facts, 1}, 0, 0} {
     const PartView its = part.view();
     check(part.facts, 0);
-    own_.emplace(on.copy_in(std::span(&its, 1)));
+    own_.emplace(backend_of(on).copy_in(std::span(&its, 1)));
     view_ = {own_->data(), view_.facts, its.tree.depth(), its.tree.width()};
   }
 
@@ -28,7 +29,7 @@ class one_robot {
 
  private:
   model_view<PartView> view_;
-  std::optional<typename On::template buffer<PartView>> own_;
+  std::optional<typename backend_of_t<On>::template buffer<PartView>> own_;
 };
 
 /// What is known of a robot's parts.

@@ -1,31 +1,18 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws what some questions answer: docs/figures/distances.png, every point in the colour of its distance, and
-docs/figures/clearance-over-time.svg, the least distance frame after frame.
+"""scripts/record questions: what some questions answer, as pictures."""
 
-  scripts/record-questions build/tools/clearance ../shared/data/robots/kuka_lwr_kresse/kuka.urdf
-
-The world is made here: a camera's depth frames of a table, a wall and a box, and of a ball that is carried past the robot.
-Needs nothing but Python; the pictures are of `clearance query --distances --scene` and `clearance run --svg`.
-"""
-
-import importlib.machinery
-import importlib.util
 import math
 import pathlib
 import struct
 import subprocess
-import sys
 import tempfile
 import xml.etree.ElementTree
 import zlib
 
-root = pathlib.Path(__file__).resolve().parent.parent
-loader = importlib.machinery.SourceFileLoader("record_demo", str(root / "scripts/record-demo"))
-demo = importlib.util.module_from_spec(importlib.util.spec_from_loader("record_demo", loader))
-sys.dont_write_bytecode = True
-loader.exec_module(demo)
-dot, cross, sub, unit = demo.dot, demo.cross, demo.sub, demo.unit
+import pictures
+from recorded import root
+
+dot, cross, sub, unit = pictures.dot, pictures.cross, pictures.sub, pictures.unit
 
 columns, rows, focal = 320, 240, 285.0
 joints = "2.1,0.75,0.1,-1.2,0.2,0.9,0"
@@ -111,23 +98,25 @@ def written_points(file):
 
 
 def draw(scene, ply, file):
-    demo.eye, demo.target, demo.view_degrees = (-1.25, -1.75, 1.35), (0.42, 0.1, 0.25), 40
     samples, width, height = 2, 780, 520
-    canvas = demo.Canvas(width * samples, height * samples)
+    canvas = pictures.Canvas(width * samples, height * samples, (-1.25, -1.75, 1.35), (0.42, 0.1, 0.25), 40)
     light = unit((-0.4, -0.8, 1.0))
     for p, colour in written_points(ply):
         canvas.dot(p, bytes(int(0.9 * c) for c in colour), 5)
-    for mode, points, indices, paint, _, _ in demo.glb(scene):
+    for mode, points, indices, paint, _, _ in pictures.glb(scene):
         if mode == 0 or paint[0] > 0.8 and paint[1] < 0.3:  # the points are drawn; the witness is left out
             continue
         for i in range(0, len(indices) - 2, 3):
             corners = [points[j] for j in indices[i : i + 3]]
             normal = unit(cross(sub(corners[1], corners[0]), sub(corners[2], corners[0])))
-            canvas.triangle(corners, demo.shade((0.62, 0.62, 0.64), 0.35 + 0.6 * abs(dot(normal, light))))
+            canvas.triangle(corners, pictures.shade((0.62, 0.62, 0.64), 0.35 + 0.6 * abs(dot(normal, light))))
     canvas.save(file, samples)
 
 
-def main(program, robot):
+def main(arguments):
+    if len(arguments) != 2:
+        return None
+    program, robot = arguments
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "frames").mkdir()
@@ -146,9 +135,3 @@ def main(program, robot):
         code = subprocess.run([program, "run", *asked, "--frames", "frames", "--trajectory", "joints.csv", "--check", str(margin), "--svg",
                         root / "docs/figures/clearance-over-time.svg"], stdout=subprocess.DEVNULL, cwd=folder).returncode
     return 0 if code == 2 else 1  # the ball comes nearer than the margin
-
-
-if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    sys.exit(main(*sys.argv[1:]))

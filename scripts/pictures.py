@@ -1,38 +1,13 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs `clearance demo` and records what it prints, for the README.
+"""Draws triangles and points by a plain z-buffer into a PNG, and reads binary glTF. Needs nothing but Python."""
 
-  scripts/record-demo build/tools/clearance           writes docs/demo-output.txt and the picture docs/figures/demo.png
-  scripts/record-demo --check build/tools/clearance   writes nothing; exit 1 if the demo prints anything but docs/demo-output.txt
-  scripts/record-demo scene.glb                       the picture alone
-
-Run scripts/quote-docs after it: pages have times of the demo. The rows of the host are those of this run. The rows of a GPU are those of the newest
-docs/gpu-runs/*/demo.txt (scripts/gpu-test makes one: a line that names GPU and commit, a blank line, the output of the demo),
-under a line that says so; and only if their answers are the host's: those of another version are left out, with a sentence.
---check compares everything but times and the name of the GPU; where the demo finds a GPU, its rows too. Needs nothing but
-Python: the picture is drawn by a plain z-buffer.
-"""
-
-import difflib
 import array
 import json
 import math
-import pathlib
-import re
 import struct
-import subprocess
-import sys
-import tempfile
 import zlib
 
-sys.dont_write_bytecode = True
-import recorded
-from readme import comparable, without_device
-from recorded import root
-
-shown = root / "docs/demo-output.txt"
-width, height, samples = 960, 540, 2  # pixels; and how many rays a pixel has along each side
-eye, target, up, view_degrees = (-0.35, -1.75, 1.35), (0.60, 0.10, 0.46), (0, 0, 1), 33
+up = (0, 0, 1)
 
 
 def sub(a, b):
@@ -96,8 +71,10 @@ def glb(file):
 
 
 class Canvas:
-    def __init__(self, w, h):
-        self.w, self.h = w, h
+    """`w` x `h` pixels, seen from `eye` towards `target` by a lens of `view_degrees`."""
+
+    def __init__(self, w, h, eye, target, view_degrees):
+        self.w, self.h, self.eye = w, h, eye
         self.depth = array.array("d", [math.inf]) * (w * h)
         self.paint = bytearray(b"\xff" * (3 * w * h))
         forward = unit(sub(target, eye))
@@ -106,7 +83,7 @@ class Canvas:
         self.focal = h / 2 / math.tan(math.radians(view_degrees / 2))
 
     def project(self, p):
-        d = sub(p, eye)
+        d = sub(p, self.eye)
         z = dot(d, self.axes[2])
         if z < 0.05:
             return None
@@ -178,97 +155,3 @@ def save_png(file, width, height, paint, samples):
 
 def shade(paint, light):
     return bytes(min(255, int(255 * math.pow(max(0.0, c * light), 1 / 1.4))) for c in paint[:3])
-
-
-def draw(scene, file):
-    canvas = Canvas(width * samples, height * samples)
-    towards_light = unit((-0.3, -0.8, 1.0))
-    for mode, points, indices, paint, _, _ in glb(scene):
-        red = paint[0] > 0.8 and paint[1] < 0.3  # the witness: drawn over what would hide it
-        if mode == 0:
-            low = min((p[2] for p in points), default=0.0)
-            high = max((p[2] for p in points), default=1.0)
-            for p in points:
-                t = (p[2] - low) / ((high - low) or 1.0)
-                canvas.dot(p, shade((0.12 + 0.3 * t * t, 0.25 + 0.5 * t, 0.55 + 0.25 * t), 0.9), 3)
-            continue
-        if red:
-            ends = points[0], max(points, key=lambda p: dot(sub(p, points[0]), sub(p, points[0])))
-            for k in range(400):
-                at = tuple(a + k / 399 * (b - a) for a, b in zip(*ends))
-                canvas.dot(at, shade(paint, 1.0), 5, 0.3)
-            continue
-        for i in range(0, len(indices), 3):
-            corners = [points[j] for j in indices[i : i + 3]]
-            normal = unit(cross(sub(corners[1], corners[0]), sub(corners[2], corners[0])))
-            light = 0.35 + 0.6 * abs(dot(normal, towards_light))
-            canvas.triangle(corners, shade(paint, light))
-    file.parent.mkdir(parents=True, exist_ok=True)
-    canvas.save(file, samples)
-
-
-def run_demo(program, *options):
-    done = subprocess.run([program, "demo", "--no-cache", *options], stdout=subprocess.PIPE, text=True)
-    if done.returncode != 0:
-        sys.exit(f"{done.stdout}\nrecord-demo: {program} demo failed (exit {done.returncode})")
-    return done.stdout
-
-
-def answers(text, backend):
-    """The rows of a backend without its name and without times."""
-    return [line.split()[1:-1] for line in text.splitlines() if line.startswith(backend) and not line.endswith(":")]
-
-
-def device_rows(host):
-    """Of the newest recorded run on a GPU, with a line that says what they are; none if its answers are not the host's."""
-    file = recorded.newest("demo.txt")
-    text, name = file.read_text(), file.relative_to(root)
-    commit = recorded.commit_of(file)
-    gpu = re.search(r"Device: (.*)\.$", text, re.MULTILINE)
-    rows = [line for line in text.splitlines(keepends=True) if line.startswith("device")]
-    if not gpu or not rows:
-        raise recorded.Mistake(f"{name} has no rows of a GPU")
-    if answers(text, "device") != answers(host, "host"):
-        print(f"record-demo: {name} (commit {commit}) gives other answers than this program, so its rows are left out; record it again")
-        return ""
-    return f"device   on an {gpu[1]}, recorded at commit {commit}:\n" + "".join(rows)
-
-
-def check(program):
-    said, promised = run_demo(program), shown.read_text()
-    wrong = list(difflib.unified_diff(comparable(promised), comparable(said), str(shown.relative_to(root)), f"{program} demo", lineterm=""))
-    if "".join(line for line in promised.splitlines(keepends=True) if line.startswith("device")) != device_rows(promised):
-        wrong.append("docs/demo-output.txt: the rows of the device are not those of the newest run on a GPU that gives the host's answers")
-    if (rows := answers(said, "device")) and rows != answers(promised, "host"):
-        wrong.append(f"{program} demo: the device gives other answers than the host's in docs/demo-output.txt")
-    for line in wrong:
-        print(line)
-    if wrong:
-        print("record-demo: run scripts/record-demo and scripts/quote-docs, and commit what they write")
-    return 1 if wrong else 0
-
-
-def main(arguments):
-    if len(arguments) == 2 and arguments[0] == "--check":
-        return check(arguments[1])
-    if len(arguments) != 1 or arguments[0].startswith("-"):
-        print(__doc__)
-        return 1
-    if arguments[0].endswith(".glb"):
-        draw(pathlib.Path(arguments[0]), root / "docs/figures/demo.png")
-        return 0
-    with tempfile.TemporaryDirectory() as folder:
-        scene = pathlib.Path(folder) / "demo.glb"
-        said = without_device(run_demo(arguments[0], "--scene", scene))
-        last = max(i for i, line in enumerate(said.splitlines()) if line.startswith("host"))
-        lines = said.splitlines(keepends=True)
-        shown.write_text("".join(lines[: last + 1]) + device_rows(said) + "".join(lines[last + 1 :]))
-        draw(scene, root / "docs/figures/demo.png")
-    return 0
-
-
-if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except recorded.Mistake as mistake:
-        sys.exit(f"record-demo: {mistake}")

@@ -1,17 +1,7 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws a robot filled with spheres, inside its transparent mesh: docs/figures/kuka-spheres.png; or, level by level, the tree that
-queries walk (Weller & Zachmann 2009, figure 2): docs/figures/kuka-levels.png.
-
-  scripts/record-packing [--levels] build/tools/clearance ../shared/data/robots/kuka_lwr_kresse/kuka.urdf
-
-Runs `clearance pack` and draws what it wrote: the spheres from the .ist file (read here by docs/packing.md alone), the
-mesh, the poses and the tree's levels from the .glb. Needs nothing but Python: a plain z-buffer, seen along parallel rays.
-"""
+"""scripts/record packing: a robot filled with spheres, and its tree level by level."""
 
 import array
-import importlib.machinery
-import importlib.util
 import math
 import pathlib
 import re
@@ -21,12 +11,10 @@ import sys
 import tempfile
 import zlib
 
-root = pathlib.Path(__file__).resolve().parent.parent
-loader = importlib.machinery.SourceFileLoader("record_demo", str(root / "scripts/record-demo"))
-demo = importlib.util.module_from_spec(importlib.util.spec_from_loader("record_demo", loader))
-sys.dont_write_bytecode = True
-loader.exec_module(demo)
-dot, cross, sub, unit = demo.dot, demo.cross, demo.sub, demo.unit
+import pictures
+from recorded import root
+
+dot, cross, sub, unit = pictures.dot, pictures.cross, pictures.sub, pictures.unit
 
 width, height, samples = 780, 600, 3
 towards_eye = unit((0.75, -1.0, 0.42))
@@ -160,12 +148,12 @@ class Picture:
         return paint
 
     def save(self, file):
-        demo.save_png(file, self.w, self.h, self.painted(), self.samples)
+        pictures.save_png(file, self.w, self.h, self.painted(), self.samples)
 
 
 def draw(ist, scene, file):
     spheres, meshes, poses = read_ist(ist), [], {}
-    for _, points, indices, _, name, matrix in demo.glb(scene):
+    for _, points, indices, _, name, matrix in pictures.glb(scene):
         if name.endswith(" mesh"):
             meshes.append((points, indices))
             poses[name.removesuffix(" mesh")] = matrix
@@ -201,7 +189,7 @@ def balls_of(points):
 def draw_levels(ist, scene, file):
     """A panel for each level but the root's own and the last, every link in a colour of its own; and the inner spheres."""
     levels, poses = {}, {}
-    for _, points, _, _, name, matrix in demo.glb(scene):
+    for _, points, _, _, name, matrix in pictures.glb(scene):
         if found := re.fullmatch(r"(.+) level (\d+)", name):
             poses[found[1]] = matrix
             levels.setdefault(int(found[2]), {})[found[1]] = balls_of(points)
@@ -223,15 +211,14 @@ def draw_levels(ist, scene, file):
         flat = picture.painted()
         for y, row in enumerate(paint):
             row += flat[3 * picture.w * y : 3 * picture.w * (y + 1)]
-    demo.save_png(file, wide * rays * len(shown), high * rays, bytearray().join(paint), rays)
+    pictures.save_png(file, wide * rays * len(shown), high * rays, bytearray().join(paint), rays)
 
 
 def main(arguments):
     levels = arguments[:1] == ["--levels"]
     arguments = arguments[levels:]
     if len(arguments) != 2:
-        print(__doc__)
-        return 1
+        return None
     with tempfile.TemporaryDirectory() as folder:
         ist, scene = pathlib.Path(folder) / "robot.ist", pathlib.Path(folder) / "robot.glb"
         command = [arguments[0], "pack", arguments[1], "--geometry", "visual", "--spheres", "2048", "--joints", joints, "--no-cache"]
@@ -247,7 +234,3 @@ def main(arguments):
         except OSError as error:
             sys.exit(f"{picture} cannot be written: {error.strerror}")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
