@@ -37,15 +37,16 @@ inline void check_margins(std::span<const double> margins, std::size_t parts) {
 /// What is known of a frame before a question is asked. Reused, it allocates only for more parts or clouds.
 struct frame_ahead {
   cloud_frame frame;
-  std::vector<std::uint32_t> first;  ///< The number of each cloud's first point.
-  std::vector<real> reaches;         ///< How near a point must be to each part to matter, as the question says.
-  std::size_t points = 0;            ///< Of all clouds.
+  std::vector<std::uint32_t> first;    ///< The number of each cloud's first point.
+  std::vector<real> reaches;           ///< How near a point must be to each part to matter, as the question says.
+  std::size_t clouds = 0, points = 0;  ///< How many clouds there are, and points of all clouds.
 
   /// The facts of all clouds together.
   template <class Clouds>
   const frame_facts& look(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses,
                           const Clouds& clouds) {
     first.clear();
+    this->clouds = count_clouds(clouds);
     points = std::size_t(
         for_each_turn(frame, facts, poses, clouds, [&](const auto&, const turn& now) { first.push_back(now.first); }));
     return frame;

@@ -18,7 +18,7 @@ struct asked {
   std::span<const part_facts> facts;
   const frames::frame_facts& frame;         ///< Of all clouds together.
   const std::vector<std::uint32_t>& first;  ///< The number of each cloud's first point among all clouds' points.
-  std::size_t points;                       ///< Of all clouds.
+  std::size_t clouds, points;               ///< How many clouds there are, and points of all clouds.
   std::vector<real>& reaches;               ///< For the question's use: how near a point must be to each part.
   backends::kept_memory<On>& memory;
 
@@ -74,7 +74,9 @@ class passes {
     return last();
   }
   /// The frame that was looked at.
-  asked<On> last() { return {on, model.facts, ahead_.frame, ahead_.first, ahead_.points, ahead_.reaches, memory}; }
+  asked<On> last() {
+    return {on, model.facts, ahead_.frame, ahead_.first, ahead_.clouds, ahead_.points, ahead_.reaches, memory};
+  }
 
   /// Enqueues a pass; clouds must be readable where it runs.
   template <class Clouds, answer Answer>

@@ -46,7 +46,7 @@ class engine<device, PartView, Q> : public minimum::placed_batch<PartView, typen
   /// device cannot throw. A graph that captures this keeps the current options, and is void after more configurations
   /// are placed, or a larger cloud is asked about.
   template <class Clouds>
-  auto start_with(const Clouds& clouds, const Q& q) {
+  auto start_placed(const Clouds& clouds, const Q& q) {
     ask(clouds, q, frames::as_it_is{});
     return search_.results();
   }

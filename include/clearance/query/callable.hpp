@@ -22,10 +22,12 @@ class callable {
     return (*this)(poses, clouds, asked_);
   }
   template <class Poses, class S, class Pose>
+    requires(!requires(const Poses& chain) { chain.parts(); })
   decltype(auto) operator()(const Poses& poses, const S& source, const Pose& pose, const Q& q) {
     return (*this)(poses, as_clouds(source, pose), q);
   }
   template <class Poses, class S, class Pose>
+    requires(!requires(const Poses& chain) { chain.parts(); })
   decltype(auto) operator()(const Poses& poses, const S& source, const Pose& pose) {
     return (*this)(poses, as_clouds(source, pose), asked_);
   }

@@ -81,11 +81,20 @@ class query : detail::one_robot<On, PartView>,
   auto enqueue(const Poses& poses, const Clouds& clouds, const out& to) {
     return enqueue(poses, clouds, callable::asked(), to);
   }
-  /// The same for what an engine takes besides: poses in a device's memory, or none, for placed configurations.
-  template <class First, class... Rest>
-    requires requires(engine& e, const First& first, const Rest&... rest) { e.start_with(first, rest...); }
-  auto enqueue(const First& first, const Rest&... rest) {
-    return engine::start_with(first, rest...);
+  /// The same with poses in device or pinned memory: one per part, and the cloud's (null: the world's). A graph that
+  /// captures this sees the memory of each launch.
+  template <point_source S>
+  void enqueue(const world_transform* poses, const S& source, const world_transform* cloud_pose, const out& to) {
+    engine::start_with(poses, source, cloud_pose, to);
+  }
+  /// About placed configurations: returns device memory with one result per configuration.
+  template <class Clouds>
+  auto enqueue(const Clouds& clouds, const Q& q) {
+    return engine::start_placed(clouds, q);
+  }
+  template <class Clouds>
+  auto enqueue(const Clouds& clouds) {
+    return engine::start_placed(clouds, callable::asked());
   }
 
   std::span<const part_facts> facts() const { return robot_type::view().facts; }

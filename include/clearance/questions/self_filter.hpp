@@ -122,7 +122,7 @@ struct self_filter {
     result all;
     all.labels = a.copy_out(from.labels, a.points);
     all.counts = a.copy_out(from.counts, 1)[0];
-    all.offsets.assign(a.first.begin(), a.first.end());
+    all.offsets.assign(a.first.begin(), a.first.begin() + std::ptrdiff_t(a.clouds));
     all.offsets.push_back(a.points);
     pairwise::list_rest(all);
     return all;
