@@ -9,8 +9,6 @@
 #include <clearance/scan/drops.hpp>
 #include <clearance/scan/threads.cuh>
 
-#include <cub/device/device_radix_sort.cuh>
-
 namespace clearance::cloud_tree {
 
 namespace detail {
@@ -169,6 +167,10 @@ struct sorted_order {
 
 }  // namespace detail
 
+/// Sorts pairs of words: device_sort.cuh, which the questions about plans include.
+template <class Key>
+struct device_sort;
+
 /// Owns a tree that is built anew for every frame, in memory that is kept. Invalid points stay among the others as NaN,
 /// so the shape is known before they are read and nothing waits. Images become pyramids; other points are sorted.
 class device_tree {
@@ -193,7 +195,7 @@ class device_tree {
     grow(codes_, n), grow(sorted_codes_, n), grow(numbers_, n), grow(sorted_, n);
     on_.launch(detail::grid_kernel<S>, 1, detail::grid_threads, 0, source, grid_.data());
     on_.for_ranges(n, detail::encode_body<S>{source, grid_.data(), codes_.data(), numbers_.data(), dropped});
-    sort(n);
+    sort<S>(n);
     put_up(source, shape, detail::sorted_order{sorted_.data()}, dropped);
   }
   const view_type& view() const { return view_; }
@@ -219,12 +221,13 @@ class device_tree {
     if (level < view_.levels) on_.launch(detail::top_kernel<view_type>, 1, 1024, 0, view_, level, to);
   }
 
+  template <class S>
   void sort(std::size_t n) {
+    using sorts = device_sort<std::enable_if_t<point_source<S>, std::uint32_t>>;
     const device_guard guard(on_.id);
     const auto call = [&](void* room, std::size_t& bytes) {
-      check_cuda(cub::DeviceRadixSort::SortPairs(room, bytes, codes_.data(), sorted_codes_.data(), numbers_.data(),
-                                                 sorted_.data(), n, first_bit, last_bit, on_.stream),
-                 "cub::DeviceRadixSort::SortPairs");
+      sorts::pairs(room, bytes, codes_.data(), sorted_codes_.data(), numbers_.data(), sorted_.data(), n, first_bit,
+                   last_bit, on_.stream);
     };
     if (n > sort_size_) {
       std::size_t bytes = 0;

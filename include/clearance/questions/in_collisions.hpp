@@ -5,6 +5,10 @@
 #include <clearance/plan/engine.hpp>
 #include <clearance/questions/in_collision.hpp>
 
+#if defined(__CUDACC__)
+#include <clearance/cloud_tree/device_sort.cuh>  // for a tree over points on a device
+#endif
+
 namespace clearance {
 
 /// One state per configuration: that of in_collision for its poses. There is no witness, because it is chance which one

@@ -7,6 +7,10 @@
 #include <clearance/plan/engine.hpp>
 #include <clearance/questions/min_distance.hpp>
 
+#if defined(__CUDACC__)
+#include <clearance/cloud_tree/device_sort.cuh>  // for a tree over points on a device
+#endif
+
 namespace clearance {
 
 /// One result per configuration: that of min_distance for its poses, to the bit, if it is at most d_max. Otherwise the
