@@ -18,10 +18,10 @@ CLEARANCE_HD inline real is_within(double margin, const part_facts& facts, const
   return rounded_down(left / (left < 0 ? 1 - error.per_metre : 1 + error.per_metre));
 }
 
-/// The largest computed distance that is at most `metres`. Throws std::invalid_argument if that is NaN.
-inline real largest_within(double metres, const char* what = "d_max") {
-  if (!(metres == metres)) throw std::invalid_argument("clearance: " + std::string(what) + " is not a number");
-  return rounded_down(metres);
+/// The largest computed distance that is at most `d_max` metres. Throws std::invalid_argument if that is NaN.
+inline real largest_within(double d_max) {
+  if (!(d_max == d_max)) throw std::invalid_argument("clearance: d_max is not a number");
+  return rounded_down(d_max);
 }
 
 /// Throws std::invalid_argument if there is neither one margin nor one per part, or if one is NaN.

@@ -71,9 +71,12 @@ struct within {
       throw std::invalid_argument("clearance: there are " + std::to_string(a.parts()) + " parts, but " +
                                   std::to_string(radius.size()) + " radii");
     a.reaches.clear();
-    for (std::size_t k = 0; k < a.parts(); ++k)
-      a.reaches.push_back(frames::largest_within(radius[radius.size() == 1 ? 0 : k],
-                                                 ("the radius of part " + std::to_string(k)).c_str()));
+    for (std::size_t k = 0; k < a.parts(); ++k) {
+      const double its = radius[radius.size() == 1 ? 0 : k];
+      if (!(its == its))
+        throw std::invalid_argument("clearance: the radius of part " + std::to_string(k) + " is not a number");
+      a.reaches.push_back(frames::largest_within(its));
+    }
     const auto [reaches] = a.put(a.reaches);
     const unsigned long long nothing = 0;
     a.on.stage(std::span(&nothing, 1), to.count);
