@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`clearance query --shard` says what `clearance query` says, on however many ranks; and what is wrong on one of them ends all.
+"""`clearance query --shard` and `clearance plan --shard` say what they say without it, on however many ranks; and what is wrong on one of them
+ends all.
 Arguments: mpiexec, its option for the number of ranks, the command."""
 import json
 import os
@@ -28,21 +29,21 @@ def said_by(words):
     return subprocess.run(words, env=environment, capture_output=True, text=True, timeout=120)
 
 
-def plain(*options):
-    return said_by([command, "query", *options])
+def plain(*options, sub="query"):
+    return said_by([command, sub, *options])
 
 
-def on_ranks(*each):
+def on_ranks(*each, sub="query"):
     """Each: how many ranks, and their options."""
     words = [mpiexec]
     for k, (ranks, options) in enumerate(each):
-        words += [":"] * (k > 0) + [number, str(ranks), command, "query", "--shard", *options]
+        words += [":"] * (k > 0) + [number, str(ranks), command, sub, "--shard", *options]
     return said_by(words)
 
 
 def without_times(text):
     text = re.sub(r"^seconds .*\n", "seconds\n", text, flags=re.M)
-    return re.sub(r'"seconds": \{[^}]*\}', '"seconds": {}', text)
+    return re.sub(r'"seconds": ?\{[^}]*\}', '"seconds": {}', text)
 
 
 def png(width, height, pixels):
@@ -73,37 +74,52 @@ with tempfile.TemporaryDirectory() as name:
     lens = ["--intrinsics", "10,10,3.5,2.5", "--camera-pose", "0.1,0,-0.9,0,0,0,1"]
     base = ["--backend", "host", "--robot", written("robot.urdf", robot)]
     triangles, spheres = base + ["--model", "triangles"], base + ["--spheres", "40", "--no-cache"]
+    rows = ["--configurations", written("rows.csv", "slide\n0\n0.1\n0.3\n0.7\n1\n")]
+    images = triangles + ["--json", "--cloud", far, "--zero-is-missing", "--cloud", image, *lens, "--cloud", image, *lens]
+    two = triangles + ["--json", "--joint", "slide=0.3", "--cloud", inside, "--cloud", near, "--zero-is-missing"]
+    ply, scene = str(folder / "distances.ply"), str(folder / "scene.glb")
     asked = [
         triangles + ["--cloud", near, "--zero-is-missing"],
         triangles + ["--json", "--check", "0.1", "--cloud", far, "--zero-is-missing", "--cloud", near, "--zero-is-missing", "--cloud", empty, "--cloud", one],
         triangles + ["--json", "--check", "0.1", "--joint", "slide=0.3", "--cloud", inside, "--cloud", far],
-        triangles + ["--json", "--cloud", far, "--zero-is-missing", "--cloud", image, *lens, "--cloud", image, *lens],
-        triangles + ["--json", "--cloud", touching],
+        images,
+        triangles + ["--json", "--cloud", touching, "--scene", scene],
         triangles + ["--json", "--check", "0", "--cloud", empty],
         spheres + ["--cloud", near, "--range", "0.4,1.5", "--check", "0.3"],
         spheres + ["--json", "--volume", "obb", "--cloud", inside, "--cloud", near, "--zero-is-missing"],
+        images + ["--self-filter", "0.3", "--zones", "0,0.4,1", "--min-points", "2", "--nearest", "7", "--d-max", "1.3", "--gradient"],
+        two + ["--self-filter", "0.01", "--zones", "0.1,0.4", "--nearest", "20", "--gradient", "--distances", ply, "--signed", "--scene", scene],
+        spheres + ["--cloud", touching, "--cloud", one, "--zones", "0.1,9", "--nearest", "2", "--gradient", "--distances", ply, "--d-max", "0.7"],
+        spheres + ["--cloud", empty, "--self-filter", "0.1", "--zones", "0.1", "--nearest", "2", "--gradient", "--distances", ply],
+    ]
+    planned = [
+        triangles + rows + ["--cloud", near, "--zero-is-missing", "--cloud", far],
+        triangles + rows + ["--cloud", inside, "--between", "--check", "0.05", "--csv"],
+        spheres + rows + ["--cloud", far, "--zero-is-missing", "--cloud", image, *lens, "--d-max", "0.4", "--check", "0.1", "--between"],
+        spheres + rows + ["--cloud", empty],
     ]
     codes, states = set(), set()
-    for k, options in enumerate(asked):
-        expected = plain(*options)
+
+    def answers(words, say):
+        """What is said, and what the files hold that were written."""
+        for file in (ply, scene):
+            pathlib.Path(file).unlink(missing_ok=True)
+        return say(words), [pathlib.Path(file).read_bytes() if pathlib.Path(file).exists() else None for file in (ply, scene)]
+
+    for k, (sub, options) in enumerate([("query", options) for options in asked] + [("plan", options) for options in planned]):
+        expected, files = answers(options, lambda words: plain(*words, sub=sub))
         assert expected.stdout, expected.stderr
         codes.add(expected.returncode)
-        if "--json" in options:
+        if sub == "query" and "--json" in options:
             states.add(json.loads(expected.stdout)["state"])
         for ranks in (1, 2, 3) if k < 2 else (2 + k % 2,):  # to start them takes longer than all else
-            found = on_ranks((ranks, options))
+            found, written_by_ranks = answers(options, lambda words: on_ranks((ranks, words), sub=sub))
             assert found.returncode == expected.returncode, f"{ranks} ranks end with {found.returncode}, not {expected.returncode}: {found.stderr}"
             assert without_times(found.stdout) == without_times(expected.stdout), f"{ranks} ranks say {found.stdout}, not {expected.stdout}"
+            assert written_by_ranks == files, f"{ranks} ranks write other files: {options}"
             for line in expected.stderr.splitlines():
                 assert found.stderr.splitlines().count(line) == 1, f"{ranks} ranks do not say once: {line}"
     assert codes == {0, 2, 3} and states == {"free", "collision", "possible", "no_data"}, (codes, states)
-
-    scene = folder / "scene.glb"
-    assert plain(*triangles, "--cloud", near, "--scene", str(scene)).returncode == 0
-    drawn = scene.read_bytes()
-    scene.unlink()
-    assert on_ranks((2, triangles + ["--cloud", near, "--scene", str(scene)])).returncode == 0
-    assert scene.read_bytes() == drawn, "two ranks draw another scene"
 
     def ends(sentences, *each):
         """All ranks end, each with a sentence; one that is expected of several may come from any."""
@@ -121,6 +137,10 @@ with tempfile.TemporaryDirectory() as name:
     ends([f"{nowhere}: there is no such file", f"rank 0 of 2: {nowhere}: there is no such file"], (1, triangles + ["--cloud", nowhere]), (1, good))
     ends(["rank 1 asks about other poses than rank 0"] * 2, (1, good), (1, good + ["--joint", "slide=0.1"]))
     ends(["rank 1 asks about 2 clouds, rank 0 about 1"] * 2, (1, good), (1, good + ["--cloud", one]))
+    differ = "rank 1 has other questions than rank 0, or clouds of other sizes"
+    ends([differ] * 2, (1, good), (1, good + ["--zones", "0.1"]))
+    ends([differ] * 2, (1, good + ["--zones", "0.1,0.2"]), (1, good + ["--zones", "0.1"]))
+    ends([differ] * 2, (1, good), (1, triangles + ["--cloud", far]))
     unwritable = str(folder / "no" / "folder.glb")
     why = plain(*good, "--scene", unwritable).stderr.removeprefix("clearance: ").rstrip("\n")
     assert unwritable in why, why

@@ -103,35 +103,34 @@ class together {
   /// Joins the results of all ranks in their order: `mine` is this rank's, in the numbers of its own clouds.
   template <class Joined, class Result>
   void join(Joined& all, const Result& mine) {
-    struct sent {
-      std::uint64_t bytes, thrown;
-    };
-    std::vector<std::byte> packed;
+    std::vector<std::byte> packed, bytes;
     attempt([&] { detail::pack(packed, mine); });
-    const sent own{packed.size(), std::uint64_t(thrown_ ? 1 : 0)};
-    const std::vector<sent> sizes = gather(comm_, ranks_, &own, 1);
-    for (int r = 0; r < ranks_; ++r)
-      if (sizes[std::size_t(r)].thrown != 0) end_all(r);
+    const std::vector<std::uint64_t> sizes = all_well(packed.size());
     std::vector<std::size_t> begins{0};
-    for (const sent& its : sizes) begins.push_back(begins.back() + its.bytes);
-    std::vector<std::byte> bytes(begins.back());
+    for (const std::uint64_t its : sizes) begins.push_back(begins.back() + std::size_t(its));
+    attempt([&] { bytes.resize(begins.back()); });
+    all_well();                       // nothing throws in what follows
     for (int r = 0; r < ranks_; ++r)  // one after another, because all together may exceed what MPI's counts can say
       for (std::size_t at = begins[std::size_t(r)], end = begins[std::size_t(r) + 1]; at < end; at += most_bytes) {
         if (r == rank_)
           std::copy_n(packed.data() + (at - begins[std::size_t(r)]), std::min(end - at, most_bytes), bytes.data() + at);
         check(MPI_Bcast(bytes.data() + at, int(std::min(end - at, most_bytes)), MPI_BYTE, r, comm_), "MPI_Bcast");
       }
-    const std::size_t clouds = sizes_.size() / std::size_t(ranks_);
-    std::vector<std::uint32_t> first(clouds), whole(clouds), count(clouds);
-    for (std::size_t k = 0; k < sizes_.size(); ++k) whole[k % clouds] += std::uint32_t(sizes_[k]);
-    for (int r = 0; r < ranks_; ++r) {
-      for (std::size_t c = 0; c < clouds; ++c) count[c] = std::uint32_t(sizes_[std::size_t(r) * clouds + c]);
-      Result its{};
-      std::span<const std::byte> from = std::span(bytes).subspan(begins[std::size_t(r)], sizes[std::size_t(r)].bytes);
-      detail::unpack(from, its);
-      all.add(std::move(its), {first, count, whole});
-      for (std::size_t c = 0; c < clouds; ++c) first[c] += count[c];
-    }
+    attempt([&] {
+      const std::size_t clouds = sizes_.size() / std::size_t(ranks_);
+      std::vector<std::uint32_t> first(clouds), whole(clouds), count(clouds);
+      for (std::size_t k = 0; k < sizes_.size(); ++k) whole[k % clouds] += std::uint32_t(sizes_[k]);
+      for (int r = 0; r < ranks_; ++r) {
+        for (std::size_t c = 0; c < clouds; ++c) count[c] = std::uint32_t(sizes_[std::size_t(r) * clouds + c]);
+        Result its{};
+        std::span<const std::byte> from =
+            std::span(bytes).subspan(begins[std::size_t(r)], std::size_t(sizes[std::size_t(r)]));
+        detail::unpack(from, its);
+        all.add(std::move(its), {first, count, whole});
+        for (std::size_t c = 0; c < clouds; ++c) first[c] += count[c];
+      }
+    });
+    all_well();  // all have the answer, or none
   }
 
  private:
@@ -148,6 +147,20 @@ class together {
       }
     }
   };
+  /// Each rank's `number`. Throws on all ranks if one has thrown.
+  std::vector<std::uint64_t> all_well(std::uint64_t number = 0) {
+    struct sent {
+      std::uint64_t number, thrown;
+    };
+    const sent own{number, std::uint64_t(thrown_ ? 1 : 0)};
+    std::vector<std::uint64_t> numbers;
+    const std::vector<sent> each = gather(comm_, ranks_, &own, 1);
+    for (int r = 0; r < ranks_; ++r) {
+      if (each[std::size_t(r)].thrown != 0) end_all(r);
+      numbers.push_back(each[std::size_t(r)].number);
+    }
+    return numbers;
+  }
   [[noreturn]] void end_all(int by) {
     char text[512] = {};
     if (rank_ == by) std::memcpy(text, sentence_.data(), std::min(sentence_.size(), sizeof text - 1));
