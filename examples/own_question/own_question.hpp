@@ -12,8 +12,10 @@
 
 #include <cstdio>
 
+namespace own_question {
+
 // [question]
-struct crowding {
+struct nearness {
   std::array<double, 3> limits = {0.05, 0.1, 0.2};  ///< Metres, ascending. What is asked.
 
   struct result {                          ///< What the user gets.
@@ -79,24 +81,26 @@ inline std::vector<clearance::vec3> cloud() {
 }
 
 /// By definition: all points and all spheres.
-inline crowding::result expected() {
-  crowding::result r{std::vector<unsigned long long>(9), {}};
+inline nearness::result expected() {
+  nearness::result r{std::vector<unsigned long long>(9), {}};
   const auto bodies = links();
   for (const clearance::vec3 p : cloud())
     for (std::size_t k = 0; k < 3; ++k) {
       const clearance::vec3 q = clearance::to_floats(poses()[k].inverse())(p);
       clearance::real least = clearance::infinity;
       for (const auto& s : bodies[k]) least = std::min(least, s.distance(q));
-      for (std::size_t i = 0; i < 3; ++i) r.near[3 * k + i] += least < float(crowding{}.limits[i]);
+      for (std::size_t i = 0; i < 3; ++i) r.near[3 * k + i] += least < float(nearness{}.limits[i]);
     }
   r.counts.seen = r.counts.valid = cloud().size();
   return r;
 }
 
 /// 0 if it is what is expected.
-inline int wrong(const char* form, const crowding::result& r) {
-  static const crowding::result right = expected();
+inline int wrong(const char* form, const nearness::result& r) {
+  static const nearness::result right = expected();
   std::printf("%-12s part 0: %llu points nearer than 5 cm, %llu than 10, %llu than 20\n", form, r.near[0], r.near[1],
               r.near[2]);
   return r.near == right.near && r.counts.valid == right.counts.valid ? 0 : 1;
 }
+
+}  // namespace own_question

@@ -5,6 +5,7 @@
 #include <clearance/mpi/shard.hpp>
 
 int main(int count, char** arguments) {
+  using namespace own_question;
   MPI_Init(&count, &arguments);
   int rank = 0, ranks = 1;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -14,7 +15,7 @@ int main(int count, char** arguments) {
   // [ranks]
   const auto mine = clearance::piece_of(clearance::point_span(points), std::size_t(rank), std::size_t(ranks));
   const clearance::mpi::shard all{MPI_COMM_WORLD, clearance::host{1}};
-  const int failures = wrong("ranks", clearance::ask(all, robot, poses(), mine, crowding{}));
+  const int failures = wrong("ranks", clearance::ask(all, robot, poses(), mine, nearness{}));
   // [ranks]
   MPI_Finalize();
   return failures;
