@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// expected-error: a robot is: a model (make_model), its view, or one part. The arguments are: backend, robot, poses, clouds, question
+// expected-error: a robot is: a model (make_model), its view, or one part. The arguments are: backend, robot, poses
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/min_distance.hpp>
