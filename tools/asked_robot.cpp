@@ -89,7 +89,7 @@ attached_thing load_attached(const query_options& asked, const attachment_option
 }
 
 body_options body_options_of(const query_options& asked) {
-  return {.model = asked.model,
+  return {.spheres = asked.model == model_kind::spheres,
           .pack = {.count = asked.spheres.value_or(pack_options{}.count)},
           .cache = chosen_cache(asked.no_cache, asked.cache)};
 }

@@ -32,7 +32,8 @@ struct motion_clearance_result;
 struct part_facts;
 namespace io {
 class joint_motion;
-}
+struct body;
+}  // namespace io
 }  // namespace clearance
 
 enum class model_kind { spheres, triangles };
@@ -48,13 +49,7 @@ inline volume_kind usual_volume(model_kind kind) {
   return kind == model_kind::spheres ? volume_kind::sphere : volume_kind::obb;
 }
 
-/// One rigid body: what its models are built from.
-struct body {
-  std::string name;
-  clearance::packing packed;      // for spheres; empty if not needed
-  clearance::closed_mesh closed;  // for triangles
-  double tolerance = 0;           // how far the true surface may be from the mesh, m
-};
+using clearance::io::body;
 
 struct seen_points {
   std::variant<clearance::point_span, clearance::depth_image<std::uint16_t>> points;

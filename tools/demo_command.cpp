@@ -81,8 +81,7 @@ int run(const demo_settings& settings) {
     poses.push_back(part.pose);
   }
   body_account account;
-  const body_options how{
-      .pack = {.count = count}, .both = true, .cache = chosen_cache(settings.no_cache, settings.cache)};
+  const body_options how{.pack = {.count = count}, .cache = chosen_cache(settings.no_cache, settings.cache)};
   std::vector<std::string> notes;
   check_kept(how.cache, !settings.cache.empty(), notes);
   const std::vector<body> bodies = make_bodies(sources, how, shown, account);

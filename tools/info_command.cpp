@@ -78,7 +78,7 @@ int describe_solids(const std::string& file, const std::vector<std::string>& pac
   for (const auto& part : parts) sources.push_back({part.name, &part.mesh, part.tessellation_error});
   progress shown;
   body_account account;
-  const std::vector<body> bodies = make_bodies(sources, {.model = model_kind::triangles}, shown, account);
+  const std::vector<body> bodies = make_bodies(sources, {.spheres = false}, shown, account);
   shown.clear();
   notes.insert(notes.end(), account.notes.begin(), account.notes.end());
   say_notes(notes);

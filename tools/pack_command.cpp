@@ -93,7 +93,7 @@ packed_subject fill(const subject& what, const pack_settings& asked, progress& s
   if (!asked.seed.empty()) how.pack.seed = whole_number("--seed", asked.seed);
   how.pack.allow_overlap = asked.overlap;
   how.sheets = what.robot;  // for a mesh, the user wants to know that nothing fits
-  how.on_device = is_device(asked.backend);
+  if (is_device(asked.backend)) how.maker = "device", how.make = pack_on_device;
   how.cache = chosen_cache(asked.no_cache, asked.cache);
   std::vector<body_source> sources;
   for (const io::robot_part& part : what.parts) sources.push_back({part.name, &part.mesh, part.tessellation_error});

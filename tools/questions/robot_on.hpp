@@ -6,13 +6,8 @@
 #include "../stopwatch.hpp"
 
 #include <clearance/frame/readable.hpp>
-#include <clearance/primitive/inner_sphere.hpp>
-#include <clearance/primitive/triangle.hpp>
 #include <clearance/query/query.hpp>
-#include <clearance/robot/model.hpp>
-#include <clearance/solid/winding.hpp>
-#include <clearance/volume/obb.hpp>
-#include <clearance/volume/sphere.hpp>
+#include <clearance/usual_models.hpp>
 
 #include <variant>
 
@@ -78,12 +73,8 @@ class robot_on_backend final : public backend_robot {
   }
 
  private:
-  using sphere_trees =
-      clearance::model<clearance::part<clearance::bvh<clearance::sphere, clearance::inner_sphere, Backend>>, Backend>;
-  using triangle_trees = clearance::model<
-      clearance::part<clearance::bvh<clearance::obb, clearance::triangle, Backend>, clearance::winding<Backend>>,
-      Backend>;
-
+  using sphere_trees = clearance::sphere_model<Backend>;
+  using triangle_trees = clearance::triangle_model<Backend>;
   using trees = std::variant<std::monostate, sphere_trees, triangle_trees>;
 
   /// The fastest trees for the chosen model; built once, in trees.hpp.

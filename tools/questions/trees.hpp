@@ -4,6 +4,7 @@
 
 #include "robot_on.hpp"
 
+#include <clearance/io/robot_bodies.hpp>
 #include <clearance/make_model.hpp>
 
 #include <ranges>

@@ -22,6 +22,7 @@ struct strided_points {
   std::size_t row_step = 0;             ///< Bytes from one row to the next, if `width` is not 0.
   vec3 origin = {0, 0, 0};              ///< Subtracted from doubles before they become floats.
   point_filter filter = {};
+  double off = 0;  ///< How far positions may be from their points already, metres.
 
   CLEARANCE_HD std::size_t size() const { return count; }
   CLEARANCE_HD sample operator[](std::size_t i) const {
@@ -78,7 +79,7 @@ struct strided_points {
   /// For a double less the origin: 2^-53, and 2^-24 when it becomes a float.
   position_error rounding() const {
     const bool as_they_are = std::is_same_v<Scalar, float> && origin == vec3{0, 0, 0};
-    return {0, as_they_are ? 0 : 0x1.00001p-24};
+    return {off, as_they_are ? 0 : 0x1.00001p-24};
   }
 
  private:

@@ -50,6 +50,9 @@ struct signed_distances {
   using engine = pointwise::engine<On, PartView, signed_distances>;
   template <class PartView>
   using joined = pointwise::joined_points<signed_distances>;
+  /// Whether it can be asked about such parts; others do not compile.
+  template <class PartView>
+  static constexpr bool about = scan::has_interior<PartView>;
 
   real limit() const {
     if (!(d_max >= 0))
@@ -60,7 +63,7 @@ struct signed_distances {
   template <class On, class PartView>
   static void check(const On&, const model_view<PartView>& model) {
     static_assert(
-        scan::has_interior<PartView>,
+        about<PartView>,
         "signed exact distances are to closed meshes: make the parts of closed_mesh; inner spheres are signed "
         "in `distances`");
     if constexpr (requires { typename On::own_scan; }) minimum::check_stack<near_first>(model.depth, model.width);
