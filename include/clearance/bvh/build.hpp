@@ -85,16 +85,15 @@ auto build(const R& input, build_options options = {}, Fit fit = {}, Split split
 
   std::vector<split_item> items(primitives.size());
   for (std::uint32_t id = 0; id < items.size(); ++id) {
-    Eigen::Vector3f lower = Eigen::Vector3f::Constant(infinity), upper = -lower;
+    vec3 lower{infinity, infinity, infinity}, upper = -lower;
     for (const ball& b : primitives[id].balls()) {
       if (!is_finite(b.center) || !(b.radius >= 0) || !is_finite(b.radius))
         throw std::invalid_argument("clearance::build: primitive " + std::to_string(id) +
                                     " is not finite or has a negative radius");
-      const Eigen::Vector3f c(b.center.x, b.center.y, b.center.z);
-      lower = lower.cwiseMin((c.array() - b.radius).matrix());
-      upper = upper.cwiseMax((c.array() + b.radius).matrix());
+      const vec3 r{b.radius, b.radius, b.radius};
+      lower = splits::least(lower, b.center - r), upper = splits::most(upper, b.center + r);
     }
-    items[id] = {id, lower, upper};
+    items[id] = {id, {lower.x, lower.y, lower.z}, {upper.x, upper.y, upper.z}};
   }
   const auto too_deep = [&](const detail::topology& t) { return t.depth * (options.width - 1) + 1 > 64; };
   auto shape = detail::arrange(items, options, split);
