@@ -55,6 +55,15 @@ struct center_order {
   }
 };
 
+namespace splits {
+
+inline void halve(std::span<split_item> items, const Eigen::Vector3f& direction) {
+  const auto middle = items.begin() + std::ptrdiff_t(items.size() / 2);
+  std::nth_element(items.begin(), middle, items.end(), center_order{direction});
+}
+
+}  // namespace splits
+
 /// The unit direction in which the centres spread most.
 inline Eigen::Vector3f principal_direction(std::span<const split_item> items) {
   vec3 mean{0, 0, 0};
@@ -72,14 +81,9 @@ struct median_split {
     vec3 lo = items[0].plain_center(), hi = lo;
     for (const auto& i : items) lo = splits::least(lo, i.plain_center()), hi = splits::most(hi, i.plain_center());
     const vec3 wide = hi - lo;
-    real vec3::* axis = &vec3::x;
-    if (wide.y > wide.*axis) axis = &vec3::y;
-    if (wide.z > wide.*axis) axis = &vec3::z;
-    const auto middle = items.begin() + std::ptrdiff_t(items.size() / 2);
-    std::nth_element(items.begin(), middle, items.end(), [axis](const split_item& a, const split_item& b) {
-      const float x = a.plain_center().*axis, y = b.plain_center().*axis;
-      return x < y || (x == y && a.id < b.id);
-    });
+    // Products by 0 and 1 keep the order of coordinates, so one selection serves this rule and the next.
+    const int axis = wide.y > wide.x ? (wide.z > wide.y ? 2 : 1) : (wide.z > wide.x ? 2 : 0);
+    splits::halve(items, {axis == 0 ? 1.0f : 0.0f, axis == 1 ? 1.0f : 0.0f, axis == 2 ? 1.0f : 0.0f});
     return items.size() / 2;
   }
 };
@@ -87,8 +91,7 @@ struct median_split {
 /// Split rule: the middle along the direction in which the centres spread most.
 struct principal_split {
   std::size_t operator()(std::span<split_item> items) const {
-    const auto middle = items.begin() + std::ptrdiff_t(items.size() / 2);
-    std::nth_element(items.begin(), middle, items.end(), center_order{principal_direction(items)});
+    splits::halve(items, principal_direction(items));
     return items.size() / 2;
   }
 };
