@@ -6,6 +6,10 @@
 #include <clearance/query/pieces.hpp>
 #include <clearance/query/query.hpp>
 
+#if defined(__CUDACC__)
+#include <clearance/minimum/chunked_device.cuh>
+#endif
+
 namespace clearance {
 
 namespace detail {

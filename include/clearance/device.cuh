@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Gives every question a device: include it beside the questions, in sources that nvcc compiles.
+// Gives every question a device: include it beside the questions, in sources that nvcc compiles. What only some
+// questions need of a device they include themselves, because nvcc reads every header twice.
 
 #include <clearance/backend/one_call.cuh>
-#include <clearance/minimum/chunked_device.cuh>
 #include <clearance/minimum/device_engine.cuh>
 #include <clearance/pairwise/device_engine.cuh>
-#include <clearance/plan/device_engine.cuh>
-#include <clearance/pointwise/device_engine.cuh>
 #include <clearance/query/on_devices.cuh>
 
 namespace clearance::detail {

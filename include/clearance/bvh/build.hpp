@@ -19,14 +19,31 @@ struct build_options {
 
 namespace detail {
 
+/// Any split rule. A tree is arranged by one function for all of them, which is compiled once.
+class any_split {
+ public:
+  template <class Split>
+  explicit any_split(const Split& split)
+      : split_(&split), call_([](const void* its, std::span<split_item> items) {
+          return std::size_t((*static_cast<const Split*>(its))(items));
+        }) {}
+
+  std::size_t operator()(std::span<split_item> items) const { return call_(split_, items); }
+
+ private:
+  const void* split_;
+  std::size_t (*call_)(const void*, std::span<split_item>);
+};
+
 /// Cuts `items` into at most `width` groups with a range each. It always cuts the largest group that is not yet a leaf.
-template <class Split>
-std::vector<std::pair<std::uint32_t, std::uint32_t>> cut(std::span<split_item> items, std::uint32_t begin,
-                                                         std::uint32_t end, const build_options& options,
-                                                         const Split& split) {
+inline std::vector<std::pair<std::uint32_t, std::uint32_t>> cut(std::span<split_item> items, std::uint32_t begin,
+                                                                std::uint32_t end, const build_options& options,
+                                                                const any_split& split) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> groups = {{begin, end}};
   while (groups.size() < options.width) {
-    const auto largest = std::ranges::max_element(groups, {}, [](auto g) { return g.second - g.first; });
+    auto largest = groups.begin();
+    for (auto g = groups.begin(); g != groups.end(); ++g)
+      if (g->second - g->first > largest->second - largest->first) largest = g;
     const auto [b, e] = *largest;
     if (e - b <= options.leaf_size) break;
     const auto middle = b + std::uint32_t(split(items.subspan(b, e - b)));
@@ -43,8 +60,7 @@ struct topology {
 };
 
 /// A node's children follow one another and come after it.
-template <class Split>
-topology arrange(std::span<split_item> items, const build_options& options, const Split& split) {
+inline topology arrange(std::span<split_item> items, const build_options& options, const any_split& split) {
   topology t;
   std::vector<std::uint32_t> level = {0};
   t.nodes.resize(1);
@@ -85,20 +101,19 @@ auto build(const R& input, build_options options = {}, Fit fit = {}, Split split
 
   std::vector<split_item> items(primitives.size());
   for (std::uint32_t id = 0; id < items.size(); ++id) {
-    Eigen::Vector3f lower = Eigen::Vector3f::Constant(infinity), upper = -lower;
+    vec3 lower{infinity, infinity, infinity}, upper = -lower;
     for (const ball& b : primitives[id].balls()) {
       if (!is_finite(b.center) || !(b.radius >= 0) || !is_finite(b.radius))
         throw std::invalid_argument("clearance::build: primitive " + std::to_string(id) +
                                     " is not finite or has a negative radius");
-      const Eigen::Vector3f c(b.center.x, b.center.y, b.center.z);
-      lower = lower.cwiseMin((c.array() - b.radius).matrix());
-      upper = upper.cwiseMax((c.array() + b.radius).matrix());
+      const vec3 r{b.radius, b.radius, b.radius};
+      lower = splits::least(lower, b.center - r), upper = splits::most(upper, b.center + r);
     }
-    items[id] = {id, lower, upper};
+    items[id] = {id, {lower.x, lower.y, lower.z}, {upper.x, upper.y, upper.z}};
   }
   const auto too_deep = [&](const detail::topology& t) { return t.depth * (options.width - 1) + 1 > 64; };
-  auto shape = detail::arrange(items, options, split);
-  if (too_deep(shape)) shape = detail::arrange(items, options, median_split{});
+  auto shape = detail::arrange(items, options, detail::any_split(split));
+  if (const median_split halves; too_deep(shape)) shape = detail::arrange(items, options, detail::any_split(halves));
 
   bvh<V, P> tree;
   std::vector<ball> balls;

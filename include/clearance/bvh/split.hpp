@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/bvh/largest_axis.hpp>
+
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <array>
@@ -19,42 +20,70 @@ struct split_item {
   std::uint32_t id;
   Eigen::Vector3f lower, upper;
 
-  Eigen::Vector3f center() const { return (lower + upper) / 2; }
+  Eigen::Vector3f center() const {
+    const vec3 c = plain_center();
+    return {c.x, c.y, c.z};
+  }
+  /// The same in plain floats, as all rules here use it: compilers are slow with operators of Eigen.
+  vec3 plain_center() const {
+    return {(lower[0] + upper[0]) / 2, (lower[1] + upper[1]) / 2, (lower[2] + upper[2]) / 2};
+  }
 };
+
+namespace splits {
+
+inline vec3 floats_of(const Eigen::Vector3f& v) { return {v[0], v[1], v[2]}; }
+inline Eigen::Vector3f for_eigen(vec3 v) { return {v.x, v.y, v.z}; }
+inline vec3 least(vec3 a, vec3 b) { return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)}; }
+inline vec3 most(vec3 a, vec3 b) { return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)}; }
+/// The number of the first item whose centre lies beyond `middle` along a way.
+inline std::size_t first_beyond(std::span<const split_item> items, vec3 way, float middle) {
+  std::size_t k = 0;
+  while (k < items.size() && !(plain_dot(items[k].plain_center(), way) > middle)) ++k;
+  return k;
+}
+
+}  // namespace splits
 
 /// The order of centres along a direction.
 struct center_order {
   Eigen::Vector3f direction;
   bool operator()(const split_item& a, const split_item& b) const {
-    const float x = a.center().dot(direction), y = b.center().dot(direction);
+    const vec3 way = splits::floats_of(direction);
+    const float x = splits::plain_dot(a.plain_center(), way), y = splits::plain_dot(b.plain_center(), way);
     return x < y || (x == y && a.id < b.id);
   }
 };
 
+namespace splits {
+
+inline void halve(std::span<split_item> items, const Eigen::Vector3f& direction) {
+  const auto middle = items.begin() + std::ptrdiff_t(items.size() / 2);
+  std::nth_element(items.begin(), middle, items.end(), center_order{direction});
+}
+
+}  // namespace splits
+
 /// The unit direction in which the centres spread most.
 inline Eigen::Vector3f principal_direction(std::span<const split_item> items) {
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-  for (const auto& i : items) mean += i.center() / float(items.size());
-  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();
-  for (const auto& i : items) covariance += (i.center() - mean) * (i.center() - mean).transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(covariance);
-  const Eigen::Vector3f principal = solver.eigenvectors().col(2);
-  return principal.allFinite() && principal.norm() > 0.5f ? principal : Eigen::Vector3f::UnitX();
+  vec3 mean{0, 0, 0};
+  for (const auto& i : items) mean = mean + splits::over(i.plain_center(), float(items.size()));
+  splits::symmetric covariance;
+  for (const auto& i : items) covariance.add_square(i.plain_center() - mean);
+  vec3 principal = splits::largest_axis(covariance);
+  if (!splits::all_finite(principal) || !(splits::plain_length(principal) > 0.5f)) principal = {1, 0, 0};
+  return splits::for_eigen(principal);
 }
 
 /// Split rule: the middle along the widest axis. Gives the least depth.
 struct median_split {
   std::size_t operator()(std::span<split_item> items) const {
-    Eigen::Vector3f lo = items[0].center(), hi = lo;
-    for (const auto& i : items) lo = lo.cwiseMin(i.center()), hi = hi.cwiseMax(i.center());
-    int axis = 0;
-    (hi - lo).maxCoeff(&axis);
-    const auto middle = items.begin() + std::ptrdiff_t(items.size() / 2);
-    std::nth_element(items.begin(), middle, items.end(), [axis](const split_item& a, const split_item& b) {
-      const float x = a.center()[axis], y = b.center()[axis];
-      return x < y || (x == y && a.id < b.id);
-    });
+    vec3 lo = items[0].plain_center(), hi = lo;
+    for (const auto& i : items) lo = splits::least(lo, i.plain_center()), hi = splits::most(hi, i.plain_center());
+    const vec3 wide = hi - lo;
+    // Products by 0 and 1 keep the order of coordinates, so one selection serves this rule and the next.
+    const int axis = wide.y > wide.x ? (wide.z > wide.y ? 2 : 1) : (wide.z > wide.x ? 2 : 0);
+    splits::halve(items, {axis == 0 ? 1.0f : 0.0f, axis == 1 ? 1.0f : 0.0f, axis == 2 ? 1.0f : 0.0f});
     return items.size() / 2;
   }
 };
@@ -62,8 +91,7 @@ struct median_split {
 /// Split rule: the middle along the direction in which the centres spread most.
 struct principal_split {
   std::size_t operator()(std::span<split_item> items) const {
-    const auto middle = items.begin() + std::ptrdiff_t(items.size() / 2);
-    std::nth_element(items.begin(), middle, items.end(), center_order{principal_direction(items)});
+    splits::halve(items, principal_direction(items));
     return items.size() / 2;
   }
 };
@@ -78,13 +106,11 @@ struct two_means_split {
     std::size_t cut = n / 2;
     for (int round = 0; round < 16; ++round) {
       // The clusters meet in the plane between their means, so a cut along the way between the means separates them.
-      const Eigen::Vector3f near = mean(items.first(cut)), far = mean(items.subspan(cut)), way = far - near;
-      if (!(way.norm() > 0)) break;
-      std::sort(items.begin(), items.end(), center_order{way});
-      const float middle = (near + far).dot(way) / 2;
-      const auto beyond =
-          std::find_if(items.begin(), items.end(), [&](const auto& i) { return i.center().dot(way) > middle; });
-      const auto now = std::clamp(std::size_t(beyond - items.begin()), least, n - least);
+      const vec3 near = mean(items.first(cut)), far = mean(items.subspan(cut)), way = far - near;
+      if (!(splits::plain_length(way) > 0)) break;
+      std::sort(items.begin(), items.end(), center_order{splits::for_eigen(way)});
+      const float middle = splits::plain_dot(near + far, way) / 2;
+      const auto now = std::clamp(splits::first_beyond(items, way, middle), least, n - least);
       if (now == cut && round > 0) break;
       cut = now;
     }
@@ -92,10 +118,10 @@ struct two_means_split {
   }
 
  private:
-  static Eigen::Vector3f mean(std::span<const split_item> items) {
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    for (const auto& i : items) sum += i.center();
-    return sum / float(items.size());
+  static vec3 mean(std::span<const split_item> items) {
+    vec3 sum{0, 0, 0};
+    for (const auto& i : items) sum = sum + i.plain_center();
+    return splits::over(sum, float(items.size()));
   }
 };
 
@@ -108,31 +134,30 @@ struct neural_gas_split {
     constexpr int rounds = 24;
     const Eigen::Vector3f principal = principal_direction(items);
     std::sort(items.begin(), items.end(), center_order{principal});
-    std::array<Eigen::Vector3f, 2> mean = {items[n / 4].center(), items[n - 1 - n / 4].center()};
+    std::array<vec3, 2> mean = {items[n / 4].plain_center(), items[n - 1 - n / 4].plain_center()};
     for (int round = 0; round < rounds; ++round) {
       const float width =
           std::pow(0.01f, float(round) / (rounds - 1));  // of the neighbourhood: shrinks from one rank to a hundredth
       const std::array<float, 2> pull = {1, std::exp(-1 / width)};
-      std::array<Eigen::Vector3f, 2> sum = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
+      std::array<vec3, 2> sum = {};
       std::array<float, 2> all = {0, 0};
       for (const auto& i : items) {
-        const std::size_t near = (i.center() - mean[1]).squaredNorm() < (i.center() - mean[0]).squaredNorm();
-        const float volume = (i.upper - i.lower).prod();
+        const vec3 c = i.plain_center(), to_0 = c - mean[0], to_1 = c - mean[1];
+        const std::size_t near = splits::plain_dot(to_1, to_1) < splits::plain_dot(to_0, to_0);
+        const float volume = (i.upper[0] - i.lower[0]) * ((i.upper[1] - i.lower[1]) * (i.upper[2] - i.lower[2]));
         for (const std::size_t k : {near, 1 - near}) {
           const float by = pull[k != near] * volume;
-          sum[k] += by * i.center(), all[k] += by;
+          sum[k] = sum[k] + splits::times(by, c), all[k] += by;
         }
       }
       for (std::size_t k = 0; k < 2; ++k)
-        if (all[k] > 0 && sum[k].allFinite()) mean[k] = sum[k] / all[k];
+        if (all[k] > 0 && splits::all_finite(sum[k])) mean[k] = splits::over(sum[k], all[k]);
     }
-    Eigen::Vector3f way = mean[1] - mean[0];
-    if (!(way.norm() > 0) || !way.allFinite()) way = principal;
-    std::sort(items.begin(), items.end(), center_order{way});
-    const float middle = (mean[0] + mean[1]).dot(way) / 2;
-    const auto beyond =
-        std::find_if(items.begin(), items.end(), [&](const auto& i) { return i.center().dot(way) > middle; });
-    return std::clamp(std::size_t(beyond - items.begin()), least, n - least);
+    vec3 way = mean[1] - mean[0];
+    if (!(splits::plain_length(way) > 0) || !splits::all_finite(way)) way = splits::floats_of(principal);
+    std::sort(items.begin(), items.end(), center_order{splits::for_eigen(way)});
+    const float middle = splits::plain_dot(mean[0] + mean[1], way) / 2;
+    return std::clamp(splits::first_beyond(items, way, middle), least, n - least);
   }
 };
 
@@ -142,7 +167,7 @@ struct surface_area_split {
   std::size_t operator()(std::span<split_item> items) const {
     const std::size_t n = items.size(), least = std::max<std::size_t>(1, n / 3);
     float best = std::numeric_limits<float>::infinity();
-    Eigen::Vector3f best_direction = Eigen::Vector3f::UnitX();
+    Eigen::Vector3f best_direction{1, 0, 0};
     std::size_t cut = n / 2;
     std::vector<float> left(n);
     for (const Eigen::Vector3f& direction : directions(items)) {
@@ -162,15 +187,15 @@ struct surface_area_split {
  private:
   template <class In, class Out>
   static void sweep(In first, In last, Out area) {
-    Eigen::Vector3f lo = first->lower, hi = first->upper;
+    vec3 lo = splits::floats_of(first->lower), hi = splits::floats_of(first->upper);
     for (; first != last; ++first, ++area) {
-      lo = lo.cwiseMin(first->lower), hi = hi.cwiseMax(first->upper);
-      const Eigen::Vector3f d = hi - lo;
-      *area = d.x() * d.y() + d.y() * d.z() + d.z() * d.x();
+      lo = splits::least(lo, splits::floats_of(first->lower)), hi = splits::most(hi, splits::floats_of(first->upper));
+      const vec3 d = hi - lo;
+      *area = d.x * d.y + d.y * d.z + d.z * d.x;
     }
   }
   static std::array<Eigen::Vector3f, 4> directions(std::span<const split_item> items) {
-    return {Eigen::Vector3f::UnitX(), Eigen::Vector3f::UnitY(), Eigen::Vector3f::UnitZ(), principal_direction(items)};
+    return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, principal_direction(items)}};
   }
 };
 

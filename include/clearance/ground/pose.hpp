@@ -113,19 +113,32 @@ CLEARANCE_HD inline bool make_rigid(world_transform& t) {
   return true;
 }
 
+namespace detail {
+
+/// It is apart and cold, because callers are compiled for several processors with all that they call.
+[[noreturn, gnu::noinline, gnu::cold]] inline void refuse_pose(const Eigen::Isometry3d& pose, const world_transform& t,
+                                                               const char* what, std::int64_t number) {
+  bool finite = true;
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c) finite = finite && std::isfinite(pose(r, c));
+  const std::string why = !finite               ? "it has a number that is not finite"
+                          : too_far(t)          ? "it is farther from the origin than 1e18 m"
+                          : skew(t) > most_skew ? "its axes deviate from orthonormal by " + std::to_string(skew(t))
+                                                : "it is a reflection";
+  throw std::invalid_argument("clearance: the pose of " + std::string(what) +
+                              (number < 0 ? "" : " " + std::to_string(number)) + " is not rigid: " + why);
+}
+
+}  // namespace detail
+
 /// `pose` with its rotation made orthonormal to double precision. Throws std::invalid_argument if it is not rigid to
 /// 1e-4 (scale, shear, a reflection, a number that is not finite) or is beyond 1e18 m. `what` and `number` name the
 /// pose in the message.
 inline world_transform rigid_transform_of(const Eigen::Isometry3d& pose, const char* what = "pose",
                                           std::int64_t number = -1) {
   world_transform t(pose);
-  if (make_rigid(t)) return t;
-  const std::string why = !pose.matrix().allFinite() ? "it has a number that is not finite"
-                          : too_far(t)               ? "it is farther from the origin than 1e18 m"
-                          : skew(t) > most_skew      ? "its axes deviate from orthonormal by " + std::to_string(skew(t))
-                                                     : "it is a reflection";
-  throw std::invalid_argument("clearance: the pose of " + std::string(what) +
-                              (number < 0 ? "" : " " + std::to_string(number)) + " is not rigid: " + why);
+  if (!make_rigid(t)) detail::refuse_pose(pose, t, what, number);
+  return t;
 }
 inline Eigen::Isometry3d rigid(const Eigen::Isometry3d& pose, const char* what = "pose", std::int64_t number = -1) {
   return to_isometry(rigid_transform_of(pose, what, number));

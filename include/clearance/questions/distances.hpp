@@ -6,6 +6,10 @@
 #include <clearance/pointwise/joined_points.hpp>
 #include <clearance/query/query.hpp>
 
+#if defined(__CUDACC__)
+#include <clearance/pointwise/device_engine.cuh>
+#endif
+
 namespace clearance {
 
 /// Distances of points, in the order of the clouds and their points.

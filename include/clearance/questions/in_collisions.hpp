@@ -7,6 +7,7 @@
 
 #if defined(__CUDACC__)
 #include <clearance/cloud_tree/device_sort.cuh>  // for a tree over points on a device
+#include <clearance/plan/device_engine.cuh>
 #endif
 
 namespace clearance {

@@ -23,13 +23,22 @@ inline void check_length(double metres, const std::string& what) {
   if (!(metres >= 0))
     throw std::invalid_argument("clearance: " + what + " is " + std::to_string(metres) + " m, which must be 0 or more");
 }
-/// Checks a part's facts; the only rule for them. Throws std::invalid_argument. `number` names the part in the message.
-inline void check(const part_facts& facts, std::int64_t number = -1) {
+namespace detail {
+
+[[gnu::noinline, gnu::cold]] inline void refuse_facts(const part_facts& facts, std::int64_t number) {
   const std::string of = number < 0 ? " of a part" : " of part " + std::to_string(number);
   check_length(facts.gap, "the gap" + of);
   check_length(facts.tolerance, "the tolerance" + of);
   check_length(facts.radius, "the radius" + of);
   if (!is_finite(facts.center)) throw std::invalid_argument("clearance: the centre" + of + " is not finite");
+}
+
+}  // namespace detail
+
+/// Checks a part's facts; the only rule for them. Throws std::invalid_argument. `number` names the part in the message.
+inline void check(const part_facts& facts, std::int64_t number = -1) {
+  const bool lengths = facts.gap >= 0 && facts.tolerance >= 0 && facts.radius >= 0;
+  if (!lengths || !is_finite(facts.center)) detail::refuse_facts(facts, number);
 }
 
 /// For primitives that know their own inside: no solid is asked.

@@ -4,8 +4,6 @@
 
 #include <clearance/ground/math.hpp>
 
-#include <cuda/atomic>
-
 namespace clearance::scan {
 
 inline constexpr int block_threads = 512;
@@ -18,9 +16,12 @@ __device__ T fresh(const T& shared) {
 }
 
 /// Adds one to a counter of the whole device and returns its old value. Threads that count later see what this thread
-/// wrote before. This thread sees what others wrote before they counted.
+/// wrote before. This thread sees what others wrote before they counted. It is what cuda::atomic_ref's fetch_add
+/// becomes; <cuda/atomic> takes a compiler two seconds to read.
 __device__ inline std::uint32_t count_in(std::uint32_t& counter) {
-  return cuda::atomic_ref<std::uint32_t, cuda::thread_scope_device>(counter).fetch_add(1, cuda::memory_order_acq_rel);
+  std::uint32_t old;
+  asm volatile("atom.add.acq_rel.gpu.u32 %0,[%1],%2;" : "=r"(old) : "l"(&counter), "r"(1u) : "memory");
+  return old;
 }
 
 __device__ inline std::uint32_t lower_of(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
