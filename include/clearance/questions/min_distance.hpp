@@ -84,11 +84,13 @@ struct min_distance {
   static void so_far(result& r, std::uint64_t unseen) { minimum::allow_for_unseen(r, unseen); }
 };
 
-/// The least distance of the robot, and of each part: each has its own bound, and `all.lower` is tighter.
+/// The least distance of the robot, and of each part.
 struct min_distance_per_part_result {
   min_distance_result all;
   std::vector<part_minimum> parts;
 };
+
+/// The least distance of the robot, and of each part: each has its own bound, and `all.lower` is tighter.
 struct min_distance_per_part {
   using result = min_distance_per_part_result;
   struct out {

@@ -26,6 +26,7 @@ struct zone {
   }
 };
 
+/// What is in the zones of each part.
 struct zones_result {
   std::size_t per_part = 0, min_points = 1;
   std::vector<zone> zones;  ///< The zones of a part, the innermost first, then those of the next part.
