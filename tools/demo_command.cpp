@@ -65,26 +65,21 @@ bool same_witness(const min_distance_result& a, const min_distance_result& b) {
   return a.distance == b.distance && a.point == b.point && a.part == b.part && a.primitive == b.primitive;
 }
 
-int run(const demo_settings& settings) {
-  const std::size_t count = whole_number("--spheres", settings.spheres);
-  const device_state gpu = find_device();
-  if (!settings.scene.empty()) io::check_target(settings.scene);
+/// The arm's bodies with both models; prints what it is, and how long it took to make.
+std::vector<body> make_arm(const demo_scene& world, const demo_settings& settings, std::size_t count,
+                           stopwatch& clock) {
   progress shown;
-  stopwatch clock;
-  const demo_scene world = make_demo_scene();
   std::vector<body_source> sources;
   std::size_t triangles = 0;
-  std::vector<Eigen::Isometry3d> poses;
   for (const auto& part : world.parts) {
     sources.push_back({part.name, &part.mesh});
     triangles += part.mesh.triangles.size();
-    poses.push_back(part.pose);
   }
   body_account account;
   const body_options how{.pack = {.count = count}, .cache = chosen_cache(settings.no_cache, settings.cache)};
   std::vector<std::string> notes;
   check_kept(how.cache, !settings.cache.empty(), notes);
-  const std::vector<body> bodies = make_bodies(sources, how, shown, account);
+  std::vector<body> bodies = make_bodies(sources, how, shown, account);
   shown.clear();
   say_notes(notes);
   const double seconds = clock.lap();
@@ -95,14 +90,18 @@ int run(const demo_settings& settings) {
   std::printf("An arm of %zu parts: %zu triangles, %zu inner spheres (gap at most %.2f mm), made in %.1f s%s.\n",
               bodies.size(), triangles, spheres, 1e3 * gap, seconds,
               account.packed == 0 ? " from those that were kept" : "");
-  std::printf("A depth frame of %ux%u pixels from the camera on its hand. Device: %s.\n\n", world.width, world.height,
-              gpu.says.c_str());
+  return bodies;
+}
+
+/// Asks with every model and volume, on the host and on a device if there is one; prints a row for each.
+std::vector<demo_row> ask_every_way(const demo_scene& world, const std::vector<body>& bodies, bool has_device) {
   std::printf("%-8s %-10s %-7s %10s  %-20s  %-8s %-12s %9s  %10s\n", "backend", "model", "volume", "distance m",
               "certainly m", "pixel", "part", "primitive", "time ms");
-
+  std::vector<Eigen::Isometry3d> poses;
+  for (const auto& part : world.parts) poses.push_back(part.pose);
   std::vector<demo_row> rows;
   for (const bool on_device : {false, true}) {
-    if (on_device && !gpu.present) continue;
+    if (on_device && !has_device) continue;
     for (const auto model : {model_kind::spheres, model_kind::triangles})
       for (const auto volume : {volume_kind::sphere, volume_kind::aabb, volume_kind::obb}) {
         const asked_model asked{model, volume, &bodies};
@@ -113,24 +112,42 @@ int run(const demo_settings& settings) {
         print(rows.back(), bodies);
       }
   }
-  const min_distance_result& first = rows.front().found.result;
-  std::printf("\n%llu pixels seen, %llu valid. State: %s.\n", (unsigned long long)first.seen,
-              (unsigned long long)first.valid, to_string(first.state));
+  return rows;
+}
 
-  bool agree = true;
+/// Do all rows say the same of a model, and is there a distance that all brackets hold? Prints both.
+bool agree(const std::vector<demo_row>& rows) {
+  bool same = true;
   double lower = 0, upper = infinity;
   for (const demo_row& row : rows) {
     lower = std::max(lower, double(row.found.result.lower));
     upper = std::min(upper, double(row.found.result.upper));
     for (const demo_row& other : rows)
-      if (other.asked.model == row.asked.model && !same_witness(other.found.result, row.found.result)) agree = false;
+      if (other.asked.model == row.asked.model && !same_witness(other.found.result, row.found.result)) same = false;
   }
-  const bool meet = lower <= upper && first.state != state::no_data;
-  std::printf("Witnesses within a model %s. Brackets %s.\n", agree ? "are the same" : "DIFFER",
+  const bool meet = lower <= upper && rows.front().found.result.state != state::no_data;
+  std::printf("Witnesses within a model %s. Brackets %s.\n", same ? "are the same" : "DIFFER",
               meet ? "meet" : "DO NOT MEET");
+  return same && meet;
+}
+
+int run(const demo_settings& settings) {
+  const std::size_t count = whole_number("--spheres", settings.spheres);
+  const device_state gpu = find_device();
+  if (!settings.scene.empty()) io::check_target(settings.scene);
+  stopwatch clock;
+  const demo_scene world = make_demo_scene();
+  const std::vector<body> bodies = make_arm(world, settings, count, clock);
+  std::printf("A depth frame of %ux%u pixels from the camera on its hand. Device: %s.\n\n", world.width, world.height,
+              gpu.says.c_str());
+  const std::vector<demo_row> rows = ask_every_way(world, bodies, gpu.present);
+  const min_distance_result& first = rows.front().found.result;
+  std::printf("\n%llu pixels seen, %llu valid. State: %s.\n", (unsigned long long)first.seen,
+              (unsigned long long)first.valid, to_string(first.state));
+  const bool good = agree(rows);
   if (!settings.scene.empty()) draw(world, rows.front(), settings.scene);
   std::fflush(stdout);
-  return agree && meet ? 0 : 1;
+  return good ? 0 : 1;
 }
 
 }  // namespace

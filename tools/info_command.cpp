@@ -3,6 +3,7 @@
 #include "command_line.hpp"
 #include "json_text.hpp"
 #include "messages.hpp"
+#include "report_text.hpp"
 #include "robot_bodies.hpp"
 
 #include <clearance/ground/config.hpp>
@@ -45,8 +46,7 @@ int describe(const std::string& file, bool as_json) {
     char line[256];
     std::snprintf(line, sizeof line, "%zu spheres, radii %.6f to %.6f m, ", p.spheres.size(), p.radius_min,
                   p.radius_max);
-    const std::string name = clearance::io::printable(part.name);
-    text += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') + line;
+    text += name_column(part.name) + line;
     if (certified)
       std::snprintf(line, sizeof line, "gap at most %.6f m (95 %% %.6f, mean %.6f), fill %.4f", p.gap, p.gap_p95,
                     p.gap_mean, p.fill);
@@ -96,8 +96,7 @@ int describe_solids(const std::string& file, const std::vector<std::string>& pac
     char line[256];
     std::snprintf(line, sizeof line, "%u triangles, inside by %s, %u holes closed, to within %.6f m\n", b.closed.loaded,
                   to_string(b.closed.inside), b.closed.caps.loops, tolerance);
-    const std::string name = clearance::io::printable(b.name);
-    text += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') + line;
+    text += name_column(b.name) + line;
   }
   std::cout << (as_json ? json_text(out, 2) : text);
   return 0;

@@ -2,9 +2,9 @@
 #include "asked_clouds.hpp"
 #include "command_line.hpp"
 #include "messages.hpp"
+#include "plan_report.hpp"
 #include "ranks.hpp"
 #include "recording.hpp"
-#include "report.hpp"
 
 #include <clearance/io/joint_motion.hpp>
 

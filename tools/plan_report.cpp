@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report.hpp"
+#include "plan_report.hpp"
 
-#include "report_json.hpp"
+#include "report_csv.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 using namespace clearance;
 
+namespace {
+
+/// The witness's cloud; null if there is none.
 const observation* cloud_of(const plan_report& report, const min_distance_result& r) {
   return r.point == none ? nullptr : &(*report.clouds)[r.cloud];
 }
 
+/// The way from row k to the next; `time`, `from` and `to` are between 0 and 1.
 json way_of(const plan_report& report, std::size_t k) {
   const motion_clearance_result& way = report.ways[k];
   const bool any = way.state != state::no_data;
@@ -26,6 +30,8 @@ json way_of(const plan_report& report, std::size_t k) {
           {"queries", way.queries},
           {"settled", way.settled}};
 }
+
+}  // namespace
 
 std::optional<std::size_t> plan_report::first_below() const {
   const std::size_t first = blind() ? 0 : found.first_below(*asked->margin);
@@ -84,4 +90,21 @@ std::string to_json(const plan_report& report) {
                      {"upload", report.upload},
                      {"query", report.query}};
   return out + json_text(last, -1);
+}
+
+std::string to_csv(const plan_report& report) {
+  std::string out =
+      std::string("row,") + witness_columns +
+      (report.asked->between ? ",way_state,way_lower,way_upper,way_time,way_from,way_to,way_part\n" : "\n");
+  for (std::size_t k = 0; k < report.found.of.size(); ++k) {
+    const min_distance_result& r = report.found.of[k];
+    out += std::to_string(k) + ',' + witness_cells(r, cloud_of(report, r), r.point, *report.bodies);
+    if (report.asked->between) {
+      const json way = k < report.ways.size() ? way_of(report, k) : json::object();  // the last has none
+      for (const char* name : {"state", "lower", "upper", "time", "from", "to", "part"})
+        out += ',' + (way.contains(name) ? csv_word(way[name]) : std::string());
+    }
+    out += '\n';
+  }
+  return out;
 }

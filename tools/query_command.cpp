@@ -3,8 +3,8 @@
 #include "command_line.hpp"
 #include "distances_file.hpp"
 #include "messages.hpp"
+#include "query_print.hpp"
 #include "ranks.hpp"
-#include "report.hpp"
 #include "report_text.hpp"
 #include "stopwatch.hpp"
 
@@ -104,6 +104,39 @@ void check_outputs(const query_options& asked, const io::files_read& inputs) {
     throw usage_error("--distances", "is the same file as --scene: " + asked.distances);
 }
 
+/// Hides the points that are the robot's own from the questions that follow.
+void hide_own_points(query_report& report, backend_robot& there, poses_of poses, asked_clouds& clouds) {
+  report.filter = there.own_points(poses, *report.asked->self_filter);
+  note_hidden(*report.asked, report.notes);
+  clouds.hide(report.filter->labels);
+  report.upload += there.see(clouds.seen);
+}
+
+/// Asks for the least distance and for all that the options name, but for the distances of all points.
+void ask_questions(query_report& report, backend_robot& there, poses_of poses, const std::vector<double>& joints) {
+  const query_options& asked = *report.asked;
+  report.found = asked.deadline ? there.least_by(poses, *asked.deadline / 1000) : there.least_per_part(poses, 1);
+  report.query = there.query;
+  if (!asked.zones.empty())
+    report.zones = there.zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
+  if (asked.nearest != 0) {
+    std::size_t points = 1;  // for more points there is no list
+    for (const observation& cloud : *report.clouds) points += cloud.size();
+    report.nearest = there.nearest(poses, std::min(asked.nearest, points), asked.d_max);
+  }
+  if (asked.support)
+    report.support = there.supported(
+        poses, {.min_points = asked.support->min_points, .radius = asked.support->radius, .most = asked.support->most});
+  if (asked.gradient)
+    report.gradients = gradients(asked, *report.robot, joints, poses, there.witnesses(poses, report.found.parts));
+}
+
+int exit_code(const query_report& report) {
+  if (report.found.result.state == state::no_data) return 3;
+  const bool stopped = report.zones && report.zones->innermost() == 0;
+  return stopped || (report.asked->margin && !report.passes()) ? 2 : 0;
+}
+
 /// `ranks`: those of --shard.
 int run(const query_options& asked, all_ranks* ranks) {
   const bool speaks = !ranks || ranks->speaks();
@@ -132,26 +165,8 @@ int run(const query_options& asked, all_ranks* ranks) {
   auto there = robot_on(asked.on_device, model);
   if (ranks) there = ranks->together(std::move(there), model, questions_of(asked));
   report.upload = there->see(clouds.seen);
-  if (asked.self_filter) {
-    report.filter = there->own_points(poses, *asked.self_filter);
-    note_hidden(asked, report.notes);
-    clouds.hide(report.filter->labels);
-    report.upload += there->see(clouds.seen);
-  }
-  report.found = asked.deadline ? there->least_by(poses, *asked.deadline / 1000) : there->least_per_part(poses, 1);
-  report.query = there->query;
-  if (!asked.zones.empty())
-    report.zones = there->zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
-  if (asked.nearest != 0) {
-    std::size_t points = 1;  // for more points there is no list
-    for (const observation& cloud : clouds.files) points += cloud.size();
-    report.nearest = there->nearest(poses, std::min(asked.nearest, points), asked.d_max);
-  }
-  if (asked.support)
-    report.support = there->supported(
-        poses, {.min_points = asked.support->min_points, .radius = asked.support->radius, .most = asked.support->most});
-  if (asked.gradient)
-    report.gradients = gradients(asked, robot, joints, poses, there->witnesses(poses, report.found.parts));
+  if (asked.self_filter) hide_own_points(report, *there, poses, clouds);
+  ask_questions(report, *there, poses, joints);
   std::optional<point_distances> distances;
   if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max, asked.is_signed);
   if (ranks) ranks->part();
@@ -166,9 +181,7 @@ int run(const query_options& asked, all_ranks* ranks) {
   shown.clear();
   say_notes(report.notes);
   std::cout << (asked.json ? to_json(report) : to_text(report));
-  if (report.found.result.state == state::no_data) return 3;
-  const bool stopped = report.zones && report.zones->innermost() == 0;
-  return stopped || (asked.margin && !report.passes()) ? 2 : 0;
+  return exit_code(report);
 }
 
 }  // namespace

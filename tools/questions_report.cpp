@@ -154,10 +154,9 @@ std::string zones_text(const query_report& report) {
       (report.asked->min_points > 1 ? text(" (fewer than %zu points do not count)", report.asked->min_points) : "") +
       '\n';
   for (std::size_t k = 0; k < report.bodies->size(); ++k) {
-    const std::string name = io::printable((*report.bodies)[k].name);
     for (std::size_t z = 0; z < report.zones->per_part; ++z) {
       const zone& found = report.zones->of(k, z);
-      out += "  " + (z == 0 ? name : "") + std::string(z > 0 ? 28 : name.size() < 28 ? 28 - name.size() : 1, ' ');
+      out += name_column(z == 0 ? (*report.bodies)[k].name : "");
       out += text("%10g m, %8llu points", report.asked->zones[z], (unsigned long long)found.points);
       if (found.points != 0)
         out += text(", nearest %.6f m, ", double(found.nearest)) + named(found.nearest_cloud, found.nearest_point) +
@@ -173,17 +172,16 @@ std::string nearest_text(const query_report& report) {
   if (std::isfinite(report.asked->d_max)) out += text(", within %g m", report.asked->d_max);
   out += ")\n";
   for (std::size_t k = 0; k < report.bodies->size(); ++k) {
-    const std::string name = io::printable((*report.bodies)[k].name);
+    const std::string& name = (*report.bodies)[k].name;
     std::size_t listed = 0;
     for (const pair_distance& pair : report.nearest->of(k)) {
       if (pair.point == none) break;
-      out += "  " +
-             (listed++ == 0 ? name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') : std::string(28, ' '));
+      out += name_column(listed++ == 0 ? name : "");
       out += text("%.6f m, certainly at least %.6f m: point %u", double(pair.distance),
                   double(report.nearest->certain.lower(pair.distance)), pair.point);
       out += (report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[pair.cloud].name) : "") + '\n';
     }
-    if (listed == 0) out += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ') + "none\n";
+    if (listed == 0) out += name_column(name) + "none\n";
   }
   return out;
 }
@@ -195,8 +193,7 @@ std::string gradients_text(const query_report& report) {
       "joints: m/m or m/rad)\n";
   for (std::size_t k = 0; k < report.bodies->size(); ++k) {
     const part_gradient& g = report.gradients[k];
-    const std::string name = io::printable((*report.bodies)[k].name);
-    out += "  " + name + std::string(name.size() < 28 ? 28 - name.size() : 1, ' ');
+    out += name_column((*report.bodies)[k].name);
     if (!g.of_pose) {
       out += text("none: %s\n", to_string(g.of_pose.state));
       continue;

@@ -3,7 +3,7 @@
 // What `clearance query` reports besides the least distance: zones, nearest points, the self filter, support,
 // gradients, and the cost of a deadline.
 
-#include "report.hpp"
+#include "query_report.hpp"
 #include "report_json.hpp"
 
 /// For a part: its zones, the innermost first; its nearest points; its gradient.

@@ -26,15 +26,3 @@ json counts(const clearance::min_distance_result& r);
 
 /// Rounded to the clock's nanoseconds.
 double microseconds(double seconds);
-
-struct plan_report;
-
-/// The witness's cloud; null if there is none.
-const observation* cloud_of(const plan_report& report, const clearance::min_distance_result& r);
-
-/// The way from row k to the next; `time`, `from` and `to` are between 0 and 1.
-json way_of(const plan_report& report, std::size_t k);
-
-/// The number of configurations, the least distance of all with its configuration, and, for --check, the first that
-/// fails.
-json outcome_of(const plan_report& report);

@@ -2,9 +2,9 @@
 #include "asked_robot.hpp"
 #include "clearance_svg.hpp"
 #include "command_line.hpp"
+#include "frame_report.hpp"
 #include "messages.hpp"
 #include "recording.hpp"
-#include "report.hpp"
 
 #include <clearance/io/write_file.hpp>
 
@@ -59,24 +59,89 @@ class motion {
   std::vector<std::vector<double>> rows_;
 };
 
-std::vector<cloud_options> frames_of(const query_options& asked) {
-  std::vector<cloud_options> frames;
-  for (const std::string& file : list_frames(asked.recording.frames)) {
-    frames.push_back(asked.recording.camera);
-    frames.back().file = file;
-    frames.back().check("--frames");
+/// The frames' files, which are read one at a time.
+class frame_files {
+ public:
+  frame_files(const query_options& asked, progress& shown) : asked_(asked.recording), shown_(shown) {
+    for (const std::string& file : list_frames(asked_.frames)) {
+      files_.push_back(asked_.camera);
+      files_.back().file = file;
+      files_.back().check("--frames");
+    }
+    check_all_clouds(asked_.camera, files_);
   }
-  check_all_clouds(asked.recording.camera, frames);
-  return frames;
+
+  std::size_t size() const { return files_.size(); }
+  const std::string& operator[](std::size_t frame) const { return files_[frame].file; }
+
+  observation load(std::size_t frame) {
+    shown_.show("frame " + std::to_string(frame + 1) + '/' + std::to_string(size()));
+    if (!asked_.merge) names_.clear();  // the line names its frame
+    observation found = observe(files_[frame], names_);
+    print(found.notes, shown_);
+    return found;
+  }
+
+ private:
+  const recording_options& asked_;
+  progress& shown_;
+  std::vector<cloud_options> files_;
+  std::set<std::string> names_;
+};
+
+/// Refuses a trajectory that does not have a row for each frame, nor one for all.
+void check_rows(const query_options& asked, const motion& moves, const frame_files& frames) {
+  if (moves.size() == 1 || moves.size() == frames.size()) return;
+  throw usage_error("--trajectory", asked.recording.trajectory + " has " + std::to_string(moves.size()) +
+                                        " rows, but there are " + std::to_string(frames.size()) +
+                                        " frames (one row would hold for all)");
 }
 
 /// Checks that the picture can be written, before any frame is read or answered.
-void check_picture(const std::string& file, const std::vector<cloud_options>& frames, const io::files_read& inputs) {
-  for (const cloud_options& each : frames) note_file(each.file);
+void check_picture(const std::string& file, const frame_files& frames, const io::files_read& inputs) {
+  for (std::size_t k = 0; k < frames.size(); ++k) note_file(frames[k]);
   io::check_output(file, inputs);
   const auto folder = std::filesystem::path(file).parent_path();
   if (!folder.empty() && !std::filesystem::is_directory(folder))
     io::refuse(file, "cannot be written: there is no such folder");
+}
+
+/// The robot's waypoints for --plan; none without it.
+class waypoints {
+ public:
+  waypoints(const query_options& asked, const asked_robot& robot) : asked_(asked) {
+    if (asked.recording.plan.empty()) return;
+    rows_ = read_rows(asked, robot.description, asked.recording.plan);
+    placed_.emplace(asked, robot, rows_, asked.recording.plan);
+  }
+  waypoints(const waypoints&) = delete;
+
+  std::optional<plan_report> ask(backend_robot& there) const {
+    if (!placed_) return std::nullopt;
+    plan_report plan{.asked = &asked_};
+    plan.found = ask_plan(there, *placed_, infinity, plan.query);
+    return plan;
+  }
+
+ private:
+  const query_options& asked_;
+  std::vector<std::vector<double>> rows_;
+  std::optional<placed_rows> placed_;
+};
+
+/// Shows a frame, which must outlive the question, to the robot. Returns the seconds.
+double show(backend_robot& there, observation& frame, const std::string& file, const motion& moves, std::size_t k) {
+  return there.see({about_file(file, [&] {
+    const seen_points seen = frame.seen(moves.carrier(k), moves.poses(k));
+    rigid(seen.pose, "cloud");
+    return seen;
+  })});
+}
+
+int exit_code(const frame_report& report, const std::optional<double>& margin) {
+  const min_distance_result& r = report.found.result;
+  const int least = r.state == state::no_data ? 3 : margin && !(r.lower > *margin) ? 2 : 0;
+  return std::max(least, report.plan ? report.plan->code() : 0);
 }
 
 int run_frames(const query_options& asked) {
@@ -85,29 +150,13 @@ int run_frames(const query_options& asked) {
   io::files_read inputs;
   std::vector<std::string> notes;
   const asked_robot robot = load_robot(asked, notes);
-  const std::vector<cloud_options> frames = frames_of(asked);
+  frame_files frames(asked, shown);
   const motion moves(asked, robot);
-  if (moves.size() != 1 && moves.size() != frames.size())
-    throw usage_error("--trajectory", asked.recording.trajectory + " has " + std::to_string(moves.size()) +
-                                          " rows, but there are " + std::to_string(frames.size()) +
-                                          " frames (one row would hold for all)");
-  std::vector<std::vector<double>> to_come;
-  std::optional<placed_rows> waypoints;
-  if (!asked.recording.plan.empty()) {
-    to_come = read_rows(asked, robot.description, asked.recording.plan);
-    waypoints.emplace(asked, robot, to_come, asked.recording.plan);
-  }
-  std::set<std::string> names;
-  const auto load = [&](std::size_t k) {
-    shown.show("frame " + std::to_string(k + 1) + '/' + std::to_string(frames.size()));
-    if (!asked.recording.merge) names.clear();  // the line names its frame
-    observation frame = observe(frames[k], names);
-    print(frame.notes, shown);
-    return frame;
-  };
+  check_rows(asked, moves, frames);
+  const waypoints to_come(asked, robot);
   merged_cloud merged;
   if (asked.recording.merge)
-    for (std::size_t k = 0; k < frames.size(); ++k) merged.add(load(k), moves.carrier(k));
+    for (std::size_t k = 0; k < frames.size(); ++k) merged.add(frames.load(k), moves.carrier(k));
   else
     moves.carrier(0);  // refuse a wrong --camera-link before packing the robot
 
@@ -121,22 +170,15 @@ int run_frames(const query_options& asked) {
   std::vector<min_distance_result> seen;  // for the picture
   for (std::size_t k = 0; k < frames.size(); ++k) {
     if (!asked.recording.merge) {
-      observation next = load(k);
-      frame.emplace(std::move(next));  // it must outlive the question
-      upload = there->see({about_file(frames[k].file, [&] {
-        const seen_points seen = frame->seen(moves.carrier(k), moves.poses(k));
-        rigid(seen.pose, "cloud");
-        return seen;
-      })});
+      observation next = frames.load(k);
+      frame.emplace(std::move(next));
+      upload = show(*there, *frame, frames[k], moves, k);
     }
-    frame_report report{.frame = k, .file = frames[k].file, .found = there->least(moves.poses(k)), .bodies = &bodies};
+    frame_report report{.frame = k, .file = frames[k], .found = there->least(moves.poses(k)), .bodies = &bodies};
     report.upload = std::exchange(upload, 0);
     report.query = there->query;
-    plan_report plan{.asked = &asked};
-    if (waypoints) {
-      plan.found = ask_plan(*there, *waypoints, infinity, plan.query);
-      report.plan = &plan;
-    }
+    const std::optional<plan_report> plan = to_come.ask(*there);
+    if (plan) report.plan = &*plan;
     min_distance_result& r = report.found.result;
     if (r.state != state::no_data)
       std::tie(report.cloud, report.point) =
@@ -145,8 +187,7 @@ int run_frames(const query_options& asked) {
     std::cout << (asked.csv ? to_csv(report) : to_json(report));
     if (!std::cout) return code;  // main reports it
     if (!asked.recording.svg.empty()) seen.push_back(r);
-    const int each = r.state == state::no_data ? 3 : asked.margin && !(r.lower > *asked.margin) ? 2 : 0;
-    code = std::max({code, each, report.plan ? plan.code() : 0});
+    code = std::max(code, exit_code(report, asked.margin));
   }
   if (!asked.recording.svg.empty()) {
     io::check_output(asked.recording.svg, inputs);

@@ -2,6 +2,7 @@
 #pragma once
 // All questions, and which forms each has, read from what it declares.
 
+#include "solid/shapes.hpp"
 #include "support/frames.hpp"
 #include "support/same_answer.hpp"
 
@@ -55,10 +56,7 @@ void for_each_question_of_meshes(const F& f) {
 
 /// A robot of closed boxes.
 inline auto closed_boxes(std::size_t parts) {
-  clearance::triangle_mesh box;
-  for (int k = 0; k < 8; ++k) box.vertices.push_back({0.2 * (k & 1), 0.3 * (k >> 1 & 1), 0.25 * (k >> 2)});
-  box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const auto box = shapes::box({0, 0, 0}, {0.2, 0.3, 0.25});
   const auto part = clearance::make_part<clearance::aabb>(clearance::close_mesh(box));
   return clearance::model(std::vector(parts, part));
 }

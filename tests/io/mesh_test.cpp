@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/robot_folder.hpp"
+#include "io/scratch_file.hpp"
 #include "support/catch.hpp"
 
 #include <clearance/io/mesh.hpp>
@@ -14,18 +15,12 @@ using io::load_mesh;
 
 namespace {
 
-template <class... T>
-std::string raw(T... values) {
-  std::string bytes;
-  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
-  return bytes;
-}
-
 /// A triangle for each i, its first corner at (i, 0, 0).
 std::string binary_stl(std::uint32_t stated, int triangles, const std::string& header = "made by a test") {
-  std::string bytes = header + std::string(80 - header.size(), ' ') + raw(stated);
+  std::string bytes = header + std::string(80 - header.size(), ' ') + raw_bytes(stated);
   for (int i = 0; i < triangles; ++i)
-    bytes += raw(0.f, 0.f, 1.f, float(i), 0.f, 0.f, float(i) + 1, 0.f, 0.f, float(i), 1.f, 0.f) + raw(std::uint16_t(0));
+    bytes += raw_bytes(0.f, 0.f, 1.f, float(i), 0.f, 0.f, float(i) + 1, 0.f, 0.f, float(i), 1.f, 0.f) +
+             raw_bytes(std::uint16_t(0));
   return bytes;
 }
 
@@ -79,18 +74,20 @@ TEST_CASE("one triangle is the same from every format") {
   const std::string ply_head =
       "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
       "property list uchar int vertex_indices\nend_header\n";
-  const std::string positions = raw(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, .5f);
+  const std::string positions = raw_bytes(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, .5f);
   const std::vector<std::pair<std::string, std::string>> files = {
       {"a.stl", ascii_stl},
       {"upper.STL", ascii_stl},
       {"no_ending", ascii_stl},
-      {"b.stl", std::string(80, ' ') + raw(std::uint32_t(1)) + raw(0.f, 0.f, 0.f) + positions + raw(std::uint16_t(7))},
-      {"solid.stl",
-       "solid" + std::string(75, ' ') + raw(std::uint32_t(1)) + raw(0.f, 0.f, 0.f) + positions + raw(std::uint16_t(7))},
+      {"b.stl", std::string(80, ' ') + raw_bytes(std::uint32_t(1)) + raw_bytes(0.f, 0.f, 0.f) + positions +
+                    raw_bytes(std::uint16_t(7))},
+      {"solid.stl", "solid" + std::string(75, ' ') + raw_bytes(std::uint32_t(1)) + raw_bytes(0.f, 0.f, 0.f) +
+                        positions + raw_bytes(std::uint16_t(7))},
       {"c.obj", "v 0 0 0\nv 1 0 0\nv 0 +1. .5e0 1.0\nvn 0 0 1\nf 1//1 2//1 \\\r\n -1//1 # last\r\n"},
       {"d.off", "# comment\nOFF 3 1 0\n0 0 0\n1 0 0 # here\n\n0 1 0.5\n3 0 1 2 255 0 0\n"},
       {"e.ply", "ply\nformat ascii 1.0\n" + ply_head + "0 0 0\n1 0 0\n0 1 0.5\n3 0 1 2\n"},
-      {"f.ply", "ply\nformat binary_little_endian 1.0\n" + ply_head + positions + raw(std::uint8_t(3)) + raw(0, 1, 2)},
+      {"f.ply", "ply\nformat binary_little_endian 1.0\n" + ply_head + positions + raw_bytes(std::uint8_t(3)) +
+                    raw_bytes(0, 1, 2)},
       {"g.dae", dae("<unit meter=\"1\"/><up_axis>Z_UP</up_axis>",
                     "<node id=\"n\"><matrix>1 0 0 0 0 0.5 0 0 0 0 "
                     "0.16666667163372039795 0 0 0 0 1</matrix><instance_geometry url=\"#g\"/></node>")},
@@ -264,7 +261,7 @@ TEST_CASE("damaged meshes are refused in one sentence that names the file") {
              "more than the file holds"));
   CHECK(says(refusal("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\n" + head + "0 0 0\n1 0 0\n"), "cut short"));
   const std::string binary = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n" + head +
-                             raw(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f) + raw(3, 0, 1, 2);
+                             raw_bytes(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f) + raw_bytes(3, 0, 1, 2);
   CHECK(load_mesh(folder.put("whole.ply", binary)).triangles.size() == 1);
   for (std::size_t cut = 1; cut < binary.size(); cut += 5)
     CHECK_FALSE(refusal("cut.ply", binary.substr(0, cut)).empty());
@@ -291,7 +288,7 @@ TEST_CASE("damaged meshes are refused in one sentence that names the file") {
   std::string deep;
   for (int i = 0; i < 50000; ++i) deep += "<node>";
   CHECK(says(refusal("a.dae", dae("", deep)), "inside one another"));
-  CHECK(says(refusal("a.glb", raw(0x46546c67u, 2u, 20u, 0u, 0x4e4f534au) + "x"), "21"));
+  CHECK(says(refusal("a.glb", raw_bytes(0x46546c67u, 2u, 20u, 0u, 0x4e4f534au) + "x"), "21"));
 }
 
 TEST_CASE("of the real damaged files the valid ones load and the others never crash", "[data]") {

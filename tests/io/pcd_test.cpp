@@ -12,13 +12,6 @@ using namespace clearance;
 
 namespace {
 
-template <class... T>
-std::string raw(T... values) {
-  std::string bytes;
-  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
-  return bytes;
-}
-
 std::string header(const std::string& fields, const std::string& size, const std::string& type,
                    const std::string& count, const std::string& rest) {
   return "# .PCD\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE " + type + "\nCOUNT " + count + "\n" +
@@ -48,13 +41,13 @@ std::string sample_file(const std::string& encoding) {
                                   "WIDTH 3\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 3\nDATA " + encoding + "\n");
   const float nan = not_a_number;
   if (encoding == "ascii") return head + "7 1 2 3\n8 nan nan nan\n9 4 5 6\n";
-  if (encoding == "binary") return head + raw(7u, 1.f, 2.f, 3.f, 8u, nan, nan, nan, 9u, 4.f, 5.f, 6.f);
-  const std::string by_field = raw(7u, 8u, 9u, 1.f, nan, 4.f, 2.f, nan, 5.f, 3.f, nan, 6.f);
+  if (encoding == "binary") return head + raw_bytes(7u, 1.f, 2.f, 3.f, 8u, nan, nan, nan, 9u, 4.f, 5.f, 6.f);
+  const std::string by_field = raw_bytes(7u, 8u, 9u, 1.f, nan, 4.f, 2.f, nan, 5.f, 3.f, nan, 6.f);
   std::string packed(200, '\0');
   const unsigned size =
       lzf_compress(by_field.data(), unsigned(by_field.size()), packed.data(), unsigned(packed.size()));
   REQUIRE(size > 0);
-  return head + raw(std::uint32_t(size), std::uint32_t(by_field.size())) + packed.substr(0, size) +
+  return head + raw_bytes(std::uint32_t(size), std::uint32_t(by_field.size())) + packed.substr(0, size) +
          std::string(3901, '\0');
 }
 
@@ -77,7 +70,9 @@ TEST_CASE("the three encodings of a PCD file give the same records, invalid ones
 TEST_CASE("fields may have any order and type, and counts above one") {
   const std::string bytes =
       header("z _ y n x", "2 1 8 4 1", "I U F F U", "1 3 1 2 1", "WIDTH 1\nHEIGHT 2\nPOINTS 2\nDATA binary\n");
-  const auto record = [](std::int16_t z, double y, std::uint8_t x) { return raw(z) + "___" + raw(y, 1.f, 2.f, x); };
+  const auto record = [](std::int16_t z, double y, std::uint8_t x) {
+    return raw_bytes(z) + "___" + raw_bytes(y, 1.f, 2.f, x);
+  };
   const io::cloud c = read(bytes + record(-3, 2.5, 200) + record(4, -1, 0));
   REQUIRE(c.points.size() == 2);
   CHECK(c.points[0] == Eigen::Vector3d(200, 2.5, -3));
@@ -93,7 +88,7 @@ TEST_CASE("fields may have any order and type, and counts above one") {
 TEST_CASE("coordinates far from 0 keep the precision of the file") {
   const std::string head = header("x y z", "8 8 8", "F F F", "1 1 1", "WIDTH 3\nHEIGHT 1\nPOINTS 3\nDATA ");
   const double x = 447123.0625, y = 5411987.001;
-  for (const auto& bytes : {head + "binary\n" + raw(x, y, 250.5, x + 0.001, y, 250.25, 0.0, 0.0, 0.0),
+  for (const auto& bytes : {head + "binary\n" + raw_bytes(x, y, 250.5, x + 0.001, y, 250.25, 0.0, 0.0, 0.0),
                             head + "ascii\n447123.0625 5411987.001 250.5\n447123.0635 5411987.001 250.25\n0 0 0\n"}) {
     const io::cloud c = read(bytes);
     REQUIRE(c.points.size() == 3);
@@ -141,9 +136,9 @@ TEST_CASE("no number in a PCD file is believed before it is compared with the fi
     CHECK(!refused(plain("WIDTH 99999999999999999999\nDATA " + encoding + "\n")).empty());
   }
   const std::string head = plain("WIDTH 100000000\nHEIGHT 1\nPOINTS 100000000\nDATA binary_compressed\n");
-  says(refused(head + raw(16u, 1200000000u) + std::string(16, 'x')), "which is impossible");
-  says(refused(head + raw(17u, 1200000000u) + std::string(16, 'x')), "cut short");
-  says(refused(plain("WIDTH 2\nDATA binary_compressed\n") + raw(16u, 24u) + std::string(16, '\xff')), "damaged");
+  says(refused(head + raw_bytes(16u, 1200000000u) + std::string(16, 'x')), "which is impossible");
+  says(refused(head + raw_bytes(17u, 1200000000u) + std::string(16, 'x')), "cut short");
+  says(refused(plain("WIDTH 2\nDATA binary_compressed\n") + raw_bytes(16u, 24u) + std::string(16, '\xff')), "damaged");
 }
 
 TEST_CASE("a PCD file cut at any length or with any byte changed is read or refused, never more") {

@@ -25,6 +25,14 @@ struct scratch_file {
   void put(const std::string& bytes) const { std::ofstream(path, std::ios::binary) << bytes; }
 };
 
+/// The bytes of numbers, one after another, for a binary file.
+template <class... T>
+std::string raw_bytes(T... values) {
+  std::string bytes;
+  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
+  return bytes;
+}
+
 /// The sentence with which `read` refuses; empty if it does not.
 template <class Read>
 std::string refusal(Read read) {

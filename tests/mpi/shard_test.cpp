@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // With any number of ranks, each rank gets the answer of one process, in every bit.
+#include "solid/shapes.hpp"
 #include "support/product.hpp"
 #include "support/same_result.hpp"
 
@@ -49,9 +50,6 @@ int ranks() {
 }
 const mpi::shard on{MPI_COMM_WORLD, host{1}};
 
-bool same_minimum(const part_minimum& a, const part_minimum& b) {
-  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
-}
 /// A cloud that on one rank cannot even say how large it is.
 struct unplugged {
   point_span points;
@@ -119,10 +117,7 @@ TEST_CASE("Ranks have the answer of one process: all scenes, points and images, 
 TEST_CASE("Unequal pieces, empty ones, and points inside, which are nearest and certain on different ranks") {
   verdict v;
   dice d(17);
-  clearance::triangle_mesh box;
-  for (int k = 0; k < 8; ++k) box.vertices.emplace_back(k & 1 ? 0.3 : -0.3, k & 2 ? 0.3 : -0.3, k & 4 ? 0.3 : -0.3);
-  box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const auto box = shapes::cube(0.3);
   std::vector<decltype(clearance::make_part<clearance::aabb>(clearance::close_mesh(box)))> boxes;
   for (const double tolerance : {1e-4, 0.05})
     boxes.push_back(clearance::make_part<clearance::aabb>(clearance::close_mesh(box), {.tolerance = tolerance}));

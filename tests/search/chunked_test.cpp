@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A cloud that is read in chunks gives the answer of the cloud in memory, in every bit, whatever is skipped.
 #include "support/chunked.hpp"
+#include "solid/shapes.hpp"
 #include "support/product.hpp"
 
 #include <clearance/solid/mesh_solid.hpp>
@@ -27,10 +28,7 @@ TEST_CASE("A cloud in chunks has the answer of the whole: all scenes, spheres fr
 
 TEST_CASE("Chunks that do not divide the cloud are the cloud, before spheres and before triangles with an interior") {
   verdict v;
-  clearance::triangle_mesh box;
-  for (int k = 0; k < 8; ++k) box.vertices.emplace_back(k & 1 ? 0.3 : -0.3, k & 2 ? 0.3 : -0.3, k & 4 ? 1.1 : -1.1);
-  box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const auto box = shapes::box({-0.3, -0.3, -1.1}, {0.3, 0.3, 1.1});
   std::vector<decltype(clearance::make_part<clearance::aabb>(clearance::close_mesh(box)))> boxes;
   for (int k = 0; k < 2; ++k)
     boxes.push_back(clearance::make_part<clearance::aabb>(clearance::close_mesh(box), {.tolerance = 1e-4}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An answer gets every pair within reach once, as all points with all primitives say, in every bit.
+#include "solid/shapes.hpp"
 #include "support/product.hpp"
 #include "support/tallied.hpp"
 
@@ -60,12 +61,8 @@ TEST_CASE("Every pair of a point and triangles within reach comes to an answer o
 }
 
 TEST_CASE("A point inside a solid is a pair of distance 0 without a primitive") {
-  clearance::triangle_mesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  const auto model =
-      clearance::make_model<clearance::aabb>(std::vector<clearance::closed_mesh>{clearance::close_mesh(m)});
+  const auto model = clearance::make_model<clearance::aabb>(
+      std::vector<clearance::closed_mesh>{clearance::close_mesh(shapes::cube(1))});
   scene<triangle> s;
   const auto& tree = model.parts()[0].tree;
   s.parts.emplace_back(tree.primitives.size());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The device gives an answer the same pairs as the host.
+#include "solid/shapes.hpp"
 #include "support/product_device.cuh"
 #include "support/tallied.hpp"
 
@@ -63,11 +64,7 @@ TEST_CASE("Crowds, points inside solids, and more parts than a kernel takes give
           "[slow]") {
   verdict v;
   dice d(92);
-  clearance::triangle_mesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  const auto box = [&] { return clearance::make_part<clearance::aabb>(clearance::close_mesh(m)); };
+  const auto box = [&] { return clearance::make_part<clearance::aabb>(clearance::close_mesh(shapes::cube(1))); };
   const clearance::model boxes{std::vector{box(), box()}};
   const auto crowd = d.points(300000, 2);
   same_pairs(boxes, {d.pose(0.5), d.pose(0.5)}, point_span(crowd), 0.5f, v, "boxes");
@@ -76,12 +73,7 @@ TEST_CASE("Crowds, points inside solids, and more parts than a kernel takes give
   for (std::size_t i = 0; i < on_faces.size(); ++i)
     (i % 3 == 0 ? on_faces[i].x : i % 3 == 1 ? on_faces[i].y : on_faces[i].z) = i % 2 ? 1 : -1;
   same_pairs(boxes, std::vector(2, Eigen::Isometry3d::Identity()), point_span(on_faces), 0.5f, v, "faces of boxes");
-  scene<inner_sphere> s;
-  for (int part = 0; part < 200; ++part) {
-    s.parts.emplace_back();
-    for (int k = 0; k < 10; ++k) s.parts.back().push_back({d.point(0.1f), d.number(0.005, 0.02)});
-    s.poses.push_back(d.pose(1));
-  }
+  const scene<inner_sphere> s = many_parts(d);
   const auto some = d.points(5000, 1.5);
   same_pairs(make_model<clearance::sphere>(s, {}, clearance::wrapped{}), s.poses, point_span(some), 0.2f, v,
              "200 parts");

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Several devices together give the host's answer, in every bit. One GPU is named more than once, as are several of
 // them; if there are two, both are asked, and the second alone.
+#include "solid/shapes.hpp"
 #include "support/closed.hpp"
 #include "support/configurations.hpp"
+#include "support/counted_memory.cuh"
+#include "support/frame_after_frame.hpp"
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"
 #include "support/too_close_frame.hpp"
@@ -57,10 +60,6 @@ std::vector<named> all_devices() {
   return all;
 }
 
-bool same_minimum(const clearance::part_minimum& a, const clearance::part_minimum& b) {
-  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
-}
-
 /// Cold, warm, moved and moved back; one call, and every part's minimum. `clouds` is for the devices, `same` for the
 /// host.
 template <class Model, class Clouds, class Same>
@@ -77,14 +76,7 @@ void ask_often(const devices& on, const Model& on_host, std::vector<Eigen::Isome
     v.require(same_result(found, robot), what, ", ", when, ": differs from the host's result by parts");
     v.require(std::ranges::equal(minima, each, same_minimum), what, ", ", when, ": some part's minimum differs");
   };
-  compare("cold");
-  compare("warm");
-  poses[0].translation().x() += 0.01;
-  compare("moved a little");
-  poses.back().translation().z() -= 5;
-  compare("moved far");
-  query.forget(), per_part.forget();
-  compare("cold again");
+  frame_after_frame(poses, compare, [&] { query.forget(), per_part.forget(); });
   v.require(
       same_result(ask(on, model, poses, clouds, min_distance{}), ask(host{}, on_host, poses, same, min_distance{})),
       what, ": one call differs");
@@ -110,14 +102,6 @@ std::vector<Eigen::Isometry3d> poses_of(dice& d, int parts) {
   std::vector<Eigen::Isometry3d> poses;
   for (int k = 0; k < parts; ++k) poses.push_back(d.pose(1));
   return poses;
-}
-
-clearance::triangle_mesh box(double half) {
-  clearance::triangle_mesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return m;
 }
 
 /// A cloud cut where one likes, each piece in the memory of its device.
@@ -169,9 +153,10 @@ TEST_CASE("Several devices equal the host in all scenes: triangles in boxes, of 
 TEST_CASE("Points inside triangle parts are found on any device") {
   dice d(7);
   verdict v;
-  std::vector<decltype(clearance::make_part<clearance::aabb>(clearance::close_mesh(box(1))))> parts;
+  std::vector<decltype(clearance::make_part<clearance::aabb>(clearance::close_mesh(shapes::cube(1))))> parts;
   for (const double half : {0.2, 0.3, 0.1})
-    parts.push_back(clearance::make_part<clearance::aabb>(clearance::close_mesh(box(half)), {.tolerance = 1e-4}));
+    parts.push_back(
+        clearance::make_part<clearance::aabb>(clearance::close_mesh(shapes::cube(half)), {.tolerance = 1e-4}));
   const clearance::model robot(std::move(parts));
   const auto poses = poses_of(d, 3);
   for (const auto& [name, on] : all_devices())
@@ -392,21 +377,6 @@ std::string refused(F call) {
   return "not refused";
 }
 
-class counting_resource : public std::pmr::memory_resource {
- public:
-  std::size_t asked = 0, held = 0;
-
- private:
-  void* do_allocate(std::size_t bytes, std::size_t) override {
-    void* p = nullptr;
-    check(cudaMalloc(&p, bytes));
-    ++asked, held += bytes;
-    return p;
-  }
-  void do_deallocate(void* p, std::size_t bytes, std::size_t) override { cudaFree(p), held -= bytes; }
-  bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
-};
-
 }  // namespace
 
 TEST_CASE("What cannot be is refused with a sentence, and leaves nothing behind") {
@@ -440,7 +410,7 @@ TEST_CASE("What cannot be is refused with a sentence, and leaves nothing behind"
   if (there > 1)
     CHECK(refused([&] { clearance::query(devices{0, 1}, model, min_distance{}); }) ==
           "clearance: the robot is not on device 1, which is asked");
-  counting_resource first, second;
+  counted_memory first, second;
   const std::vector<std::pmr::memory_resource*> both = {&first, &second};
   CHECK(refused([&] { clearance::query(on, model, min_distance{}, std::span(both).first(1)); }) ==
         "clearance: 1 memory resources for 2 devices");
@@ -593,19 +563,26 @@ void like_one(const Model& robot, const std::vector<Eigen::Isometry3d>& poses, c
   }
 }
 
-}  // namespace
-
-TEST_CASE("Several devices say of pairs of points and parts what one says, in every bit", "[slow]") {
-  dice d(18);
+/// Calls `ask(parts, each)` for a robot of few parts and one of many; `each(question, name)` asks about it.
+template <class Ask>
+void each_robot(unsigned seed, Ask ask) {
+  dice d(seed);
   verdict v;
   for (const int parts : {3, 130}) {
     const auto robot = robot_of(d, parts, parts > 100 ? 5 : 60);
     const auto poses = poses_of(d, parts);
     auto given = pairs_of_clouds(d, 3001);
     if (parts > 100) given.resize(3);
-    const auto each = [&](const auto& q, const std::string& what) {
+    ask(parts, [&](const auto& q, const std::string& what) {
       like_one(robot, poses, given, q, v, what + ", " + std::to_string(parts) + " parts");
-    };
+    });
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Several devices say of pairs of points and parts what one says, in every bit", "[slow]") {
+  each_robot(18, [](int parts, const auto& each) {
     std::vector<double> growing, radii, margins, paddings;
     for (int k = 0; k < parts; ++k) {
       growing.push_back(0.01 * k), growing.push_back(0.02 * k + 0.05);
@@ -621,26 +598,17 @@ TEST_CASE("Several devices say of pairs of points and parts what one says, in ev
     each(clearance::distances_per_part{0.3}, "distances_per_part, near ones");
     each(clearance::self_filter{}, "self_filter");
     each(clearance::self_filter{paddings}, "self_filter, of each part");
-  }
+  });
 }
 
 TEST_CASE("Several devices say of every point, and of the nearest, what one says, in every bit", "[slow]") {
-  dice d(19);
-  verdict v;
-  for (const int parts : {3, 130}) {
-    const auto robot = robot_of(d, parts, parts > 100 ? 5 : 60);
-    const auto poses = poses_of(d, parts);
-    auto given = pairs_of_clouds(d, 3001);
-    if (parts > 100) given.resize(3);
-    const auto each = [&](const auto& q, const std::string& what) {
-      like_one(robot, poses, given, q, v, what + ", " + std::to_string(parts) + " parts");
-    };
+  each_robot(19, [](int, const auto& each) {
     each(clearance::distances{.which = true}, "distances");
     each(clearance::distances{.d_max = 0.2, .which = true}, "distances, near ones");
     each(clearance::distances{.d_max = 0.2}, "distances alone");
     for (const std::size_t k : {1, 7, 400}) each(clearance::nearest_k{k}, "nearest_k");
     each(clearance::nearest_k{.k = 7, .d_max = 0.2}, "nearest_k, near ones");
-  }
+  });
 }
 
 TEST_CASE("Several devices say of many configurations what one says, in every bit", "[slow]") {

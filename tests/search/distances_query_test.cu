@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a prepared question remembers changes no bit of its answer: cold, warm, moved, and after other clouds.
+#include "solid/shapes.hpp"
 #include "support/brute_distances.hpp"
 #include "support/product_device.cuh"
 
@@ -64,11 +65,7 @@ TEST_CASE("Warm distances to triangles are the cold ones") { ask_all_scenes<clea
 TEST_CASE("Warm distances of points inside solids, and of equally near primitives, are the cold ones") {
   verdict v;
   dice d(97);
-  clearance::triangle_mesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  const auto boxes = clearance::make_model<clearance::aabb>(std::vector(3, clearance::close_mesh(m)));
+  const auto boxes = clearance::make_model<clearance::aabb>(std::vector(3, clearance::close_mesh(shapes::cube(1))));
   std::vector<vec3> points = d.points(4000, 3);
   for (int k = 0; k < 3000; ++k)
     points.push_back(
@@ -80,12 +77,7 @@ TEST_CASE("Warm distances of points inside solids, and of equally near primitive
 TEST_CASE("More parts than a kernel takes, and points that come and go: warm distances are the cold ones", "[slow]") {
   verdict v;
   dice d(98);
-  scene<inner_sphere> s;
-  for (int part = 0; part < 200; ++part) {
-    s.parts.emplace_back();
-    for (int k = 0; k < 10; ++k) s.parts.back().push_back({d.point(0.1f), d.number(0.005, 0.02)});
-    s.poses.push_back(d.pose(1));
-  }
+  const scene<inner_sphere> s = many_parts(d);
   const auto many = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   auto points = d.points(5000, 1.5);
   ask_often(many, s.poses, point_span(points), v, "200 parts");

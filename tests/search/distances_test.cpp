@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every point's distance is the least over all primitives of all parts, in every bit, with its part and primitive.
+#include "solid/shapes.hpp"
 #include "support/brute_distances.hpp"
 #include "support/volumes.hpp"
 
@@ -126,11 +127,7 @@ TEST_CASE("A prepared question of distances on the host says the same") {
 }
 
 TEST_CASE("A point inside a solid is 0 away, of the first part that it is in, and of none of its primitives") {
-  clearance::triangle_mesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  const auto model = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(m)));
+  const auto model = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(shapes::cube(1))));
   scene<triangle> s;
   dice d(93);
   for (const auto& part : model.parts()) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Packets of points on a device give what each point alone gives on the host; both give what brute force gives.
+#include "solid/shapes.hpp"
 #include "support/brute_distances.hpp"
 #include "support/product_device.cuh"
 
@@ -56,11 +57,7 @@ TEST_CASE("Walls, crowds, neighbours and strangers: every point's distance on a 
   verdict v;
   dice d(95);
   const device gpu;
-  clearance::triangle_mesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  const auto boxes = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(m)));
+  const auto boxes = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(shapes::cube(1))));
   const std::vector poses{d.pose(0.5), d.pose(0.5)};
   std::vector<vec3> wall, edge;
   for (int i = 0; i < 200; ++i)
@@ -76,12 +73,7 @@ TEST_CASE("Walls, crowds, neighbours and strangers: every point's distance on a 
       require_same(ask(gpu, there, poses, point_span(*points), distances{d_max, true}), expected, v,
                    std::to_string(points->size()) + " points within " + std::to_string(d_max));
     }
-  scene<inner_sphere> s;
-  for (int part = 0; part < 200; ++part) {
-    s.parts.emplace_back();
-    for (int k = 0; k < 10; ++k) s.parts.back().push_back({d.point(0.1f), d.number(0.005, 0.02)});
-    s.poses.push_back(d.pose(1));
-  }
+  const scene<inner_sphere> s = many_parts(d);
   const auto many = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto some = d.points(5000, 1.5);
   for (const real d_max : {real(0.2), clearance::infinity})

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Extreme numbers on the host: the answer of brute force in every bit, and the truth within the bracket.
 #include "search/edge_scenes.hpp"
+#include "solid/shapes.hpp"
 #include "support/product.hpp"
 
 #include <clearance/make_model.hpp>
@@ -65,14 +66,6 @@ void ask(const Model& model, const scene<inner_sphere>& s, verdict& v, const std
   moved("moved back");
 }
 
-clearance::closed_mesh box(double half) {
-  clearance::triangle_mesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return clearance::close_mesh(m);
-}
-
 }  // namespace
 
 TEST_CASE("Extreme numbers of parts, spheres, points and metres are exact on the host") {
@@ -91,9 +84,10 @@ TEST_CASE("Extreme numbers of parts, spheres, points and metres are exact on the
 TEST_CASE("Where every point is inside a solid the distance is 0, at the first point, and it is a collision") {
   dice d(79);
   verdict v;
-  std::vector<decltype(clearance::make_part<clearance::obb>(box(1)))> parts;
+  std::vector<decltype(clearance::make_part<clearance::obb>(clearance::close_mesh(shapes::cube(1))))> parts;
   std::vector<brute_part<triangle, decltype(parts[0].view().interior)>> brute;
-  for (const double half : {2.0, 1.0, 3.0}) parts.push_back(clearance::make_part<clearance::obb>(box(half)));
+  for (const double half : {2.0, 1.0, 3.0})
+    parts.push_back(clearance::make_part<clearance::obb>(clearance::close_mesh(shapes::cube(half))));
   for (const auto& part : parts) brute.push_back({part.tree.primitives, part.facts, part.view().interior});
   for (std::size_t k = 0; k < brute.size(); ++k)  // in the user's order, as brute force counts
     for (std::size_t i = 0; i < brute[k].primitives.size(); ++i)

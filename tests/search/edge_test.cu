@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Extreme numbers on the device: the host's result in every bit, plain and prepared, cold, warm and moved.
 #include "search/edge_scenes.hpp"
+#include "solid/shapes.hpp"
 #include "support/product_device.cuh"
 
 #include <clearance/device.cuh>
@@ -16,10 +17,6 @@ using namespace testing;
 using clearance::device, clearance::host, clearance::min_distance, clearance::placed, clearance::point_span;
 
 namespace {
-
-bool same_minimum(const clearance::part_minimum& a, const clearance::part_minimum& b) {
-  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
-}
 
 template <class Model>
 void ask(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const std::vector<vec3>& points,
@@ -59,14 +56,6 @@ void ask(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const std::
   same("cold again", 1);
 }
 
-clearance::closed_mesh box(double half) {
-  clearance::triangle_mesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return clearance::close_mesh(m);
-}
-
 struct write_points {
   endless_points from;
   vec3* to;
@@ -98,8 +87,9 @@ TEST_CASE("Crowds before very deep and very large trees are exact on the device:
 TEST_CASE("Where every point is inside a solid the device says 0, at the first point, and collision") {
   dice d(79);
   verdict v;
-  std::vector<decltype(clearance::make_part<clearance::obb>(box(1)))> parts;
-  for (const double half : {2.0, 1.0, 3.0}) parts.push_back(clearance::make_part<clearance::obb>(box(half)));
+  std::vector<decltype(clearance::make_part<clearance::obb>(clearance::close_mesh(shapes::cube(1))))> parts;
+  for (const double half : {2.0, 1.0, 3.0})
+    parts.push_back(clearance::make_part<clearance::obb>(clearance::close_mesh(shapes::cube(half))));
   const clearance::model model(std::move(parts));
   auto points = d.points(200000, 0.5);
   points[0].z = clearance::not_a_number;

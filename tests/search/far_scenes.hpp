@@ -2,6 +2,7 @@
 #pragma once
 // Robots and clouds with most points far away, in every kind of source, and the truth in long double.
 
+#include "solid/shapes.hpp"
 #include "support/laws.hpp"
 
 #include <clearance/make_model.hpp>
@@ -37,12 +38,8 @@ struct box_body {
     for (double& h : half) h = d.number(0.05, 0.5);
   }
   part_type part() const {
-    clearance::triangle_mesh m;
-    for (int k = 0; k < 8; ++k)
-      m.vertices.emplace_back(k & 1 ? half[0] : -half[0], k & 2 ? half[1] : -half[1], k & 4 ? half[2] : -half[2]);
-    m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    return clearance::make_part<clearance::obb>(clearance::close_mesh(m));
+    const Eigen::Vector3d high(half);
+    return clearance::make_part<clearance::obb>(clearance::close_mesh(shapes::box(-high, high)));
   }
   wide distance(oracle::vec q) const {
     const auto beyond = [](wide x, double h) { return std::max(std::abs(x) - h, wide(0)); };

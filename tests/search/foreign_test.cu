@@ -22,10 +22,6 @@ using clearance::device, clearance::host, clearance::min_distance, clearance::pl
 
 namespace {
 
-bool same_minimum(const clearance::part_minimum& a, const clearance::part_minimum& b) {
-  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
-}
-
 /// One call and a prepared query, cold and warm, with a bound for all and one a part, as the host says it.
 template <class Here, class There, class Cloud>
 void ask(const Here& on_host, const There& model, const std::vector<Eigen::Isometry3d>& poses, const Cloud& cloud,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Answers about pieces of a cloud, and about separate clouds, merge into the answer about all of them.
 #include "support/product.hpp"
+#include "support/same_result.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/minimum/merge.hpp>
@@ -17,9 +18,6 @@ using clearance::host, clearance::merge, clearance::min_distance, clearance::min
 
 namespace {
 
-bool same_minimum(const part_minimum& a, const part_minimum& b) {
-  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
-}
 bool same_witness(const min_distance_result& a, const min_distance_result& b) {
   return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.part == b.part &&
          a.primitive == b.primitive && same_bytes(a.at, b.at) && same_bytes(a.nearest, b.nearest) &&

@@ -24,10 +24,6 @@ namespace {
 
 const std::chrono::duration<double> ever{clearance::infinity};
 
-bool same_minimum(const clearance::part_minimum& a, const clearance::part_minimum& b) {
-  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
-}
-
 /// Points that remember who was looked at.
 struct watched {
   point_span points;

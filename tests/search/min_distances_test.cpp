@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The least distances of many configurations are those of one at a time, in every bit.
 #include "search/edge_scenes.hpp"
+#include "solid/shapes.hpp"
 #include "support/brute_pairs.hpp"
 #include "support/closed.hpp"
 #include "support/configurations.hpp"
@@ -190,15 +191,11 @@ TEST_CASE("So they are of robots and clouds of extreme numbers") {
 }
 
 TEST_CASE("Points inside solids are 0 away of every configuration, certainly or perhaps, and the lowest goes first") {
-  clearance::triangle_mesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   verdict v;
   dice d(413);
   std::size_t inside = 0, uncertain = 0, states[4] = {};
   for (const double tolerance : {0.0, 0.3, 2.0}) {
-    const auto model = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(m)),
+    const auto model = clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(shapes::cube(1))),
                                                               clearance::part_options{.tolerance = tolerance});
     configurations poses;
     for (int c = 0; c < 60; ++c)

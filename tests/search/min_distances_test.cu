@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // On a device, the least distances of many configurations are the host's, in every bit.
 #include "search/edge_scenes.hpp"
+#include "solid/shapes.hpp"
 #include "support/brute_pairs.hpp"
 #include "support/configurations.hpp"
 
@@ -169,14 +170,10 @@ TEST_CASE("A tree of a few hundred thousand points has all its levels") {
 }
 
 TEST_CASE("Points inside solids are 0 away of every configuration, on a device") {
-  clearance::triangle_mesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   verdict v;
   dice d(515);
   for (const double tolerance : {0.0, 0.3, 2.0}) {
-    const auto model = clearance::make_model<clearance::obb>(std::vector(2, clearance::close_mesh(m)),
+    const auto model = clearance::make_model<clearance::obb>(std::vector(2, clearance::close_mesh(shapes::cube(1))),
                                                              clearance::part_options{.tolerance = tolerance});
     configurations poses;
     for (int c = 0; c < 60; ++c)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The prepared query on the host, and the tiles by which every search there reads points: the answer of brute force in
 // every bit, cold, warm, and after anything has moved; and no allocation once it has run.
+#include "support/frame_after_frame.hpp"
 #include "support/product.hpp"
 
 #include <clearance/questions/min_distance.hpp>
@@ -49,14 +50,7 @@ void ask_often(const Model& model, const scene<P>& s, const S& source, const Eig
     require_equal(robot, expected, v, what + ", per part, " + when);
     require_equal(minima, expected, v, what + ", " + when);
   };
-  same("cold");
-  same("warm");
-  poses[0].translation().x() += 0.01;
-  same("moved a little");
-  poses.back().translation().z() -= 5;
-  same("moved far");
-  query.forget(), by_parts.forget();
-  same("cold again");
+  frame_after_frame(poses, same, [&] { query.forget(), by_parts.forget(); });
 }
 
 template <class V, class P>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The prepared query gives the plain one's answer, in every bit: cold, warm, and after anything has moved.
+#include "solid/shapes.hpp"
+#include "support/counted_memory.cuh"
+#include "support/frame_after_frame.hpp"
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"
 
@@ -17,10 +20,6 @@ using namespace testing;
 using clearance::device, clearance::host, clearance::min_distance;
 
 namespace {
-
-bool same_minimum(const clearance::part_minimum& a, const clearance::part_minimum& b) {
-  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
-}
 
 /// Cold, warm, moved, and moved back; `source` is in host memory.
 template <class Model, class S>
@@ -40,14 +39,7 @@ void ask_often(const Model& on_host, std::vector<Eigen::Isometry3d> poses, const
     v.require(same_result(found.all, robot), what + ", " + when, ": differs from the host's result by parts");
     v.require(std::ranges::equal(found.parts, each, same_minimum), what + ", " + when, ": some part's minimum differs");
   };
-  same("cold");
-  same("warm");
-  poses[0].translation().x() += 0.01;
-  same("moved a little");
-  poses.back().translation().z() -= 5;
-  same("moved far");
-  query.forget(), per_part.forget();
-  same("cold again");
+  frame_after_frame(poses, same, [&] { query.forget(), per_part.forget(); });
 }
 
 template <class P, class V>
@@ -64,14 +56,6 @@ void ask_all_scenes() {
       ask_often(model, s.poses, all.raw, all.camera_pose, v, what + ", 16-bit image");
     }
   }
-}
-
-clearance::triangle_mesh box(double half) {
-  clearance::triangle_mesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return m;
 }
 
 std::vector<inner_sphere> ball_of_spheres(dice& d, int count) {
@@ -135,9 +119,10 @@ TEST_CASE("Crowds stay exact: every point near, every point inside, every point 
 TEST_CASE("Points inside triangle parts are found by the prepared query too") {
   dice d(7);
   verdict v;
-  std::vector<decltype(clearance::make_part<clearance::obb>(clearance::close_mesh(box(1))))> parts;
+  std::vector<decltype(clearance::make_part<clearance::obb>(clearance::close_mesh(shapes::cube(1))))> parts;
   for (const double half : {0.2, 0.3, 0.1})
-    parts.push_back(clearance::make_part<clearance::obb>(clearance::close_mesh(box(half)), {.tolerance = 1e-4}));
+    parts.push_back(
+        clearance::make_part<clearance::obb>(clearance::close_mesh(shapes::cube(half)), {.tolerance = 1e-4}));
   const clearance::model robot(std::move(parts));
   const std::vector<Eigen::Isometry3d> poses = {d.pose(0.3), d.pose(0.3), d.pose(0.3)};
   for (const double half : {0.05, 0.5, 2.0}) {
@@ -234,26 +219,6 @@ TEST_CASE(
   CHECK(minima.data()[0].point == clearance::none);
 }
 
-namespace {
-
-/// Device memory that is counted.
-class counting_resource : public std::pmr::memory_resource {
- public:
-  std::size_t held = 0, most = 0;
-
- private:
-  void* do_allocate(std::size_t bytes, std::size_t) override {
-    void* p = nullptr;
-    clearance::check_cuda(cudaMalloc(&p, bytes), "cudaMalloc");
-    held += bytes, most = std::max(most, held);
-    return p;
-  }
-  void do_deallocate(void* p, std::size_t bytes, std::size_t) override { cudaFree(p), held -= bytes; }
-  bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
-};
-
-}  // namespace
-
 TEST_CASE("A prepared query takes its memory from the caller's resource, and none after its first frame") {
   dice d(11);
   const device gpu;
@@ -261,7 +226,7 @@ TEST_CASE("A prepared query takes its memory from the caller's resource, and non
   const auto model = on_host.on(gpu);
   const auto cloud = d.points(3000, 2);
   const std::vector<Eigen::Isometry3d> poses = {d.pose(1), d.pose(1), d.pose(1)};
-  counting_resource memory;
+  counted_memory memory;
   {
     clearance::query query(gpu, model, clearance::min_distance{}, &memory);
     REQUIRE(same_result(query(poses, cloud), ask(host{}, on_host, poses, cloud, min_distance{})));

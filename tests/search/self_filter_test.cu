@@ -100,12 +100,7 @@ TEST_CASE(
   verdict v;
   const device gpu;
   dice d(103);
-  scene<inner_sphere> s;
-  for (int part = 0; part < 200; ++part) {
-    s.parts.emplace_back();
-    for (int k = 0; k < 10; ++k) s.parts.back().push_back({d.point(0.1f), d.number(0.005, 0.02)});
-    s.poses.push_back(d.pose(1));
-  }
+  scene<inner_sphere> s = many_parts(d);
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto there = model.on(gpu);
   clearance::query filter(gpu, there, clearance::self_filter{});

@@ -44,11 +44,7 @@ TEST_CASE("Points within a distance of triangles are all of them, in order") {
 }
 
 TEST_CASE("A list longer than its first room is whole, and one of the caller's says that it was cut") {
-  dice d(99);
-  scene<inner_sphere> s;
-  for (int part = 0; part < 2; ++part)
-    s.parts.push_back({{{0.1f * float(part), 0, 0}, 0.1f}}), s.poses.push_back(Eigen::Isometry3d::Identity());
-  s.points = d.points(50000, 1);
+  const auto s = two_balls();
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const std::vector cloud{placed{point_span(s.points)}};
   const auto all = ask(host{}, model, s.poses, cloud, within{{10}});

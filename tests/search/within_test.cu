@@ -25,11 +25,7 @@ TEST_CASE("On a device points within a distance are the host's, and a long list 
                    ask(host{}, model, s.poses, two, within{{radius}}), v,
                    s.name + ", within " + std::to_string(radius));
   }
-  dice d(99);
-  scene<inner_sphere> s;
-  for (int part = 0; part < 2; ++part)
-    s.parts.push_back({{{0.1f * float(part), 0, 0}, 0.1f}}), s.poses.push_back(Eigen::Isometry3d::Identity());
-  s.points = d.points(50000, 1);
+  const auto s = two_balls();
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const std::vector cloud{placed{point_span(s.points)}};
   require_same(ask(gpu, model.on(gpu), s.poses, cloud, within{{10}}), ask(host{}, model, s.poses, cloud, within{{10}}),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // On a device, points in zones are the host's.
+#include "solid/shapes.hpp"
 #include "support/brute_zones.hpp"
 #include "support/frames_device.cuh"
 #include "support/product_device.cuh"
@@ -41,11 +42,7 @@ TEST_CASE("Crowds in and around solids are counted one by one") {
   verdict v;
   const device gpu;
   dice d(102);
-  clearance::triangle_mesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  const auto box = [&] { return clearance::make_part<clearance::aabb>(clearance::close_mesh(m)); };
+  const auto box = [&] { return clearance::make_part<clearance::aabb>(clearance::close_mesh(shapes::cube(1))); };
   const clearance::model boxes{std::vector{box(), box()}};
   const std::vector poses{d.pose(0.5), d.pose(0.5)};
   const auto crowd = d.points(300000, 2);

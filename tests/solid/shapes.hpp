@@ -24,6 +24,9 @@ inline triangle_mesh box(Vector3d low, Vector3d high) {
   return m;
 }
 
+/// Around the origin.
+inline triangle_mesh cube(double half) { return box({-half, -half, -half}, {half, half, half}); }
+
 /// Latitude and longitude, outward, with shared vertices.
 inline triangle_mesh globe(Vector3d center, double radius, int rings = 12, int sectors = 16) {
   triangle_mesh m;

@@ -47,4 +47,14 @@ inline void require_listed(std::vector<clearance::pair_distance> pairs, unsigned
   require_same(found, expected, v, what);
 }
 
+/// Two balls among 50,000 points: more pairs than a list has room for at first.
+inline scene<inner_sphere> two_balls() {
+  dice d(99);
+  scene<inner_sphere> s;
+  for (int part = 0; part < 2; ++part)
+    s.parts.push_back({{{0.1f * float(part), 0, 0}, 0.1f}}), s.poses.push_back(Eigen::Isometry3d::Identity());
+  s.points = d.points(50000, 1);
+  return s;
+}
+
 }  // namespace testing

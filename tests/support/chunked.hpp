@@ -13,10 +13,6 @@
 
 namespace testing {
 
-inline bool same_minimum(const clearance::part_minimum& a, const clearance::part_minimum& b) {
-  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
-}
-
 /// Asks about everything, then about what was not skipped, from near and far. `source`: the same points on the host.
 template <class On, class Model, class C, class S>
 void ask_often(const On& on, const Model& on_host, std::vector<Eigen::Isometry3d> poses, clearance::chunked<C>& cloud,

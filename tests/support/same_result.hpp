@@ -18,6 +18,11 @@ inline bool same_result(const clearance::min_distance_result& a, const clearance
          std::equal(a.dropped, a.dropped + clearance::drop_reasons, b.dropped);
 }
 
+/// Compares everything in a part's minimum.
+inline bool same_minimum(const clearance::part_minimum& a, const clearance::part_minimum& b) {
+  return same_bits(a.distance, b.distance) && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive;
+}
+
 /// Compares everything in a part's witness.
 inline bool same_witness(const clearance::part_witness& a, const clearance::part_witness& b) {
   return a.part == b.part && a.cloud == b.cloud && a.point == b.point && a.primitive == b.primitive &&

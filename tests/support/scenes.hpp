@@ -30,6 +30,17 @@ inline Eigen::Isometry3d shifted(double x, double y, double z) {
   return pose;
 }
 
+/// 200 parts of ten spheres, more than a kernel takes; without points.
+inline scene<inner_sphere> many_parts(dice& d) {
+  scene<inner_sphere> s;
+  for (int part = 0; part < 200; ++part) {
+    s.parts.emplace_back();
+    for (int k = 0; k < 10; ++k) s.parts.back().push_back({d.point(0.1f), d.number(0.005, 0.02)});
+    s.poses.push_back(d.pose(1));
+  }
+  return s;
+}
+
 /// A lattice of exact numbers, so that mirrored points are equally far to the bit.
 inline std::vector<inner_sphere> lattice(const inner_sphere*) {
   std::vector<inner_sphere> all;

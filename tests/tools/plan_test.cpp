@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `clearance plan`, and the plan of `clearance run`: many configurations, compared with `clearance query` about each.
-#include "io/scratch_file.hpp"
-#include "tools/run_command.hpp"
 #include "tools/small_png.hpp"
+#include "tools/two_boxes.hpp"
 
 #include <sstream>
 
@@ -10,22 +9,10 @@ namespace plan_test {
 
 namespace {
 
-/// A box of 0.2 m, a second one on a slide above it, and a camera on the second.
-const char* const robot_text = R"(<robot name="two">
-  <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
-  <link name="tool"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
-  <link name="eye"/>
-  <link name="claw"/>
-  <joint name="slide" type="prismatic"><parent link="base"/><child link="tool"/><origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
-    <limit lower="-0.1" upper="1" effort="1" velocity="1"/></joint>
-  <joint name="mount" type="fixed"><parent link="tool"/><child link="eye"/><origin xyz="0 0 0.1"/></joint>
-  <joint name="turn" type="continuous"><parent link="tool"/><child link="claw"/><axis xyz="1 0 0"/></joint>
-</robot>
-)";
 const char* const slides[] = {"0", "0.3", "0.35", "0.1"};  // 0.4, 0.1, 0.05 and 0.3 m below the point
 
 struct path {
-  scratch_file urdf{".urdf", robot_text};
+  scratch_file urdf{".urdf", testing::boxes_with_eye_text};
   scratch_file cloud{".xyz", "5 5 5\n0 0 1.0\nnan 0 0\n"};
   scratch_file rows{".csv", "turn, slide\n0,0\n0.5,0.3\n1,0.35\n1,0.1\n"};
   std::string robot = " --backend host --model triangles --robot " + urdf.path;
@@ -34,14 +21,6 @@ struct path {
   }
   std::string ask = with(rows.path);
 };
-
-std::vector<nlohmann::json> lines(const outcome& o) {
-  INFO(o.err);
-  std::vector<nlohmann::json> all;
-  std::istringstream in(o.out);
-  for (std::string line; std::getline(in, line);) all.push_back(nlohmann::json::parse(line));
-  return all;
-}
 
 const char* const answered[] = {"state",     "distance", "upper",     "cloud",       "point", "pixel",
                                 "point_xyz", "part",     "primitive", "nearest_xyz", "normal"};

@@ -10,7 +10,9 @@
 #include <sys/wait.h>
 #include <algorithm>
 #include <cstdio>
+#include <sstream>
 #include <string>
+#include <vector>
 
 struct outcome {
   int code;
@@ -51,4 +53,13 @@ inline nlohmann::json parsed(const outcome& o) {
   INFO(o.out);
   REQUIRE(!o.out.empty());
   return nlohmann::json::parse(o.out);
+}
+
+/// Those of an answer that has one on each line.
+inline std::vector<nlohmann::json> lines(const outcome& o) {
+  INFO(o.err);
+  std::vector<nlohmann::json> all;
+  std::istringstream in(o.out);
+  for (std::string line; std::getline(in, line);) all.push_back(nlohmann::json::parse(line));
+  return all;
 }

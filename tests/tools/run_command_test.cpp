@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `clearance run`: a recording, frame by frame, compared with `clearance query` on each frame.
-#include "tools/run_command.hpp"
-#include "io/scratch_file.hpp"
 #include "tools/small_png.hpp"
+#include "tools/two_boxes.hpp"
 
 #include <clearance/io/xml.hpp>
 
@@ -16,22 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A box of 0.2 m, a second one on a slide above it, and a camera on the second; a claw that nothing hangs on.
-const char* const robot_text = R"(<robot name="two">
-  <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
-  <link name="tool"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
-  <link name="eye"/>
-  <link name="claw"/>
-  <joint name="slide" type="prismatic"><parent link="base"/><child link="tool"/><origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
-    <limit lower="-0.1" upper="1" effort="1" velocity="1"/></joint>
-  <joint name="mount" type="fixed"><parent link="tool"/><child link="eye"/><origin xyz="0 0 0.1"/></joint>
-  <joint name="turn" type="continuous"><parent link="tool"/><child link="claw"/><axis xyz="1 0 0"/></joint>
-</robot>
-)";
-
 /// Three frames in a folder of their own, and a trajectory for them.
 struct recording {
-  scratch_file urdf{".urdf", robot_text};
+  scratch_file urdf{".urdf", testing::boxes_with_eye_text};
   scratch_file trajectory{".csv", "turn, slide\n0,0\n0.5,0.1\r\n-1,3e-1\n"};
   fs::path folder = fs::path(scratch_file("").path + "_frames");
   std::string slides[3] = {"0", "0.1", "0.3"}, turns[3] = {"0", "0.5", "-1"};
@@ -58,14 +44,6 @@ struct recording {
                               slides[k] + " --joint turn=" + turns[k] + " --cloud " + cloud + ' ' + more));
   }
 };
-
-std::vector<nlohmann::json> lines(const outcome& o) {
-  INFO(o.err);
-  std::vector<nlohmann::json> all;
-  std::istringstream in(o.out);
-  for (std::string line; std::getline(in, line);) all.push_back(nlohmann::json::parse(line));
-  return all;
-}
 
 const char* const answered[] = {"state",     "distance", "lower",     "upper",       "cloud",  "point",
                                 "point_xyz", "part",     "primitive", "nearest_xyz", "normal", "points"};

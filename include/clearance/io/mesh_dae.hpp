@@ -46,6 +46,24 @@ class dae_reader {
                                               "library_visual_scenes",
                                               "scene",
                                               "extra"});
+    index_libraries();
+    const xml_place visual = visual_scene();
+    const double metre = unit(root_, 1);
+    const std::string axis = up(root_, "Y_UP");
+    const Eigen::Affine3d metres(Eigen::Scaling(metre));
+    for (const auto& library : root_.element.children)
+      if (library.name == "library_geometries" || library.name == "library_nodes" ||
+          library.name == "library_visual_scenes")
+        check_assets(root_.in(library), metre, axis);
+    for (const xml_element* node : dae_children(visual.element, "node")) walk(visual.in(*node), metres, 1);
+    for (const auto& [geometry, mesh] : meshes_)
+      if (!mesh) root_.in(*geometry).refuse("has no place in the scene, so it would be lost");
+    return scene_.take();
+  }
+
+ private:
+  /// Notes what can be referred to.
+  void index_libraries() {
     for (const auto& library : root_.element.children) {
       const auto each = [&](const char* name, const char* item, auto act) {
         if (library.name != name) return;
@@ -62,28 +80,21 @@ class dae_reader {
       });
       each("library_nodes", "node", [&](const xml_element& node) { add_node(node); });
     }
+  }
+
+  /// The scene that is shown.
+  xml_place visual_scene() const {
     const xml_element* shown = root_.child("scene");
     if (!shown) root_.refuse("has no <scene>, so nothing in it has a place");
     root_.in(*shown).only({},
                           {"instance_visual_scene", "instance_physics_scene", "instance_kinematics_scene", "extra"});
     const xml_element* instance = root_.in(*shown).child("instance_visual_scene");
     if (!instance) root_.in(*shown).refuse("has no visual scene");
-    const auto visual = root_.in(scenes_.find(root_.in(*instance), "url"));
+    const xml_place visual = root_.in(scenes_.find(root_.in(*instance), "url"));
     visual.only({"id", "name"}, {"asset", "node", "evaluate_scene", "extra"});
-    const double metre = unit(root_, 1);
-    const std::string axis = up(root_, "Y_UP");
-    const Eigen::Affine3d metres(Eigen::Scaling(metre));
-    for (const auto& library : root_.element.children)
-      if (library.name == "library_geometries" || library.name == "library_nodes" ||
-          library.name == "library_visual_scenes")
-        check_assets(root_.in(library), metre, axis);
-    for (const xml_element* node : dae_children(visual.element, "node")) walk(visual.in(*node), metres, 1);
-    for (const auto& [geometry, mesh] : meshes_)
-      if (!mesh) root_.in(*geometry).refuse("has no place in the scene, so it would be lost");
-    return scene_.take();
+    return visual;
   }
 
- private:
   /// The unit in an element's <asset>, in metres.
   static double unit(const xml_place& of, double otherwise) {
     const xml_element* asset = of.child("asset");

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "frame_report.hpp"
+
+#include "report_csv.hpp"
+
+using namespace clearance;
+
+std::string to_json(const frame_report& report) {
+  json out = {{"frame", report.frame}, {"file", report.file}};
+  out.update(witness(report.found.result, report.cloud, report.point, *report.bodies));
+  out["points"] = counts(report.found.result);
+  out["upload_us"] = microseconds(report.upload);
+  out["latency_us"] = microseconds(report.query);
+  if (report.plan) {
+    json& plan = out["plan"] = outcome_of(*report.plan);
+    plan["lower"] = json::array();
+    for (const min_distance_result& r : report.plan->found.of)
+      plan["lower"].push_back(r.state == state::no_data ? json(nullptr) : or_null(r.lower));
+    plan["latency_us"] = microseconds(report.plan->query);
+  }
+  return json_text(out, -1);
+}
+
+std::string to_csv(const frame_report& report) {
+  std::string out;
+  if (report.frame == 0) {
+    out = std::string("frame,file,") + witness_columns + ",latency_us";
+    if (report.plan) out += report.plan->asked->margin ? ",plan_least,plan_at,plan_first_below" : ",plan_least,plan_at";
+    out += '\n';
+  }
+  out += std::to_string(report.frame) + ',' + csv_word(report.file) + ',' +
+         witness_cells(report.found.result, report.cloud, report.point, *report.bodies) + ',' +
+         csv_word(microseconds(report.query));
+  if (report.plan)
+    for (const auto plan = outcome_of(*report.plan); const char* const name : {"least", "at", "first_below"})
+      if (plan.contains(name)) out += ',' + csv_word(plan[name]);
+  return out + '\n';
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "backends.hpp"
+#include "observations.hpp"
+#include "query_options.hpp"
+#include "report_json.hpp"
+
+#include <clearance/motion_clearance.hpp>
+#include <clearance/questions/min_distances.hpp>
+
+/// What `clearance plan` reports, and `clearance run` about its plan: one result per configuration.
+struct plan_report {
+  const query_options* asked = nullptr;
+  const std::vector<observation>* clouds = nullptr;
+  const std::vector<body>* bodies = nullptr;
+  clearance::min_distances_result found = {};
+  std::vector<clearance::motion_clearance_result> ways = {};    // for --between: way k goes from row k to the next
+  double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds
+
+  /// The first configuration whose lower end is not above the margin of --check; without a valid point, the first one.
+  std::optional<std::size_t> first_below() const;
+  /// The first way that may come nearer than the margin.
+  std::optional<std::size_t> first_way_below() const;
+  bool blind() const { return found.of[0].state == clearance::state::no_data; }
+  /// 3 without a valid point, 2 if --check fails.
+  int code() const { return blind() ? 3 : asked->margin && (first_below() || first_way_below()) ? 2 : 0; }
+};
+
+/// The number of configurations, the least distance of all with its configuration, and, for --check, the first that
+/// fails.
+json outcome_of(const plan_report& report);
+
+/// One JSON object per configuration, each on one line, and a last one about all.
+std::string to_json(const plan_report& report);
+
+/// A line of column names, and one line per configuration.
+std::string to_csv(const plan_report& report);

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "asked_robot.hpp"
+#include "backends.hpp"
+#include "distances_file.hpp"
+#include "observations.hpp"
+#include "robot_bodies.hpp"
+
+#include <clearance/gradient.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
+#include <clearance/questions/nearest_k.hpp>
+#include <clearance/questions/self_filter.hpp>
+#include <clearance/questions/zones.hpp>
+
+/// How a part's least distance changes with its twist, and with the robot's joints (unknown if the first is).
+struct part_gradient {
+  clearance::pose_gradient of_pose;
+  std::optional<Eigen::VectorXd> of_joints;
+};
+
+/// Everything that `clearance query` reports.
+struct query_report {
+  const query_options* asked = nullptr;
+  const std::vector<observation>* clouds = nullptr;
+  const std::vector<body>* bodies = nullptr;
+  const asked_robot* robot = nullptr;
+  reply found;
+  std::optional<clearance::self_filter_result> filter;
+  std::optional<clearance::zones_result> zones;
+  std::optional<clearance::nearest_k_result> nearest;
+  std::optional<clearance::supported_distance> support;
+  std::vector<part_gradient> gradients;  // of all parts; empty: not asked
+  std::optional<distances_written> distances;
+  double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds; query: for the least distance
+  std::vector<std::string> notes;
+
+  /// Is the lower end of the bracket above the margin of --check?
+  bool passes() const { return found.result.state != clearance::state::no_data && found.result.lower > *asked->margin; }
+};
