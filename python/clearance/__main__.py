@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command `clearance`: what Python adds. Each file in commands/ is a subcommand: its docstring, add(parser), run(asked)."""
+
+import argparse
+import importlib
+import os
+import pathlib
+import pkgutil
+import shutil
+import sys
+
+from . import commands
+
+
+def compiled_command():
+    """The compiled command of the same name, if another one is on the PATH."""
+    here = pathlib.Path(sys.argv[0]).resolve()
+    for folder in os.environ.get("PATH", "").split(os.pathsep):
+        found = shutil.which("clearance", path=folder)
+        if found and pathlib.Path(found).resolve() != here:
+            return found
+    return None
+
+
+def main(arguments=None):
+    arguments = sys.argv[1:] if arguments is None else arguments
+    known = {m.name.replace("_", "-"): m.name for m in pkgutil.iter_modules(commands.__path__)}
+    if arguments and arguments[0] not in known and not arguments[0].startswith("-"):
+        if found := compiled_command():
+            os.execv(found, [found, *arguments])
+        print(f"clearance: {arguments[0]} is no command of the Python package (it has: {', '.join(sorted(known))}); "
+              "query, run, plan, pack, info and demo are of the compiled command, which is not on the PATH", file=sys.stderr)
+        return 1
+    parser = argparse.ArgumentParser(prog="clearance", description="How far a robot is from what its sensors see.")
+    of = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, module in sorted(known.items()):
+        if arguments and arguments[0] not in (name, "-h", "--help"):
+            continue
+        each = importlib.import_module(f"{commands.__name__}.{module}")
+        each.add(of.add_parser(name, help=each.__doc__.strip().splitlines()[0], description=each.__doc__))
+    asked = parser.parse_args(arguments)
+    try:
+        return importlib.import_module(f"{commands.__name__}.{known[asked.command]}").run(asked) or 0
+    except (ValueError, RuntimeError, OSError, ImportError) as error:
+        print(f"clearance {asked.command}: {str(error).removeprefix('clearance: ')}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

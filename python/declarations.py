@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reads the questions' headers, so that Python has every question, option, result and sentence that C++ has.
+
+  declarations.py INCLUDE OUTPUT   INCLUDE/clearance/questions/*.hpp -> OUTPUT/declared.hpp, OUTPUT/questions.txt
+
+What is read is what clang-format leaves: a struct at the library's namespace, its documentation above it, one member
+declaration a line. Member pointers are written, so a compiler notices what was read wrongly.
+"""
+
+import pathlib
+import re
+import sys
+
+STRUCT = re.compile(r"(struct|enum class) (\w+)(?: : [\w:]+)? \{(.*)")
+MEMBER = re.compile(r"  (unsigned long long|[\w:]+(?:<.*>)?) (\w[^()]*?(?:\{.*\})?[^()]*?);(?: +///< (.*))?$")
+METHOD = re.compile(r"  (?:const )?([\w:]+(?:<.*?>)?(?:&| )?)\s?(\w+)\((.*?)\) const \{")
+# What has a class of its own in values.hpp, not one made from its members.
+OWN = {"vec3", "position", "distance_certainty"}
+
+
+def python_name(name):
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+def declarators(text):
+    """The names of `a = 1, b, c[3] = {}`."""
+    depth, name, names = 0, "", []
+    for c in text + ",":
+        depth += (c in "({[<") - (c in ")}]>")
+        if c == "," and depth == 0:
+            names.append(re.match(r"\s*(\w+)", name)[1])
+            name = ""
+        else:
+            name += c
+    return names
+
+
+def comment(lines, at):
+    """The `///` lines that end above line `at`."""
+    said = []
+    while at > 0 and (m := re.match(r"\s*///(?!<) ?(.*)", lines[at - 1])):
+        said.insert(0, m[1])
+        at -= 1
+    return " ".join(said)
+
+
+class Declared:
+    def __init__(self, kind, name, doc, header):
+        self.kind, self.name, self.doc, self.header = kind, name, doc, header
+        self.members, self.methods, self.question, self.values = [], [], False, []
+
+
+def join_member(lines, at):
+    """A member's declaration may stand on several lines, and so may what is said about it."""
+    text = lines[at]
+    while not re.search(r";|\{\s*$|\)\s*$|\}\s*$", text.split("//")[0]) and at + 1 < len(lines):
+        at += 1
+        code, *said = text.split("  ///< ")
+        text = code.rstrip() + " " + lines[at].strip() + ("  ///< " + said[0] if said else "")
+    while at + 1 < len(lines) and (m := re.match(r"\s*///< (.*)|\s{6,}/// (.*)", lines[at + 1])) and "///<" in text:
+        text += " " + (m[1] or m[2])
+        at += 1
+    return text, at
+
+
+def read(header, include):
+    lines = header.read_text().splitlines()
+    spaces, at = [], 0
+    while at < len(lines):
+        line = lines[at]
+        if m := re.match(r"namespace (\w+(?:::\w+)*) \{", line):
+            spaces.append(m[1])
+        elif line.startswith("}  // namespace"):
+            spaces.pop()
+        elif spaces == ["clearance"] and (m := STRUCT.match(line)) and not lines[at - 1].startswith(("template", "  requires")):
+            made = Declared(m[1], m[2], comment(lines, at), header.relative_to(include))
+            if m[1] == "enum class":
+                text = m[3]
+                while "}" not in text:
+                    at += 1
+                    text += lines[at].split("//")[0]
+                made.values = re.findall(r"\w+", text.split("}")[0])
+            else:
+                at = read_members(lines, at + 1, made)
+            yield made
+        at += 1
+
+
+def read_members(lines, at, made):
+    seen = True  # until `private:`
+    while not lines[at].startswith("}"):
+        line = lines[at]
+        if re.match(r" (private|protected):", line):
+            seen = False
+        elif line.startswith("  using result = "):
+            made.question = True
+        elif seen and (m := METHOD.match(line)) and re.fullmatch(r"((std::size_t|double|real) \w+(, )?)*", m[3]):
+            if not lines[at - 1].strip().startswith("template"):
+                made.methods.append((m[2], comment(lines, at), m[3].split(", ") if m[3] else []))
+        elif seen and re.match(r"  [\w:]", line) and not re.match(r"  (using|static|template|struct|class|requires|friend|CLEARANCE)\b", line):
+            text, at = join_member(lines, at)
+            if m := MEMBER.match(text):
+                said = m[3] or comment(lines, at)
+                made.members += [(name, m[1], said if i == 0 else "") for i, name in enumerate(declarators(m[2]))]
+        at += 1
+    return at
+
+
+def words(text):
+    return set(re.findall(r"\w+", text))
+
+
+def quoted(text):
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("`", "") + '"'
+
+
+def reachable(all_of):
+    wanted = [d for d in all_of.values() if d.question]
+    chosen = {}
+    while wanted:
+        d = wanted.pop()
+        if d.name in chosen or d.name in OWN:
+            continue
+        chosen[d.name] = d
+        for _, kind, _ in d.members:
+            wanted += [all_of[w] for w in words(kind) if w in all_of]
+        if d.question:
+            text = (include_folder / d.header).read_text()
+            own = text[text.index(f"struct {d.name} {{"):]
+            result = re.search(r"using result = (.*);", own)[1]
+            wanted += [all_of[w] for w in words(result) if w in all_of]
+    chosen["drop_reason"] = all_of["drop_reason"]  # of which the counts of dropped points are
+    return [d for d in all_of.values() if d.name in chosen]
+
+
+def write(chosen, output):
+    headers = sorted({str(d.header) for d in chosen})
+    text = "// Written by declarations.py from the headers' own words.\n#pragma once\n\n"
+    text += "".join(f"#include <{h}>\n" for h in headers)
+    text += '\n#include "declared_as.hpp"\n\n#include <tuple>\n\nusing clearance::real;\n\n'
+    for d in chosen:
+        if d.kind == "enum class":
+            values = ", ".join(f"value_as<clearance::{d.name}>{{{quoted(v)}, clearance::{d.name}::{v}}}" for v in d.values)
+            text += (f"template <>\nstruct declared<clearance::{d.name}> {{\n"
+                     f"  static constexpr const char *name = {quoted(python_name(d.name))}, *doc = {quoted(d.doc)};\n"
+                     f"  static constexpr bool question = false;\n"
+                     f"  static constexpr auto values = std::make_tuple({values});\n}};\n")
+            continue
+        members = ", ".join(f"member_as{{{quoted(name)}, &clearance::{d.name}::{name}, {quoted(said)}}}"
+                            for name, _, said in d.members)
+        methods = ", ".join(
+            f"method_as{{{quoted(name)}, [](const clearance::{d.name}& r{''.join(', ' + a for a in given)})"
+            f" {{ return r.{name}({', '.join(a.split()[1] for a in given)}); }}, {quoted(said)}"
+            f"{''.join(', ' + quoted(a.split()[1]) for a in given)}}}"
+            for name, said, given in d.methods if not d.question)
+        text += (f"template <>\nstruct declared<clearance::{d.name}> {{\n"
+                 f"  static constexpr const char *name = {quoted(python_name(d.name))}, *doc = {quoted(d.doc)};\n"
+                 f"  static constexpr bool question = {str(d.question).lower()};\n"
+                 f"  static constexpr auto members = std::make_tuple({members});\n"
+                 f"  static constexpr auto methods = std::make_tuple({methods});\n}};\n")
+    text += "\n/// Calls `f.template operator()<T>()` for each.\ntemplate <class F>\nvoid for_each_declared(F f) {\n"
+    text += "".join(f"  f.template operator()<clearance::{d.name}>();\n" for d in chosen)
+    text += "}\n"
+    put(output / "declared.hpp", text)
+    questions = [d for d in chosen if d.question]
+    put(output / "questions.txt", "".join(f"{d.name} {d.header}\n" for d in questions))
+
+
+def put(file, text):
+    """Only what differs is written, so that nothing is compiled again for nothing."""
+    if not file.exists() or file.read_text() != text:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+
+
+if __name__ == "__main__":
+    include_folder, out = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    found = {}
+    for path in sorted((include_folder / "clearance").rglob("*.hpp")):
+        if "io" not in path.parts:
+            found |= {d.name: d for d in read(path, include_folder)}
+    write(reachable(found), out)

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What the modules hand to one another: a question prepared for one robot on one backend, whatever its trees.
+
+#include <clearance/frame/clouds.hpp>
+#include <clearance/points/depth_image.hpp>
+#include <clearance/points/point_span.hpp>
+#include <clearance/points/ray_image.hpp>
+#include <clearance/points/strided_points.hpp>
+#include <clearance/usual_models.hpp>
+
+#include <memory>
+#include <variant>
+
+/// Everything that Python may pass as a cloud. The questions are compiled for each.
+template <class... Sources>
+using placed_any = std::variant<clearance::placed<Sources>...>;
+using any_cloud = placed_any<clearance::point_span, clearance::strided_points<float>, clearance::strided_points<double>,
+                             clearance::depth_image<std::uint16_t>, clearance::depth_image<float>,
+                             clearance::ray_image<std::uint16_t>, clearance::ray_image<float>>;
+
+/// A robot's trees, in memory of the backend `B`.
+template <class B = clearance::host>
+using robot_trees = std::variant<clearance::sphere_model<B>, clearance::triangle_model<B>>;
+
+/// A prepared question. One thread at a time asks it. Throws as `clearance::query`.
+template <class Q>
+struct asker {
+  virtual ~asker() = default;
+  virtual typename Q::result ask(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds,
+                                 const Q& question) = 0;
+  /// On a device: what follows waits for the work in this stream.
+  virtual void after(void*) {}
+};
+
+/// Each question's is instantiated in a file of its own, which CMake writes.
+template <class Q>
+std::unique_ptr<asker<Q>> ask_on_host(std::shared_ptr<const robot_trees<>> trees, const Q& question);

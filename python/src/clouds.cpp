@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "clouds.hpp"
+
+#include "arrays.hpp"
+#include "robot.hpp"
+
+#include <clearance/frame/frame.hpp>
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
+
+using namespace clearance;
+
+namespace {
+
+/// An array of any library as it lies in memory.
+struct seen_array {
+  const std::byte* data = nullptr;
+  std::vector<std::size_t> shape;
+  std::vector<std::int64_t> strides;  // bytes
+  char kind = 'f';                    // as NumPy's
+  std::size_t item = 0;               // bytes
+  int device = on_the_host;
+  nb::object kept;
+};
+
+std::optional<seen_array> from_dlpack(nb::handle given) {
+  nb::ndarray<nb::ro> array;
+  if (!nb::try_cast(given, array)) return {};
+  seen_array seen;
+  seen.data = static_cast<const std::byte*>(array.data());
+  seen.item = std::size_t(array.dtype().bits) / 8;
+  for (std::size_t k = 0; k < array.ndim(); ++k) {
+    seen.shape.push_back(array.shape(k));
+    seen.strides.push_back(array.stride(k) * std::int64_t(seen.item));
+  }
+  const auto code = nb::dlpack::dtype_code(array.dtype().code);
+  seen.kind = code == nb::dlpack::dtype_code::Float  ? 'f'
+              : code == nb::dlpack::dtype_code::UInt ? 'u'
+              : code == nb::dlpack::dtype_code::Int  ? 'i'
+                                                     : '?';
+  if (array.device_type() == nb::device::cuda::value)
+    seen.device = array.device_id();
+  else if (array.device_type() != nb::device::cpu::value && array.device_type() != 3)  // 3: pinned
+    return {};
+  seen.kept = nb::cast(array);
+  return seen;
+}
+
+/// From __array_interface__ or __cuda_array_interface__.
+seen_array from_interface(nb::handle given, const nb::dict& interface, int device, const char* argument) {
+  seen_array seen;
+  const auto typestr = nb::cast<std::string>(interface["typestr"]);
+  if (typestr.size() < 3) return seen;  // objects: refused as what they are
+  if (typestr[0] == '>')
+    throw std::invalid_argument(std::string("clearance: ") + argument +
+                                " has the byte order of another machine; byteswap it first: " + shape_and_type(given));
+  seen.kind = typestr[1], seen.item = std::size_t(std::stoul(typestr.substr(2))), seen.device = device;
+  const nb::object data = interface["data"];
+  seen.data = reinterpret_cast<const std::byte*>(nb::cast<std::uintptr_t>(data[nb::int_(0)]));
+  for (const nb::handle n : nb::object(interface["shape"])) seen.shape.push_back(nb::cast<std::size_t>(n));
+  if (interface.contains("strides") && !interface["strides"].is_none()) {
+    for (const nb::handle s : nb::object(interface["strides"])) seen.strides.push_back(nb::cast<std::int64_t>(s));
+  } else {
+    std::int64_t step = std::int64_t(seen.item);
+    seen.strides.resize(seen.shape.size());
+    for (std::size_t k = seen.shape.size(); k-- > 0; step *= std::int64_t(seen.shape[k])) seen.strides[k] = step;
+  }
+  seen.kept = nb::borrow(given);
+  return seen;
+}
+
+seen_array array_seen(nb::handle given, const char* argument, const char* wanted) {
+  if (auto seen = from_dlpack(given)) return *seen;
+  if (nb::hasattr(given, "__cuda_array_interface__")) {
+    const nb::dict interface = given.attr("__cuda_array_interface__");
+    int device = 0;
+    if (nb::hasattr(given, "device") && nb::hasattr(given.attr("device"), "id"))
+      device = nb::cast<int>(given.attr("device").attr("id"));
+    return from_interface(given, interface, device, argument);
+  }
+  if (nb::hasattr(given, "__array_interface__"))  // such as a field of packed records, which DLPack cannot describe
+    return from_interface(given, given.attr("__array_interface__"), on_the_host, argument);
+  if (nb::isinstance<nb::list>(given) || nb::isinstance<nb::tuple>(given)) {
+    try {
+      if (auto seen = from_dlpack(nb::module_::import_("numpy").attr("asarray")(given, "f8"))) return *seen;
+    } catch (nb::python_error&) {
+    }
+  }
+  throw std::invalid_argument(std::string("clearance: ") + argument + " is " + wanted + ", not " +
+                              shape_and_type(given));
+}
+
+/// A step that fits into the library's views.
+std::uint32_t step_of(std::int64_t bytes, const char* argument) {
+  if (bytes < 0 || bytes > UINT32_MAX)
+    throw std::invalid_argument(std::string("clearance: ") + argument +
+                                " runs backwards or too far apart in memory; copy it first (numpy.ascontiguousarray)");
+  return std::uint32_t(bytes);
+}
+
+/// Points as records: the axes before the last one are rows, and records in a row.
+template <class Scalar>
+strided_points<Scalar> records(const seen_array& seen, std::size_t axes, std::array<std::int64_t, 3> offsets) {
+  strided_points<Scalar> made;
+  made.data = seen.data;
+  made.count = 1;
+  for (std::size_t k = 0; k < axes; ++k) made.count *= seen.shape[k];
+  for (int k = 0; k < 3; ++k) made.offset[k] = step_of(offsets[std::size_t(k)], "points");
+  if (axes == 0) return made;
+  made.step = step_of(seen.strides[axes - 1], "points");
+  if (axes == 2 && seen.strides[0] != seen.strides[1] * std::int64_t(seen.shape[1])) {
+    made.width = std::uint32_t(seen.shape[1]);
+    if (seen.strides[0] < 0) step_of(-1, "points");
+    made.row_step = std::size_t(seen.strides[0]);
+  }
+  return made;
+}
+
+constexpr const char* points_wanted =
+    "an array of shape (n, 3) or (rows, columns, 3) and dtype float32 or float64, or a structured one with x, y and z";
+
+/// A structured array, such as a PointCloud2's records.
+std::optional<seen_array> structured(nb::handle given, std::array<std::int64_t, 3>& offsets) {
+  if (!nb::hasattr(given, "dtype") || !nb::hasattr(given, "__array_interface__")) return {};
+  const nb::object fields = given.attr("dtype").attr("fields");
+  if (fields.is_none()) return {};
+  const nb::object names = given.attr("dtype").attr("names");
+  std::string type;
+  int k = 0;
+  for (const char* axis : {"x", "y", "z"}) {
+    if (!nb::cast<bool>(fields.attr("__contains__")(axis)))
+      throw std::invalid_argument(std::string("clearance: points has no field ") + axis + ", only " + text_of(names));
+    const nb::object field = fields[axis];
+    const auto its = nb::cast<std::string>(nb::object(field[nb::int_(0)]).attr("str"));
+    if (!type.empty() && its != type)
+      throw std::invalid_argument("clearance: the fields x, y and z of points have different types");
+    type = its;
+    offsets[std::size_t(k++)] = nb::cast<std::int64_t>(field[nb::int_(1)]);
+  }
+  nb::dict interface = given.attr("__array_interface__");
+  seen_array seen = from_interface(given, interface, on_the_host, "points");
+  if (type[0] == '>')
+    throw std::invalid_argument("clearance: points has the byte order of another machine; byteswap it first: " +
+                                shape_and_type(given));
+  seen.kind = type[1], seen.item = std::size_t(std::stoul(type.substr(2)));
+  return seen;
+}
+
+template <class Scalar>
+void place(cloud_object& made, strided_points<Scalar> records, const point_filter& filter,
+           const Eigen::Isometry3d& pose) {
+  records.filter = filter;
+  if constexpr (std::is_same_v<Scalar, float>) {
+    const bool dense = records.width == 0 && records.step == sizeof(vec3) && records.offset[0] == 0 &&
+                       records.offset[1] == 4 && records.offset[2] == 8 &&
+                       reinterpret_cast<std::uintptr_t>(records.data) % alignof(vec3) == 0;
+    if (dense) {
+      made.cloud =
+          placed<point_span>{point_span(reinterpret_cast<const vec3*>(records.data), records.count, filter), pose};
+      return;
+    }
+  }
+  made.far = std::is_same_v<Scalar, double>;
+  made.cloud = placed<strided_points<Scalar>>{records, pose};
+}
+
+intrinsics camera_of(nb::handle given) {
+  std::vector<double> k;
+  try {
+    const nb::object flat = nb::module_::import_("numpy").attr("ascontiguousarray")(given, "f8");
+    const auto array = nb::cast<nb::ndarray<const double, nb::c_contig>>(flat);
+    if (array.size() == 4 && array.ndim() == 1) k.assign(array.data(), array.data() + 4);
+    if (array.ndim() == 2 && array.shape(0) == 3 && array.shape(1) == 3) {
+      const double* const m = array.data();
+      if (m[1] != 0 || m[3] != 0 || m[6] != 0 || m[7] != 0 || m[8] != 1)
+        throw std::invalid_argument(
+            "clearance: intrinsics is a matrix with skew, or with a last row other than 0, 0, 1");
+      k = {m[0], m[4], m[2], m[5]};
+    }
+  } catch (nb::python_error&) {
+  } catch (const nb::cast_error&) {
+  }
+  if (k.empty())
+    throw std::invalid_argument(
+        "clearance: intrinsics is (fx, fy, cx, cy) in pixels, or the matrix K of shape (3, 3), not " +
+        shape_and_type(given));
+  for (const double v : k)
+    if (!std::isfinite(v)) throw std::invalid_argument("clearance: intrinsics has a number that is not finite");
+  if (!(k[0] > 0 && k[1] > 0))
+    throw std::invalid_argument("clearance: intrinsics has a focal length that is not above 0");
+  return {k[0], k[1], k[2], k[3]};
+}
+
+template <class Image>
+void limit(Image& image, double nearest, double farthest, bool minus_infinity_is_near) {
+  image.nearest = real(nearest), image.farthest = real(farthest), image.minus_infinity_is_near = minus_infinity_is_near;
+}
+
+}  // namespace
+
+any_cloud near_robot(const cloud_object& object, std::span<const Eigen::Isometry3d> poses) {
+  if (!object.far || poses.empty()) return object.cloud;
+  auto cloud = std::get<placed<strided_points<double>>>(object.cloud);
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Isometry3d& pose : poses) middle += pose.translation() / double(poses.size());
+  const Eigen::Vector3d origin = (cloud.pose.inverse() * middle).array().round();
+  if (!(origin.cwiseAbs().maxCoeff() > 32) || !(origin.cwiseAbs().maxCoeff() < 1 << 24)) return cloud;
+  cloud.source.origin = {real(origin.x()), real(origin.y()), real(origin.z())};
+  const Eigen::Vector3d sensor = object.sensor - origin;
+  cloud.source.filter.sensor = {real(sensor.x()), real(sensor.y()), real(sensor.z())};
+  cloud.source.off = frames::pose_error * (cloud.pose.translation().norm() + origin.norm());
+  cloud.pose.translation() = cloud.pose * origin;
+  return cloud;
+}
+
+cloud_object points_of(nb::handle points, nb::handle pose, double nearest, double farthest, nb::handle sensor,
+                       bool zero_is_missing) {
+  cloud_object made;
+  std::array<std::int64_t, 3> offsets{};
+  std::size_t axes = 0;
+  seen_array seen;
+  if (auto record = structured(points, offsets)) {
+    seen = std::move(*record);
+    axes = seen.shape.size();
+    if (axes == 0)
+      throw std::invalid_argument(std::string("clearance: points is ") + points_wanted + ", not one record");
+  } else {
+    seen = array_seen(points, "points", points_wanted);
+    if (nb::hasattr(points, "mask") && nb::hasattr(points, "filled"))
+      throw std::invalid_argument(
+          "clearance: points is a masked array; give points.filled(nan), whose NaN are counted");
+    if (seen.shape.size() > 1 && seen.shape.back() > 3)
+      throw std::invalid_argument(std::string("clearance: points is ") + points_wanted + ", not " +
+                                  shape_and_type(points) + "; points[..., :3] is read in place, too");
+    if (seen.shape.size() < 2 || seen.shape.back() != 3)
+      throw std::invalid_argument(std::string("clearance: points is ") + points_wanted + ", not " +
+                                  shape_and_type(points));
+    axes = seen.shape.size() - 1;
+    for (std::size_t k = 0; k < 3; ++k) offsets[k] = std::int64_t(k) * seen.strides.back();
+  }
+  if (axes > 2 || seen.kind != 'f' || (seen.item != 4 && seen.item != 8))
+    throw std::invalid_argument(std::string("clearance: points is ") + points_wanted + ", not " +
+                                shape_and_type(points));
+  if (!(nearest >= 0) || !(farthest >= nearest))
+    throw std::invalid_argument("clearance: nearest is 0 or more, and farthest not less; here are " +
+                                std::to_string(nearest) + " and " + std::to_string(farthest));
+  point_filter filter{.nearest = real(nearest), .farthest = real(farthest), .zero_is_missing = zero_is_missing};
+  if (!sensor.is_none()) {
+    const auto at = three_of(sensor, "sensor");
+    made.sensor = {at[0], at[1], at[2]};
+    filter.sensor = {real(at[0]), real(at[1]), real(at[2])};
+  }
+  const Eigen::Isometry3d where = pose_of(pose, "pose");
+  if (seen.item == 4)
+    place(made, records<float>(seen, axes, offsets), filter, where);
+  else
+    place(made, records<double>(seen, axes, offsets), filter, where);
+  made.device = seen.device, made.kept = std::move(seen.kept), made.also_kept = nb::borrow(points);
+  return made;
+}
+
+cloud_object depth_of(nb::handle depth, nb::handle intrinsics, nb::handle pose, nb::handle scale, double nearest,
+                      double farthest, bool minus_infinity_is_near, nb::handle rays) {
+  constexpr const char* wanted = "an image of shape (rows, columns) and dtype uint16 or float32";
+  const seen_array seen = array_seen(depth, "depth", wanted);
+  const bool integers = seen.kind == 'u' && seen.item == 2, floats = seen.kind == 'f' && seen.item == 4;
+  if (seen.shape.size() != 2 || !(integers || floats))
+    throw std::invalid_argument(std::string("clearance: depth is ") + wanted + ", not " + shape_and_type(depth));
+  if (intrinsics.is_none() == rays.is_none())
+    throw std::invalid_argument("clearance: a depth image needs intrinsics, or rays, one of them");
+  if (!(farthest >= nearest)) throw std::invalid_argument("clearance: farthest is less than nearest");
+  if (seen.strides[0] % std::int64_t(seen.item) != 0)
+    throw std::invalid_argument("clearance: depth has rows that begin in the middle of a pixel; copy it first");
+  if (nb::hasattr(depth, "mask") && nb::hasattr(depth, "filled"))
+    throw std::invalid_argument("clearance: depth is a masked array; give depth.filled(0), which counts as missing");
+  if (seen.shape[1] > 1 && seen.strides[1] != std::int64_t(seen.item))
+    throw std::invalid_argument("clearance: depth has pixels that do not follow one another in a row; copy it first");
+  const double unit = scale.is_none() ? (integers ? 0.001 : 1.0) : number_of(scale, "scale");
+  if (!(unit > 0 && std::isfinite(unit))) throw std::invalid_argument("clearance: scale is metres per unit, above 0");
+  const auto height = std::uint32_t(seen.shape[0]), width = std::uint32_t(seen.shape[1]);
+  const auto row = std::uint32_t(step_of(height > 1 ? seen.strides[0] : width * seen.item, "depth") / seen.item);
+  cloud_object made;
+  const Eigen::Isometry3d where = pose_of(pose, "pose");
+  const auto put = [&]<class Pixel>(const Pixel* pixels) {
+    if (rays.is_none()) {
+      depth_image<Pixel> image(pixels, width, height, camera_of(intrinsics), unit);
+      image.row = row;
+      limit(image, nearest, farthest, minus_infinity_is_near);
+      made.cloud = placed<depth_image<Pixel>>{image, where};
+      return;
+    }
+    const seen_array table = array_seen(rays, "rays", "an array of shape (rows, columns, 2) and dtype float32");
+    if (table.shape.size() != 3 || table.shape[0] != height || table.shape[1] != width || table.shape[2] != 2 ||
+        table.kind != 'f' || table.item != 4 || table.strides[2] != 4 || table.strides[1] != 8 ||
+        table.strides[0] != 8 * std::int64_t(width) || table.device != seen.device)
+      throw std::invalid_argument(
+          "clearance: rays is an array of shape (" + std::to_string(height) + ", " + std::to_string(width) +
+          ", 2) and dtype float32, without gaps and beside the image, not " + shape_and_type(rays));
+    ray_image<Pixel> image(pixels, reinterpret_cast<const ray*>(table.data), width, height, unit);
+    image.row = row;
+    limit(image, nearest, farthest, minus_infinity_is_near);
+    made.cloud = placed<ray_image<Pixel>>{image, where};
+    made.also_kept = nb::make_tuple(table.kept, nb::borrow(rays));
+  };
+  if (integers)
+    put(reinterpret_cast<const std::uint16_t*>(seen.data));
+  else
+    put(reinterpret_cast<const float*>(seen.data));
+  made.device = seen.device;
+  made.kept = nb::make_tuple(seen.kept, nb::borrow(depth));
+  return made;
+}
+
+void bind_clouds(nb::module_& m) {
+  nb::class_<cloud_object>(m, "Cloud", "Points or a depth image with a pose: a view of arrays where they lie.")
+      .def("__len__",
+           [](const cloud_object& c) {
+             return std::visit([](const auto& placed) { return placed.source.size(); }, c.cloud);
+           })
+      .def_prop_ro("device", [](const cloud_object& c) {
+        return c.device == on_the_host ? std::string("cpu") : "cuda:" + std::to_string(c.device);
+      });
+  m.def(
+      "points", &points_of, nb::arg("points"), nb::arg("pose").none() = nb::none(), nb::kw_only(),
+      nb::arg("nearest") = 0.0, nb::arg("farthest") = double(infinity), nb::arg("sensor").none() = nb::none(),
+      nb::arg("zero_is_missing") = false,
+      "A cloud of points, (n, 3) or (rows, columns, 3), float32 or float64, or structured with x, y, z; metres; read "
+      "in place. pose: world-from-cloud, (4, 4). Points nearer to the sensor than nearest, or beyond farthest, do not "
+      "count. zero_is_missing: a point at the sensor is none.");
+  m.def(
+      "depth_image", &depth_of, nb::arg("depth"), nb::arg("intrinsics").none() = nb::none(),
+      nb::arg("pose").none() = nb::none(), nb::kw_only(), nb::arg("scale").none() = nb::none(),
+      nb::arg("nearest") = 0.0, nb::arg("farthest") = double(infinity), nb::arg("minus_infinity_is_near") = true,
+      nb::arg("rays").none() = nb::none(),
+      "A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or "
+      "float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): "
+      "x / z and y / z of each pixel. pose: world-from-camera, z forward.");
+}

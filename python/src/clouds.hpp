@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Clouds in Python: views of arrays where they lie.
+
+#include "asker.hpp"
+
+#include <nanobind/nanobind.h>
+
+#include <optional>
+
+namespace nb = nanobind;
+
+inline constexpr int on_the_host = -1;
+
+/// A cloud with its pose, and what keeps its memory alive.
+struct cloud_object {
+  any_cloud cloud;
+  int device = on_the_host;  ///< The CUDA device where the array lies.
+  bool far = false;          ///< Doubles, of which a place near the robot is subtracted before they become floats.
+  Eigen::Vector3d sensor = Eigen::Vector3d::Zero();  ///< Of their filter, before it became floats.
+  nb::object kept, also_kept;
+};
+
+/// For a robot at these places: doubles far from (0, 0, 0) become floats relative to a place near the robot.
+any_cloud near_robot(const cloud_object& cloud, std::span<const Eigen::Isometry3d> poses);
+
+cloud_object points_of(nb::handle points, nb::handle pose, double nearest, double farthest, nb::handle sensor,
+                       bool zero_is_missing);
+cloud_object depth_of(nb::handle depth, nb::handle intrinsics, nb::handle pose, nb::handle scale, double nearest,
+                      double farthest, bool minus_infinity_is_near, nb::handle rays);
+
+void bind_clouds(nb::module_& m);

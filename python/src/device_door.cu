@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "device_door.hpp"
+
+#include "on_device.cuh"
+
+namespace {
+
+std::shared_ptr<void> upload(const robot_trees<>& trees, int device) {
+  const clearance::own_stream stream(device);
+  auto made = std::visit(
+      [&](const auto& model) { return std::make_shared<const robot_trees<clearance::device>>(model.on(stream.on())); },
+      trees);
+  stream.on().wait();
+  return std::const_pointer_cast<robot_trees<clearance::device>>(made);
+}
+
+void* prepare_any(const char* type, const std::shared_ptr<void>& trees, const void* question, int device) {
+  const auto found = all_makers().find(type);
+  if (found == all_makers().end()) return nullptr;
+  return found->second(std::static_pointer_cast<const robot_trees<clearance::device>>(trees), question, device);
+}
+
+}  // namespace
+
+const device_door& this_door() {
+  static const device_door door{upload, prepare_any};
+  return door;
+}
+
+/// Empty, or why no device can be used.
+std::string no_device() {
+  int count = 0;
+  const cudaError_t error = cudaGetDeviceCount(&count);
+  if (error == cudaSuccess && count > 0) return {};
+  cudaGetLastError();
+  return error == cudaSuccess ? "there is no CUDA device" : cudaGetErrorString(error);
+}

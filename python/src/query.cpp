@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "query.hpp"
+
+#include "arrays.hpp"
+#include "clouds.hpp"
+#include "device_entry.hpp"
+#include "questions.hpp"
+#include "robot.hpp"
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+
+#include <mutex>
+#include <optional>
+
+using namespace clearance;
+
+void refuse_option(const char* question, const char* option, const char* wanted, nb::handle given) {
+  throw nb::type_error(
+      (std::string(question) + ": " + option + " is " + wanted + ", not " + nb::cast<std::string>(nb::repr(given)))
+          .c_str());
+}
+
+namespace {
+
+/// A query in Python, whatever its question.
+struct any_query {
+  virtual ~any_query() = default;
+  virtual nb::object ask(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds,
+                         nb::handle question, std::optional<void*> stream) = 0;
+};
+
+/// Any number of threads may ask: each takes a prepared question that no other has, or a new one.
+template <class Q>
+class query_of final : public any_query {
+ public:
+  query_of(std::shared_ptr<robot_model> robot, const Q& question, int device)
+      : robot_(std::move(robot)), standing_(question), device_(device) {
+    idle_.push_back(make());
+  }
+
+  nb::object ask(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds, nb::handle question,
+                 std::optional<void*> stream) override {
+    const Q asked = question.is_none() ? standing_ : other(question);
+    typename Q::result result;
+    {
+      const nb::gil_scoped_release others;
+      std::unique_ptr<asker<Q>> mine = take();
+      if (stream) mine->after(*stream);
+      result = mine->ask(poses, clouds, asked);
+      const std::scoped_lock lock(mutex_);
+      idle_.push_back(std::move(mine));
+    }
+    if constexpr (declared_struct<typename Q::result>) {
+      return nb::cast(answered<typename Q::result>{std::move(result), robot_->names});
+    } else {
+      using element = typename Q::result::value_type;
+      auto* const kept = new typename Q::result(std::move(result));
+      return array_of<element>(kept->data(), kept->size(),
+                               nb::capsule(kept, [](void* p) noexcept { delete static_cast<typename Q::result*>(p); }));
+    }
+  }
+
+ private:
+  static Q other(nb::handle question) {
+    if (!nb::isinstance<asked<Q>>(question))
+      throw nb::type_error((std::string("this query asks ") + declared<Q>::name + ", and question is a " +
+                            nb::cast<std::string>(question.type().attr("__name__")))
+                               .c_str());
+    return nb::cast<const asked<Q>&>(question).question;
+  }
+  std::unique_ptr<asker<Q>> make() const {
+    if (device_ == on_the_host) return ask_on_host(robot_->trees, standing_);
+    return ask_on_device(*robot_, standing_, device_);
+  }
+  std::unique_ptr<asker<Q>> take() {
+    {
+      const std::scoped_lock lock(mutex_);
+      if (!idle_.empty()) {
+        auto one = std::move(idle_.back());
+        idle_.pop_back();
+        return one;
+      }
+    }
+    return make();
+  }
+
+  std::shared_ptr<robot_model> robot_;
+  Q standing_;
+  int device_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<asker<Q>>> idle_;
+};
+
+int device_number(const std::string& device) {
+  if (device == "cpu") return on_the_host;
+  if (device == "cuda") return 0;
+  if (device.starts_with("cuda:") && device.size() > 5 && device.size() < 10 &&
+      device.find_first_not_of("0123456789", 5) == device.npos)
+    return std::stoi(device.substr(5));
+  throw std::invalid_argument("clearance: device is \"" + device + "\"; it is \"cpu\" or \"cuda:0\" and so on");
+}
+
+struct query_object {
+  std::shared_ptr<robot_model> robot;
+  nb::object question, kept;
+  int device;
+  std::unique_ptr<any_query> query;
+
+  query_object(std::shared_ptr<robot_model> robot_, nb::object question_, const std::string& device_)
+      : robot(std::move(robot_)), question(std::move(question_)), device(device_number(device_)) {
+    if (PyType_Check(question.ptr())) question = question();  // MinDistance for MinDistance()
+    for_each_declared([&]<class T>() {
+      if constexpr (declared<T>::question)
+        if (nb::isinstance<asked<T>>(question))
+          query = std::make_unique<query_of<T>>(robot, nb::cast<const asked<T>&>(question).question, device);
+    });
+    if (!query)
+      throw nb::type_error(
+          ("question is one of the library's, such as MinDistance(), not " + nb::cast<std::string>(nb::repr(question)))
+              .c_str());
+  }
+
+  nb::object operator()(nb::handle points, nb::handle joints, nb::handle poses, nb::handle base, nb::handle cloud_pose,
+                        nb::handle depth, nb::handle intrinsics, nb::handle rays, nb::handle depth_scale,
+                        nb::handle camera_pose, nb::handle clouds, nb::handle stream, nb::handle other,
+                        bool ignore_limits) {
+    std::vector<Eigen::Isometry3d> places;
+    if (!poses.is_none()) {
+      if (!joints.is_none() || !base.is_none())
+        throw std::invalid_argument("clearance: poses are given, so joints and base cannot be");
+      places = poses_of(poses, "poses");
+    } else if (joints.is_none() && !robot->description && robot->parts() == 1) {
+      places = {pose_of(base, "base")};
+    } else {
+      places = placed_parts(*robot, joints, pose_of(base, "base"), ignore_limits);
+    }
+    std::vector<any_cloud> seen;
+    std::vector<nb::object> kept;
+    bool on_device = false;
+    const auto put = [&](const cloud_object& cloud, const char* argument) {
+      if (cloud.device != on_the_host && device == on_the_host)
+        throw std::invalid_argument(std::string("clearance: ") + argument +
+                                    " lies on cuda:" + std::to_string(cloud.device) +
+                                    ", and this query asks on the cpu; copy it, or make the query for that device");
+      if (cloud.device != on_the_host && cloud.device != device)
+        throw std::invalid_argument(std::string("clearance: ") + argument +
+                                    " lies on cuda:" + std::to_string(cloud.device) +
+                                    ", and this query asks on cuda:" + std::to_string(device));
+      on_device |= cloud.device != on_the_host;
+      seen.push_back(near_robot(cloud, places));
+      kept.push_back(cloud.kept), kept.push_back(cloud.also_kept);
+    };
+    if (!points.is_none()) {
+      cloud_object* ready = nullptr;
+      if (nb::try_cast(points, ready) && ready && !cloud_pose.is_none())
+        throw std::invalid_argument("clearance: cloud_pose is given, but this cloud has its own: points(array, pose)");
+      if (ready)
+        put(*ready, "points");
+      else
+        put(points_of(points, cloud_pose, 0, infinity, nb::none(), false), "points");
+    } else if (!cloud_pose.is_none()) {
+      throw std::invalid_argument("clearance: cloud_pose is given without points");
+    }
+    if (!depth.is_none())
+      put(depth_of(depth, intrinsics, camera_pose, depth_scale, 0, infinity, true, rays), "depth");
+    else if (!intrinsics.is_none() || !camera_pose.is_none() || !depth_scale.is_none() || !rays.is_none())
+      throw std::invalid_argument(
+          "clearance: intrinsics, rays, depth_scale and camera_pose are about depth, which is not given");
+    if (!clouds.is_none() &&
+        (nb::hasattr(clouds, "dtype") || !nb::hasattr(clouds, "__iter__") || nb::isinstance<nb::str>(clouds)))
+      throw std::invalid_argument("clearance: clouds is a sequence of points(...), depth_image(...) and arrays, not " +
+                                  shape_and_type(clouds));
+    if (!clouds.is_none())
+      for (const nb::handle each : clouds) {
+        cloud_object* ready = nullptr;
+        if (nb::try_cast(each, ready) && ready)
+          put(*ready, "one of the clouds");
+        else
+          put(points_of(each, nb::none(), 0, infinity, nb::none(), false), "one of the clouds");
+      }
+    else if (points.is_none() && depth.is_none())
+      throw std::invalid_argument("clearance: nothing is given to look at: points, depth or clouds");
+    try {
+      return query->ask(places, seen, other, stream_of(stream, on_device));
+    } catch (const std::invalid_argument& error) {
+      if (joints.is_none() || places.size() <= robot->parts()) throw;
+      throw std::invalid_argument(std::string(error.what()) + " (joints gives " +
+                                  std::to_string(places.size() / robot->parts()) +
+                                  " configurations; MinDistances and its kin ask about many)");
+    }
+  }
+
+  /// The protocols' numbers, or an object of torch or CuPy. Without one, arrays on a device were handed over in order
+  /// of the legacy default stream, as DLPack has it.
+  std::optional<void*> stream_of(nb::handle stream, bool on_device) const {
+    if (stream.is_none()) return on_device ? std::optional<void*>(nullptr) : std::nullopt;
+    if (device == on_the_host) throw std::invalid_argument("clearance: stream is for a query on a CUDA device");
+    nb::object number = nb::borrow(stream);
+    std::intptr_t value = 0;
+    for (const char* name : {"cuda_stream", "ptr"})
+      if (nb::hasattr(stream, name)) number = stream.attr(name);
+    if (!nb::try_cast(number, value))
+      throw nb::type_error("stream is an integer (-1, 1, 2 or a pointer), or a stream of torch or CuPy");
+    return reinterpret_cast<void*>(value);
+  }
+};
+
+}  // namespace
+
+void bind_query(nb::module_& m) {
+  nb::class_<query_object>(m, "Query",
+                           "A question prepared for a robot on one device: make it once and ask it in every frame. Any "
+                           "number of threads may "
+                           "call it.")
+      .def(nb::init<std::shared_ptr<robot_model>, nb::object, const std::string&>(), nb::arg("robot"),
+           nb::arg("question").none(), nb::arg("device") = "cpu",
+           "question: such as MinDistance(). device: \"cpu\", or \"cuda:0\" and so on.")
+      .def("__call__", &query_object::operator(), nb::arg("points").none() = nb::none(),
+           nb::arg("joints").none() = nb::none(), nb::kw_only(), nb::arg("poses").none() = nb::none(),
+           nb::arg("base").none() = nb::none(), nb::arg("cloud_pose").none() = nb::none(),
+           nb::arg("depth").none() = nb::none(), nb::arg("intrinsics").none() = nb::none(),
+           nb::arg("rays").none() = nb::none(), nb::arg("depth_scale").none() = nb::none(),
+           nb::arg("camera_pose").none() = nb::none(), nb::arg("clouds").none() = nb::none(),
+           nb::arg("stream").none() = nb::none(), nb::arg("question").none() = nb::none(),
+           nb::arg("ignore_limits") = false,
+           "Asks about one frame and waits for the answer. Where the robot is: joints (joints,) or {name: value}, with "
+           "base (world-from-base); or poses (parts, 4, 4), world-from-part. Questions about many configurations take "
+           "joints (..., joints) or poses (..., parts, 4, 4). What is seen: points with cloud_pose; depth with "
+           "intrinsics or rays and camera_pose; or clouds, a sequence of points(...) and depth_image(...). question: "
+           "other options for this call. Raises ValueError with a sentence that names the argument.")
+      .def_prop_ro("question", [](const query_object& q) { return q.question; })
+      .def_prop_ro("robot", [](const query_object& q) { return q.robot; })
+      .def_prop_ro("device", [](const query_object& q) {
+        return q.device == on_the_host ? std::string("cpu") : "cuda:" + std::to_string(q.device);
+      });
+}

@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot.hpp"
+
+#include "arrays.hpp"
+
+#include <clearance/io/jacobian.hpp>
+#include <clearance/io/mesh.hpp>
+#include <clearance/io/spheres_file.hpp>
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+using namespace clearance;
+
+namespace {
+
+using row_major = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+
+struct model_options {
+  bool spheres = true;
+  std::size_t count = 0;
+  bool cache = true;
+};
+
+model_options options_of(const std::string& model, nb::handle spheres, bool cache) {
+  model_options made{.count = pack_options{}.count, .cache = cache};
+  if (model != "spheres" && model != "triangles")
+    throw std::invalid_argument("clearance: model is \"" + model + "\"; it is \"spheres\" or \"triangles\"");
+  made.spheres = model == "spheres";
+  if (spheres.is_none()) return made;
+  if (!made.spheres) throw std::invalid_argument("clearance: spheres=N is for model=\"spheres\"");
+  made.count = count_of(spheres, "spheres");
+  if (made.count == 0) throw std::invalid_argument("clearance: spheres is 0; a part needs at least one");
+  return made;
+}
+
+/// What the caller changes afterwards changes no recipe.
+nb::object copy_of(nb::handle given) { return nb::module_::import_("copy").attr("deepcopy")(given); }
+
+const io::body& body_of(const robot_model& robot, std::size_t part) {
+  if (part >= robot.parts())
+    throw std::invalid_argument("clearance: the robot has " + std::to_string(robot.parts()) +
+                                " parts, and none of number " + std::to_string(part));
+  return robot.bodies[part];
+}
+
+/// Builds trees of bodies, without the interpreter.
+void build(robot_model& made) {
+  const auto options = [&](std::size_t k) { return part_options{.tolerance = made.bodies[k].tolerance}; };
+  if (made.spheres)
+    made.trees = std::make_shared<const robot_trees<>>(
+        make_model<sphere>(made.bodies | std::views::transform(&io::body::packed), options));
+  else
+    made.trees = std::make_shared<const robot_trees<>>(
+        make_model<obb>(made.bodies | std::views::transform(&io::body::closed), options));
+  std::vector<std::string> names;
+  for (const io::body& body : made.bodies) names.push_back(body.name);
+  made.names = std::make_shared<const std::vector<std::string>>(std::move(names));
+}
+
+void make(robot_model& made, const std::vector<io::body_source>& sources, const model_options& options) {
+  io::body_account account;
+  io::body_options how{.spheres = options.spheres, .pack = {.count = options.count}};
+  if (options.cache) how.cache = io::packing_cache(io::packing_cache::usual_folder());
+  made.spheres = options.spheres;
+  made.bodies = io::make_bodies(sources, how, account);
+  made.notes.insert(made.notes.end(), account.notes.begin(), account.notes.end());
+  build(made);
+}
+
+std::shared_ptr<robot_model> from_urdf(nb::handle urdf, const std::string& model, nb::object spheres,
+                                       const std::string& geometry, const nb::dict& packages,
+                                       const std::vector<std::string>& exclude_links, bool cache) {
+  const model_options options = options_of(model, spheres, cache);
+  if (geometry != "collision" && geometry != "visual")
+    throw std::invalid_argument("clearance: geometry is \"" + geometry + "\"; it is \"collision\" or \"visual\"");
+  const auto made = std::make_shared<robot_model>();
+  const std::string file = file_of(urdf, "file");
+  io::robot_options reading;
+  for (const auto& [name, folder] : packages)
+    reading.packages[file_of(name, "the name of a package")] = file_of(folder, "the folder of a package");
+  {
+    const nb::gil_scoped_release others;
+    reading.geometry = geometry == "visual" ? io::robot_geometry::visual : io::robot_geometry::collision;
+    reading.exclude_links = exclude_links;
+    made->description.emplace(io::load_robot(file, reading));
+    made->name = made->description->name(), made->notes = made->description->notes();
+    std::vector<io::body_source> sources;
+    for (const io::robot_part& part : made->description->parts())
+      sources.push_back({part.name, &part.mesh, part.tessellation_error});
+    make(*made, sources, options);
+  }
+  made->maker = "from_urdf",
+  made->recipe = nb::make_tuple(file, model, spheres, geometry, copy_of(packages), exclude_links, cache);
+  return made;
+}
+
+/// A mesh from a file's name, or from (vertices, triangles).
+triangle_mesh mesh_of(const std::string& name, nb::handle given) {
+  if (nb::isinstance<nb::str>(given) || nb::hasattr(given, "__fspath__")) return io::load_mesh(text_of(given));
+  try {
+    nb::object vertices, faces;
+    if (nb::hasattr(given, "vertices") && nb::hasattr(given, "faces"))
+      vertices = given.attr("vertices"), faces = given.attr("faces");
+    else
+      vertices = given[nb::int_(0)], faces = given[nb::int_(1)];
+    const nb::module_ numpy = nb::module_::import_("numpy");
+    const auto v = nb::cast<nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig>>(
+        numpy.attr("ascontiguousarray")(vertices, "f8"));
+    const std::string kind = text_of(numpy.attr("asarray")(faces).attr("dtype").attr("kind"));
+    if (kind != "i" && kind != "u")
+      throw std::invalid_argument("clearance: the triangles of part " + io::quoted(name) +
+                                  " are numbers of vertices, whole ones, not " + shape_and_type(faces));
+    const auto f = nb::cast<nb::ndarray<const std::int64_t, nb::shape<-1, 3>, nb::c_contig>>(
+        numpy.attr("ascontiguousarray")(faces, "i8"));
+    triangle_mesh mesh;
+    for (std::size_t i = 0; i < v.shape(0); ++i)
+      mesh.vertices.push_back({v.data()[3 * i], v.data()[3 * i + 1], v.data()[3 * i + 2]});
+    for (std::size_t i = 0; i < f.shape(0); ++i) {
+      std::array<std::uint32_t, 3> t;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int64_t at = f.data()[3 * i + k];
+        if (at < 0 || std::size_t(at) >= v.shape(0))
+          throw std::invalid_argument("clearance: triangle " + std::to_string(i) + " of part " + io::quoted(name) +
+                                      " names vertex " + std::to_string(at) + ", and there are " +
+                                      std::to_string(v.shape(0)));
+        t[k] = std::uint32_t(at);
+      }
+      mesh.triangles.push_back(t);
+    }
+    return mesh;
+  } catch (const nb::cast_error&) {
+  } catch (nb::python_error&) {
+  }
+  throw std::invalid_argument("clearance: part " + io::quoted(name) +
+                              " is a mesh file, or (vertices of shape (n, 3), triangles of shape (m, 3)), not " +
+                              shape_and_type(given));
+}
+
+std::shared_ptr<robot_model> from_meshes(const nb::dict& meshes, const std::string& model, nb::object spheres,
+                                         const std::string& name, bool cache) {
+  const model_options options = options_of(model, spheres, cache);
+  std::vector<std::string> names;
+  std::vector<triangle_mesh> read;
+  for (const auto& [key, mesh] : meshes) {
+    names.push_back(nb::cast<std::string>(key));
+    read.push_back(mesh_of(names.back(), mesh));
+  }
+  const auto made = std::make_shared<robot_model>();
+  made->name = name;
+  {
+    const nb::gil_scoped_release others;
+    std::vector<io::body_source> sources;
+    for (std::size_t k = 0; k < read.size(); ++k) sources.push_back({names[k], &read[k]});
+    make(*made, sources, options);
+  }
+  made->maker = "from_meshes", made->recipe = nb::make_tuple(copy_of(meshes), model, spheres, name, cache);
+  return made;
+}
+
+std::shared_ptr<robot_model> from_spheres(const nb::dict& given, double gap, double tolerance,
+                                          const std::string& name) {
+  const auto made = std::make_shared<robot_model>();
+  made->name = name;
+  for (const auto& [key, rows] : given) {
+    const std::string part = nb::cast<std::string>(key);
+    const nb::object plain = nb::module_::import_("numpy").attr("ascontiguousarray")(rows, "f4");
+    nb::ndarray<const float, nb::shape<-1, 4>, nb::c_contig> array;
+    if (!nb::try_cast(plain, array))
+      throw std::invalid_argument("clearance: the spheres of part " + io::quoted(part) +
+                                  " have the shape (n, 4): x, y, z, radius, in metres; not " + shape_and_type(rows));
+    io::body body{.name = part, .packed = {}, .closed = {}, .tolerance = tolerance};
+    for (std::size_t i = 0; i < array.shape(0); ++i) {
+      const float* const s = array.data() + 4 * i;
+      if (!(std::isfinite(s[0]) && std::isfinite(s[1]) && std::isfinite(s[2]) && s[3] >= 0 && std::isfinite(s[3])))
+        throw std::invalid_argument("clearance: sphere " + std::to_string(i) + " of part " + io::quoted(part) +
+                                    " is not finite, or its radius is negative");
+      body.packed.spheres.push_back({{s[0], s[1], s[2]}, s[3]});
+    }
+    body.packed.gap = gap;
+    made->bodies.push_back(std::move(body));
+  }
+  build(*made);
+  made->maker = "from_spheres", made->recipe = nb::make_tuple(copy_of(given), gap, tolerance, name);
+  return made;
+}
+
+const io::kinematic_tree& joints_of(const robot_model& robot) { return robot.described().kinematics(); }
+
+nb::object rows_of(const std::vector<Eigen::Isometry3d>& poses, std::vector<std::size_t> shape) {
+  std::vector<double> values(16 * poses.size());
+  for (std::size_t k = 0; k < poses.size(); ++k) Eigen::Map<row_major>(values.data() + 16 * k) = poses[k].matrix();
+  shape.push_back(4), shape.push_back(4);
+  return own_array(std::move(values), shape);
+}
+
+}  // namespace
+
+const io::robot& robot_model::described() const {
+  if (!description)
+    throw std::invalid_argument(
+        "clearance: this robot has no joints, because it was not read from a URDF file; give poses");
+  return *description;
+}
+
+joint_rows joints_given(const robot_model& robot, nb::handle given, bool ignore_limits) {
+  const io::kinematic_tree& tree = joints_of(robot);
+  if (given.is_none()) return {tree.rest(), {}};
+  if (nb::isinstance<nb::dict>(given)) {
+    try {
+      return {tree.configuration(nb::cast<std::map<std::string, double>>(given), {ignore_limits}), {}};
+    } catch (const nb::cast_error&) {
+      throw std::invalid_argument("clearance: joints, as a dictionary, has numbers by the names of joints");
+    }
+  }
+  matrix_array array;
+  if (!nb::try_cast(given, array)) {
+    nb::object plain;
+    try {
+      plain = nb::module_::import_("numpy").attr("ascontiguousarray")(given, "f8");
+    } catch (nb::python_error&) {
+      plain = nb::none();
+    }
+    if (!nb::try_cast(plain, array))
+      throw std::invalid_argument("clearance: joints has the shape (..., " + std::to_string(tree.size()) +
+                                  ") and numbers, not " + shape_and_type(given));
+  }
+  if (array.ndim() == 0 || array.shape(array.ndim() - 1) != tree.size())
+    throw std::invalid_argument("clearance: joints has the shape (..., " + std::to_string(tree.size()) +
+                                "), one value for each movable joint, not " + shape_and_type(given));
+  joint_rows rows{{array.data(), array.data() + array.size()}, {}};
+  for (std::size_t k = 0; k + 1 < array.ndim(); ++k) rows.shape.push_back(array.shape(k));
+  return rows;
+}
+
+std::vector<Eigen::Isometry3d> poses_of(nb::handle given, const char* argument) {
+  matrix_array array;
+  if (!nb::try_cast(given, array)) {
+    nb::object plain = nb::none();
+    try {
+      plain = nb::module_::import_("numpy").attr("ascontiguousarray")(given, "f8");
+    } catch (nb::python_error&) {
+    }
+    if (!nb::try_cast(plain, array))
+      throw std::invalid_argument(std::string("clearance: ") + argument + " has the shape (..., 4, 4), not " +
+                                  shape_and_type(given));
+  }
+  if (array.ndim() < 2 || array.shape(array.ndim() - 1) != 4 || array.shape(array.ndim() - 2) != 4)
+    throw std::invalid_argument(std::string("clearance: ") + argument + " has the shape (..., 4, 4), not " +
+                                shape_and_type(given));
+  std::vector<Eigen::Isometry3d> poses(array.size() / 16);
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Eigen::Map<const row_major> m(array.data() + 16 * k);
+    if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+      throw std::invalid_argument(std::string("clearance: the last row of ") + argument + " is 0, 0, 0, 1" +
+                                  (poses.size() > 1 ? "; that of number " + std::to_string(k) + " is not" : ""));
+    poses[k].matrix() = m;
+  }
+  return poses;
+}
+
+Eigen::Isometry3d pose_of(nb::handle given, const char* argument) {
+  if (given.is_none()) return Eigen::Isometry3d::Identity();
+  const auto poses = poses_of(given, argument);
+  if (poses.size() != 1)
+    throw std::invalid_argument(std::string("clearance: ") + argument + " is one pose of shape (4, 4), not " +
+                                shape_and_type(given));
+  return poses[0];
+}
+
+std::vector<Eigen::Isometry3d> placed_parts(const robot_model& robot, nb::handle joints, const Eigen::Isometry3d& base,
+                                            bool ignore_limits) {
+  const io::robot& described = robot.described();
+  const io::joint_options options{ignore_limits};
+  const auto [q, shape] = joints_given(robot, joints, ignore_limits);
+  const std::size_t dof = described.kinematics().size();
+  std::size_t configurations = 1;
+  for (const std::size_t n : shape) configurations *= n;
+  std::vector<Eigen::Isometry3d> poses;
+  poses.reserve(configurations * robot.parts());
+  for (std::size_t c = 0; c < configurations; ++c)
+    for (Eigen::Isometry3d& pose : described.poses(std::span(q).subspan(c * dof, dof), options))
+      poses.push_back(base * pose);
+  return poses;
+}
+
+void bind_robot(nb::module_& m) {
+  nb::class_<robot_model>(
+      m, "Robot",
+      "A robot's rigid parts, each with a tree that is built once, and its joints. It never changes; any number of "
+      "queries and threads may share it.")
+      .def_static(
+          "from_urdf", &from_urdf, nb::arg("file"), nb::arg("model") = "spheres",
+          nb::arg("spheres").none() = nb::none(), nb::arg("geometry") = "collision", nb::arg("packages") = nb::dict(),
+          nb::arg("exclude_links") = std::vector<std::string>(), nb::arg("cache") = true,
+          "Reads a URDF file and its meshes. model: \"spheres\" (packed into each link, `spheres` of them; kept "
+          "in the cache) or \"triangles\" (exact). packages: the folder of package://name. Raises RuntimeError "
+          "if a file is damaged or missing, ValueError if an option cannot be.")
+      .def_static(
+          "from_meshes", &from_meshes, nb::arg("meshes"), nb::arg("model") = "spheres",
+          nb::arg("spheres").none() = nb::none(), nb::arg("name") = "robot", nb::arg("cache") = true,
+          "One part for each {name: mesh}: a file's name, (vertices (n, 3), triangles (m, 3)), or an object with "
+          "vertices and faces. Metres.")
+      .def_static("from_spheres", &from_spheres, nb::arg("spheres"), nb::arg("gap") = 0.0, nb::arg("tolerance") = 0.0,
+                  nb::arg("name") = "robot",
+                  "One part for each {name: array (n, 4) of x, y, z, radius}. Metres. gap: the largest distance of the "
+                  "solid to its spheres (inf: unknown, so there is no lower bound).")
+      .def_prop_ro("name", [](const robot_model& r) { return r.name; })
+      .def_prop_ro("model", [](const robot_model& r) { return r.spheres ? "spheres" : "triangles"; })
+      .def_prop_ro(
+          "parts", [](const robot_model& r) { return *r.names; }, "The names of the parts, in their order.")
+      .def_prop_ro(
+          "notes", [](const robot_model& r) { return r.notes; }, "What a person should know about its files.")
+      .def_prop_ro(
+          "joints",
+          [](const robot_model& r) {
+            std::vector<std::string> names;
+            if (r.description)
+              for (std::size_t i = 0; i < joints_of(r).size(); ++i) names.push_back(joints_of(r).movable(i).name);
+            return names;
+          },
+          "The names of the movable joints, in the order of joint values.")
+      .def_prop_ro(
+          "limits",
+          [](const robot_model& r) {
+            std::vector<double> ranges;
+            const std::size_t n = r.description ? joints_of(r).size() : 0;
+            for (std::size_t i = 0; i < n; ++i)
+              ranges.push_back(joints_of(r).movable(i).lower), ranges.push_back(joints_of(r).movable(i).upper);
+            return own_array(std::move(ranges), {n, 2});
+          },
+          "The joints' lower and upper limits, (joints, 2): radians or metres.")
+      .def_prop_ro(
+          "rest",
+          [](const robot_model& r) {
+            auto q = joints_of(r).rest();
+            const auto n = q.size();
+            return own_array(std::move(q), {n});
+          },
+          "Each joint at 0, or at the limit nearest to it.")
+      .def(
+          "poses",
+          [](const robot_model& r, nb::handle joints, nb::handle base, bool ignore_limits) {
+            std::vector<std::size_t> shape = joints_given(r, joints, ignore_limits).shape;
+            shape.push_back(r.parts());
+            return rows_of(placed_parts(r, joints, pose_of(base, "base"), ignore_limits), shape);
+          },
+          nb::arg("joints").none() = nb::none(), nb::arg("base").none() = nb::none(), nb::arg("ignore_limits") = false,
+          "World-from-part of every part, (..., parts, 4, 4), for joints (..., joints) or {name: value}. base is "
+          "world-from-base. Raises ValueError for values beyond the limits.")
+      .def(
+          "link_pose",
+          [](const robot_model& r, const std::string& link, nb::handle joints, nb::handle base) {
+            const auto q = joints_given(r, joints, false).values;
+            return rows_of({pose_of(base, "base") * r.described().link_pose(link, q)}, {});
+          },
+          nb::arg("link"), nb::arg("joints").none() = nb::none(), nb::arg("base").none() = nb::none(),
+          "World-from-link of any link, (4, 4): with geometry or without, such as a camera's.")
+      .def(
+          "jacobian",
+          [](const robot_model& r, nb::handle joints, nb::handle part, nb::handle point, nb::handle base) {
+            const auto q = joints_given(r, joints, false).values;
+            const auto at = three_of(point, "at");
+            std::size_t k = 0;
+            if (nb::isinstance<nb::str>(part)) {
+              const auto name = nb::cast<std::string>(part);
+              while (k < r.parts() && (*r.names)[k] != name) ++k;
+              if (k == r.parts()) throw std::invalid_argument("clearance: the robot has no part " + io::quoted(name));
+            } else if (k = count_of(part, "part"); k >= r.parts()) {
+              throw std::invalid_argument("clearance: the robot has " + std::to_string(r.parts()) +
+                                          " parts, and none of number " + std::to_string(k));
+            }
+            auto links = joints_of(r).link_poses(q);
+            const Eigen::Isometry3d to = pose_of(base, "base");
+            for (auto& pose : links) pose = to * pose;
+            const auto moved = io::jacobian(joints_of(r), links, r.described().parts()[k].link, {at[0], at[1], at[2]});
+            std::vector<double> rows(std::size_t(moved.size()));
+            for (Eigen::Index i = 0; i < moved.rows(); ++i)
+              for (Eigen::Index j = 0; j < moved.cols(); ++j) rows[std::size_t(i * moved.cols() + j)] = moved(i, j);
+            return own_array(std::move(rows), {6, std::size_t(moved.cols())});
+          },
+          nb::arg("joints").none(), nb::arg("part").none(), nb::arg("at").none(), nb::arg("base").none() = nb::none(),
+          "What each joint does to a part, (6, joints): the velocity of its point at `at` (world, metres), then its "
+          "angular velocity, per radian or metre.")
+      .def(
+          "spheres",
+          [](const robot_model& r, std::size_t k) {
+            const auto& all = body_of(r, k).packed.spheres;
+            std::vector<float> rows;
+            for (const inner_sphere& s : all) rows.insert(rows.end(), {s.center.x, s.center.y, s.center.z, s.radius});
+            return own_array(std::move(rows), {all.size(), 4});
+          },
+          nb::arg("part"), "The inner spheres of a part, (n, 4): x, y, z, radius in the part's frame. Metres.")
+      .def(
+          "mesh",
+          [](const robot_model& r, std::size_t k) {
+            const auto& mesh = body_of(r, k).closed.surface;
+            std::vector<double> vertices;
+            std::vector<std::uint32_t> triangles;
+            for (const auto& v : mesh.vertices) vertices.insert(vertices.end(), {v.x(), v.y(), v.z()});
+            for (const auto& t : mesh.triangles) triangles.insert(triangles.end(), {t[0], t[1], t[2]});
+            return nb::make_tuple(own_array(std::move(vertices), {mesh.vertices.size(), 3}),
+                                  own_array(std::move(triangles), {mesh.triangles.size(), 3}));
+          },
+          nb::arg("part"), "The closed mesh of a part: vertices (n, 3) in its frame, metres, and triangles (m, 3).")
+      .def("__reduce__",
+           [](const robot_model& r) {
+             const nb::object all = nb::make_tuple(r.maker) + r.recipe;
+             return nb::make_tuple(nb::module_::import_("clearance._made").attr("robot"), all);
+           })
+      .def("__len__", &robot_model::parts)
+      .def("__repr__", [](const robot_model& r) {
+        std::size_t n = 0;
+        for (const auto& body : r.bodies)
+          n += r.spheres ? body.packed.spheres.size() : body.closed.surface.triangles.size();
+        return "<Robot " + io::quoted(r.name) + ": " + std::to_string(r.parts()) + " parts, " + std::to_string(n) +
+               (r.spheres ? " spheres>" : " triangles>");
+      });
+}

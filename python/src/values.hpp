@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// C++ values in Python: numbers, enumerations, arrays that view a result's memory, and results with their members.
+
+#include "declared.hpp"
+
+#include <clearance/point_source.hpp>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+
+#include <cmath>
+#include <memory>
+#include <span>
+
+namespace nb = nanobind;
+
+/// A result in Python: the library's, and the names of the robot's parts, for what is printed.
+using part_names = std::shared_ptr<const std::vector<std::string>>;
+template <class R>
+struct answered {
+  R value;
+  part_names names;
+};
+
+template <class T>
+inline constexpr bool is_array = requires(const T t) { t.data(), t.size(); } && !std::is_same_v<T, std::string>;
+
+/// A NumPy dtype for plain data: a structured one for the library's structs.
+nb::object dtype_of_members(const nb::list& names, const nb::list& formats, const nb::list& offsets, std::size_t size);
+
+template <class T>
+const char* scalar_format() {
+  if constexpr (std::is_same_v<T, bool>) return "?";
+  if constexpr (std::is_same_v<T, float>) return "<f4";
+  if constexpr (std::is_same_v<T, double>) return "<f8";
+  if constexpr (sizeof(T) == 1) return "u1";
+  return sizeof(T) == 4 ? "<u4" : "<u8";
+}
+template <class T>
+nb::object format_of() {
+  if constexpr (std::is_same_v<T, clearance::vec3>) {
+    return nb::make_tuple("<f4", nb::make_tuple(3));
+  } else if constexpr (std::is_same_v<T, clearance::position>) {
+    return nb::make_tuple("<f8", nb::make_tuple(3));
+  } else if constexpr (std::is_array_v<T>) {
+    return nb::make_tuple(scalar_format<std::remove_extent_t<T>>(), nb::make_tuple(std::extent_v<T>));
+  } else if constexpr (declared_struct<T>) {
+    nb::list names, formats, offsets;
+    std::apply(
+        [&](const auto&... m) {
+          const auto add = [&]<class O, class M>(const char* name, M O::* at) {
+            alignas(T) static const char room[sizeof(T)] = {};
+            const auto& fake = *reinterpret_cast<const T*>(room);
+            names.append(name), formats.append(format_of<M>());
+            offsets.append(reinterpret_cast<const char*>(&(fake.*at)) - room);
+          };
+          (add(m.name, m.at), ...);
+        },
+        declared<T>::members);
+    return dtype_of_members(names, formats, offsets, sizeof(T));
+  } else {
+    return nb::str(scalar_format<T>());
+  }
+}
+template <class T>
+nb::object dtype_of() {
+  static nb::object* const made = new nb::object(format_of<T>());  // kept until the process ends
+  return *made;
+}
+
+/// A NumPy array that views memory of `owner`.
+template <class T>
+nb::object array_of(const T* data, std::size_t size, nb::handle owner) {
+  if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
+    return nb::cast(nb::ndarray<nb::numpy, const T, nb::ndim<1>>(data, {size}, owner));
+  } else if constexpr (std::is_enum_v<T>) {
+    return array_of(reinterpret_cast<const std::underlying_type_t<T>*>(data), size, owner);
+  } else {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(data);
+    return nb::cast(nb::ndarray<nb::numpy, const std::uint8_t, nb::ndim<1>>(bytes, {size * sizeof(T)}, owner))
+        .attr("view")(dtype_of<T>());
+  }
+}
+
+template <class V>
+nb::object three(const V& v) {
+  return nb::make_tuple(v.x, v.y, v.z);
+}
+
+/// `owner` is the Python object that holds `value`; `name` its member's.
+template <class T>
+nb::object to_python(const T& value, nb::handle owner, const part_names& names) {
+  if constexpr (std::is_same_v<T, clearance::vec3> || std::is_same_v<T, clearance::position>) {
+    return three(value);
+  } else if constexpr (std::is_same_v<T, std::uint32_t>) {
+    return value == clearance::none ? nb::none() : nb::object(nb::int_(value));
+  } else if constexpr (std::is_array_v<T>) {
+    nb::dict by_reason;
+    std::apply(
+        [&](const auto&... v) { ((int(v.value) == 0 ? void() : void(by_reason[v.name] = value[int(v.value)])), ...); },
+        declared<clearance::drop_reason>::values);
+    return by_reason;
+  } else if constexpr (is_array<T>) {
+    return array_of(value.data(), value.size(), owner);
+  } else if constexpr (declared_struct<T>) {
+    return nb::cast(answered<T>{value, names});
+  } else {
+    return nb::cast(value);
+  }
+}
+
+/// The least one that fits, as in "MinDistanceResult(distance=0.1640, ...)".
+std::string repr_of(nb::handle object, const char* name, std::span<const char* const> members);
+
+template <class T, class F>
+void for_each_member(F f) {
+  std::apply([&](const auto&... m) { (f(m), ...); }, declared<T>::members);
+}
+
+/// "free: 0.164 m (certainly 0.160 to 0.164), hand to point 84,612"
+std::string sentence_of(const clearance::min_distance_result& r, const part_names& names);
+
+template <class R, class Call, class... Names>
+void bind_method(nb::class_<answered<R>>& bound, const method_as<Call, Names...>& method) {
+  const auto bind = [&]<class... A>(auto (Call::*)(const R&, A...) const) {
+    std::apply(
+        [&](const auto... names) {
+          bound.def(
+              method.name,
+              [call = method.call](nb::handle_t<answered<R>> self, A... a) {
+                const auto& its = nb::cast<const answered<R>&>(self);
+                return to_python(call(its.value, a...), self, its.names);
+              },
+              nb::arg(names)..., method.doc);
+        },
+        method.arguments);
+  };
+  bind(&Call::operator());
+}
+
+/// A class for a result, with its members as properties and its own questions as methods.
+template <class R>
+nb::class_<answered<R>> bind_result(nb::module_& m) {
+  nb::class_<answered<R>> bound(m, declared<R>::name, declared<R>::doc);
+  static std::vector<const char*> members;
+  for_each_member<R>([&](const auto& member) {
+    members.push_back(member.name);
+    bound.def_prop_ro(
+        member.name,
+        [at = member.at](nb::handle_t<answered<R>> self) {
+          const auto& its = nb::cast<const answered<R>&>(self);
+          return to_python(its.value.*at, self, its.names);
+        },
+        member.doc);
+  });
+  std::apply([&](const auto&... method) { (bind_method(bound, method), ...); }, declared<R>::methods);
+  if constexpr (requires(const R& r) {
+                  { r.part } -> std::convertible_to<std::uint32_t>;
+                })
+    bound.def_prop_ro(
+        "link",
+        [](const answered<R>& self) -> nb::object {
+          const auto part = self.value.part;
+          if (!self.names || part >= self.names->size()) return nb::none();
+          return nb::cast((*self.names)[part]);
+        },
+        "The name of that part, or None.");
+  if constexpr (std::is_same_v<R, clearance::min_distance_result>)
+    bound.def("__str__", [](const answered<R>& self) { return sentence_of(self.value, self.names); });
+  bound.def("__repr__", [](nb::handle self) { return repr_of(self, declared<R>::name, members); });
+  return bound;
+}
