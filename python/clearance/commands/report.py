@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Makes one HTML page of the rows that clearance run or clearance play wrote.
+
+What was asked, clearance over time, the worst moments, dropped points, latency. With --robot, and the files that the
+rows name, the worst moments get pictures; their distances are then asked again and compared with the rows.
+"""
+
+import csv
+import math
+import pathlib
+
+import numpy as np
+
+from . import view
+
+
+def add(parser):
+    parser.add_argument("rows", help="what clearance run printed (JSON or --csv), or what clearance play --csv wrote")
+    parser.add_argument("--output", "-o", required=True, metavar="FILE.html", help="the page")
+    parser.add_argument("--margin", type=float, help="metres")
+    parser.add_argument("--worst", type=int, default=3, metavar="N", help="how many moments are shown (default: 3)")
+    parser.add_argument("--title", help="default: the name of the file of rows")
+    pictures = parser.add_argument_group("for pictures, as they were given to clearance run")
+    pictures.add_argument("--robot", metavar="FILE", help="URDF")
+    pictures.add_argument(
+        "--trajectory", metavar="FILE", help="CSV: names of joints, then one row for each frame, or one for all"
+    )
+    pictures.add_argument("--joints", metavar="NAME=VALUE,...", help="of joints without a column; others are at rest")
+    pictures.add_argument("--intrinsics", metavar="FX,FY,CX,CY", help="of depth images, pixels")
+    pictures.add_argument("--depth-scale", type=float, help="metres per unit of a depth image (default: 0.001)")
+    pictures.add_argument(
+        "--camera-pose", metavar="X,Y,Z,QX,QY,QZ,QW", help="world-from-cloud, or link-from-cloud with --camera-link"
+    )
+    pictures.add_argument("--camera-link", metavar="LINK", help="the link that carries the camera")
+    pictures.add_argument("--base-pose", metavar="X,Y,Z,QX,QY,QZ,QW", help="world-from-base")
+    pictures.add_argument("--package", metavar="NAME=DIR", action="append", default=[], help="where package://NAME/ is")
+    pictures.add_argument("--geometry", choices=("collision", "visual"), default="collision")
+    pictures.add_argument("--exclude-link", metavar="LINK", action="append", default=[])
+    pictures.add_argument(
+        "--model", choices=("triangles", "spheres"), help="default: triangles; spheres with --spheres"
+    )
+    pictures.add_argument("--spheres", type=int, metavar="N", help="inner spheres per link")
+
+
+def trajectory(file):
+    """The names of the joints, and rows of values."""
+    with open(file, newline="", encoding="utf-8") as text:
+        lines = [line for line in csv.reader(text) if line]
+    names = [name.strip() for name in lines[0]] if lines else []
+    try:
+        rows = [[float(word) for word in line] for line in lines[1:]]
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from None
+    if not rows or any(len(row) != len(names) for row in rows):
+        raise ValueError(f"{file} has a line with the names of the joints, then rows of as many numbers")
+    return names, rows
+
+
+class Pictures:
+    """Draws moments of a recording, with what clearance run was given."""
+
+    def __init__(self, asked):
+        make, model = view.robot_maker(asked, asked.robot)
+        self.robot, self.asked = make(model), asked
+        self.names, self.rows = trajectory(asked.trajectory) if asked.trajectory else ([], [[]])
+        self.fixed = view.joints_of(asked.joints)
+        self.pose, self.base = view.pose(asked.camera_pose, "--camera-pose"), view.pose(asked.base_pose, "--base-pose")
+        self.camera = tuple(view.numbers(asked.intrinsics, 4, "--intrinsics")) if asked.intrinsics else None
+
+    def of(self, moment):
+        """A PNG, and a sentence: what the picture's own answer is, where it differs from the row."""
+        from clearance import seeing
+        from clearance.seeing import files
+        from clearance.seeing.page import joint_values
+        from clearance.seeing.pictures import render
+        from clearance.seeing.raster import png
+
+        if moment.file is None:
+            return None, "no picture: the row names no file"
+        file = self._found(moment.file)
+        if len(self.rows) != 1 and moment.number >= len(self.rows):
+            return None, f"no picture: the trajectory has no row {moment.number}"
+        row = self.rows[0 if len(self.rows) == 1 else moment.number]
+        joints = joint_values(self.robot, self.fixed | dict(zip(self.names, row)))
+        pose = np.eye(4) if self.pose is None else self.pose
+        if self.asked.camera_link:
+            pose = np.asarray(self.robot.link_pose(self.asked.camera_link, joints, self.base)) @ pose
+        if (
+            file.suffix.lower() in (".png", ".tif", ".tiff")
+            or file.suffix.lower() == ".npy"
+            and self.camera is not None
+        ):
+            if self.camera is None:
+                return None, "no picture: a depth image needs --intrinsics"
+            seen = {
+                "depth": files.read_depth(file),
+                "intrinsics": self.camera,
+                "depth_scale": self.asked.depth_scale,
+                "camera_pose": pose,
+            }
+        else:
+            seen = {"points": files.read_cloud(file)[0], "cloud_pose": pose}
+        made = seeing.scene(self.robot, joints=joints, base=self.base, margin=self.asked.margin, **seen)
+        answer = seeing.least_of(made.result)
+        apart = abs(float(answer.distance) - moment.distance)
+        within = max(moment.upper - moment.lower, float(answer.upper) - float(answer.lower), 1e-4)
+        differs = not (apart <= within or moment.distance == answer.distance)
+        said = (
+            f"the picture's own answer is {answer.distance:.4f} m: options or files differ from those of the row"
+            if differs
+            else ""
+        )
+        return png(render(made, width=860, height=560)), said
+
+    def _found(self, name):
+        for file in (pathlib.Path(name), pathlib.Path(self.asked.rows).parent / name):
+            if file.is_file():
+                return file
+        raise ValueError(f"{name}, which the rows name, is no file (neither from here nor from the rows' folder)")
+
+
+def run(asked):
+    from clearance.seeing import report
+
+    output = pathlib.Path(asked.output)
+    if output.suffix.lower() not in (".html", ".htm"):
+        raise ValueError(f"--output writes an .html file, not {output}")
+    if output.resolve() == pathlib.Path(asked.rows).resolve():
+        raise ValueError("--output would overwrite the rows")
+    if asked.worst < 0:
+        raise ValueError(f"--worst is {asked.worst}; it is 0 or more")
+    moments, notes = report.read_rows(asked.rows)
+    pictures, told = {}, [("rows", asked.rows)]
+    chosen = report.worst(moments, asked.worst)
+    if asked.robot:
+        draws = Pictures(asked)
+        told += [("robot", asked.robot), ("parts", ", ".join(draws.robot.parts)), ("model", draws.robot.model)]
+        for k in chosen:
+            try:
+                pictures[k] = draws.of(moments[k])
+            except (ValueError, RuntimeError, OSError) as error:
+                pictures[k] = None, f"no picture: {str(error).removeprefix('clearance: ')}"
+            if pictures[k][1]:
+                notes.append(f"moment {chosen.index(k) + 1}: {pictures[k][1]}")
+        notes += draws.robot.notes
+    elif asked.trajectory or asked.intrinsics or asked.camera_pose:
+        raise ValueError("--trajectory, --intrinsics and --camera-pose are for pictures, which need --robot")
+    for name in ("trajectory", "intrinsics", "camera_pose", "camera_link", "base_pose"):
+        if getattr(asked, name):
+            told.append((name.replace("_", " "), getattr(asked, name)))
+    text = report.page(
+        moments,
+        asked=told,
+        margin=asked.margin,
+        notes=notes,
+        pictures=pictures,
+        count=asked.worst,
+        title=asked.title or pathlib.Path(asked.rows).name,
+    )
+    output.write_text(text, encoding="utf-8")
+    for note in notes:
+        print(f"note: {note}")
+    least = min((m.lower for m in moments), default=math.nan)
+    print(f"{len(moments)} frames, least lower end {least:.3f} m; written: {output}")
