@@ -1,0 +1,535 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A recording played past a robot: one row for each cloud or depth image, at the time of its stamp."""
+
+import collections
+import csv
+import dataclasses
+import json
+import math
+import os
+import pathlib
+
+import numpy as np
+
+from . import _core, recordings
+from .recordings import Damaged, Unknown, nanoseconds
+
+WAIT = 1_000_000_000  # ns of recorded time that a frame waits for later joints and transforms
+
+
+@dataclasses.dataclass(slots=True)
+class Row:
+    """What is known about one frame. Metres; points in the base frame.
+
+    state: free, possible, collision, no_data (no valid point), or unknown (the frame could not be asked; note says
+    why). With the last two lower is 0 and upper infinite, so that `row.lower < margin` stops.
+    """
+
+    stamp: float  # seconds
+    topic: str
+    frame: str
+    state: str = "unknown"
+    distance: float = math.nan
+    lower: float = 0.0
+    upper: float = math.inf
+    link: str = ""
+    point: int | None = None
+    at: tuple | None = None
+    nearest: tuple | None = None
+    seen: int = 0
+    valid: int = 0
+    dropped: dict = dataclasses.field(default_factory=dict)
+    note: str = ""
+    parts: dict | None = None  # the distance to each part, if the question was MinDistancePerPart
+    checked: float | None = None  # the distance by NumPy, if a check was asked for
+
+
+class Watch:
+    """A robot, and what its sensors' messages say of it: take() the joints and transforms, then ask for a row()."""
+
+    def __init__(
+        self,
+        robot,
+        *,
+        question=None,
+        device="cpu",
+        base_frame=None,
+        max_age=0.1,
+        joints=None,
+        nearest=0.0,
+        farthest=math.inf,
+        zero_is_missing=False,
+        camera_info=None,
+        check=False,
+    ):
+        self.robot = robot = the_robot(robot)
+        self.question = _core.MinDistance() if question is None else question
+        kinds = (_core.MinDistance, _core.MinDistancePerPart, _core.MinDistanceSupported)
+        if not isinstance(self.question, kinds):
+            raise ValueError(
+                f"a row has one minimum, which {type(self.question).__name__} does not ask for "
+                "(MinDistance, MinDistancePerPart and MinDistanceSupported do)"
+            )
+        if check and (robot.model != "spheres" or isinstance(self.question, _core.MinDistanceSupported)):
+            raise ValueError("a check by NumPy needs a robot of spheres, and the nearest of all points")
+        if not max_age >= 0:
+            raise ValueError(f"max_age is {max_age} s; it is 0 or more")
+        self.ask = _core.Query(robot, self.question, device)
+        self.base_frame, self.max_age, self.check = base_frame, max_age, check
+        self.nearest, self.farthest, self.zero_is_missing = nearest, farthest, zero_is_missing
+        self.fixed = dict(joints or {})
+        if strange := sorted(set(self.fixed) - set(robot.joints)):
+            raise ValueError(f"the robot has no joint {strange[0]!r} (it has: {', '.join(robot.joints) or 'none'})")
+        self.moving = [name for name in robot.joints if name not in self.fixed]
+        self.turns = {
+            name
+            for name, (low, high) in zip(robot.joints, robot.limits, strict=True)
+            if low == -math.inf and high == math.inf
+        }
+        try:  # without a URDF, transforms place the parts
+            robot.poses(robot.rest)
+            self.by_joints = True
+        except ValueError:
+            self.by_joints = False
+        self.camera_info = camera_info
+        self.cameras = recordings.Cameras()
+        self.joints, self.transforms, self.infos = recordings.JointSamples(), recordings.Transforms(), {}
+        self.notes = collections.Counter()
+
+    def take(self, topic, kind, message, keep=False):
+        """Takes a JointState, a TFMessage or a CameraInfo. keep: what is known already stays."""
+        if kind == recordings.JOINTS:
+            try:
+                self.joints.add(message)
+            except ValueError as error:
+                self.notes[f"{topic}: {error}"] += 1
+        elif kind in (recordings.TRANSFORMS, recordings.OLD_TRANSFORMS):
+            self.transforms.add(message, static=topic.rsplit("/", 1)[-1] == "tf_static", keep=keep)
+        elif kind == recordings.CAMERA and not (keep and topic in self.infos):
+            self.infos[topic] = message
+
+    def info_topic(self, topic):
+        """The topic of an image's CameraInfo: camera_info says it, or it is the image's neighbour."""
+        said = self.camera_info
+        said = said.get(topic) if isinstance(said, dict) else said
+        return said or topic.rsplit("/", 1)[0] + "/camera_info"
+
+    def ready(self, topic, kind, message):
+        """Whether all that a frame needs is known up to its stamp."""
+        stamp = nanoseconds(message.header.stamp)
+        if kind == recordings.IMAGE:
+            info = self.infos.get(self.info_topic(topic))
+            if info is None or nanoseconds(info.header.stamp) < stamp:
+                return False
+        if not self.by_joints:
+            frame = self.base_frame or message.header.frame_id
+            return all(
+                self.transforms.covers(frame, name, stamp) for name in (*self.robot.parts, message.header.frame_id)
+            )
+        if not self.joints.covers(self.moving, stamp):
+            return False
+        try:
+            base = self._base()
+        except Unknown:
+            return False
+        frame = message.header.frame_id
+        return self.transforms.covers(base, frame, stamp) or (
+            not self.transforms.knows(frame) and self._own_link(frame)
+        )
+
+    def row(self, topic, kind, message):
+        """The Row of a PointCloud2 or Image, with what is known now."""
+        row = Row(nanoseconds(message.header.stamp) / 1e9, topic, message.header.frame_id)
+        try:
+            self._ask(row, topic, kind, message)
+        except ValueError as error:  # Unknown, or a message that cannot be
+            row.note = str(error).removeprefix("clearance: ")
+            if self.notes:
+                row.note += f"; {sum(self.notes.values())} messages were refused before ({next(iter(self.notes))})"
+        return row
+
+    def _base(self):
+        if self.base_frame is None:
+            for name in self.transforms.frames:
+                if self._stands_at_root(name):
+                    self.base_frame = name
+                    break
+            else:
+                raise Unknown("no transform names the robot's root link; say in which frame it stands (base_frame)")
+        return self.base_frame
+
+    def _stands_at_root(self, name):
+        """Whether a link is the root or fixed to it without an offset: so it is in every configuration."""
+        low, high = np.asarray(self.robot.limits, float).reshape(-1, 2).T
+        bounded = np.isfinite(low) & np.isfinite(high)
+        other = np.where(bounded, np.where(bounded, low, 0) * 0.63 + np.where(bounded, high, 0) * 0.37, 0.7)
+        return self._own_link(name) and all(
+            (self._link(name, at) == np.eye(4)).all() for at in (self.robot.rest, other)
+        )
+
+    def _own_link(self, name):
+        try:
+            self._link(name)
+            return True
+        except ValueError:
+            return False
+
+    def _link(self, name, joints=None):
+        return self.robot.link_pose(name.lstrip("/"), self.robot.rest if joints is None else joints)
+
+    def _ask(self, row, topic, kind, message):
+        stamp, frame = nanoseconds(message.header.stamp), message.header.frame_id
+        if kind == recordings.IMAGE:
+            image = recordings.depth(message)
+            about = self.infos.get(self.info_topic(topic))
+            if about is None:
+                raise Unknown(f"no CameraInfo was seen on {self.info_topic(topic)}")
+            lens = self.cameras.of(about, image.shape, "rect" in topic.rsplit("/", 1)[-1], topic)
+        else:
+            points = recordings.cloud(message)
+        if self.by_joints:
+            values = [
+                self.fixed[name]
+                if name in self.fixed
+                else self.joints.at(name, stamp, self.max_age, name in self.turns)
+                for name in self.robot.joints
+            ]
+            where = self._camera_pose(frame, stamp, values)
+            # Measured joints are facts, also where an encoder is beyond a limit.
+            poses = self.robot.poses(np.array(values, float), ignore_limits=True)
+        else:
+            world = self.base_frame or frame
+            where = self.transforms.at(world, frame, stamp, self.max_age)
+            poses = np.stack([self.transforms.at(world, name, stamp, self.max_age) for name in self.robot.parts])
+        limits = {"nearest": self.nearest, "farthest": self.farthest}
+        if kind == recordings.IMAGE:
+            cloud = _core.depth_image(image, pose=where, **lens, **limits)
+        else:
+            cloud = _core.points(points, where, zero_is_missing=self.zero_is_missing, **limits)
+        self._write(row, self.ask(clouds=[cloud], poses=poses))
+        if self.check:
+            seen = _seen_depth(image, lens) if kind == recordings.IMAGE else _seen_points(points, self.zero_is_missing)
+            far = np.linalg.norm(seen, axis=1)
+            seen = seen[(far >= self.nearest) & (far <= self.farthest)]
+            row.checked = by_numpy(self.robot, poses, seen @ where[:3, :3].T + where[:3, 3])
+            if not agree(row):
+                row.note = f"NumPy says {row.checked:.9g} m"
+
+    def _camera_pose(self, frame, stamp, values):
+        # Where no transform can place the sensor, its frame may be a link of the robot.
+        if not self.transforms.knows(frame) and self._own_link(frame):
+            return self._link(frame, np.array(values, float))
+        return self.transforms.at(self._base(), frame, stamp, self.max_age)
+
+    def _write(self, row, result):
+        if hasattr(result, "all"):
+            row.parts = dict(zip(self.robot.parts, map(float, result.parts["distance"]), strict=True))
+            result = result.all
+        counts = getattr(result, "counts", result)
+        row.state, row.distance, row.lower = result.state.name, float(result.distance), float(result.lower)
+        row.upper = float(getattr(result, "upper", result.distance))
+        row.seen, row.valid = int(counts.seen), int(counts.valid)
+        row.dropped = {name: int(count) for name, count in counts.dropped.items() if count}
+        if result.point is not None:
+            row.link, row.point = result.link, int(result.point)
+            row.at, row.nearest = getattr(result, "at", None), getattr(result, "nearest", None)
+
+
+def the_robot(recipe):
+    """A Robot; or one read from a URDF file, or by Robot.from_urdf's arguments as a dict: what a worker can be told."""
+    if isinstance(recipe, (str, os.PathLike)):
+        recipe = {"file": os.fspath(recipe)}
+    return _core.Robot.from_urdf(**recipe) if isinstance(recipe, dict) else recipe
+
+
+def play(
+    path,
+    robot,
+    *,
+    topics=None,
+    question=None,
+    device="cpu",
+    base_frame=None,
+    joint_topic=None,
+    max_age=0.1,
+    check=False,
+    joints=None,
+    tf_topics=None,
+    camera_info=None,
+    nearest=0.0,
+    farthest=math.inf,
+    zero_is_missing=False,
+):
+    """Yields a Row for each PointCloud2 and depth Image of a recording: how far the robot was from what was seen.
+
+    path: an MCAP file, a rosbag2 folder or database, or a ROS 1 bag. It is read as rows are asked for.
+    robot: a Robot; or the name of its URDF file, or a dict of Robot.from_urdf's arguments.
+    topics: of clouds and images; all PointCloud2 and all Images of 16UC1 or 32FC1, unless given.
+    question: MinDistance(), MinDistancePerPart() or MinDistanceSupported(...).
+    base_frame: the frame in which the robot's root link stands; the root link itself, unless given.
+    joint_topic: of the JointStates; needed if there are several. joints: {name: value} of those that no JointState
+    names. max_age: seconds. Joints and transforms are interpolated at a frame's stamp. What is farther from it is not
+    used. camera_info: the topic of the CameraInfo, or {image's topic: topic}; `camera_info` beside the image, unless
+    given. nearest, farthest: metres from the sensor between which points count. zero_is_missing: a point at the sensor
+    is none. check: computes each distance again by NumPy, from the spheres; a row that differs says so in its note.
+
+    A frame that cannot be asked (a transform is missing, say) has the state "unknown", and a note. A robot that has no
+    URDF is placed by the transforms of frames that are named as its parts. Raises recordings.Damaged after the last
+    whole frame of a damaged file.
+    """
+    watch = Watch(
+        robot,
+        question=question,
+        device=device,
+        base_frame=base_frame,
+        max_age=max_age,
+        joints=joints,
+        nearest=nearest,
+        farthest=farthest,
+        zero_is_missing=zero_is_missing,
+        camera_info=camera_info,
+        check=check,
+    )
+    recording = recordings.Recording(path)
+    try:
+        frames, others = _chosen(recording, watch, topics, joint_topic, tf_topics)
+    except ValueError as error:
+        recording.close()
+        if recording.damage:  # so what is missing may be what is lost
+            raise Damaged(f"{recording.path}: {recording.damage}; {error}") from None
+        raise
+    return _rows(recording, watch, frames, others, named=topics is not None)
+
+
+def _chosen(recording, watch, topics, joint_topic, tf_topics):
+    """The topics of frames and those of what they need."""
+    of = recording.topics
+    by_kind = collections.defaultdict(list)
+    for topic, kind in sorted(of.items()):
+        by_kind[kind].append(topic)
+    seeing = (recordings.CLOUD, recordings.IMAGE)
+    has = f"{recording.path} has: {', '.join(f'{t} ({k})' for t, k in sorted(of.items())) or 'no topic'}"
+    if topics is None:
+        frames = [topic for kind in seeing for topic in by_kind[kind]]
+    else:
+        frames = [topics] if isinstance(topics, str) else list(topics)
+        for topic in frames:
+            if of.get(topic) not in seeing:
+                what = f"is a {of[topic]}, not a PointCloud2 or an Image" if topic in of else "is not in the recording"
+                raise ValueError(f"the topic {topic} {what}; {has}")
+    if not frames:
+        raise ValueError(f"there is no PointCloud2 and no Image to play; {has}")
+    others = []
+    if watch.by_joints and watch.moving:
+        named = [joint_topic] if isinstance(joint_topic, str) else list(joint_topic or by_kind[recordings.JOINTS])
+        if joint_topic is None and len(named) > 1:
+            named = ["/joint_states"] if "/joint_states" in named else named
+            if len(named) > 1:
+                raise ValueError(
+                    f"there are several JointStates, so say which is the robot's (joint_topic): {', '.join(named)}"
+                )
+        for topic in named:
+            if of.get(topic) != recordings.JOINTS:
+                raise ValueError(f"the topic {topic} is no JointState of the recording; {has}")
+        others += named
+    trees = [tf_topics] if isinstance(tf_topics, str) else list(tf_topics or ())
+    found = by_kind[recordings.TRANSFORMS] + by_kind[recordings.OLD_TRANSFORMS]
+    for topic in trees:
+        if topic not in found:
+            raise ValueError(f"the topic {topic} is no TFMessage of the recording; {has}")
+    if not trees:
+        trees = [topic for topic in found if topic in ("/tf", "/tf_static")] or found
+        if len({topic.rsplit("/", 1)[0] for topic in trees}) > 1:
+            raise ValueError(f"there are several trees of transforms, so say which (tf_topics): {', '.join(trees)}")
+    infos = {watch.info_topic(topic) for topic in frames if of[topic] == recordings.IMAGE}
+    return frames, [*others, *trees, *(topic for topic in sorted(infos) if of.get(topic) == recordings.CAMERA)]
+
+
+def _rows(recording, watch, frames, others, named):
+    with recording:
+        # Static transforms always hold, also those that were said late.
+        try:
+            for each in recording.messages([t for t in others if t.rsplit("/", 1)[-1] == "tf_static"] or [""]):
+                watch.take(each.topic, each.type, each.decode(), keep=True)
+        except ValueError:
+            pass  # it is met again below
+        waiting = collections.deque()
+        depths = set(frames) if named else {topic for topic in frames if recording.topics[topic] == recordings.CLOUD}
+        ignored = set()
+        failed = None
+        messages = recording.messages([*frames, *others])
+        while True:
+            try:
+                each = next(messages, None)
+            except Damaged as error:
+                each, failed = None, error
+            while waiting and (each is None or each.log_time > waiting[0][0] + WAIT or watch.ready(*waiting[0][1:])):
+                yield watch.row(*waiting.popleft()[1:])
+            if each is None:
+                break
+            if each.topic in ignored:
+                continue
+            try:
+                message = each.decode()
+            except ValueError as error:
+                if each.topic in others:
+                    watch.notes[str(error)] += 1
+                    continue
+                while waiting:
+                    yield watch.row(*waiting.popleft()[1:])
+                yield Row(each.log_time / 1e9, each.topic, "", note=str(error))
+                continue
+            if each.topic in others:
+                watch.take(each.topic, each.type, message)
+            else:
+                if each.topic not in depths:
+                    if message.encoding not in ("16UC1", "32FC1"):  # a picture, which nobody asked about
+                        ignored.add(each.topic)
+                        continue
+                    depths.add(each.topic)
+                waiting.append((each.log_time, each.topic, each.type, message))
+        if failed is None and not depths:
+            failed = ValueError(
+                f"{recording.path} has neither a PointCloud2 nor an Image of 16UC1 or 32FC1; say topics to play others"
+            )
+        if failed:
+            raise failed
+
+
+def rows(path, robot, **options):
+    """play() as a list, for workers: of a damaged recording the last row is "unknown", and its note says the damage."""
+    found = []
+    try:
+        found.extend(play(path, robot, **options))
+    except Damaged as error:
+        # extend() keeps what was yielded before the error.
+        found.append(Row(found[-1].stamp if found else math.nan, "", "", note=str(error)))
+    return found
+
+
+# ---- the check ------------------------------------------------------------------------------------------------------
+
+
+def _seen_points(view, zero_is_missing):
+    points = np.stack([np.asarray(view[name], float).ravel() for name in "xyz"], -1)
+    keep = np.isfinite(points).all(1)
+    if zero_is_missing:
+        keep &= points.any(1)
+    return points[keep]
+
+
+def _seen_depth(image, lens):
+    rows_, columns = image.shape
+    z = (
+        np.where((image == 0) | (image == 65535), np.nan, image * 0.001)
+        if image.dtype.kind == "u"
+        else image.astype(float)
+    )
+    if "rays" in lens:
+        x, y = np.moveaxis(lens["rays"].astype(float), -1, 0)
+    else:
+        fx, fy, cx, cy = lens["intrinsics"]
+        x, y = np.meshgrid((np.arange(columns) - cx) / fx, (np.arange(rows_) - cy) / fy)
+    points = np.stack([x * z, y * z, z], -1).reshape(-1, 3)
+    return points[np.isfinite(points).all(1) & (points[:, 2] > 0)]
+
+
+def by_numpy(robot, poses, points):
+    """The least distance of points (n, 3) to the spheres of a robot whose parts are at poses: plain NumPy, in double.
+
+    Points that are farther from a ball around a part than the least so far are left out; the others meet every sphere.
+    """
+    least = math.inf
+    for part, at in enumerate(np.asarray(poses, float)):
+        spheres = np.asarray(robot.spheres(part), float)
+        centres = spheres[:, :3] @ at[:3, :3].T + at[:3, 3]
+        middle = centres.mean(0)
+        reach = (np.linalg.norm(centres - middle, axis=1) + spheres[:, 3]).max()
+        far = np.linalg.norm(points - middle, axis=1)
+        for some in (np.argsort(far)[:100], slice(None)):
+            near = points[some][far[some] - reach <= least + 1e-9]
+            step = max(1, 2_000_000 // max(1, len(centres)))
+            for first in range(0, len(near), step):
+                p, c = near[first : first + step] - middle, centres - middle  # products of small numbers lose little
+                square = (p * p).sum(1)[:, None] + (c * c).sum(1) - 2 * (p @ c.T)
+                least = min(least, (np.sqrt(np.maximum(square, 0)) - spheres[:, 3]).min())
+    return float(least) if len(points) else math.nan
+
+
+def agree(row):
+    """Whether a row's distance is the one that NumPy found. Both round: 2e-5 of it and 10 micrometres are allowed."""
+    if row.checked is None or math.isnan(row.checked) or math.isnan(row.distance):
+        return row.checked is None or math.isnan(row.checked) == math.isnan(row.distance)
+    return abs(row.checked - row.distance) <= 1e-5 + 2e-5 * abs(row.checked)
+
+
+# ---- tables ---------------------------------------------------------------------------------------------------------
+
+COLUMNS = [each.name for each in dataclasses.fields(Row)]
+
+
+def _flat(row):
+    flat = dataclasses.asdict(row)
+    flat["dropped"] = json.dumps(row.dropped)
+    flat["parts"] = None if row.parts is None else json.dumps(row.parts)
+    for name in ("at", "nearest"):
+        value = flat.pop(name)
+        for axis, letter in enumerate("xyz"):
+            flat[f"{name}_{letter}"] = None if value is None else float(value[axis])
+    return flat
+
+
+class Csv:
+    """Rows to a CSV file; a context manager with write(row)."""
+
+    def __init__(self, path):
+        self.file = open(path, "w", newline="", encoding="utf-8")
+        self.table = csv.DictWriter(self.file, list(_flat(Row(0.0, "", ""))))
+        self.table.writeheader()
+
+    def write(self, row):
+        self.table.writerow(_flat(row))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.file.close()
+
+
+class Parquet:
+    """Rows to a Parquet file, a group of rows at a time (extra `parquet`); a context manager with write(row)."""
+
+    def __init__(self, path):
+        try:
+            import pyarrow
+            import pyarrow.parquet
+        except ImportError as error:
+            raise recordings.needs("parquet", error) from None
+        self.pyarrow = pyarrow
+        whole, text = ("point", "seen", "valid"), ("topic", "frame", "state", "link", "note", "dropped", "parts")
+        self.schema = pyarrow.schema(
+            [
+                (name, pyarrow.int64() if name in whole else pyarrow.string() if name in text else pyarrow.float64())
+                for name in _flat(Row(0.0, "", ""))
+            ]
+        )
+        self.file = pyarrow.parquet.ParquetWriter(pathlib.Path(path), self.schema)
+        self.rows = []
+
+    def write(self, row):
+        self.rows.append(_flat(row))
+        if len(self.rows) >= 10_000:
+            self._flush()
+
+    def _flush(self):
+        if self.rows:
+            self.file.write_table(self.pyarrow.Table.from_pylist(self.rows, self.schema))
+            self.rows = []
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._flush()
+        self.file.close()

@@ -1,0 +1,463 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""play(): each row is what the library and NumPy say of that frame; what cannot be asked is unknown."""
+
+import csv
+import json
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+import clearance
+from clearance import __main__ as command
+from clearance import playing, recordings
+
+pytest.importorskip("rosbags", reason="rosbags is not installed (extra ros)")
+from test_recordings import (  # noqa: E402
+    LENSES,
+    MS,
+    START,
+    about_z,
+    cloud_message,
+    image_message,
+    info_message,
+    joint_message,
+    tf_message,
+    transform,
+    write_bag,
+)
+
+URDF = """<robot name="pair">
+  <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="arm"><collision><origin xyz="0.3 0 0"/><geometry><box size="0.6 0.1 0.1"/></geometry></collision></link>
+  <link name="wheel"><collision><origin xyz="0.1 0 0"/>
+    <geometry><box size="0.2 0.1 0.05"/></geometry></collision></link>
+  <link name="eye"/>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="arm"/>
+    <origin xyz="0 0 0.3"/><axis xyz="0 0 1"/>
+    <limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+  <joint name="spin" type="continuous"><parent link="arm"/><child link="wheel"/>
+    <origin xyz="0.7 0 0"/><axis xyz="0 0 1"/></joint>
+  <joint name="mount" type="fixed"><parent link="arm"/><child link="eye"/>
+    <origin xyz="0.2 0 0.1" rpy="0 1.5707963 0"/></joint>
+</robot>"""
+K = (60.0, 61.0, 39.5, 29.5)
+
+
+@pytest.fixture(scope="module")
+def urdf(tmp_path_factory):
+    file = tmp_path_factory.mktemp("robot") / "pair.urdf"
+    file.write_text(URDF)
+    return file
+
+
+@pytest.fixture(scope="module")
+def robot(urdf):
+    return clearance.Robot.from_urdf(str(urdf), spheres=64)
+
+
+def shoulder(stamp):
+    return 1.5 * math.sin((stamp - START) / 1e9 * 5)
+
+
+def camera_at(stamp):
+    """The pose of the moving camera in the base, and its transform's parts."""
+    seconds = (stamp - START) / 1e9
+    return (1.5 + 0.2 * seconds, 0.1, 0.4), about_z(math.pi / 2 + 0.3 * seconds)
+
+
+def scene(stamp, count=400):
+    random = np.random.default_rng(stamp % 2**32)
+    points = random.uniform(-1, 1, (count, 3)) + [0, 1, 0]
+    points[::50] = np.nan
+    return points
+
+
+def depth_scene(stamp, kind):
+    image = 0.6 + 0.4 * np.random.default_rng(stamp % 2**31).random((60, 80))
+    image[10:14] = 0
+    return (image * 1000).astype("<u2") if kind == "u2" else image.astype("<f4")
+
+
+def drive(frames=8, joints=True, transforms=True, infos=True):
+    """A recording in which a camera and a robot move: joints each 20 ms, transforms each 30, frames each 50."""
+    messages = [
+        (
+            "/tf_static",
+            START,
+            tf_message(
+                transform(0, "base", "mast"),
+                transform(0, "rig", "camera", (0, 0, 0.05)),
+                transform(0, "rig", "lidar", (0, 0, -0.1), about_z(0.5)),
+            ),
+        )
+    ]
+    for k in range(frames * 50 // 20 + 8 if joints else 0):
+        stamp = START + k * 20 * MS
+        messages.append(
+            (
+                "/joint_states",
+                stamp + MS,
+                joint_message(stamp, {"shoulder": shoulder(stamp), "other": 9, "spin": k * 0.5}),
+            )
+        )
+    for k in range(frames * 50 // 30 + 6 if transforms else 0):
+        stamp = START + k * 30 * MS
+        messages.append(("/tf", stamp + 2 * MS, tf_message(transform(stamp, "mast", "rig", *camera_at(stamp)))))
+    for k in range(frames):
+        stamp = START + k * 50 * MS + 7 * MS
+        messages.append(("/lidar/points", stamp + 60 * MS, cloud_message(stamp, "lidar", scene(stamp))))
+        messages.append(("/depth/image_raw", stamp + 30 * MS, image_message(stamp, "camera", depth_scene(stamp, "u2"))))
+        messages.append(("/far/image", stamp + 30 * MS, image_message(stamp, "camera", depth_scene(stamp, "f4"))))
+        messages.append(("/colour/image_raw", stamp, image_message(stamp, "camera", np.zeros((6, 8, 3), "u1"), "rgb8")))
+        if infos:
+            messages.append(("/depth/camera_info", stamp + 31 * MS, info_message(stamp, "camera", (60, 80), K)))
+            messages.append(
+                ("/far/camera_info", stamp + 31 * MS, info_message(stamp, "camera", (60, 80), K, LENSES[0][1]))
+            )
+    return messages
+
+
+def bag(folder, messages, kind="mcap"):
+    write_bag(folder, sorted(messages, key=lambda each: each[1]), kind)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def drive_bag(tmp_path_factory):
+    return bag(tmp_path_factory.mktemp("drive") / "bag", drive())
+
+
+def interpolated(stamp, of, step):
+    """Linear between the samples around a stamp."""
+    before = START + (stamp - START) // (step * MS) * step * MS
+    part = (stamp - before) / (step * MS)
+    return of(before) + part * (of(before + step * MS) - of(before))
+
+
+def expected(robot, topic, stamp, question=None):
+    """The library, asked directly, with poses that this test computes in its own way."""
+    joints = [interpolated(stamp, shoulder, 20), interpolated(stamp, lambda at: (at - START) / (20 * MS) * 0.5, 20)]
+    rig = np.eye(4)
+    rig[:3, 3] = interpolated(stamp, lambda at: np.array(camera_at(at)[0]), 30)
+    turn = math.pi / 2 + 0.3 * (stamp - START) / 1e9  # at an even pace, so slerp is linear
+    rig[:2, :2] = [[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]]
+    if topic == "/lidar/points":
+        mount = np.eye(4)
+        mount[:3, 3] = 0, 0, -0.1
+        mount[:2, :2] = [[math.cos(0.5), -math.sin(0.5)], [math.sin(0.5), math.cos(0.5)]]
+        cloud = clearance.points(scene(stamp).astype(np.float32), rig @ mount)
+    else:
+        mount = np.eye(4)
+        mount[2, 3] = 0.05
+        if topic == "/far/image":
+            lens = recordings.camera(info_message(0, "", (60, 80), K, LENSES[0][1]), (60, 80))
+            cloud = clearance.depth_image(depth_scene(stamp, "f4"), pose=rig @ mount, **lens)
+        else:
+            cloud = clearance.depth_image(depth_scene(stamp, "u2"), K, rig @ mount)
+    ask = clearance.Query(robot, question or clearance.MinDistance())
+    return ask(clouds=[cloud], joints=joints, ignore_limits=True)
+
+
+def test_each_row_is_what_the_library_says(robot, drive_bag):
+    rows = list(clearance.playing.play(drive_bag, robot, check=True))
+    assert [row.topic for row in rows].count("/lidar/points") == 8 and len(rows) == 24
+    kinds = set()
+    for row in rows:
+        stamp = round((row.stamp - START / 1e9) * 1000) * MS + START
+        result = expected(robot, row.topic, stamp)
+        kinds.add(row.state)
+        assert row.note == "" and row.state == result.state.name
+        assert row.distance == pytest.approx(result.distance, abs=1e-6)
+        assert (row.lower, row.upper) == pytest.approx((result.lower, result.upper), abs=1e-6)
+        assert (row.link, row.point, row.seen, row.valid) == (result.link, result.point, result.seen, result.valid)
+        assert row.at == pytest.approx(result.at, abs=1e-5) and row.nearest == pytest.approx(result.nearest, abs=1e-5)
+        assert row.dropped == {name: count for name, count in result.dropped.items() if count}
+        assert row.checked == pytest.approx(row.distance, abs=1e-5)
+    assert "free" in kinds
+    assert len({round(row.distance, 4) for row in rows}) > 15
+
+
+def test_a_database_gives_the_same_rows(robot, drive_bag, tmp_path):
+    other = bag(tmp_path / "bag", drive(), "sqlite3")
+    assert list(playing.play(other, robot)) == list(playing.play(drive_bag, robot))
+
+
+def test_topics_and_questions_can_be_said(robot, drive_bag):
+    rows = list(playing.play(drive_bag, robot, topics="/lidar/points", question=clearance.MinDistancePerPart()))
+    assert [row.topic for row in rows] == ["/lidar/points"] * 8
+    for row in rows:
+        assert list(row.parts) == robot.parts and min(row.parts.values()) == pytest.approx(row.distance, abs=1e-6)
+    some = list(
+        playing.play(drive_bag, robot, topics=["/far/image"], question=clearance.MinDistanceSupported(3, 0.1, 100))
+    )
+    assert len(some) == 8 and all(row.state == "free" and row.seen == 4800 for row in some)
+    near = list(playing.play(drive_bag, robot, topics="/lidar/points", farthest=0.9, check=True))
+    assert all(
+        row.dropped["out_of_range"] > 10 and row.checked == pytest.approx(row.distance, abs=1e-5) for row in near
+    )
+    for options, says in (
+        ({"question": clearance.NearestK(3, 1.0)}, "NearestK"),
+        ({"topics": "/none"}, "/none is not in the recording"),
+        ({"topics": "/tf"}, "is a tf2_msgs/msg/TFMessage"),
+        ({"joints": {"elbow": 1}}, "no joint 'elbow'"),
+        ({"joint_topic": "/tf"}, "/tf is no JointState"),
+        ({"tf_topics": "/x"}, "/x is no TFMessage"),
+        ({"max_age": -1}, "max_age"),
+    ):
+        with pytest.raises(ValueError, match=says):
+            playing.play(drive_bag, robot, **options)
+
+
+def test_a_check_finds_a_wrong_distance(robot, drive_bag):
+    row = next(playing.play(drive_bag, robot, check=True))
+    assert playing.agree(row)
+    row.distance += 1e-3
+    assert not playing.agree(row)
+    row.distance = math.nan
+    assert not playing.agree(row)
+    triangles = clearance.Robot.from_meshes(
+        {"a": (np.eye(4, 3), [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])}, model="triangles"
+    )
+    with pytest.raises(ValueError, match="spheres"):
+        playing.play(drive_bag, triangles, check=True)
+
+
+def test_the_check_is_the_least_of_all_pairs():
+    random = np.random.default_rng(5)
+    spheres = {name: np.c_[random.uniform(-1, 1, (40, 3)), random.uniform(0.01, 0.2, 40)] for name in "abc"}
+    robot = clearance.Robot.from_spheres(spheres)
+    for _ in range(5):
+        points = random.uniform(-4, 4, (500, 3))
+        poses = np.tile(np.eye(4), (3, 1, 1))
+        poses[:, :3, 3] = random.uniform(-2, 2, (3, 3))
+        plain = min(
+            (np.linalg.norm(points[:, None] - s[:, :3] - at[:3, 3], axis=2) - s[:, 3]).min()
+            for at, s in zip(poses, spheres.values(), strict=True)
+        )
+        assert playing.by_numpy(robot, poses, points) == pytest.approx(plain, abs=1e-6)
+    assert math.isnan(playing.by_numpy(robot, poses, points[:0]))
+
+
+def unknown(rows, says):
+    for row in rows:
+        assert row.state == "unknown" and says in row.note, row
+        assert row.lower == 0 and row.upper == math.inf and math.isnan(row.distance)
+
+
+def test_what_is_missing_is_unknown(robot, tmp_path):
+    rows = list(playing.play(bag(tmp_path / "a", drive(joints=False)), robot))
+    assert len(rows) == 24
+    unknown(rows, "no JointState names the joint 'shoulder'")
+    rows = list(playing.play(bag(tmp_path / "b", drive(transforms=False)), robot))
+    assert len(rows) == 24
+    unknown(rows, "no transforms join")
+    rows = list(playing.play(bag(tmp_path / "c", drive(infos=False)), robot))
+    unknown([row for row in rows if "image" in row.topic], "no CameraInfo was seen on /")
+    assert all(row.state != "unknown" for row in rows if "points" in row.topic) and len(rows) == 24
+    rows = list(playing.play(tmp_path / "c", robot, base_frame="nowhere"))
+    unknown([row for row in rows if "points" in row.topic], "no transform names the frame 'nowhere'")
+
+
+def test_a_joint_can_be_said(robot, tmp_path):
+    messages = [each for each in drive() if each[0] != "/joint_states"]
+    messages += [
+        ("/joint_states", START + k * 20 * MS, joint_message(START + k * 20 * MS, {"shoulder": 0.5})) for k in range(30)
+    ]
+    folder = bag(tmp_path / "bag", messages)
+    unknown(playing.play(folder, robot), "no JointState names the joint 'spin'")
+    assert all(row.state != "unknown" for row in playing.play(folder, robot, joints={"spin": 1.0}))
+
+
+def test_joints_that_end_are_stale(robot, tmp_path):
+    messages = [each for each in drive(40) if each[0] != "/joint_states" or each[1] < START + 500 * MS]
+    rows = list(playing.play(bag(tmp_path / "bag", messages), robot, topics="/lidar/points"))
+    known = [row for row in rows if row.state != "unknown"]
+    assert len(rows) == 40 and all(row.stamp - START / 1e9 < 0.6 for row in known) and len(known) >= 10
+    unknown(rows[len(known) :], "JointState of 'shoulder': the nearest is")
+
+
+def test_several_joint_states_are_not_mixed(robot, tmp_path):
+    more = [("/wanted/states", START, joint_message(START, {"shoulder": 1.0}))]
+    folder = bag(tmp_path / "a", drive() + more)
+    assert all(row.state != "unknown" for row in playing.play(folder, robot))  # /joint_states by its name
+    unknown(playing.play(folder, robot, joint_topic="/wanted/states", joints={"shoulder": 1.0}), "the joint 'spin'")
+    renamed = [("/left/states" if topic == "/joint_states" else topic, *rest) for topic, *rest in drive() + more]
+    with pytest.raises(ValueError, match="/left/states, /wanted/states"):
+        playing.play(bag(tmp_path / "b", renamed), robot)
+
+
+def test_static_transforms_that_are_said_late_hold(robot, tmp_path):
+    messages = drive()
+    messages[0] = ("/tf_static", START + 10_000 * MS, messages[0][2])
+    assert all(row.state != "unknown" for row in playing.play(bag(tmp_path / "bag", messages), robot))
+
+
+def test_a_camera_on_the_robot_needs_no_transforms(robot, tmp_path):
+    """Where no transform names the sensor, its frame is a link of the robot."""
+    messages = [
+        ("/joint_states", START + k * 20 * MS, joint_message(START + k * 20 * MS, {"shoulder": k * 0.1, "spin": 0}))
+        for k in range(20)
+    ]
+    stamp = START + 110 * MS
+    messages.append(("/eye/points", stamp, cloud_message(stamp, "eye", scene(stamp))))
+    row = next(playing.play(bag(tmp_path / "bag", messages), robot))
+    joints = [0.55, 0]
+    result = clearance.Query(robot, clearance.MinDistance())(
+        scene(stamp).astype(np.float32), joints, cloud_pose=robot.link_pose("eye", joints)
+    )
+    assert row.state == result.state.name and row.distance == pytest.approx(result.distance, abs=1e-6)
+
+
+def test_the_root_is_not_a_link_that_only_starts_there(tmp_path):
+    """At rest the turret is where the root is. Joints move it, so it is not the frame in which the robot stands."""
+    file = tmp_path / "turret.urdf"
+    box = '<collision><origin xyz="0.5 0 0"/><geometry><box size="0.2 0.2 0.2"/></geometry></collision>'
+    file.write_text(f"""<robot name="turret"><link name="plate"/><link name="turret">{box}</link>
+      <joint name="turn" type="revolute"><parent link="plate"/><child link="turret"/><axis xyz="0 0 1"/>
+      <limit lower="-3" upper="3" effort="1" velocity="1"/></joint></robot>""")
+    turret = clearance.Robot.from_urdf(str(file), spheres=32)
+    messages = [
+        (
+            "/tf",
+            START,
+            tf_message(transform(START, "plate", "turret", turn=about_z(1.0)), transform(START, "plate", "lidar")),
+        ),
+        ("/joint_states", START, joint_message(START, {"turn": 1.0})),
+        ("/points", START, cloud_message(START, "lidar", [[1.0, 0.0, 0.0]])),
+    ]
+    row = next(playing.play(bag(tmp_path / "bag", messages), turret))
+    result = clearance.Query(turret, clearance.MinDistance())(np.array([[1.0, 0, 0]], np.float32), [1.0])
+    assert row.distance == pytest.approx(result.distance, abs=1e-6) and row.distance > 0.5
+
+
+def test_a_wheel_turns_the_shorter_way(robot):
+    assert playing.Watch(robot).turns == {"spin"}
+
+
+def test_parts_without_a_urdf_are_placed_by_transforms(tmp_path):
+    balls = clearance.Robot.from_spheres({"rig": np.array([[0, 0, 0, 0.1]]), "mast": np.array([[0, 0, 0, 0.2]])})
+    rows = list(playing.play(bag(tmp_path / "bag", drive()), balls, topics="/lidar/points", check=True))
+    assert len(rows) == 8
+    for row in rows:
+        stamp = round((row.stamp - START / 1e9) * 1000) * MS + START
+        points = scene(stamp)[~np.isnan(scene(stamp)[:, 0])].astype(np.float32)
+        assert row.distance <= np.linalg.norm(points - [0, 0, 0.1], axis=1).min() - 0.1 + 1e-6
+        assert row.checked == pytest.approx(row.distance, abs=1e-5) and row.state in ("free", "collision")
+
+
+def test_a_broken_message_is_unknown_and_the_rest_is_played(robot, tmp_path):
+    messages = drive(3)
+    index = next(k for k, each in enumerate(messages) if each[0] == "/lidar/points")
+    messages[index][2].fields = messages[index][2].fields[:2]
+    rows = list(playing.play(bag(tmp_path / "bag", messages), robot, topics="/lidar/points"))
+    assert len(rows) == 3
+    unknown(rows[:1], "no field 'z'")
+    assert all(row.state != "unknown" for row in rows[1:])
+
+
+def test_a_cloud_without_valid_points_is_no_data(robot, tmp_path):
+    messages = [each for each in drive(2) if each[0] != "/lidar/points"]
+    stamp = START + 7 * MS
+    messages.append(("/empty", stamp, cloud_message(stamp, "lidar", np.full((9, 3), np.nan))))
+    row = next(playing.play(bag(tmp_path / "bag", messages), robot, topics="/empty"))
+    assert (row.state, row.lower, row.upper, row.point, row.at) == ("no_data", 0, math.inf, None, None)
+    assert (row.seen, row.valid, row.dropped) == (9, 0, {"not_finite": 9})
+
+
+def test_a_truncated_recording_gives_its_rows_and_a_sentence(robot, tmp_path):
+    messages = drive(60)
+    file = write_bag(tmp_path / "bag", sorted(messages, key=lambda each: each[1]))
+    whole = list(playing.play(file, robot))
+    file.write_bytes(file.read_bytes()[: int(file.stat().st_size * 0.6)])
+    found = []
+    with pytest.raises(recordings.Damaged, match="truncated or damaged"):
+        for row in playing.play(file, robot):
+            found.append(row)
+    known = [row for row in found if row.state != "unknown"]
+    assert 0.3 * len(whole) < len(known) and known == whole[: len(known)]
+    rows = playing.rows(file, robot)
+    assert [str(row) for row in rows[:-1]] == [str(row) for row in found]
+    unknown(rows[-1:], "truncated or damaged")
+    file.write_bytes(file.read_bytes()[:3000])  # not even a topic is left
+    with pytest.raises(recordings.Damaged, match="truncated or damaged"):
+        playing.play(file, robot)
+    unknown(playing.rows(file, robot), "truncated or damaged")
+
+
+def test_rows_and_recipes_travel_to_workers(robot, urdf, drive_bag):
+    recipe = pickle.loads(pickle.dumps({"file": str(urdf), "spheres": 64}))
+    rows = pickle.loads(pickle.dumps(playing.rows(drive_bag, recipe)))
+    assert rows == list(playing.play(drive_bag, robot))
+
+
+def test_play_does_not_read_ahead(robot, tmp_path):
+    file = write_bag(tmp_path / "bag", sorted(drive(200), key=lambda each: each[1]))
+    rows = playing.play(file, robot)
+    next(rows)
+    data = file.read_bytes()
+    with open(file, "r+b") as damaged:  # in place, while it is open
+        damaged.seek(len(data) * 3 // 4)
+        damaged.write(bytes(len(data) // 8))
+    seen = 1
+    with pytest.raises(ValueError, match="damaged after"):
+        for _ in rows:
+            seen += 1
+    assert 200 < seen < 600
+
+
+# ---- the command
+
+
+def played(capsys, *arguments):
+    status = command.main(["play", *map(str, arguments)])
+    out = capsys.readouterr()
+    return status, out.out, out.err
+
+
+def test_the_command_writes_tables(urdf, robot, drive_bag, tmp_path, capsys):
+    pytest.importorskip("pyarrow", reason="pyarrow is not installed (extra parquet)")
+    import pyarrow.parquet
+
+    status, out, err = played(
+        capsys,
+        drive_bag,
+        "--robot",
+        urdf,
+        "--spheres",
+        64,
+        "--csv",
+        tmp_path / "a.csv",
+        "--parquet",
+        tmp_path / "a.parquet",
+        "--check",
+    )
+    assert (
+        status == 0 and err == "" and "24 frames, 0 of them unknown, 0 of them differ from NumPy; the least is" in out
+    )
+    rows = list(playing.play(drive_bag, robot, check=True))
+    with open(tmp_path / "a.csv", newline="") as file:
+        read = list(csv.DictReader(file))
+    table = pyarrow.parquet.read_table(tmp_path / "a.parquet").to_pylist()
+    assert len(read) == len(table) == 24
+    for row, said, kept in zip(rows, read, table, strict=True):
+        assert (
+            float(said["distance"]) == kept["distance"] == row.distance and said["state"] == kept["state"] == row.state
+        )
+        assert int(said["point"]) == kept["point"] == row.point and kept["at_x"] == row.at[0]
+        assert json.loads(said["dropped"]) == json.loads(kept["dropped"]) == row.dropped
+
+
+def test_the_command_fails_where_it_must(urdf, tmp_path, capsys):
+    arguments = ("--robot", urdf, "--spheres", 64)
+    status, out, _ = played(capsys, bag(tmp_path / "a", drive(joints=False)), *arguments)
+    assert status == 1 and "24 frames, 24 of them unknown" in out
+    file = write_bag(tmp_path / "b", sorted(drive(60), key=lambda each: each[1]))
+    file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    status, out, err = played(capsys, file, *arguments)
+    assert status == 1 and "truncated" in err and len(err.strip().splitlines()) == 1 and " free: " in out
+    status, _, err = played(capsys, tmp_path / "a", *arguments, "--joint", "shoulder")
+    assert status == 1 and "NAME=VALUE" in err
+    status, _, err = played(capsys, tmp_path / "none.mcap", *arguments)
+    assert status == 1 and "there is no recording" in err
