@@ -1,0 +1,1093 @@
+# Written by python/stubs.
+from collections.abc import Mapping, Sequence
+import enum
+from typing import Generic, TypeVar, overload
+
+import numpy
+from numpy.typing import ArrayLike, NDArray
+
+Answer = TypeVar("Answer")
+
+none: int = 4294967295
+
+class DistanceCertainty:
+    """How certain each distance of an answer is: lower() of it is proven."""
+
+    def lower(self, distance: float) -> float:
+        """
+        The solid is at least this far away, metres; 0 if nothing more is certain.
+        """
+
+    def __repr__(self) -> str: ...
+
+class Robot:
+    """
+    A robot's rigid parts, each with a tree that is built once, and its joints. It never changes; any number of queries and threads may share it.
+    """
+
+    @staticmethod
+    def from_urdf(file: object, model: str = 'spheres', spheres: object | None = None, geometry: str = 'collision', packages: Mapping[str, object] = {}, exclude_links: Sequence[str] = [], cache: bool = True) -> Robot:
+        """
+        Reads a URDF file and its meshes. model: "spheres" (packed into each link, `spheres` of them; kept in the cache) or "triangles" (exact). packages: the folder of package://name. Raises RuntimeError if a file is damaged or missing, ValueError if an option cannot be.
+        """
+
+    @staticmethod
+    def from_meshes(meshes: Mapping[str, object], model: str = 'spheres', spheres: object | None = None, name: str = 'robot', cache: bool = True) -> Robot:
+        """
+        One part for each {name: mesh}: a file's name, (vertices (n, 3), triangles (m, 3)), or an object with vertices and faces. Metres.
+        """
+
+    @staticmethod
+    def from_spheres(spheres: Mapping[str, object], gap: float = 0.0, tolerance: float = 0.0, name: str = 'robot') -> Robot:
+        """
+        One part for each {name: array (n, 4) of x, y, z, radius}. Metres. gap: the largest distance of the solid to its spheres (inf: unknown, so there is no lower bound).
+        """
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def model(self) -> str: ...
+
+    @property
+    def parts(self) -> list[str]:
+        """The names of the parts, in their order."""
+
+    @property
+    def notes(self) -> list[str]:
+        """What a person should know about its files."""
+
+    @property
+    def joints(self) -> list[str]:
+        """The names of the movable joints, in the order of joint values."""
+
+    @property
+    def limits(self) -> NDArray[numpy.float64]:
+        """The joints' lower and upper limits, (joints, 2): radians or metres."""
+
+    @property
+    def rest(self) -> NDArray[numpy.float64]:
+        """Each joint at 0, or at the limit nearest to it."""
+
+    def poses(self, joints: object | None = None, base: object | None = None, ignore_limits: bool = False) -> NDArray[numpy.float64]:
+        """
+        World-from-part of every part, (..., parts, 4, 4), for joints (..., joints) or {name: value}. base is world-from-base. Raises ValueError for values beyond the limits.
+        """
+
+    def link_pose(self, link: str, joints: object | None = None, base: object | None = None) -> NDArray[numpy.float64]:
+        """
+        World-from-link of any link, (4, 4): with geometry or without, such as a camera's.
+        """
+
+    def jacobian(self, joints: object | None, part: object | None, at: object | None, base: object | None = None) -> NDArray[numpy.float64]:
+        """
+        What each joint does to a part, (6, joints): the velocity of its point at `at` (world, metres), then its angular velocity, per radian or metre.
+        """
+
+    def spheres(self, part: int) -> NDArray[numpy.float32]:
+        """
+        The inner spheres of a part, (n, 4): x, y, z, radius in the part's frame. Metres.
+        """
+
+    def mesh(self, part: int) -> tuple[NDArray[numpy.float64], NDArray[numpy.uint32]]:
+        """
+        The closed mesh of a part: vertices (n, 3) in its frame, metres, and triangles (m, 3).
+        """
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __len__(self) -> int: ...
+
+    def __repr__(self) -> str: ...
+
+class Cloud:
+    """Points or a depth image with a pose: a view of arrays where they lie."""
+
+    def __len__(self) -> int: ...
+
+    @property
+    def device(self) -> str: ...
+
+def points(points: object, pose: object | None = None, *, nearest: float = 0.0, farthest: float = float('inf'), sensor: object | None = None, zero_is_missing: bool = False) -> Cloud:
+    """
+    A cloud of points, (n, 3) or (rows, columns, 3), float32 or float64, or structured with x, y, z; metres; read in place. pose: world-from-cloud, (4, 4). Points nearer to the sensor than nearest, or beyond farthest, do not count. zero_is_missing: a point at the sensor is none.
+    """
+
+def depth_image(depth: object, intrinsics: object | None = None, pose: object | None = None, *, scale: object | None = None, nearest: float = 0.0, farthest: float = float('inf'), minus_infinity_is_near: bool = True, rays: object | None = None) -> Cloud:
+    """
+    A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): x / z and y / z of each pixel. pose: world-from-camera, z forward.
+    """
+
+class PairDistance:
+    """A pair of a point and a part, and their distance."""
+
+    @property
+    def cloud(self) -> int | None:
+        """The point's number as in its cloud."""
+
+    @property
+    def point(self) -> int | None: ...
+
+    @property
+    def part(self) -> int | None: ...
+
+    @property
+    def primitive(self) -> int | None:
+        """
+        The part's nearest; of equally near ones the lowest. ~0u: the point is inside the part's solid.
+        """
+
+    @property
+    def distance(self) -> float: ...
+
+    @property
+    def link(self) -> str | None:
+        """The name of that part, or None."""
+
+    def __repr__(self) -> str: ...
+
+class SelfFilterCounts:
+    """
+    How many points of some clouds are the robot's. Plain data that a kernel may write or read.
+    """
+
+    @property
+    def points(self) -> PointCounts: ...
+
+    @property
+    def own(self) -> int:
+        """Of the valid points."""
+
+    @property
+    def uncertain(self) -> int: ...
+
+    def __repr__(self) -> str: ...
+
+class DropReason(enum.Enum):
+    """
+    Why a record or pixel gave no point. too_close: something is there, nearer than the sensor can measure (REP 117); nothing is free then.
+    """
+
+    none = 0
+
+    not_finite = 1
+
+    missing = 2
+
+    saturated = 3
+
+    out_of_range = 4
+
+    masked = 5
+
+    too_close = 6
+
+class PointLabel(enum.Enum):
+    """Whose a point is. One byte, so that a mask of labels is an image."""
+
+    rest = 0
+
+    own = 1
+
+    uncertain = 2
+
+    no_point = 3
+
+class PointDistances:
+    """Distances of points, in the order of the clouds and their points."""
+
+    @property
+    def distance(self) -> NDArray[numpy.float32]:
+        """
+        Metres: to sphere parts signed, to triangle parts 0 inside; +inf beyond d_max, NaN where there is no point.
+        """
+
+    @property
+    def part(self) -> NDArray[numpy.uint32]:
+        """
+        If which is set; of equally near ones the lowest. ~0u: none (for a primitive also: inside).
+        """
+
+    @property
+    def primitive(self) -> NDArray[numpy.uint32]: ...
+
+    @property
+    def counts(self) -> PointCounts: ...
+
+    @property
+    def certain(self) -> DistanceCertainty: ...
+
+    def __repr__(self) -> str: ...
+
+class Distances:
+    """
+    Every point's distance to the nearest part (elsewhere d_max is called max_dist, or activation distance). A prepared question on a device remembers the primitive nearest to each point, by its number. Refused: d_max that is NaN.
+    """
+
+    def __init__(self, d_max: float = float('inf'), which: bool = False) -> None:
+        """
+        d_max: Metres; farther points are +inf, and cost next to nothing.
+        which: Also which part and primitive is nearest.
+        """
+
+    @property
+    def d_max(self) -> float:
+        """Metres; farther points are +inf, and cost next to nothing."""
+
+    @property
+    def which(self) -> bool:
+        """Also which part and primitive is nearest."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class PartDistances:
+    """
+    Each part's distance to all points: those of part k are of(k), in the order of the clouds and their points.
+    """
+
+    @property
+    def distance(self) -> NDArray[numpy.float32]:
+        """
+        Metres: to sphere parts signed, to triangle parts 0 inside; +inf beyond d_max, NaN where there is no point.
+        """
+
+    @property
+    def points(self) -> int: ...
+
+    @property
+    def counts(self) -> PointCounts: ...
+
+    @property
+    def certain(self) -> DistanceCertainty: ...
+
+    def of(self, part: int) -> NDArray[numpy.float32]: ...
+
+    def __repr__(self) -> str: ...
+
+class DistancesPerPart:
+    """
+    Every point's distance to every part: parts times points numbers. Refused: d_max that is NaN.
+    """
+
+    def __init__(self, d_max: float = float('inf')) -> None:
+        """d_max: Metres; farther points are +inf."""
+
+    @property
+    def d_max(self) -> float:
+        """Metres; farther points are +inf."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class CollisionResult:
+    """
+    Whether a point is within a margin (elsewhere: security margin, safety distance), and which point: the same on every run and backend.
+    """
+
+    @property
+    def state(self) -> State:
+        """
+        collision: certainly a point is. possible: a point may be. free: certainly none is, and nothing was too close to be measured. no_data: there was no valid point, or no part.
+        """
+
+    @property
+    def cloud(self) -> int | None:
+        """
+        The lowest certain pair (by cloud, point, part), or else the lowest possible one.
+        """
+
+    @property
+    def point(self) -> int | None: ...
+
+    @property
+    def part(self) -> int | None: ...
+
+    @property
+    def counts(self) -> PointCounts: ...
+
+    @property
+    def link(self) -> str | None:
+        """The name of that part, or None."""
+
+    def __repr__(self) -> str: ...
+
+class InCollision:
+    """
+    Is any point closer than the margins? Refused: neither one nor as many margins as parts, and one that is NaN.
+    """
+
+    def __init__(self, margins: float | ArrayLike = (0.0,)) -> None:
+        """margins: Metres: one for all parts, or one per part."""
+
+    @property
+    def margins(self) -> tuple[float, ...]:
+        """Metres: one for all parts, or one per part."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class InCollisionsResult:
+    """
+    One state per configuration: that of in_collision for its poses. There is no witness, because it is chance which one is found first; min_distances gives one.
+    """
+
+    @property
+    def of(self) -> NDArray[numpy.uint8]: ...
+
+    @property
+    def counts(self) -> PointCounts:
+        """All 0 if there was no configuration."""
+
+    @overload
+    def first_not_free(self) -> int:
+        """
+        The first configuration that is not certainly farther away than its margins, or of.size().
+        """
+
+    @overload
+    def first_not_free(self, horizon: int) -> NDArray[numpy.uint64]: ...
+
+    def trajectory(self, i: int, horizon: int) -> NDArray[numpy.uint8]:
+        """
+        If the configurations are several trajectories, [batch, horizon]: the states of trajectory i, and the first of each trajectory, counted from its beginning. Throws std::invalid_argument if they are not whole trajectories of horizon configurations, or if there is no trajectory i.
+        """
+
+    def __repr__(self) -> str: ...
+
+class InCollisions:
+    """
+    Is any point closer to a configuration than the margins? poses as for min_distances. Refused: poses that are no whole configurations, neither one nor as many margins as parts, and one that is NaN.
+    """
+
+    def __init__(self, margins: float | ArrayLike = (0.0,)) -> None:
+        """margins: Metres: one for all parts, or one per part."""
+
+    @property
+    def margins(self) -> tuple[float, ...]:
+        """Metres: one for all parts, or one per part."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class MinDistance:
+    """
+    The least distance over all parts and all points, with its bracket and witness.
+    """
+
+    def __init__(self) -> None: ...
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class MinDistancePerPartResult:
+    """The least distance of the robot, and of each part."""
+
+    @property
+    def all(self) -> MinDistanceResult: ...
+
+    @property
+    def parts(self) -> NDArray[numpy.void]: ...
+
+    def __repr__(self) -> str: ...
+
+class MinDistancePerPart:
+    """
+    The least distance of the robot, and of each part: each has its own bound, and all.lower is tighter.
+    """
+
+    def __init__(self) -> None: ...
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class SupportedDistance:
+    """
+    The nearest point that others confirm, and the nearer points that are alone.
+    """
+
+    @property
+    def state(self) -> State:
+        """
+        That of min_distance about the confirmed points that were asked. possible: none is confirmed. no_data: there is no valid point.
+        """
+
+    @property
+    def distance(self) -> float:
+        """
+        Metres. Infinite: no point is confirmed; NaN: none of the most nearest is.
+        """
+
+    @property
+    def lower(self) -> float:
+        """
+        All confirmed points are certainly at least this far away; 0 if there is none.
+        """
+
+    @property
+    def cloud(self) -> int | None: ...
+
+    @property
+    def point(self) -> int | None: ...
+
+    @property
+    def part(self) -> int | None: ...
+
+    @property
+    def primitive(self) -> int | None: ...
+
+    @property
+    def isolated(self) -> int:
+        """The number of nearer points that are not confirmed,"""
+
+    @property
+    def nearest_isolated(self) -> PairDistance:
+        """and the first of them."""
+
+    @property
+    def counts(self) -> PointCounts: ...
+
+    @property
+    def link(self) -> str | None:
+        """The name of that part, or None."""
+
+    def __repr__(self) -> str: ...
+
+class MinDistanceSupported:
+    """
+    The least distance over points that have at least min_points - 1 other valid points of all clouds within radius of them, by world coordinates in double. Refused: min_points or most of 0, most above 2^20, and a radius that is negative or not finite.
+    """
+
+    def __init__(self, min_points: int = 3, radius: float = 0.02, most: int = 4096) -> None:
+        """
+        min_points: A point is confirmed by this many points, itself among them,
+        radius: within this many metres.
+        most: The search ends after this many of the nearest points, each asked once.
+        """
+
+    @property
+    def min_points(self) -> int:
+        """A point is confirmed by this many points, itself among them,"""
+
+    @property
+    def radius(self) -> float:
+        """within this many metres."""
+
+    @property
+    def most(self) -> int:
+        """
+        The search ends after this many of the nearest points, each asked once.
+        """
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class MinDistancesResult:
+    """
+    One result per configuration: that of min_distance for its poses, to the bit, if it is at most d_max. Otherwise the distance is infinite, there is no witness, and lower is what is certain: d_max less gap, tolerance and rounding.
+    """
+
+    @property
+    def of(self) -> NDArray[numpy.void]: ...
+
+    @overload
+    def first_below(self, margin: float) -> int:
+        """
+        The first configuration that is not certainly farther away than margin metres, or of.size(). Without a valid point it is the first. Throws std::invalid_argument if the margin is negative or NaN: lower is 0 in a collision, too.
+        """
+
+    @overload
+    def first_below(self, margin: float, horizon: int) -> NDArray[numpy.uint64]:
+        """first_below of each trajectory, counted from its beginning."""
+
+    def trajectory(self, i: int, horizon: int) -> NDArray[numpy.void]:
+        """
+        If the configurations are several trajectories, [batch, horizon]: the results of trajectory i. Throws std::invalid_argument if they are not whole trajectories of horizon configurations, or if there is no trajectory i.
+        """
+
+    def __repr__(self) -> str: ...
+
+class MinDistances:
+    """
+    The least distance of each configuration. poses are world-from-part: one per part of the first configuration, then those of the next; or a prepared question takes joint vectors of a joint_chain. It remembers where each configuration's last minimum was. Refused: poses that are no whole configurations, and d_max that is NaN.
+    """
+
+    def __init__(self, d_max: float = float('inf')) -> None:
+        """
+        d_max: Metres. For a configuration farther away only that fact is reported, much faster.
+        """
+
+    @property
+    def d_max(self) -> float:
+        """
+        Metres. For a configuration farther away only that fact is reported, much faster.
+        """
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class MinDistancesPerPartResult:
+    """
+    The result of min_distance for each part alone, as min_distances gives it. of(c) are those of configuration c, one per part.
+    """
+
+    @property
+    def all(self) -> NDArray[numpy.void]: ...
+
+    @property
+    def parts(self) -> int: ...
+
+    def size(self) -> int: ...
+
+    def of(self, c: int) -> NDArray[numpy.void]: ...
+
+    def __repr__(self) -> str: ...
+
+class MinDistancesPerPart:
+    """
+    The least distance of each part of each configuration, otherwise as min_distances. Each part is asked about as its own robot, with its own memory and structure over the clouds: a frame costs as much as min_distances for each part.
+    """
+
+    def __init__(self, d_max: float = float('inf')) -> None:
+        """d_max: Metres, as for min_distances."""
+
+    @property
+    def d_max(self) -> float:
+        """Metres, as for min_distances."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class NearestK:
+    """
+    The k nearest points of each part (elsewhere: kNN, top k): by computed distance, then cloud and point; a point may be in the lists of several parts. Refused: k of 0 or above 2^20, and d_max that is NaN.
+    """
+
+    def __init__(self, k: int = 1, d_max: float = float('inf')) -> None:
+        """
+        k: 
+        d_max: Metres; farther points do not count.
+        """
+
+    @property
+    def k(self) -> int: ...
+
+    @property
+    def d_max(self) -> float:
+        """Metres; farther points do not count."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class NearestKResult:
+    """
+    The pairs of part k begin at k * per_part, the nearest first, then by cloud and point. If there are fewer, the rest is at no point, and infinitely far.
+    """
+
+    @property
+    def per_part(self) -> int: ...
+
+    @property
+    def pairs(self) -> NDArray[numpy.void]: ...
+
+    @property
+    def counts(self) -> PointCounts: ...
+
+    @property
+    def certain(self) -> DistanceCertainty:
+        """Of each distance."""
+
+    def of(self, part: int) -> NDArray[numpy.void]: ...
+
+    def __repr__(self) -> str: ...
+
+class PartWitnesses:
+    """
+    The witness of every part's minimum. On a device it is one kernel per cloud, after min_distance_per_part in a stream or graph. Refused: neither as many minima as parts, and one that is not of these poses and clouds.
+    """
+
+    def __init__(self, minima: NDArray[numpy.void]) -> None:
+        """minima: As min_distance_per_part gives them."""
+
+    @property
+    def minima(self) -> NDArray[numpy.void]:
+        """As min_distance_per_part gives them."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class SelfFilterResult:
+    """
+    Whose each point is. A point is the robot's if it is certainly within the padding of a part's solid. If gap, tolerance or rounding leave that open, it is uncertain and not hidden: a point hidden wrongly may be an obstacle, a point kept wrongly stops a robot. Without a certificate every other point is uncertain.
+    """
+
+    @property
+    def labels(self) -> NDArray[numpy.uint8]:
+        """One per point of all clouds, in their order."""
+
+    @property
+    def offsets(self) -> NDArray[numpy.uint64]:
+        """The labels of cloud c are offsets[c] to offsets[c + 1] - 1."""
+
+    @property
+    def rest(self) -> NDArray[numpy.uint32]:
+        """The numbers of all valid points that are not hidden, ascending."""
+
+    @property
+    def counts(self) -> SelfFilterCounts: ...
+
+    def __repr__(self) -> str: ...
+
+class SelfFilter:
+    """
+    Which points are the robot itself? Refused: neither one nor as many paddings as parts, and one that is negative or not finite.
+    """
+
+    def __init__(self, padding: float | ArrayLike = (0.01,)) -> None:
+        """
+        padding: Metres around a part that belong to the robot: one number for all parts, or one per part. It has to cover the error of points on the robot's surface: noise, calibration, and the gap of the part's spheres.
+        """
+
+    @property
+    def padding(self) -> tuple[float, ...]:
+        """
+        Metres around a part that belong to the robot: one number for all parts, or one per part. It has to cover the error of points on the robot's surface: noise, calibration, and the gap of the part's spheres.
+        """
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class SignedDistances:
+    """
+    Every point's distance to the surface of parts that are closed meshes, negative inside. It is the least of all parts, so a point in several is as deep as in the one where it is deepest. Otherwise as distances; primitive is the nearest triangle, inside too, and points inside are within any d_max. Refused: d_max that is negative or NaN.
+    """
+
+    def __init__(self, d_max: float = float('inf'), which: bool = False) -> None:
+        """
+        d_max: Metres; farther points are +inf, and cost next to nothing.
+        which: Also which part and triangle is nearest.
+        """
+
+    @property
+    def d_max(self) -> float:
+        """Metres; farther points are +inf, and cost next to nothing."""
+
+    @property
+    def which(self) -> bool:
+        """Also which part and triangle is nearest."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class WithinResult:
+    """
+    Points near parts. The pairs of part k are offsets[k] to offsets[k + 1] - 1, the nearest first, then by cloud and point.
+    """
+
+    @property
+    def offsets(self) -> NDArray[numpy.uint64]: ...
+
+    @property
+    def pairs(self) -> NDArray[numpy.void]:
+        """Distances as computed, in metres."""
+
+    @property
+    def counts(self) -> PointCounts: ...
+
+    @property
+    def certain(self) -> DistanceCertainty:
+        """Of each distance."""
+
+    def __repr__(self) -> str: ...
+
+class Within:
+    """
+    All pairs of a point and a part whose computed distance is at most radius metres. Refused: neither one nor as many radii as parts, and one that is NaN.
+    """
+
+    def __init__(self, radius: float | ArrayLike) -> None:
+        """radius: Metres: one for all parts, or one per part."""
+
+    @property
+    def radius(self) -> tuple[float, ...]:
+        """Metres: one for all parts, or one per part."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class Zone:
+    """
+    One zone of one part. A point counts if it may be nearer than the zone's threshold: arithmetic, gaps and tolerances are on the safe side.
+    """
+
+    @property
+    def points(self) -> int: ...
+
+    @property
+    def nearest(self) -> float:
+        """The least distance of its points, as computed. Metres."""
+
+    @property
+    def nearest_cloud(self) -> int | None:
+        """The point at that distance; of equally near ones the lowest."""
+
+    @property
+    def nearest_point(self) -> int | None: ...
+
+    @property
+    def first_cloud(self) -> int | None:
+        """The lowest of its points."""
+
+    @property
+    def first_point(self) -> int | None: ...
+
+    def __repr__(self) -> str: ...
+
+class ZonesResult:
+    """What is in the zones of each part."""
+
+    @property
+    def per_part(self) -> int: ...
+
+    @property
+    def min_points(self) -> int: ...
+
+    @property
+    def zones(self) -> NDArray[numpy.void]:
+        """The zones of a part, the innermost first, then those of the next part."""
+
+    @property
+    def counts(self) -> PointCounts: ...
+
+    @property
+    def unseen(self) -> int:
+        """Points that there was no time for; any of them may be in any zone."""
+
+    def of(self, part: int, z: int) -> Zone: ...
+
+    def innermost(self) -> int:
+        """
+        The innermost zone of all parts with enough points: 0 is the nearest threshold, per_part means that all are empty. It is 0 for a frame without a valid point, without a part, with something too close to be measured, or with unseen points, because nothing is known then.
+        """
+
+    def __repr__(self) -> str: ...
+
+class Zones:
+    """
+    Counts the points in zones around every part, in one pass. Refused: thresholds that are negative, not in order, none or not the same number for each part, and min_points of 0.
+    """
+
+    def __init__(self, thresholds: float | ArrayLike, each_part: bool = False, min_points: int = 1) -> None:
+        """
+        thresholds: Metres, in ascending order: the same for every part,
+        each_part: or, if this is set, those of each part in turn, equally many.
+        min_points: A zone with fewer counts as empty (innermost); its points are still reported.
+        """
+
+    @property
+    def thresholds(self) -> tuple[float, ...]:
+        """Metres, in ascending order: the same for every part,"""
+
+    @property
+    def each_part(self) -> bool:
+        """or, if this is set, those of each part in turn, equally many."""
+
+    @property
+    def min_points(self) -> int:
+        """
+        A zone with fewer counts as empty (innermost); its points are still reported.
+        """
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class State(enum.Enum):
+    """What a bracket means for a robot that is about to move."""
+
+    free = 0
+
+    possible = 1
+
+    collision = 2
+
+    no_data = 3
+
+class PartMinimum:
+    """
+    The least distance of one part. Without a valid point within its bound it is infinite, at no point.
+    """
+
+    @property
+    def distance(self) -> float: ...
+
+    @property
+    def cloud(self) -> int | None: ...
+
+    @property
+    def point(self) -> int | None: ...
+
+    @property
+    def primitive(self) -> int | None: ...
+
+    def __repr__(self) -> str: ...
+
+class PartWitness:
+    """
+    The pair that attains a part's least distance, in world coordinates, as in a min_distance_result. Without a pair the numbers are none and the distance is infinite.
+    """
+
+    @property
+    def distance(self) -> float: ...
+
+    @property
+    def part(self) -> int | None: ...
+
+    @property
+    def cloud(self) -> int | None: ...
+
+    @property
+    def point(self) -> int | None: ...
+
+    @property
+    def primitive(self) -> int | None: ...
+
+    @property
+    def at(self) -> tuple[float, float, float]: ...
+
+    @property
+    def nearest(self) -> tuple[float, float, float]: ...
+
+    @property
+    def normal(self) -> tuple[float, float, float]: ...
+
+    @property
+    def link(self) -> str | None:
+        """The name of that part, or None."""
+
+    def __repr__(self) -> str: ...
+
+class PointCounts:
+    """
+    How many points a scan has seen, how many of them are valid, and why the others are not.
+    """
+
+    @property
+    def seen(self) -> int: ...
+
+    @property
+    def valid(self) -> int: ...
+
+    @property
+    def dropped(self) -> dict[str, int]:
+        """Counts by drop_reason; [none] stays 0."""
+
+    def __repr__(self) -> str: ...
+
+class MinDistanceResult:
+    """
+    The clearance of a robot, its bracket and its witness; plain data that a kernel may write or read.  lower <= distance to the solid <= upper (0 inside it), float errors included. With no_data the distance is NaN, lower 0 and upper infinite, so that if (r.lower < margin) stop() stops.
+    """
+
+    @property
+    def state(self) -> State: ...
+
+    @property
+    def distance(self) -> float:
+        """Metres; to sphere parts signed, to triangle parts 0 inside."""
+
+    @property
+    def lower(self) -> float: ...
+
+    @property
+    def upper(self) -> float: ...
+
+    @property
+    def cloud(self) -> int | None:
+        """Which cloud of the call,"""
+
+    @property
+    def point(self) -> int | None:
+        """which of its points (index as in the input),"""
+
+    @property
+    def part(self) -> int | None:
+        """which part,"""
+
+    @property
+    def primitive(self) -> int | None:
+        """which of its primitives attains it; of equally near ones the lowest."""
+
+    @property
+    def at(self) -> tuple[float, float, float]:
+        """The point, in world coordinates,"""
+
+    @property
+    def nearest(self) -> tuple[float, float, float]:
+        """the nearest point of the primitive,"""
+
+    @property
+    def normal(self) -> tuple[float, float, float]:
+        """and the unit vector from robot to point; (0,0,0) if there is none."""
+
+    @property
+    def seen(self) -> int: ...
+
+    @property
+    def valid(self) -> int: ...
+
+    @property
+    def dropped(self) -> dict[str, int]:
+        """Counts by drop_reason; [none] stays 0."""
+
+    @property
+    def link(self) -> str | None:
+        """The name of that part, or None."""
+
+    def __str__(self) -> str: ...
+
+    def __repr__(self) -> str: ...
+
+class Query(Generic[Answer]):
+    """
+    A question prepared for a robot on one device: make it once and ask it in every frame. Any number of threads may call it.
+    """
+
+    @overload
+    def __init__(self: Query[PointDistances], robot: Robot, question: Distances | type[Distances], device: str = 'cpu') -> None:
+        """question: such as MinDistance(). device: "cpu", or "cuda:0" and so on."""
+
+    @overload
+    def __init__(self: Query[PartDistances], robot: Robot, question: DistancesPerPart | type[DistancesPerPart], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[CollisionResult], robot: Robot, question: InCollision | type[InCollision], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[InCollisionsResult], robot: Robot, question: InCollisions | type[InCollisions], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[MinDistanceResult], robot: Robot, question: MinDistance | type[MinDistance], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[MinDistancePerPartResult], robot: Robot, question: MinDistancePerPart | type[MinDistancePerPart], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[SupportedDistance], robot: Robot, question: MinDistanceSupported | type[MinDistanceSupported], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[MinDistancesResult], robot: Robot, question: MinDistances | type[MinDistances], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[MinDistancesPerPartResult], robot: Robot, question: MinDistancesPerPart | type[MinDistancesPerPart], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[NearestKResult], robot: Robot, question: NearestK | type[NearestK], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[NDArray[numpy.void]], robot: Robot, question: PartWitnesses | type[PartWitnesses], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[SelfFilterResult], robot: Robot, question: SelfFilter | type[SelfFilter], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[PointDistances], robot: Robot, question: SignedDistances | type[SignedDistances], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[WithinResult], robot: Robot, question: Within | type[Within], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[ZonesResult], robot: Robot, question: Zones | type[Zones], device: str = 'cpu') -> None: ...
+
+    def __call__(self, points: object | None = None, joints: object | None = None, *, poses: object | None = None, base: object | None = None, cloud_pose: object | None = None, depth: object | None = None, intrinsics: object | None = None, rays: object | None = None, depth_scale: object | None = None, camera_pose: object | None = None, clouds: object | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False) -> Answer:
+        """
+        Asks about one frame and waits for the answer. Where the robot is: joints (joints,) or {name: value}, with base (world-from-base); or poses (parts, 4, 4), world-from-part. Questions about many configurations take joints (..., joints) or poses (..., parts, 4, 4). What is seen: points with cloud_pose; depth with intrinsics or rays and camera_pose; or clouds, a sequence of points(...) and depth_image(...). question: other options for this call. Raises ValueError with a sentence that names the argument.
+        """
+
+    @property
+    def question(self) -> object: ...
+
+    @property
+    def robot(self) -> Robot: ...
+
+    @property
+    def device(self) -> str: ...
+
+def joint_gradients(robot: Robot, joints: object, result: object, base: object | None = None, ignore_limits: bool = False) -> NDArray[numpy.float64]:
+    """
+    How each least distance changes with the joints, (..., joints): metres per radian or metre, from its witness. joints and base are those that were asked. A row is NaN where there is no gradient: no witness, distance 0, or the centre of a sphere.
+    """
