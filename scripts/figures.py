@@ -28,6 +28,12 @@ def apt_commands(of):
     return of.apt_lines(library="the library alone", io="+ files: meshes, robots, ...", command="+ the command", all="+ tests, benchmarks")
 
 
+@figure
+def python_commands(of):
+    """What a bare Debian 12 needs for the Python package, by scripts/lib.sh; then from a checkout to a picture."""
+    return of.apt_for("python") + '\n    python3 -m venv venv && venv/bin/pip install ".[view]" && venv/bin/clearance view'
+
+
 # One frame. bench_device.txt: an H200; min_distance.txt: CPU threads.
 
 

@@ -272,6 +272,11 @@ def apt_lines(**titles):
     return "\n".join(f"{line:<75}    # {title}" for line, title in lines)
 
 
+def apt_for(name):
+    """`apt install` of a whole list of scripts/lib.sh."""
+    return "    apt install " + " ".join(packages("packages_" + name))
+
+
 @functools.cache
 def phrases(folder):
     """What `<!-- = ... -->` in a page of this folder may use: each reads recorded files, and the result is put into the text."""
@@ -312,4 +317,5 @@ def phrases(folder):
         return f"{'' if met else 'missed: '}{prefix}{value:{form}}"
 
     return {"number": number, "commit": commit, "paper": paper.value, "times": times, "measured": measured,
-            "clouds": clouds, "along": along, "spread": spread, "goal": goal, "format": format, "apt_lines": apt_lines, "min": min, "max": max}
+            "clouds": clouds, "along": along, "spread": spread, "goal": goal, "format": format, "apt_lines": apt_lines,
+            "apt_for": apt_for, "min": min, "max": max}
