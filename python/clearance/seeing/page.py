@@ -363,7 +363,7 @@ class Page:
             f'<div id="clearance-number" data-state="{result.state.name}" data-distance="{float(result.distance)!r}" '
             f'data-update="{self.updates}" style="{_STYLE}color:{colour}">{number(result)}</div>'
             f'<div style="padding:0 1em 0.5em">{html.escape(sentence(result, self.margin))}<br>'
-            f"<small>{rate}asked in {1000 * self.took['ask']:.1f} ms; drawn: 1 of {self.step} points; "
+            f"<small>{rate}asked in {1000 * self.took['ask']:.1f} ms; drawn: 1 point in {self.step}; "
             f"{coloured}; model: {self.robot.model}</small></div>"
         )
 

@@ -137,7 +137,7 @@ def _legend(canvas, seen):
         canvas.text(x + 200, y, words)
         x += 220 + 12 * len(words)
     if seen.step > 1:
-        canvas.text(x + 12, y, f"drawn: 1 of {seen.step} points", (90, 90, 90))
+        canvas.text(x + 12, y, f"drawn: 1 point in {seen.step}", (90, 90, 90))
 
 
 def render(seen, **options):
