@@ -4,6 +4,7 @@
 #include "command_line.hpp"
 #include "progress.hpp"
 #include "query_options.hpp"
+#include "robot_bodies.hpp"
 
 #include <clearance/io/packed_part.hpp>
 #include <clearance/io/robot.hpp>

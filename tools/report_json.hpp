@@ -4,6 +4,7 @@
 
 #include "json_text.hpp"
 #include "observations.hpp"
+#include "robot_bodies.hpp"
 
 #include <optional>
 #include <string>
