@@ -19,7 +19,8 @@ environment = os.environ | {"CLEARANCE_CACHE": "", "OMPI_ALLOW_RUN_AS_ROOT": "1"
 robot = """<robot name="two">
   <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
   <link name="tool"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
-  <joint name="slide" type="prismatic"><parent link="base"/><child link="tool"/><origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="tool"/>
+    <origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
     <limit lower="-0.1" upper="1" effort="1" velocity="1"/></joint>
 </robot>
 """

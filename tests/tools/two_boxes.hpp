@@ -30,7 +30,8 @@ inline const char* const moving_boxes_text = R"(<robot name="moving">
   <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
   <link name="tool"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
   <link name="claw"/>
-  <joint name="slide" type="prismatic"><parent link="base"/><child link="tool"/><origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="tool"/>
+    <origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
     <limit lower="-0.1" upper="1" effort="1" velocity="1"/></joint>
   <joint name="turn" type="continuous"><parent link="tool"/><child link="claw"/><axis xyz="1 0 0"/></joint>
 </robot>
@@ -42,7 +43,8 @@ inline const char* const boxes_with_eye_text = R"(<robot name="two">
   <link name="tool"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
   <link name="eye"/>
   <link name="claw"/>
-  <joint name="slide" type="prismatic"><parent link="base"/><child link="tool"/><origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="tool"/>
+    <origin xyz="0 0 0.5"/><axis xyz="0 0 1"/>
     <limit lower="-0.1" upper="1" effort="1" velocity="1"/></joint>
   <joint name="mount" type="fixed"><parent link="tool"/><child link="eye"/><origin xyz="0 0 0.1"/></joint>
   <joint name="turn" type="continuous"><parent link="tool"/><child link="claw"/><axis xyz="1 0 0"/></joint>

@@ -83,7 +83,8 @@ TEST_CASE("a point in the first zone is exit code 2, as a failed --check is, and
 TEST_CASE("zones count what distances say, for a cloud of many points and both models") {
   scratch_file urdf{
       ".urdf",
-      R"(<robot name="r"><link name="a"><collision><geometry><box size="0.2 0.3 0.4"/></geometry></collision></link></robot>)"};
+      R"(<robot name="r"><link name="a"><collision><geometry><box size="0.2 0.3 0.4"/></geometry></collision></link>
+      </robot>)"};
   std::string points;
   for (int i = 0; i < 500; ++i)
     points += std::to_string(0.01 * (i % 83)) + ' ' + std::to_string(-0.02 * (i % 29)) + ' ' +
