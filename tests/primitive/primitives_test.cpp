@@ -30,6 +30,9 @@ void check(const P& p, vec3 q, verdict& v) {
   if constexpr (clearance::bounded_primitive<P>)
     v.require(p.lower_bound(q) <= p.distance(q), "the lower bound is", p.lower_bound(q), " and the distance", distance,
               " at ", q);
+  for (const vec3 other :
+       {q, p.nearest(q), near.center, near.center - (q - near.center), vec3{q.x, near.center.y, q.z}})
+    check_tangents(p, q, other, v), check_tangents(p, other, q, v);
   const vec3 at = p.nearest(q), n = p.normal(q);
   const wide written = scale + oracle::length(wider(q));  // nearest() is rounded to the grid of its coordinates
   v.require(std::abs(exact(p, at)) <= 16 * unit * written, "nearest is off the primitive by", exact(p, at), " at ", q);

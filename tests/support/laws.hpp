@@ -75,6 +75,30 @@ void check_reach(const V& volume, vec3 q, real distance, verdict& v) {
               distance, " away");
 }
 
+/// A point's computed distance is between what the tangent at another point says.
+inline void check_tangent(const clearance::tangent& t, vec3 q, vec3 p, real computed, verdict& v) {
+  const auto e = wider(p) - wider(q);
+  const wide along = wide(t.direction.x) * e.x + wide(t.direction.y) * e.y + wide(t.direction.z) * e.z;
+  const wide least = wide(t.distance) + along - wide(clearance::slack) * oracle::length(e);
+  v.require(least <= computed, "the tangent at ", q, " says", least, ", though", computed, " away at ", p);
+}
+
+template <clearance::primitive P>
+void check_tangents(const P& primitive, vec3 q, vec3 p, verdict& v) {
+  if constexpr (clearance::tangent_primitive<P>) {
+    const clearance::primitive_tangent t = primitive.tangent_at(q);
+    const real computed = primitive.distance(p);
+    check_tangent(t, q, p, computed, v);
+    const auto e = wider(p) - wider(q);
+    const wide way = oracle::length(e),
+               along = wide(t.direction.x) * e.x + wide(t.direction.y) * e.y + wide(t.direction.z) * e.z;
+    wide most = wide(t.most) + way;
+    if (t.radius > 0) most = std::min(most, wide(t.most) + along + way * way / (2 * wide(t.radius)));
+    v.require(computed <= most + wide(clearance::slack) * way, "the tangent at ", q, " says at most", most, ", though",
+              computed, " away at ", p);
+  }
+}
+
 /// No lower bound exceeds the signed distance to an enclosed ball, or to a primitive as computed. At every centre it is
 /// negative.
 template <clearance::bounding_volume V>
@@ -88,8 +112,20 @@ void check_bounds(dice& d, const std::vector<ball>& balls, double size, verdict&
       v.require(deepest + b.radius <= 0, "a ball at ", b.center, b.radius, " sticks out of the volume that is one");
     }
   }
-  for (const vec3 q : probes(d, balls, size)) {
+  const auto all = probes(d, balls, size);
+  for (const vec3 q : all) {
     const real bound = traits::lower_bound(volume, q);
+    if constexpr (clearance::tangent_volume<V>) {
+      const auto t = traits::tangent_at(volume, q);
+      v.require(std::abs(oracle::length(wider(t.direction)) - 0.5L) < 0.501L, "a direction is too long at ", q);
+      for (int other = 0; other < 4; ++other) {
+        const vec3 p = all[d.below(unsigned(all.size()))];
+        for (const ball& b : balls) check_tangent(t, q, p, inner_sphere{b.center, b.radius}.distance(p), v);
+        for (std::size_t k = 0; k + 2 < balls.size() && k < 4; ++k)
+          check_tangent(t, q, p, triangle::from(balls[k].center, balls[k + 1].center, balls[k + 2].center).distance(p),
+                        v);
+      }
+    }
     for (const ball& b : balls) {
       const wide exact = oracle::to_sphere(wider(q), wider(b.center), b.radius);
       v.require(bound <= exact, "bound", bound, " above distance", exact, " at ", q, " of ball ", b.center, b.radius);

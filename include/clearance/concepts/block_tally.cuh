@@ -75,6 +75,7 @@ concept packet_tally =
     block_tally<T> && requires(const typename T::block& s, const typename T::arguments& a, typename T::visitor_type& v,
                                const typename T::visitor_type& other, std::uint32_t n, vec3 x, bool counts) {
       { T::all_near(a) } -> std::same_as<bool>;
+      { T::by_tangents } -> std::convertible_to<bool>;
       { T::visitor(s, n, counts) } -> std::same_as<typename T::visitor_type>;
       T::remind(s, n, x, v);
       T::take(s, n, counts, other);

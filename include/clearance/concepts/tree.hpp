@@ -2,7 +2,7 @@
 #pragma once
 // What a robot's parts are made of: primitives, volumes, a tree of them, and a solid.
 
-#include <clearance/ground/math.hpp>
+#include <clearance/concepts/tangent.hpp>
 
 #include <concepts>
 #include <cstdint>
@@ -38,6 +38,12 @@ concept foreseen_primitive = primitive<P> && requires(const P p, vec3 q, real re
 template <class P>
 concept bounded_primitive = primitive<P> && requires(const P p, vec3 q) {
   { p.lower_bound(q) } -> std::same_as<real>;
+};
+
+/// A convex primitive that bounds its distance around a point: see primitive_tangent.
+template <class P>
+concept tangent_primitive = primitive<P> && requires(const P p, vec3 q) {
+  { p.tangent_at(q) } -> std::same_as<primitive_tangent>;
 };
 
 /// `primitive<P>` with reasons: nvcc does not say which requirement of a concept failed.
@@ -95,6 +101,14 @@ struct bounding_volume_traits {
   {
     return v.as_ball();
   }
+  /// Optional: see tangent_volume.
+  CLEARANCE_HD static tangent tangent_at(const V& v, vec3 q)
+    requires requires {
+      { v.tangent_at(q) } -> std::same_as<tangent>;
+    }
+  {
+    return v.tangent_at(q);
+  }
   /// Optional: a few balls whose convex hull contains the volume. Needed by the layered fit alone.
   static auto balls(const V& v)
     requires requires { std::span<const ball>(v.balls()); }
@@ -135,6 +149,12 @@ concept rootless_volume = bounding_volume<V> && requires(const V v, vec3 q, real
 template <class V>
 concept round_volume = bounding_volume<V> && requires(const V v) {
   { bounding_volume_traits<V>::as_ball(v) } -> std::same_as<ball>;
+};
+
+/// A volume that bounds the distance of what it encloses around a point: see tangent.
+template <class V>
+concept tangent_volume = bounding_volume<V> && requires(const V v, vec3 q) {
+  { bounding_volume_traits<V>::tangent_at(v, q) } -> std::same_as<tangent>;
 };
 
 /// `bounding_volume<V>` with reasons: nvcc does not say which requirement of a concept failed.

@@ -6,6 +6,7 @@
 #include <clearance/scan/launch.cuh>
 #include <clearance/scan/packet_kernel.cuh>
 
+#include <optional>
 #include <utility>
 
 namespace clearance::pointwise {
@@ -17,11 +18,13 @@ struct remembered {
   typename scan::node_of<typename PartView::hierarchy_type>::place place;
 };
 
-template <class PartView>
+/// `Tangents`: packets walk trees that know their tangents by these (scan/tangent_walk.cuh).
+template <class PartView, bool Tangents>
 struct points_of {
   using part_type = PartView;
   using hierarchy_type = typename PartView::hierarchy_type;
   using place_type = typename scan::node_of<hierarchy_type>::place;
+  static constexpr bool by_tangents = Tangents;
   using scan_type = scan::by_packets;
   using block = scan::packet_memory<points_of>;
   static constexpr bool bound_per_part = true, goes_ahead = false;
@@ -83,6 +86,15 @@ struct points_of {
     const real d = parts::primitive(k, last.place).distance(parts::place(k).part_from_cloud(x));
     if (d <= a.d_max) v.best.offer({d, none, none});
   }
+  /// The last nearest primitive, if it is of one of this kernel's parts.
+  static __device__ scan::primitive_of_part known(const block& s, std::uint32_t index) {
+    const arguments& a = s.head.answer;
+    if (a.last == nullptr) return {none, 0};
+    const remembered<PartView> last = a.last[index];
+    if constexpr (std::is_same_v<place_type, std::uint32_t>)
+      return {last.part == none ? none : last.part - a.first_part, last.place};
+    return {none, 0};
+  }
   static __device__ void take(const block& s, std::uint32_t index, bool counts, const visitor_type& v) {
     const arguments& a = s.head.answer;
     write(a.out, index, {s.rigid && counts ? v.best.distance : not_a_number, v.best.part, v.best.primitive});
@@ -122,13 +134,10 @@ class device_points {
   distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
                              real d_max, point_counts* counts, const Here& here) {
     if (remembers_) make_room(clouds);
-    return certainty_of(launch_.template pass<points_of<PartView>>(
-        facts_, poses, clouds,
-        [&](std::uint32_t group) {
-          return typename points_of<PartView>::arguments{out, d_max, group * scan::most_parts,
-                                                         group == 0 ? counts : nullptr, last_.data()};
-        },
-        here));
+    if constexpr (scan::tangent_hierarchy<typename PartView::hierarchy_type>)
+      if (by_tangents.value_or(d_max == infinity && worth_tangents(clouds)))
+        return pass<true>(poses, clouds, out, d_max, counts, here);
+    return pass<false>(poses, clouds, out, d_max, counts, here);
   }
 
   /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
@@ -139,7 +148,34 @@ class device_points {
                  "cudaMemsetAsync");
   }
 
+  /// How packets walk, for tests and benchmarks; else the faster way is chosen. The answer is the same.
+  std::optional<bool> by_tangents;
+
  private:
+  /// A walk by tangents takes fewer steps, but a few packets take long, and with few points a frame waits for those.
+  /// Tiles of an image are compact, so that they gain with any number. (Measured: docs/distances.md.)
+  template <class Clouds>
+  static bool worth_tangents(const Clouds& clouds) {
+    bool worth = true;
+    for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) {
+      worth = worth && (source.size() >= 1u << 20 || scan::by_packets::columns_of(source) != 0);
+    });
+    return worth;
+  }
+
+  template <bool Tangents, class Clouds, class Here>
+  distance_certainty pass(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
+                          real d_max, point_counts* counts, const Here& here) {
+    using tally = points_of<PartView, Tangents>;
+    return certainty_of(launch_.template pass<tally>(
+        facts_, poses, clouds,
+        [&](std::uint32_t group) {
+          return typename tally::arguments{out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr,
+                                           last_.data()};
+        },
+        here));
+  }
+
   template <class Clouds>
   void make_room(const Clouds& clouds) {
     std::size_t points = 0;

@@ -23,6 +23,11 @@ struct inner_sphere {
     const real l = length(d);
     return l > 0 ? scaled(divide(1, l), d) : vec3{0, 0, 0};
   }
+  CLEARANCE_HD primitive_tangent tangent_at(vec3 q) const {
+    const unit_way way(q - center);
+    const real off = slack * (way.length + absolute(radius)), d = way.length - radius;
+    return {{d - off, way.direction}, d + off, way.length};
+  }
   std::array<ball, 1> balls() const { return {{{center, radius}}}; }
 };
 

@@ -60,6 +60,15 @@ struct triangle {
     return d - fma(slack, d + size, 0x1p-60f);  // the last term because squares below 1e-38 are 0
   }
 
+  /// Along the rough way from the nearest point. No corner lies beyond the half-space, which holds for any direction.
+  CLEARANCE_HD primitive_tangent tangent_at(vec3 q) const {
+    const vec3 aq = q - a, bq = q - b, cq = q - c;
+    const unit_way way(away<true>(q));
+    const vec3 u = way.direction;
+    const real off = slack * (way.length + extent(b - a) + extent(c - a)) + 0x1p-60f;
+    return {{rough_min(rough_min(dot(u, aq), dot(u, bq)), dot(u, cq)) - off, u}, way.length + off, way.length};
+  }
+
   CLEARANCE_HD vec3 nearest(vec3 q) const { return q - away(q); }
 
   CLEARANCE_HD vec3 normal(vec3 q) const {
@@ -83,16 +92,19 @@ struct triangle {
     bool interior;  ///< The interior is nearest, not a corner.
   };
 
+  /// `Rough`: with quotients and roots for bounds.
+  template <bool Rough = false>
   CLEARANCE_HD measured measure(vec3 q) const {
     const vec3 ab = b - a, bc = c - b, ca = a - c;
     const vec3 aq = q - a, bq = q - b, cq = q - c;
     // The uncertainty of positions below. The factor is a power of two, so that contraction changes no bit.
     const real noise = 0x1p-22f * (extent(aq) + extent(ab) + extent(ca));
-    const side sides[3] = {to_side(aq, ab, noise), to_side(bq, bc, noise), to_side(cq, ca, noise)};
+    const side sides[3] = {to_side<Rough>(aq, ab, noise), to_side<Rough>(bq, bc, noise), to_side<Rough>(cq, ca, noise)};
     side least = sides[0];
     for (const side& s : sides)
       if (s.squared < least.squared) least = s;
-    measured m{least.offset, square_root(least.squared), dot(aq, unit_normal), false};
+    measured m{least.offset, Rough ? rough_root(least.squared) : square_root(least.squared), dot(aq, unit_normal),
+               false};
     const real nearly = (m.edge + noise) * (m.edge + noise);
     bool interior = false;
     for (const side& s : sides) interior = interior || (s.interior && s.squared <= nearly);
@@ -100,16 +112,23 @@ struct triangle {
     return m;
   }
   /// From the nearest point to the query point.
+  template <bool Rough = false>
   CLEARANCE_HD vec3 away(vec3 q) const {
-    const measured m = measure(q);
+    const measured m = measure<Rough>(q);
     return m.over_face && absolute(m.height) <= m.edge ? scaled(m.height, unit_normal) : m.offset;
   }
   /// A side that starts at 0 and goes along `edge`.
+  template <bool Rough>
   CLEARANCE_HD static side to_side(vec3 p, vec3 edge, real noise) {
     const real length2 = dot(edge, edge);
-    const real t = length2 > 0 ? divide(dot(p, edge), length2) : 0, beyond = max(-t, t - 1);
+    const real t = length2 > (Rough ? least_normal : 0) ? ratio<Rough>(dot(p, edge), length2) : 0,
+               beyond = max(-t, t - 1);
     const vec3 offset = fma(-clamp01(t), edge, p);
     return {offset, dot(offset, offset), beyond < 0 || beyond * beyond * length2 <= noise * noise};
+  }
+  template <bool Rough>
+  CLEARANCE_HD static real ratio(real a, real b) {
+    return Rough ? a * rough_inverse(b) : divide(a, b);
   }
   /// The squared distance to a side.
   CLEARANCE_HD static real rough_square(vec3 p, vec3 edge) {

@@ -5,7 +5,7 @@
 
 #include <clearance/scan/filter.cuh>
 #include <clearance/scan/finish.cuh>
-#include <clearance/scan/packets.cuh>
+#include <clearance/scan/tangent_packets.cuh>
 
 #include <algorithm>
 
@@ -42,14 +42,14 @@ inline constexpr std::uint32_t tile_columns = 8, tile_rows = 4;
 __device__ inline std::uint32_t place_in_packet(std::uint32_t b, std::uint32_t columns) {
   const std::uint32_t lane = threadIdx.x % 32;
   if (columns == 0) return b * 32 + lane;
-  const std::uint32_t row = b / (columns / tile_columns), column = b - row * (columns / tile_columns);
+  const std::uint32_t across = columns / tile_columns, row = b / across, column = b - row * across;
   return (row * tile_rows + lane / tile_columns) * columns + column * tile_columns + lane % tile_columns;
 }
 
 template <class Tally, class Source>
 __global__ void __launch_bounds__(block_threads, 2)
     packet_kernel(const __grid_constant__ Source source, const __grid_constant__ scan_arguments<Tally> a) {
-  using sharing = shared_walk<Tally>;
+  using walks = packet_walks<Tally>;
   auto& s = memory_of_block<Tally>();
   const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds,
                       packets = (a.points + 31) / 32;
@@ -65,12 +65,12 @@ __global__ void __launch_bounds__(block_threads, 2)
   __syncthreads();
   for (;;) {
     const bool own = packet < packets;
-    std::uint32_t p = packet;
+    given_lanes work{packet, all_lanes};
     if (!own) {  // none is left: take a part of another warp's packet
-      if (!sharing::receive()) break;
-      p = sharing::task().packet;
-      next = read(p);
+      if (!walks::receive(work)) break;
+      next = read(work.packet);
     }
+    const std::uint32_t p = work.packet;
     const std::uint32_t i = place_in_packet(p, a.columns), index = a.first + i;
     const sample here = next;
     if (own) {
@@ -86,10 +86,11 @@ __global__ void __launch_bounds__(block_threads, 2)
       live = near_any<Tally>(x, a.parts) && counts && s.rigid;
       if (live) Tally::remind(s, index, x, v);
     } else {
-      live = (sharing::task().live >> lane & 1) != 0;
+      live = (work.lanes >> lane & 1) != 0;
+      if (walks::begins_anew && live) Tally::remind(s, index, x, v);
     }
-    packet_search<Tally>::search(p, live, x, v);
-    if (sharing::last(v) && exists) Tally::take(s, index, counts, v);
+    const unsigned done = walks::search(p, index, work.lanes, live, x, v);
+    if ((done >> lane & 1) != 0 && exists) Tally::take(s, index, counts, v);
     if (own && left == 0) {  // a warp gets its next row only when it needs one: some rows take much longer
       if (lane == 0) packet = (all_warps + atomicAdd(&a.state->taken, 1u)) * row;
       packet = __shfl_sync(all_lanes, packet, 0), left = row;
@@ -115,11 +116,17 @@ struct by_packets {
     // Packets in a row: one, so that all warps end at about the same time; or more, if most points are far away and
     // asking for each packet would take longer.
     a.rounds = Tally::all_near(a.answer) ? 1 : std::clamp(a.points / (32 * 4 * warps * blocks), 1u, 4u);
-    a.columns = 0;
+    a.columns = columns_of(source);
+  }
+
+  /// Columns of an image that tiles cover, or 0.
+  template <class Source>
+  static std::uint32_t columns_of(const Source& source) {
     if constexpr (image_source<Source>) {
       const std::uint32_t columns = source.columns();
-      if (columns != 0 && columns % tile_columns == 0 && a.points % (tile_rows * columns) == 0) a.columns = columns;
+      if (columns != 0 && columns % tile_columns == 0 && source.size() % (tile_rows * columns) == 0) return columns;
     }
+    return 0;
   }
 };
 

@@ -5,9 +5,9 @@
 // it go one group after the other: if each lane walked alone, they would end last. Points that are not neighbours do
 // walk alone. (A first test of children with a ball around the packet is slower: farther away it passes too many.)
 
-#include <clearance/scan/interior.hpp>
+#include <clearance/scan/lane_sharing.cuh>
+#include <clearance/scan/lone_search.cuh>
 #include <clearance/scan/shared_walk.cuh>
-#include <clearance/scan/steps.cuh>
 
 namespace clearance::scan {
 
@@ -19,19 +19,15 @@ struct packet_node {
 };
 
 template <class Tally>
-struct packet_memory : block_memory<Tally> {
+struct shared_packet_memory : block_memory<Tally> {
   using node_type = packet_node<typename node_of<typename block_memory<Tally>::hierarchy_type>::type>;
   alignas(16) node_type stack[warps][deepest_stack];
   sharing_memory<Tally> sharing;
 
   __device__ void clear() { sharing.clear(); }
 };
-
-/// Each lane has a point and a visitor for it:
-///   reach(k)                                how near part k must be to the point to matter;
-///   offer(k, place, id, distance), where `place` is the primitive's place in the tree; offer_inside(k).
 template <class Tally>
-struct packet_search : tree_steps<Tally> {
+struct packet_search : lone_search<Tally> {
   using frame = frame_parts<Tally>;
   using steps = tree_steps<Tally>;
   using hierarchy = typename Tally::part_type::hierarchy_type;
@@ -39,10 +35,27 @@ struct packet_search : tree_steps<Tally> {
   using node_type = typename steps::node_type;
   using stacked = packet_node<node_type>;
   using sharing = shared_walk<Tally>;
+  static constexpr bool begins_anew = false;  ///< A warp that helps begins with nothing found.
+  using lone_search<Tally>::lane, lone_search<Tally>::inside, lone_search<Tally>::gap_to, lone_search<Tally>::alone;
 
-  /// Searches for this lane's point `x`, in the cloud's frame, if it is `live`. The whole warp calls it.
+  /// Waits for a part of another warp's packet, and for which of its lanes. Returns false if there is none left.
+  static __device__ bool receive(given_lanes& work) {
+    if (!sharing::receive()) return false;
+    work = {sharing::task().packet, sharing::task().live};
+    return true;
+  }
+
+  /// Searches for this lane's point `x`, in the cloud's frame, if it is `live`. The whole warp calls it. Returns the
+  /// lanes that now have their answers; other warps may still work on the rest.
   template <class Visitor>
-  static __device__ void search(std::uint32_t packet, bool live, vec3 x, Visitor& v) {
+  static __device__ unsigned search(std::uint32_t packet, std::uint32_t, unsigned, bool live, vec3 x, Visitor& v) {
+    groups(packet, live, x, v);
+    return sharing::last(v) ? all_lanes : 0;
+  }
+
+ private:
+  template <class Visitor>
+  static __device__ void groups(std::uint32_t packet, bool live, vec3 x, Visitor& v) {
     unsigned left = __ballot_sync(all_lanes, live);
     if (left == 0) return;
     const bool helps = sharing::helps();
@@ -67,19 +80,8 @@ struct packet_search : tree_steps<Tally> {
     }
   }
 
- private:
   static constexpr std::uint32_t at_once = most_children;
   static constexpr std::uint32_t worth_sharing = 4;  ///< So few pending nodes are tested faster than handed over.
-  static __device__ std::uint32_t lane() { return threadIdx.x % 32; }
-
-  /// The approximate distance of the nearest part.
-  static __device__ real gap_to(vec3 middle) {
-    real gap = infinity;
-    for (std::uint32_t k = lane(); k < frame::here().head.parts; k += 32)
-      gap = min(gap, rough_length(middle - frame::place(k).root.around.center));
-    return from_bits(least_of(all_lanes, to_bits(gap)));
-  }
-
   /// Searches part by part for points within `spread` of their middle.
   template <class Visitor>
   static __device__ void together(bool live, vec3 x, vec3 middle, real spread, Visitor& v) {
@@ -118,17 +120,6 @@ struct packet_search : tree_steps<Tally> {
     return s.stack[threadIdx.x / 32];
   }
 
-  /// Is the point inside part k's solid? Then its tree need not be searched.
-  template <class Visitor>
-  static __device__ bool inside(std::uint32_t k, vec3 x, Visitor& v) {
-    if constexpr (has_interior<typename Tally::part_type>) {
-      const frame_part& place = frame::place(k);
-      if (frames::may_reach(place.root.around, 0, x) && frame::view(k).interior.inside(place.part_from_cloud(x)))
-        return v.offer_inside(k), true;
-    }
-    return false;
-  }
-
   template <class Visitor>
   static __device__ void ask(std::uint32_t k, bool live, vec3 x, Visitor& v) {
     const frame_part& place = frame::place(k);
@@ -136,62 +127,6 @@ struct packet_search : tree_steps<Tally> {
     live = live && frames::may_reach(place.root.around, v.reach(k), x);
     if (live && !sharing::helps() && inside(k, x, v)) live = false;
     walk(k, live, q, v);
-  }
-
-  struct part_node {
-    real bound;
-    node_type node;
-    std::uint32_t part;
-  };
-
-  /// Every lane by itself, eight parts after eight. They go step by step: lanes that diverge would run one after
-  /// another.
-  template <class Visitor>
-  static __noinline__ __device__ Visitor alone(bool live, vec3 x, Visitor v) {
-    const std::uint32_t parts = frame::here().head.parts;
-    part_node stack[deepest_stack + cluster];
-#pragma unroll 1
-    for (std::uint32_t begin = 0; begin < parts; begin += cluster) {
-      part_node next{not_a_number, {}, begin};  // the nearest known node, or nothing (NaN)
-      std::uint32_t below = 0;
-      const auto keep = [&](part_node e) {
-        if (!(next.bound <= e.bound)) {
-          const part_node farther = next;
-          next = e, e = farther;
-        }
-        if (e.bound == e.bound) stack[below++] = e;
-      };
-#pragma unroll 1
-      for (std::uint32_t k = begin; k < begin + cluster && k < parts; ++k) {
-        const ball around = frame::place(k).root.around;
-        bool near = live && frames::may_reach(around, v.reach(k), x);
-        if (near) near = !inside(k, x, v);
-        if (near) keep({lowered(rough_length(x - around.center) - around.radius, around.radius), steps::root(k), k});
-        __syncwarp();
-      }
-#pragma unroll 1
-      while (__any_sync(all_lanes, next.bound == next.bound)) {
-        const part_node here = next;
-        next.bound = not_a_number;
-        const std::uint32_t k = here.part, count = here.bound <= v.reach(k) ? steps::size(k, here.node) : 0;
-        const bool leaf = count > 0 && steps::is_leaf(k, here.node);
-        const vec3 q = frame::place(k).part_from_cloud(x);
-#pragma unroll 1
-        for (std::uint32_t j = 0; __any_sync(all_lanes, j < count); ++j) {
-          if (j < count && leaf) {
-            const auto place = steps::place_of(here.node, j);
-            if (const real d = steps::primitive(k, place).distance(q); d <= v.reach(k))
-              v.offer(k, place, steps::id(k, place), d);
-          } else if (j < count) {
-            const auto step = steps::child(k, here.node, j);
-            if (const real b = traits::lower_bound(step.volume, q); b <= v.reach(k)) keep({b, step.node, k});
-          }
-          __syncwarp();
-        }
-        if (!(next.bound == next.bound) && below > 0) next = stack[--below];
-      }
-    }
-    return v;
   }
 
   /// Walks part k's tree with all lanes together.

@@ -75,6 +75,14 @@ struct steps_down<Tally, H> : frame_parts<Tally> {
   static __device__ primitive_type primitive(std::uint32_t k, std::uint32_t place) {
     return read_only(tree(k).primitives + place);
   }
+  /// The same from global memory, in as few pieces as the size allows: for lanes that each read another one.
+  static __device__ primitive_type whole_primitive(std::uint32_t k, std::uint32_t place) {
+    return whole(tree(k).primitives + place);
+  }
+  static __device__ step whole_child(std::uint32_t k, const bvh_node& n, std::uint32_t j) {
+    const std::uint32_t c = n.first + j;
+    return {whole(tree(k).nodes + c), whole(tree(k).volumes + c)};
+  }
   static __device__ std::uint32_t id(std::uint32_t k, std::uint32_t place) { return read_only(tree(k).ids + place); }
   static __device__ std::uint32_t place_of(const bvh_node& leaf, std::uint32_t j) { return leaf.first + j; }
   static __device__ std::uint32_t pair_of(std::uint32_t pair) { return pair & 0xffff; }
@@ -139,9 +147,13 @@ struct steps_down<Tally, H> : frame_parts<Tally> {
     return *from;
   }
   template <class T>
+  static __device__ T whole(const T* from) {
+    if constexpr (has_pieces<T>) return in_pieces(from, [](const auto* word) { return __ldg(word); });
+    return read_only(from);
+  }
+  template <class T>
   static __device__ T far(const T* from) {
-    if constexpr (Tally::goes_ahead && has_pieces<T>)
-      return in_pieces(from, [](const auto* word) { return __ldg(word); });
+    if constexpr (Tally::goes_ahead) return whole(from);
     return read_only(from);
   }
   template <class T>

@@ -38,6 +38,15 @@ struct aabb {
     return rough_min(deepest, 0) * (1 + slack) + outside * (1 - slack);  // one of the two is 0; so there is no branch
   }
 
+  /// Outside along the way from the box. Inside along the axis of the nearest face.
+  CLEARANCE_HD tangent tangent_at(vec3 q) const {
+    const vec3 below = lower - q, above = q - upper;
+    const box_sides all{
+        {rough_max(below.x, above.x), rough_max(below.y, above.y), rough_max(below.z, above.z)},
+        {above.x < below.x ? -1.0f : 1.0f, above.y < below.y ? -1.0f : 1.0f, above.z < below.z ? -1.0f : 1.0f}};
+    return all.tangent_of_box();
+  }
+
   /// Outside it measures from the box. Inside it is true for any reach but minus infinity.
   CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
     const vec3 beyond{positive_part(max(lower.x - q.x, q.x - upper.x)),

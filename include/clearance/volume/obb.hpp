@@ -46,6 +46,17 @@ struct obb {
            slack * absolute(deepest);
   }
 
+  /// Outside along the way from the box. Inside along the axis of the nearest face.
+  CLEARANCE_HD tangent tangent_at(vec3 q) const {
+    const vec3 d = q - center, local{dot(axis[0], d), dot(axis[1], d), dot(axis[2], d)};
+    const box_sides all{{absolute(local.x) - half[0], absolute(local.y) - half[1], absolute(local.z) - half[2]},
+                        {local.x < 0 ? -1.0f : 1.0f, local.y < 0 ? -1.0f : 1.0f, local.z < 0 ? -1.0f : 1.0f}};
+    const tangent t = all.tangent_of_box();
+    // The axes are orthonormal to 1e-7 only.
+    return {t.distance - slack * absolute(t.distance),
+            fma(t.direction.x, axis[0], fma(t.direction.y, axis[1], scaled(t.direction.z, axis[2])))};
+  }
+
   /// Outside it measures from the box. Inside it is true for any reach but minus infinity.
   CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
     const vec3 d = q - center;

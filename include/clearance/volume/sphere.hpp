@@ -52,6 +52,11 @@ struct sphere {
 
   CLEARANCE_HD real lower_bound(vec3 q) const { return fma(rough_length(q - center), 1 - slack, -radius); }
 
+  CLEARANCE_HD tangent tangent_at(vec3 q) const {
+    const unit_way way(q - center);
+    return {fma(way.length, 1 - slack, -radius), way.direction};
+  }
+
   CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
     const vec3 d = q - center;
     const real most = (reach + radius) * (1 + 4 * slack);

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What must be looked at for points that lie together, seen from their middle. Some primitive, the yardstick, is known
+// to be near. Its distance from each point is below one linear function of the way from the middle; that of anything
+// else is above another one. What is above for every point of the box cannot be nearest to any.
+
+#include <clearance/concepts/tangent.hpp>
+
+namespace clearance::scan {
+
+/// How far the nearest known primitive is at most from points around a middle.
+struct alignas(16) yardstick {
+  vec3 direction{0, 0, 0};
+  real most = infinity;  ///< In the middle, such that distances are below most + dot(direction, e).
+
+  yardstick() = default;
+  /// `way`: the tangent's direction in the points' frame; `radius`: of a ball around the points.
+  CLEARANCE_HD yardstick(const primitive_tangent& t, vec3 way, real radius) {
+    // Near the primitive its tangent bends too much; then all points are within a radius.
+    const bool straight = t.radius > radius;
+    direction = straight ? way : vec3{0, 0, 0};
+    most = t.most + (straight ? radius * radius * 0.50001f * rough_inverse(t.radius) : radius);
+  }
+};
+
+/// Points in a box, and what is known of them.
+struct alignas(16) surroundings {
+  vec3 middle;
+  real limit = infinity;  ///< From the middle, for anything that matters to any point.
+  vec3 half;              ///< Of the box.
+  real noise;  ///< More than the rounding of two transforms of a point, and of products with ways from the middle.
+  yardstick best;
+  real within = infinity;  ///< For each point, the yardstick's distance at most.
+  real radius;             ///< Of a ball around them.
+
+  /// `reach`: the largest of the points'.
+  CLEARANCE_HD void set_limit(real reach) { limit = min(within, reach) + radius + noise; }
+  /// May something that is this near to the middle be nearest to a point of the box?
+  CLEARANCE_HD bool keeps(real distance, vec3 way) const {
+    const real beside = absolute(best.direction.x - way.x) * half.x + absolute(best.direction.y - way.y) * half.y +
+                        absolute(best.direction.z - way.z) * half.z;
+    return distance <= limit && distance - best.most <= beside + noise;
+  }
+};
+
+}  // namespace clearance::scan
