@@ -12,7 +12,9 @@
 #include <clearance/make_model.hpp>
 #include <clearance/motion_clearance.hpp>
 #include <clearance/packing/pack.hpp>
+#include <clearance/points/camera.hpp>
 #include <clearance/points/depth_image.hpp>
+#include <clearance/points/point_cloud2.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/points/ray_image.hpp>
 #include <clearance/points/strided_points.hpp>

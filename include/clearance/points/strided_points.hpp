@@ -4,6 +4,7 @@
 #include <clearance/ground/read_only.hpp>
 #include <clearance/points/point_filter.hpp>
 
+#include <algorithm>
 #include <cstring>
 
 namespace clearance {
@@ -62,14 +63,17 @@ struct strided_points {
 
   CLEARANCE_HD bool unfiltered() const { return filter.plain(); }
 
-  std::span<const std::byte> bytes() const {
-    return {data, width == 0 ? count * step : (count + width - 1) / width * row_step};
-  }
-  /// The memory that points `begin` to `end - 1` need.
+  std::span<const std::byte> bytes() const { return bytes(0, count); }
+  /// The memory that points `begin` to `end - 1` need: up to the last coordinate, because nothing behind need be there.
   std::span<const std::byte> bytes(std::size_t begin, std::size_t end) const {
     if (begin == end) return {};
-    if (width == 0) return {data + begin * step, (end - begin) * step};
-    return {data + begin / width * row_step, ((end - 1) / width + 1 - begin / width) * row_step};
+    const std::size_t first = width == 0 ? begin * step : begin / width * row_step;
+    const std::size_t record = std::max({offset[0], offset[1], offset[2]}) + sizeof(Scalar);
+    if (width == 0) return {data + first, (end - 1 - begin) * step + record};
+    const std::size_t last = end - 1, rows = last / width - begin / width;
+    const std::size_t above =
+        rows == 0 ? 0 : (rows - 1) * row_step + (width - std::size_t(1)) * step;  // or it ends later
+    return {data + first, std::max(above, rows * row_step + last % width * step) + record};
   }
   strided_points at(const std::byte* copy) const {
     strided_points moved = *this;
