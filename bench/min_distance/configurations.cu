@@ -8,6 +8,7 @@
 
 #include <clearance/backend/own_stream.cuh>
 #include <clearance/device.cuh>
+#include <clearance/fields.hpp>
 #include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -21,6 +22,13 @@ using clearance::device, clearance::placed, clearance::point_span, clearance::ve
 
 auto spheres(const scene& s) { return sphere_model<clearance::sphere>(s).on(device{}); }
 auto triangles(const scene& s) { return triangle_model<clearance::aabb>(s).on(device{}); }
+/// The same with fields, which the device samples.
+template <class Model>
+auto fielded(Model model) {
+  return clearance::with_fields(device{}, std::move(model)).model.on(device{});
+}
+auto spheres_field(const scene& s) { return fielded(sphere_model<clearance::sphere>(s)); }
+auto triangles_field(const scene& s) { return fielded(triangle_model<clearance::aabb>(s)); }
 
 void report(benchmark::State& state, const std::vector<clearance::min_distance_result>& found) {
   double free = 0, near = 0, sum = 0;
@@ -117,8 +125,8 @@ void states(benchmark::State& state, Make make, double margin) {
       [margin](auto& its, const auto& cloud) { return its.enqueue(cloud, clearance::in_collisions{{margin}}); });
 }
 /// The frame as a depth image: nearly the same points, but its tree needs no sort.
-template <class Q>
-void ask_image(benchmark::State& state, const Q& q) {
+template <class Make, class Q>
+void ask_image(benchmark::State& state, Make make, const Q& q) {
   if (no_device(state)) return;
   const scene& s = the_scene();
   const clearance::own_stream stream(0);
@@ -127,27 +135,34 @@ void ask_image(benchmark::State& state, const Q& q) {
   for (const vec3& p : s.cloud) depths.push_back(p.z);
   const auto there = gpu.copy_in(std::span<const float>(depths));
   const clearance::depth_image seen(there.data(), 640, 480, {525, 525, 319.5, 239.5});
-  const auto model = spheres(s);
+  const auto model = make(s);
   clearance::query query(gpu, model, q);
   ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
       [&](auto& its, const auto&) { return its.enqueue(placed{seen, s.world_from_camera}, q); });
 }
-void image(benchmark::State& state, float d_max) { ask_image(state, clearance::min_distances{d_max}); }
-void image_states(benchmark::State& state, double margin) { ask_image(state, clearance::in_collisions{{margin}}); }
-void monitor(benchmark::State& state, float d_max) {
+template <class Make>
+void image(benchmark::State& state, Make make, float d_max) {
+  ask_image(state, make, clearance::min_distances{d_max});
+}
+template <class Make>
+void image_states(benchmark::State& state, Make make, double margin) {
+  ask_image(state, make, clearance::in_collisions{{margin}});
+}
+template <class Make>
+void monitor(benchmark::State& state, Make make, float d_max) {
   if (no_device(state)) return;
   const scene& s = the_scene();
-  ask(state, spheres(s), trajectory(std::size_t(state.range(0))), {next_frame(s.cloud, 1), next_frame(s.cloud, 2)},
-      d_max, true);
+  ask(state, make(s), trajectory(std::size_t(state.range(0))), {next_frame(s.cloud, 1), next_frame(s.cloud, 2)}, d_max,
+      true);
 }
 
 /// Waits for answers about points that are already there. `ask(gpu, model)` makes the function of `(poses, cloud)`.
-template <class Ask>
-void waited(benchmark::State& state, Ask ask) {
+template <class Make, class Ask>
+void waited(benchmark::State& state, Make make, Ask ask) {
   if (no_device(state)) return;
   const scene& s = the_scene();
   const device gpu;
-  const auto model = spheres(s);
+  const auto model = make(s);
   const auto poses = random_configurations(std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const vec3>(s.cloud));
   auto asked = ask(gpu, model);
@@ -155,16 +170,18 @@ void waited(benchmark::State& state, Ask ask) {
   for (auto _ : state) found = asked(poses, placed{point_span(there.data(), there.size()), s.world_from_camera});
   report(state, found);
 }
-void call(benchmark::State& state) {
-  waited(state, [](const device& gpu, const auto& model) {
+template <class Make>
+void call(benchmark::State& state, Make make) {
+  waited(state, make, [](const device& gpu, const auto& model) {
     return [&](const auto& poses, const auto& cloud) {
       return clearance::ask(gpu, model, poses, cloud, clearance::min_distances{}).of;
     };
   });
 }
 /// Each part's least distances, to compare with `call`'s one for all parts.
-void each_part(benchmark::State& state) {
-  waited(state, [](const device& gpu, const auto& model) {
+template <class Make>
+void each_part(benchmark::State& state, Make make) {
+  waited(state, make, [](const device& gpu, const auto& model) {
     return [&](const auto& poses, const auto& cloud) {
       return clearance::ask(gpu, model, poses, cloud, clearance::min_distances_per_part{}).all;
     };
@@ -172,28 +189,38 @@ void each_part(benchmark::State& state) {
 }
 
 constexpr float all = clearance::infinity;
-#define TIMES(n) ->Arg(n)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30)
-BENCHMARK_CAPTURE(random, spheres, spheres, all) TIMES(4096);
-BENCHMARK_CAPTURE(random, spheres_within_5cm, spheres, 0.05f) TIMES(4096);
-BENCHMARK_CAPTURE(random, triangles, triangles, all) TIMES(4096);
-BENCHMARK_CAPTURE(random, triangles_within_5cm, triangles, 0.05f) TIMES(4096);
-BENCHMARK_CAPTURE(random, tree_alone, spheres, -1.0f) TIMES(1);
-BENCHMARK_CAPTURE(states, spheres, spheres, 0) TIMES(4096);
-BENCHMARK_CAPTURE(states, spheres_5cm, spheres, 0.05) TIMES(4096);
-BENCHMARK_CAPTURE(states, triangles, triangles, 0) TIMES(4096);
-BENCHMARK_CAPTURE(image, spheres, all) TIMES(4096);
-BENCHMARK_CAPTURE(image, spheres_within_5cm, 0.05f) TIMES(4096);
-BENCHMARK_CAPTURE(image, tree_alone, 0.05f) TIMES(1);
-BENCHMARK_CAPTURE(image_states, spheres, 0) TIMES(4096);
-BENCHMARK_CAPTURE(image_states, tree_alone, -1) TIMES(1);
-BENCHMARK_CAPTURE(monitor, untruncated, all) TIMES(500);
-BENCHMARK_CAPTURE(monitor, within_20cm, 0.2f) TIMES(500);
-BENCHMARK(call)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(10);
-BENCHMARK(each_part)->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(10);
+#define BOTH(function, name, make, ...)                \
+  BENCHMARK_CAPTURE(function, name, make, __VA_ARGS__) \
+  TIMES BENCHMARK_CAPTURE(function, name##_by_field, make##_field, __VA_ARGS__) TIMES
+#define TIMES ->Arg(4096)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30);
+BOTH(random, spheres, spheres, all)
+BOTH(random, spheres_within_5cm, spheres, 0.05f)
+BOTH(random, triangles, triangles, all)
+BOTH(random, triangles_within_5cm, triangles, 0.05f)
+BOTH(states, spheres, spheres, 0)
+BOTH(states, spheres_5cm, spheres, 0.05)
+BOTH(states, triangles, triangles, 0)
+BOTH(image, spheres, spheres, all)
+BOTH(image, spheres_within_5cm, spheres, 0.05f)
+BOTH(image_states, spheres, spheres, 0)
+#undef TIMES
+#define TIMES ->Arg(1)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30);
+BENCHMARK_CAPTURE(random, tree_alone, spheres, -1.0f)
+TIMES BENCHMARK_CAPTURE(image, tree_alone, spheres, 0.05f) TIMES
+    BENCHMARK_CAPTURE(image_states, tree_alone, spheres, -1) TIMES
+#undef TIMES
+#define TIMES ->Arg(500)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30);
+    BOTH(monitor, untruncated, spheres, all) BOTH(monitor, within_20cm, spheres, 0.2f)
+#undef TIMES
+#define TIMES ->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(10);
+        BENCHMARK_CAPTURE(call, spheres, spheres) TIMES BENCHMARK_CAPTURE(call, spheres_by_field, spheres_field) TIMES
+    BENCHMARK_CAPTURE(each_part, spheres, spheres) TIMES
+    BENCHMARK_CAPTURE(each_part, spheres_by_field, spheres_field) TIMES
 
 }  // namespace
 }  // namespace configurations_bench
 
 #undef TIMES
+#undef BOTH
 
 BENCHMARK_MAIN();

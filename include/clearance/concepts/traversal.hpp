@@ -52,6 +52,17 @@ CLEARANCE_HD void offer_leaf(const H& tree, const typename H::node_type n, vec3 
   }
 }
 
+/// How near anything in a volume can be: its lower bound, or what a visitor's own `bound(volume, p)` says. Such a
+/// visitor measures something other than the distance, and its law is a traversal's: no offer from within the volume
+/// would be nearer.
+template <bounding_volume V, visitor Q>
+CLEARANCE_HD real bound_for(const Q& q, const V& volume, vec3 p) {
+  if constexpr (requires { q.bound(volume, p); })
+    return q.bound(volume, p);
+  else
+    return bounding_volume_traits<V>::lower_bound(volume, p);
+}
+
 /// Walks a hierarchy for one point.
 ///
 /// Law: shows the visitor each primitive that is no farther from the point than `reach()` at that moment. Strict >

@@ -39,15 +39,17 @@ struct batch_pieces {
 };
 
 /// Many configurations and one cloud. Arrays have one entry per configuration, or one per part of each configuration.
-template <class PartView, class Question>
+/// `Pair` is what a block's stack holds.
+template <class PartView, class Question, class Pair = node_pair<typename PartView::hierarchy_type::node_type>>
 struct batch_arguments {
   using part_type = PartView;
   using question_type = Question;
   using memory_type = typename Question::memory_type;
   using body_type = scan::scan_body<PartView, point_span, any_depth, typename Question::answer_type>;
-  using pair_type = node_pair<typename PartView::hierarchy_type::node_type>;
+  using pair_type = Pair;
 
   const PartView* parts;
+  const field_view* fields;
   std::uint32_t part_count, configurations;
   const world_transform* poses;
   frames::turn now;

@@ -50,18 +50,27 @@ struct block_search {
   struct words {
     std::uint32_t made[2];  ///< Number of pairs made in this round and in the next.
     std::uint32_t first;    ///< The first piece that the stack is left in.
+    std::uint32_t aside;    ///< Number of pairs set aside.
   };
 
   const Search& search;
   const room_type room;
   words& shared;
-  const std::uint32_t depth;  ///< Of the stack.
-  std::uint32_t count = 0, round = 0, next = 0;
+  const std::uint32_t depth;        ///< Of the stack.
+  pair* const set_aside = nullptr;  ///< If not null: room for as many points as there are threads, for another search.
+  std::uint32_t count = 0, round = 0, next = 0, aside = 0;
   const std::uint32_t t = threadIdx.x, threads = blockDim.x;
 
   /// Starts from the beginning, or with pairs that another block has left.
   __device__ void start() {
-    if (t == 0) shared.made[0] = shared.made[1] = 0;
+    if (t == 0) shared.made[0] = shared.made[1] = shared.aside = 0;
+    __syncthreads();
+  }
+  /// Of the points set aside, all are taken.
+  __device__ void taken() {
+    __syncthreads();
+    if (t == 0) shared.aside = 0;
+    aside = 0;
     __syncthreads();
   }
   __device__ void start(const typename pieces_type::piece& left) {
@@ -70,9 +79,11 @@ struct block_search {
     start();
   }
 
-  /// Returns true when nothing is left, and false after `rounds` rounds.
+  /// Returns true when nothing is left, and false after `rounds` rounds, or when the room for what is set aside is half
+  /// full.
   __device__ bool go_on(std::uint32_t rounds) {
     for (const std::uint32_t starts = search.starts(); next < starts || count > 0;) {
+      if (set_aside != nullptr && 2 * aside >= threads) return false;
       if (count == 0) {
         pair p;
         if (next + t < starts && search.start(next + t, p)) make(p);
@@ -115,6 +126,11 @@ struct block_search {
 
  private:
   __device__ void make(const pair& p) {
+    if (set_aside != nullptr && p.level == 0)
+      if (const std::uint32_t i = atomicAdd(&shared.aside, 1u); i < threads) {
+        set_aside[i] = p;
+        return;
+      }
     const std::uint32_t at = atomicAdd(&shared.made[round % 2], 1u);
     room.made[at] = p, room.orders[at] = search.order(p);
   }
@@ -124,8 +140,12 @@ struct block_search {
     if (search.settled(top)) return;
     const std::uint32_t lane = t % lanes, size = search.children(top);
     pair p;
-    if (top.from + lane < size && search.child(top, top.from + lane, p)) make(p);
-    if (lane == 0 && top.from + lanes < size) p = top, p.from += lanes, make(p);
+    if constexpr (requires { top.from; }) {
+      if (top.from + lane < size && search.child(top, top.from + lane, p)) make(p);
+      if (lane == 0 && top.from + lanes < size) p = top, p.from += lanes, make(p);
+    } else {
+      if (lane < size && search.child(top, lane, p)) make(p);  // a cloud's tree has no more
+    }
   }
   /// For a pair whose children have no room on the stack: visits all its points at once.
   __device__ void visit_all(const pair& p) const {
@@ -142,6 +162,7 @@ struct block_search {
   __device__ void put_back(std::uint32_t taken) {
     __syncthreads();
     const std::uint32_t n = shared.made[round % 2];
+    if (set_aside != nullptr) aside = scan::lower_of(shared.aside, threads);
     if (t == 0) shared.made[(round + 1) % 2] = 0;
     count -= taken;
     for (std::uint32_t i = t; i < n; i += threads) {

@@ -9,6 +9,7 @@
 #include <clearance/plan/batch_finish.cuh>
 #include <clearance/plan/batch_kernel.cuh>
 #include <clearance/plan/batch_place.cuh>
+#include <clearance/plan/field_kernel.cuh>
 #include <clearance/robot/model.hpp>
 
 #include <algorithm>
@@ -87,7 +88,12 @@ class device_batch {
         std::exchange(configurations_, 0);  // so that poses that were not placed are never asked about
     grow(poses_, n), grow(places_, n), grow(bounds_, n);
     grow(of_all_, count), grow(all_, count), grow(results_, count);
-    if constexpr (!Question::by_margin) grow(left_, pieces_of(count, 8)), grow(left_again_, pieces_of(count, 2));
+    if constexpr (!Question::by_margin) {
+      if (model_.fields != nullptr)
+        grow(pieces_, pieces_of(count, 8)), grow(pieces_again_, pieces_of(count, 2));
+      else
+        grow(left_, pieces_of(count, 8)), grow(left_again_, pieces_of(count, 2));
+    }
     if constexpr (Question::by_margin)
       grow(near_, n);
     else
@@ -128,12 +134,14 @@ class device_batch {
   using arguments = batch_arguments<PartView, Question>;
   using tree_type = cloud_tree::device_tree::view_type;
   using room = batch_room<typename arguments::pair_type, pair_order<PartView>>;
-  using piece = typename batch_pieces<typename arguments::pair_type>::piece;
+  template <class Pair>
+  using pieces = device_buffer<typename batch_pieces<Pair>::piece>;
   /// After so many rounds of 128 threads a block leaves its stack to others. Where points may be inside a solid, stacks
   /// are longer, and leaving earlier would make too many pieces.
   static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128,
                             next_rounds = first_rounds > 128 ? 48 : 24;
-  static constexpr unsigned resident_threads = 1024;  ///< Per processor, as the kernel's registers allow.
+  static constexpr std::size_t most_shared = 48 * 1024;  ///< Shared memory that every block may have.
+  static constexpr unsigned resident_threads = 1024;     ///< Per processor, as the kernel's registers allow.
   struct counts {
     scan::drop_counts dropped;
     std::uint32_t lost = 0;
@@ -147,6 +155,7 @@ class device_batch {
   template <point_source S>
   arguments told(const S& source, const frames::turn& now, const Question& question, bool foreseen) const {
     return {model_.parts,
+            model_.fields,
             std::uint32_t(facts_.size()),
             configurations_,
             poses_.data(),
@@ -180,35 +189,77 @@ class device_batch {
       else
         place_in(beside, source, a);
     });
+    if (model_.fields != nullptr)
+      search_by_field(tree, a);
+    else
+      search_trees(tree, a);
+  }
+  void search_trees(const tree_type& tree, const arguments& a) {
     // As many threads as the device has room for: with few configurations each gets more threads, and so do all where
     // most end at once or a look takes long. Stacks are as deep as the remaining room: a round that may take fewer
     // pairs needs more rounds.
-    const bool uneven = a.question.limited() || scan::has_interior<PartView>;
-    unsigned threads =
-        uneven ? 256 : std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 256u);
-    static_assert(room::bytes(32, room::least_depth(32)) <= 48 * 1024, "a handle of a node must be smaller");
-    while (room::bytes(threads, room::least_depth(threads)) > 48 * 1024)
-      threads /= 2;  // the shared memory that a block always has
+    unsigned threads = a.question.limited() || scan::has_interior<PartView> ? 256 : threads_for_all();
+    static_assert(room::bytes(32, room::least_depth(32)) <= most_shared, "a handle of a node must be smaller");
+    while (room::bytes(threads, room::least_depth(threads)) > most_shared) threads /= 2;
     arguments with_stack = a;
     with_stack.depth = room::depth(threads, std::min(of_block_, of_processor_ / (resident_threads / threads) - 2048));
+    search(batch_kernel<arguments, tree_type>, tree, with_stack, threads, room::bytes(threads, with_stack.depth), left_,
+           left_again_);
+  }
+  void search_by_field(const tree_type& tree, const arguments& a) {
+    using by_field = batch_arguments<PartView, Question, field_pair>;
+    using shared = field_room<PartView>;
+    unsigned threads = 256;
+    while (shared::bytes(threads) > of_block_) threads /= 2;
+    const by_field fields{a.parts,
+                          a.fields,
+                          a.part_count,
+                          a.configurations,
+                          a.poses,
+                          a.now,
+                          a.world_from_cloud,
+                          a.off,
+                          a.question,
+                          a.foreseen,
+                          a.seen,
+                          a.places,
+                          a.bounds,
+                          a.facts,
+                          a.all,
+                          a.near,
+                          a.last,
+                          a.seeds,
+                          a.results,
+                          a.dropped,
+                          a.lost,
+                          {pieces_.data(), left_used_.data(), std::uint32_t(pieces_.size())}};
+    search(field_kernel<by_field, tree_type>, tree, fields, threads, shared::bytes(threads), pieces_, pieces_again_);
+  }
+  unsigned threads_for_all() const {
+    return std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 256u);
+  }
+  /// One block per configuration; the slowest leave their rest to other blocks.
+  template <class Kernel, class Arguments, class Pieces>
+  void search(Kernel* kernel, const tree_type& tree, Arguments a, unsigned threads, std::size_t bytes,
+              const Pieces& left, const Pieces& left_again) {
     {
       const device_guard guard(on_.id);
-      limits_.raise(reinterpret_cast<const void*>(&batch_kernel<arguments, tree_type>), of_block_);
+      limits_.raise(reinterpret_cast<const void*>(kernel), of_block_);
     }
     const unsigned at_once = processors_ * (resident_threads / threads);
     const auto search = [&](unsigned blocks, unsigned rounds) {
-      with_stack.rounds = rounds == none ? none : rounds * 128 / threads;
-      on_.launch(batch_kernel<arguments, tree_type>, blocks, threads, room::bytes(threads, with_stack.depth),
-                 with_stack, tree);
+      a.rounds = rounds == none ? none : rounds * 128 / threads;
+      on_.launch(kernel, blocks, threads, bytes, a, tree);
     };
     if (a.question.limited() || configurations_ <= at_once) return search(configurations_, none);
     // The slowest of many configurations takes twenty times as long as most, and most of that may come from one pair.
     // So the rest is dealt out twice.
+    a.left = {left.data(), left_used_.data(), std::uint32_t(left.size())};
     search(configurations_, first_rounds);
-    with_stack.given = with_stack.left;
-    with_stack.left = {left_again_.data(), left_used_.data() + 1, std::uint32_t(left_again_.size())};
+    a.given = a.left;
+    a.left = {left_again.data(), left_used_.data() + 1, std::uint32_t(left_again.size())};
     search(at_once, next_rounds);
-    with_stack.given = with_stack.left, with_stack.left.capacity = 0;
+    a.given = a.left, a.left.capacity = 0;
     search(at_once, none);
   }
   template <point_source S>
@@ -253,7 +304,8 @@ class device_batch {
   device_buffer<cloud_tree::numbered_point> seeds_;
   device_buffer<result_type> results_;
   device_buffer<counts> counts_;
-  device_buffer<piece> left_, left_again_;
+  pieces<typename arguments::pair_type> left_, left_again_;
+  pieces<field_pair> pieces_, pieces_again_;
   device_buffer<std::uint32_t> left_used_;
 };
 

@@ -5,6 +5,7 @@
 #include <clearance/frame/clouds.hpp>
 #include <clearance/minimum/beyond.hpp>
 #include <clearance/minimum/resolve.hpp>
+#include <clearance/plan/field_search.hpp>
 #include <clearance/plan/walk_tree.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/traversal/any_depth.hpp>
@@ -64,6 +65,7 @@ class host_batch {
     std::vector<ball_bounds> bounds;
     std::vector<margin_reach> near;
     std::vector<pending_pair<node_pair<typename PartView::hierarchy_type::node_type>, pair_order<PartView>>> pending;
+    std::vector<pending_pair<field_pair, pair_order<PartView>>> by_field;
   };
 
   template <class Clouds>
@@ -88,15 +90,22 @@ class host_batch {
           const auto answer = question.answer(&all, own.near.data());
           const scan::scan_body<PartView, S, any_depth, typename Question::answer_type> body{
               model_.parts, places.data(), parts, source, own.frame.origin, now.first, nullptr, answer, walk_};
-          for (const place& p : starts)
-            if (p.cloud == now.cloud && p.point < source.size())
-              if (const sample s = source[p.point]; s.valid()) body.visit(s.position - own.frame.origin, p.point);
           own.bounds.clear();
           for (std::uint32_t k = 0; k < parts; ++k) own.bounds.emplace_back(model_.facts[k], places[k].part_from_cloud);
           const auto& tree = trees_[now.cloud].view();
-          const tree_search<std::remove_const_t<decltype(body)>, cloud_tree::host_tree::view_type> search{
-              body, tree, own.bounds.data()};
-          with_vectors([&] { walk_trees(search, own.pending); });
+          using body_type = std::remove_const_t<decltype(body)>;
+          using tree_type = cloud_tree::host_tree::view_type;
+          const auto walk = [&](const auto& search, auto& pending) {
+            for (const place& p : starts)
+              if (p.cloud == now.cloud && p.point < source.size())
+                if (const sample s = source[p.point]; s.valid())
+                  for (std::uint32_t k = 0; k < parts; ++k) search.seed({s.position, p.point}, k);
+            with_vectors([&] { walk_trees(search, pending); });
+          };
+          if (model_.fields != nullptr)
+            walk(field_search<body_type, tree_type>{body, tree, own.bounds.data(), model_.fields}, own.by_field);
+          else
+            walk(tree_search<body_type, tree_type>{body, tree, own.bounds.data()}, own.pending);
           if constexpr (!Question::by_margin)
             resolve_body<PartView, S, any_depth>{
                 model_.parts, places.data(), parts,  source, own.frame.origin, own.frame.world_from_cloud,

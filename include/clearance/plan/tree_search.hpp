@@ -73,7 +73,11 @@ struct tree_search {
   }
   CLEARANCE_HD bool start(std::uint32_t i, pair& p) const {
     const std::uint32_t top = tree.size(tree.levels - 1);
-    p = {-infinity, i % top, i / top, 0, body.parts[i / top].tree.root(), std::uint8_t(tree.levels), 0, true, solid};
+    return start_at(i % top, i / top, solid, p, tree.levels);
+  }
+  /// Begins with a point, or a node of a level, and a whole part. `whole`: points may be inside it.
+  CLEARANCE_HD bool start_at(std::uint32_t at, std::uint32_t k, bool whole, pair& p, std::uint32_t level = 0) const {
+    p = {-infinity, at, k, 0, body.parts[k].tree.root(), std::uint8_t(level), 0, true, whole};
     return look(p);
   }
   CLEARANCE_HD std::uint32_t children(const pair& p) const {
@@ -126,6 +130,8 @@ struct tree_search {
   CLEARANCE_HD void visit(const cloud_tree::numbered_point& p, std::uint32_t k) const {
     body.visit(p.at - body.origin, body.first + p.number, k);
   }
+  /// A point that is known to be near: where to begin.
+  CLEARANCE_HD void seed(const cloud_tree::numbered_point& p, std::uint32_t k) const { visit(p, k); }
 
  private:
   CLEARANCE_HD std::uint32_t node_of(const pair& p) const { return tree.begin[p.level - 1] + p.at; }
@@ -229,11 +235,13 @@ struct tree_search {
     if (inside(part, q)) return true;
     nearest near{bounds[p.part].within(reach(p.part), b.radius)};
     body.walk(part.tree, q, near);
-    if (near.best == nearest::none) return false;
-    if (const real most = bounds[p.part].upper(near.within, b.radius); most < reach(p.part))
-      body.answer.lower(none, p.part, most);
-    p.bound = max(p.bound, bounds[p.part].lower(near.within, b.radius));
-    p.whole = !(p.bound > 0);
+    if (near.best != nearest::none)
+      if (const real most = bounds[p.part].upper(near.within, b.radius); most < reach(p.part))
+        body.answer.lower(none, p.part, most);
+    // Within its tolerance of the surface a solid may be wrong about its inside.
+    const real least = bounds[p.part].lower(near.within, b.radius);
+    p.whole = !(least > part.facts.tolerance);
+    if (!p.whole) p.bound = max(p.bound, least);
     return true;
   }
 };

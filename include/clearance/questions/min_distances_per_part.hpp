@@ -42,8 +42,7 @@ class min_distances_per_part::engine {
   engine(const On& on, const model_view<PartView>& model, Memory... from)
       : readable_(on, from...), parts_(model.size()) {
     for (std::size_t k = 0; k < parts_; ++k)
-      each_.emplace_back(on, model_view<PartView>{model.parts + k, model.facts.subspan(k, 1), model.depth, model.width},
-                         from...);
+      each_.emplace_back(on, model.part(k), from...);
   }
 
   /// The result stays valid until the next call. Points that a device cannot read are copied once for all parts.

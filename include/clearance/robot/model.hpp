@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/robot/part.hpp>
+#include <clearance/robot/field.hpp>
 
 #include <algorithm>
 #include <stdexcept>
@@ -16,9 +16,14 @@ struct model_view {
 
   const PartView* parts;
   std::span<const part_facts> facts;
-  std::uint32_t depth, width;  ///< The largest over all trees.
+  std::uint32_t depth, width;          ///< The largest over all trees.
+  const field_view* fields = nullptr;  ///< One per part, or null.
 
   std::size_t size() const { return facts.size(); }
+  /// A robot of part k alone.
+  model_view part(std::size_t k) const {
+    return {parts + k, facts.subspan(k, 1), depth, width, fields == nullptr ? nullptr : fields + k};
+  }
 };
 
 /// Throws std::invalid_argument if a part's facts are invalid. Every view that no model has checked comes here.
@@ -98,14 +103,29 @@ class model {
 
   const std::vector<Part>& parts() const { return parts_; }
   std::size_t size() const { return parts_.size(); }
-  model_view<view_type> view() const { return {views_.data(), facts_, depth_, width_}; }
+  model_view<view_type> view() const {
+    return {views_.data(), facts_, depth_, width_, fields_.empty() ? nullptr : field_views_.data()};
+  }
+  /// One field per part, see with_fields. If one is empty, none is used.
+  void set_fields(std::vector<field<B>> fields, const B& on = {}) {
+    std::vector<field_view> views;
+    for (const auto& f : fields)
+      if (!f.empty()) views.push_back(f.view());
+    if (views.size() != parts_.size()) fields.clear(), views.clear();
+    fields_ = std::move(fields), field_views_ = on.copy_in(std::span<const field_view>(views));
+  }
 
   /// A copy where `other` runs.
   template <backend Other>
   auto on(const Other& other) const {
     std::vector<decltype(parts_[0].on(other))> copies;
     for (const Part& p : parts_) copies.push_back(p.on(other));
-    return model<decltype(parts_[0].on(other)), Other>(std::move(copies), other);
+    model<decltype(parts_[0].on(other)), Other> copy(std::move(copies), other);
+    if (fields_.empty()) return copy;
+    std::vector<field<Other>> fields;
+    for (const auto& f : fields_) fields.push_back(f.on(other));
+    copy.set_fields(std::move(fields), other);
+    return copy;
   }
   /// A copy on each of several backends.
   template <class Several>
@@ -121,6 +141,8 @@ class model {
   std::vector<part_facts> facts_;
   std::uint32_t depth_ = 0, width_ = 0;
   typename B::template buffer<view_type> views_;
+  std::vector<field<B>> fields_;
+  typename B::template buffer<field_view> field_views_ = {};
 };
 
 }  // namespace clearance

@@ -25,10 +25,9 @@ struct basic_near_first {
   /// The same with the caller's stack of `stack_need(tree)` entries.
   template <hierarchy H, visitor Q>
   CLEARANCE_HD static void walk(const H& tree, vec3 p, Q& q, entry_of<H>* pending) {
-    using traits = bounding_volume_traits<typename H::volume_type>;
     using entry = entry_of<H>;
     std::uint32_t count = 0;
-    pending[count++] = {traits::lower_bound(tree.volume(tree.root()), p), tree.root()};
+    pending[count++] = {bound_for(q, tree.volume(tree.root()), p), tree.root()};
     while (count > 0) {
       const entry top = pending[--count];
       if (!(top.bound <= q.reach())) continue;  // NaN prunes; ties survive
@@ -40,7 +39,7 @@ struct basic_near_first {
       const real reach = q.reach();
       for (std::uint32_t k = 0; k < size; ++k) {
         const auto c = tree.child(top.node, k);
-        const entry e{traits::lower_bound(tree.volume(c), p), c};
+        const entry e{bound_for(q, tree.volume(c), p), c};
         if (!(e.bound <= reach)) continue;
         push<H>(pending, base, count, e);
       }

@@ -16,19 +16,17 @@ struct recursive {
 
   template <hierarchy H, visitor Q>
   CLEARANCE_HD void operator()(const H& tree, vec3 p, Q& q) const {
-    using traits = bounding_volume_traits<typename H::volume_type>;
-    if (traits::lower_bound(tree.volume(tree.root()), p) <= q.reach()) visit(tree, tree.root(), p, q);
+    if (bound_for(q, tree.volume(tree.root()), p) <= q.reach()) visit(tree, tree.root(), p, q);
   }
 
  private:
   template <hierarchy H, visitor Q>
   CLEARANCE_HD static void visit(const H& tree, typename H::node_type n, vec3 p, Q& q) {
-    using traits = bounding_volume_traits<typename H::volume_type>;
     if (tree.is_leaf(n)) return offer_leaf(tree, n, p, q);
     const std::uint32_t size = tree.size(n);
     for (std::uint32_t k = 0; k < size; ++k) {
       const auto c = tree.child(n, k);
-      if (traits::lower_bound(tree.volume(c), p) <= q.reach()) visit(tree, c, p, q);
+      if (bound_for(q, tree.volume(c), p) <= q.reach()) visit(tree, c, p, q);
     }
   }
 };

@@ -12,10 +12,9 @@ struct basic_stack {
 
   template <hierarchy H, visitor Q>
   CLEARANCE_HD void operator()(const H& tree, vec3 p, Q& q) const {
-    using traits = bounding_volume_traits<typename H::volume_type>;
     typename H::node_type pending[Capacity];
     std::uint32_t count = 0;
-    if (traits::lower_bound(tree.volume(tree.root()), p) <= q.reach()) pending[count++] = tree.root();
+    if (bound_for(q, tree.volume(tree.root()), p) <= q.reach()) pending[count++] = tree.root();
     while (count > 0) {
       const auto n = pending[--count];
       if (tree.is_leaf(n)) {
@@ -24,7 +23,7 @@ struct basic_stack {
       }
       for (std::uint32_t k = tree.size(n); k-- > 0;) {
         const auto c = tree.child(n, k);
-        if (traits::lower_bound(tree.volume(c), p) <= q.reach()) pending[count++] = c;
+        if (bound_for(q, tree.volume(c), p) <= q.reach()) pending[count++] = c;
       }
     }
   }

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Gives the parts of a robot fields: what is known of the distance to them, from one look into a table.
+
+#include <clearance/backend/host.hpp>
+#include <clearance/minimum/field_sample.hpp>
+#include <clearance/minimum/plain_search.hpp>
+#include <clearance/robot/model.hpp>
+
+#include <string>
+
+namespace clearance {
+
+struct field_options {
+  std::size_t bytes = std::size_t(1) << 19;  ///< Memory for each part, about.
+};
+
+/// A robot whose parts have fields, and for each part that has none a sentence that says why; else it is empty.
+template <class Model>
+struct fielded {
+  Model model;
+  std::vector<std::string> without;
+};
+
+namespace detail {
+
+/// The grids of a field with about `cubes` cubes each; none if the part has no finite size.
+inline field_view field_around(const extent& box, const ball& around, std::size_t cubes) {
+  field_view v;
+  v.around = around,
+  v.center = {(box.lower.x + box.upper.x) / 2, (box.lower.y + box.upper.y) / 2, (box.lower.z + box.upper.z) / 2};
+  const vec3 to = box.upper - v.center, from = v.center - box.lower;
+  v.half = {max(to.x, from.x), max(to.y, from.y), max(to.z, from.z)};
+  v.thickness = around.radius / 4;
+  std::uint32_t first = 0;
+  for (std::uint32_t l = 0; l < field_view::levels; ++l) {
+    auto& g = v.grids[l];
+    const double more = (double(v.thickness) * double((2u << l) - 1)) * (1 + 0x1p-16);
+    const double side[3] = {2 * (v.half.x + more), 2 * (v.half.y + more), 2 * (v.half.z + more)};
+    double step = std::cbrt(side[0] * side[1] * side[2] / double(cubes));
+    g.step = real(step), step = double(g.step);
+    g.inverse = {real(1 / step), real(1 / step), real(1 / step)};
+    for (int k = 0; k < 3; ++k) g.size[k] = std::uint32_t(std::ceil(side[k] / step)) + 1;
+    const auto corner = [&](real center, std::uint32_t size) { return real(double(center) - step * size / 2); };
+    g.low = {corner(v.center.x, g.size[0]), corner(v.center.y, g.size[1]), corner(v.center.z, g.size[2])};
+    const double across = step * (double(g.size[0]) + g.size[1] + g.size[2]) + 4 * double(around.radius);
+    g.least = -2 * around.radius, g.unit = real((across + 2 * double(around.radius)) / 65000);
+    g.error =
+        rounded_up(8 * double(slack) * (across + std::abs(v.center.x) + std::abs(v.center.y) + std::abs(v.center.z)) +
+                   double(g.unit) * 0x1p-10);
+    g.first = first, first += g.cubes();
+  }
+  return v;
+}
+
+/// A box around a part: of its primitives if they are listed, else of its ball.
+template <class Part>
+extent box_around(const Part& part) {
+  extent box;
+  const auto add = [&box](const ball& b) {
+    box.add(b.center - vec3{b.radius, b.radius, b.radius}), box.add(b.center + vec3{b.radius, b.radius, b.radius});
+  };
+  if constexpr (requires { part.tree.primitives; }) {
+    for (const auto& p : part.tree.primitives)
+      for (const ball& b : p.balls()) add(b);
+  } else {
+    add({part.facts.center, part.facts.radius});
+  }
+  return box;
+}
+
+/// Makes the field of one part; it says why not otherwise.
+template <backend B, class Part>
+field<host> sampled_field(const B& on, const Part& part, const field_options& options, std::string& why_not) {
+  const part_facts& facts = part.facts;
+  constexpr std::size_t fewest = 512, each = field_view::levels * sizeof(field_cell);
+  const std::size_t cubes = options.bytes / each;
+  if (cubes < fewest)
+    return why_not = std::to_string(options.bytes) + " bytes are too few for a field; it needs " +
+                     std::to_string(fewest * each),
+           field<host>{};
+  if (!(facts.radius > 0 && facts.radius < 1e6f && length(facts.center) < 1e6f))
+    return why_not = "a part without a finite size has no field", field<host>{};
+  const auto there = part.on(on);
+  const auto view = there.view();
+  using part_view = std::remove_const_t<decltype(view)>;
+  field<host> f;
+  f.shape = field_around(box_around(part), {facts.center, facts.radius}, cubes);
+  const auto& last = f.shape.grids[field_view::levels - 1];
+  const std::size_t all = last.first + last.cubes();
+  const auto views = on.copy_in(std::span<const part_view>(&view, 1));
+  auto cells = on.template make_scratch<field_cell>(all);
+  auto lost = on.template make_scratch<std::uint32_t>(1);
+  const std::uint32_t nothing = 0;
+  on.stage(std::span<const std::uint32_t>(&nothing, 1), lost.data());
+  const any_depth walk{stack_need(view.tree.depth(), view.tree.width())};
+  for (const auto& g : f.shape.grids)
+    on.for_each(g.cubes(),
+                minimum::field_sample<part_view>{views.data(), g, walk, cells.data() + g.first, lost.data()});
+  if (on.copy_out(lost.data(), 1)[0] != 0)
+    return why_not = "its distances are not finite, so it has no field", field<host>{};
+  f.cells = on.copy_out(cells.data(), all);
+  return f;
+}
+
+}  // namespace detail
+
+/// Gives each part of a robot in host memory a field of about `bytes`, sampled where `on` runs. Questions about many
+/// configurations then need one look where they walked a tree; no answer changes. `model.on(device)` copies fields,
+/// too. A part that can have none keeps its tree alone. Source: Lipschitz and tangent bounds, minimum/field_sample.hpp.
+template <backend B, class Part>
+fielded<model<Part>> with_fields(const B& on, model<Part> robot, const field_options& options = {}) {
+  using view = typename model<Part>::view_type;
+  static_assert(tangent_primitive<typename view::hierarchy_type::primitive_type>,
+                "a field needs primitives with `tangent_at`, see concepts/tangent.hpp");
+  std::vector<std::string> without(robot.size());
+  std::vector<field<host>> fields;
+  for (std::size_t k = 0; k < robot.size(); ++k)
+    fields.push_back(detail::sampled_field(on, robot.parts()[k], options, without[k]));
+  robot.set_fields(std::move(fields));
+  return {std::move(robot), std::move(without)};
+}
+
+}  // namespace clearance

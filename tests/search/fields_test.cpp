@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fields on the host, and what can have none.
+#include "search/fielded.hpp"
+
+#include "support/linked_tree.hpp"
+
+#include <clearance/robot/attached.hpp>
+
+namespace fields_test {
+
+using namespace testing;
+using clearance::field_options, clearance::host, clearance::with_fields;
+
+TEST_CASE("A field's bounds contain the distance, and change no answer") { check_fields(host{}); }
+
+TEST_CASE("Fields of robots of extreme numbers are right, or there are none") {
+  fields_law<host> law{host{}};
+  dice d(432);
+  std::size_t with = 0, without = 0;
+  for (const auto& s : edge_scenes()) {
+    const auto bare = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+    const auto made = with_fields(host{}, bare, {1 << 15});
+    ++(made.model.view().fields != nullptr ? with : without);
+    law.check(made.model, d, s.name);
+    require_no_change(host{}, bare, made.model, configurations_of(s, d, 4),
+                      clearance::placed{clearance::point_span(s.points), s.cloud_pose}, s.size, law.v, s.name);
+  }
+  CHECK((with > 0 && without > 0));
+}
+
+TEST_CASE("A part that can have no field says why, and then no part has one") {
+  dice d(433);
+  const auto spheres = random_spheres(d, 50, 0.4);
+  const auto part = clearance::make_part(clearance::build<clearance::sphere>(spheres), 0, 0);
+  auto endless = part;
+  endless.facts.radius = infinity;
+  const auto made = with_fields(host{}, clearance::model{std::vector{part, endless}});
+  CHECK(made.without[0].empty());
+  CHECK(made.without[1] == "a part without a finite size has no field");
+  CHECK(made.model.view().fields == nullptr);
+  CHECK(with_fields(host{}, clearance::model{std::vector{part}}, {1000}).without[0] ==
+        "1000 bytes are too few for a field; it needs 20480");
+  const auto whole = with_fields(host{}, clearance::model{std::vector{part}}).model;
+  CHECK(whole.view().fields != nullptr);
+  CHECK(whole.on(host{}).view().fields != nullptr);
+  CHECK(whole.view().part(0).fields == whole.view().fields);
+  CHECK(clearance::attach(host{}, whole, clearance::model{std::vector{part}}).view().fields == nullptr);
+}
+
+TEST_CASE("A tree of somebody else's has a field around its ball") {
+  dice d(434);
+  const auto spheres = random_spheres(d, 100, 0.4);
+  const auto around = clearance::enclosing_ball(std::span<const inner_sphere>(spheres));
+  const linked_tree<clearance::obb, inner_sphere> tree(spheres, false);
+  const clearance::model bare{
+      std::vector{clearance::part{tree.view(), clearance::no_interior{}, {around.center, around.radius, 0.001f, 0}}}};
+  fields_law<host> law{host{}};
+  const auto fielded = law.with(bare, "a linked tree");
+  law.check(fielded, d, "a linked tree");
+  configurations poses;
+  for (int c = 0; c < 20; ++c) poses.push_back(d.pose(1.5));
+  require_no_change(host{}, bare, fielded, poses, clearance::point_span(d.points(2000, 1)), 1, law.v, "a linked tree");
+}
+
+}  // namespace fields_test
