@@ -35,6 +35,10 @@ struct camera_info_message {
   std::array<double, 9> k;
   std::uint32_t binning_x, binning_y;
 };
+struct image_message {
+  std::uint32_t height, width;
+  std::vector<std::uint16_t> pixels;  // ROS 2 has bytes
+};
 
 /// Three points with an intensity, 18 bytes each.
 point_cloud2_message a_cloud() {
@@ -61,7 +65,7 @@ int main() {
   // [cloud]
 
   const camera_info_message info{48, 64, "plumb_bob", {-0.2, 0.03, 0, 0, 0}, {60, 0, 31.5, 0, 60, 23.5, 0, 0, 1}, 0, 0};
-  const std::vector<std::uint16_t> pixels(64 * 48, 1000);  // a wall, 1 m ahead
+  const image_message depth{48, 64, std::vector<std::uint16_t>(64 * 48, 1000)};  // a wall, 1 m ahead
 
   // [camera]
   const clearance::camera camera({.width = info.width,
@@ -71,8 +75,8 @@ int main() {
                                   .k = info.k,
                                   .binning_x = info.binning_x,
                                   .binning_y = info.binning_y});
-  const clearance::ray_table table = camera.rays();  // once; table.blind pixels have no ray
-  const clearance::ray_image image(pixels.data(), table.rays.data(), table.width, table.height);  // of so many pixels
+  const clearance::ray_table table = camera.rays();                         // once; table.blind pixels have no ray
+  const auto image = table.image(depth.pixels, depth.width, depth.height);  // throws if it is not of the camera's size
   // [camera]
   const auto to_wall = clearance::ask(cpu, part, pose, image, clearance::min_distance{});
 

@@ -14,6 +14,8 @@ import tempfile
 
 import numpy as np
 
+from . import _core
+
 CLOUD = "sensor_msgs/msg/PointCloud2"
 IMAGE = "sensor_msgs/msg/Image"
 CAMERA = "sensor_msgs/msg/CameraInfo"
@@ -372,29 +374,10 @@ def cloud(message):
 
     ValueError with a sentence if it has no x, y and z of FLOAT32 or FLOAT64, is big-endian, or is shorter than it says.
     """
-    if message.is_bigendian:
-        raise ValueError("the cloud is big-endian")
-    fields = {each.name: each for each in message.fields}
-    missing = [name for name in "xyz" if name not in fields]
-    if missing:
-        raise ValueError(f"the cloud has no field {missing[0]!r} (it has: {', '.join(fields) or 'none'})")
-    kinds = {int(fields[name].datatype) for name in "xyz"}
-    if kinds not in ({7}, {8}) or any(fields[name].count not in (0, 1) for name in "xyz"):
-        raise ValueError("the cloud's x, y and z are not all FLOAT32 or all FLOAT64")
-    kind = "<f4" if kinds == {7} else "<f8"
-    rows, columns, step = int(message.height), int(message.width), int(message.point_step)
-    offsets = [int(fields[name].offset) for name in "xyz"]
-    if step <= 0 or max(offsets) + np.dtype(kind).itemsize > step:
-        raise ValueError(f"a field of the cloud reaches beyond its point_step of {step} bytes")
-    row_step = int(message.row_step) if rows > 1 else columns * step
-    if row_step < columns * step:
-        raise ValueError(f"the cloud's row_step is {row_step} bytes, too few for {columns} points of {step} bytes")
     data = memoryview(message.data)
-    need = (rows - 1) * row_step + columns * step if rows and columns else 0
-    if len(data) < need:
-        raise ValueError(f"the cloud says {rows} x {columns} points of {step} bytes, but holds {len(data)} bytes")
-    point = np.dtype({"names": ["x", "y", "z"], "formats": [kind] * 3, "offsets": offsets, "itemsize": step})
-    if not need:
+    offsets, size, rows, columns, step, row_step = _core._cloud_layout(message, data)
+    point = np.dtype({"names": ["x", "y", "z"], "formats": [f"<f{size}"] * 3, "offsets": offsets, "itemsize": step})
+    if not rows or not columns:
         return np.empty(0, point)
     view = np.ndarray((rows, columns), point, data, strides=(row_step, step))
     return view[0] if rows == 1 else view
@@ -439,7 +422,7 @@ class Cameras:
         """{"intrinsics": (fx, fy, cx, cy)}, or {"rays": (rows, columns, 2)} if the lens distorts.
 
         shape: of the image. rectified: the image was undistorted, so P holds and K and D do not.
-        ValueError with a sentence if the model is unknown or cannot be inverted at every pixel.
+        A pixel at which the lens cannot be inverted has the ray NaN. ValueError with a sentence if the model is unknown.
         """
         roi = info.roi
         said = (
@@ -464,124 +447,24 @@ class Cameras:
 def camera(info, shape, rectified=False):
     """What depth_image takes for a CameraInfo, as Cameras.of, computed anew."""
     rows, columns = shape
-    k, d, p = _field(info, "k").reshape(3, 3), _field(info, "d").ravel(), _field(info, "p").reshape(3, 4)
-    bin_x, bin_y = max(1, int(info.binning_x)), max(1, int(info.binning_y))
+    k, d, p = _field(info, "k"), _field(info, "d"), _field(info, "p").reshape(3, 4)
+    if rectified:
+        if not p[0, 0] and d.any():
+            raise ValueError("the image is rectified, but the CameraInfo's P is empty")
+        k, d = p[:, :3] if p[0, 0] else k, ()
     roi = info.roi
-    wide, high = int(roi.width) or int(info.width), int(roi.height) or int(info.height)
-    if (high // bin_y, wide // bin_x) != (rows, columns):
-        raise ValueError(
-            f"the CameraInfo is of {high // bin_y} x {wide // bin_x} pixels, the image of {rows} x {columns}"
-        )
-    lens = np.zeros(0) if rectified or not d.any() else d
-    if rectified and p[0, 0]:
-        k = p[:, :3]
-    elif rectified and d.any():
-        raise ValueError("the image is rectified, but the CameraInfo's P is empty")
-    if not (np.isfinite(k).all() and np.isfinite(d).all() and k[0, 0] > 0 and k[1, 1] > 0):
-        raise ValueError(
-            f"the CameraInfo's focal lengths are {k[0, 0]:g} and {k[1, 1]:g}: the camera is not calibrated"
-        )
-    # Pixel u of the image is pixel u * binning + offset of the sensor, as image_geometry has it.
-    fx, fy, skew = k[0, 0] / bin_x, k[1, 1] / bin_y, k[0, 1] / bin_x
-    cx, cy = (k[0, 2] - roi.x_offset) / bin_x, (k[1, 2] - roi.y_offset) / bin_y
-    model = info.distortion_model
-    fisheye = not rectified and model in ("equidistant", "fisheye")
-    known = ("plumb_bob", "rational_polynomial", "", "none", "None")
-    if not rectified and not fisheye and (model not in known or (lens.size and not model.strip("noNe"))):
-        raise ValueError(
-            f"the distortion model {model!r} is unknown (plumb_bob, rational_polynomial and equidistant are known)"
-        )
-    if not fisheye and not lens.size and skew == 0:
-        return {"intrinsics": (fx, fy, cx, cy)}
-    v, u = np.mgrid[0:rows, 0:columns].astype(float)
-    y = (v - cy) / fy
-    x = (u - cx - skew * y) / fx
-    if fisheye:
-        if d.size != 4:
-            raise ValueError(f"the distortion model {model!r} has 4 coefficients, not {d.size}")
-        x, y = _unbend_fisheye(x, y, d)
-    elif lens.size:
-        if lens.size not in (4, 5, 8, 12):
-            raise ValueError(
-                f"the distortion model {model!r} with {lens.size} coefficients is unknown (4, 5, 8 and 12 are known)"
-            )
-        x, y = _unbend(x, y, np.concatenate([lens, np.zeros(12 - lens.size)]), max(fx, fy))
-    return {"rays": np.stack([x, y], -1).astype(np.float32)}
-
-
-def _bend(a, b, d):
-    """OpenCV's lens: where the ray (a, b, 1) is seen, and the derivatives of that."""
-    k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4 = d
-    r = a * a + b * b
-    top, under = 1 + r * (k1 + r * (k2 + r * k3)), 1 + r * (k4 + r * (k5 + r * k6))
-    radial = top / under
-    slope = (k1 + r * (2 * k2 + r * 3 * k3) - radial * (k4 + r * (2 * k5 + r * 3 * k6))) / under
-    x = a * radial + 2 * p1 * a * b + p2 * (r + 2 * a * a) + r * (s1 + s2 * r)
-    y = b * radial + p1 * (r + 2 * b * b) + 2 * p2 * a * b + r * (s3 + s4 * r)
-    across = 2 * a * b * slope + 2 * p1 * a + 2 * p2 * b
-    xa = radial + 2 * a * a * slope + 2 * p1 * b + 6 * p2 * a + 2 * a * (s1 + 2 * s2 * r)
-    yb = radial + 2 * b * b * slope + 6 * p1 * b + 2 * p2 * a + 2 * b * (s3 + 2 * s4 * r)
-    return x, y, xa, across + 2 * b * (s1 + 2 * s2 * r), across + 2 * a * (s3 + 2 * s4 * r), yb
-
-
-def _unbend(x, y, d, focal):
-    """The rays that a lens bends to (x, y), by Newton's method."""
-    a, b = x.copy(), y.copy()
-    with np.errstate(all="ignore"):
-        for _ in range(50):
-            fx, fy, xa, xb, ya, yb = _bend(a, b, d)
-            fx, fy = fx - x, fy - y
-            off = np.maximum(abs(fx), abs(fy)).max() * focal
-            if off < 1e-9:
-                break
-            det = xa * yb - xb * ya
-            a, b = a - (yb * fx - xb * fy) / det, b - (xa * fy - ya * fx) / det
-        if not off < 1e-4:
-            raise ValueError(
-                "the CameraInfo's distortion cannot be undone at every pixel: the iteration does not converge"
-            )
-        # One image of two rays would be a guess. So the lens must not fold between the centre and the image's border.
-        edge = np.concatenate(
-            [np.stack([a[i], b[i]]) for i in (0, -1)] + [np.stack([a[:, i], b[:, i]]) for i in (0, -1)], 1
-        )
-        _, _, xa, xb, ya, yb = _bend(*(edge[..., None] * np.linspace(0, 1, 65)), d)
-        folds = not (xa * yb - xb * ya > 0).all()
-        _, _, xa, xb, ya, yb = _bend(a, b, d)
-    inside = np.hypot(a, b).max() <= np.hypot(*edge).max() * (1 + 1e-9)
-    if folds or not inside or not (xa * yb - xb * ya > 0).all():
-        raise ValueError("the CameraInfo's distortion folds within the image, so a pixel has no single ray")
-    return a, b
-
-
-def _unbend_fisheye(x, y, d):
-    """The rays of an equidistant lens: theta (1 + k1 theta^2 + ...) is how far from the centre a ray is seen."""
-
-    def seen(angle):
-        s = angle * angle
-        slope = 1 + s * (3 * d[0] + s * (5 * d[1] + s * (7 * d[2] + s * 9 * d[3])))
-        return angle * (1 + s * (d[0] + s * (d[1] + s * (d[2] + s * d[3])))), slope
-
-    far = np.hypot(x, y)
-    angle = far.copy()
-    with np.errstate(all="ignore"):
-        for _ in range(50):
-            value, slope = seen(angle)
-            angle = angle - (value - far) / slope
-            if abs(seen(angle)[0] - far).max() < 1e-13:
-                break
-        if not abs(seen(angle)[0] - far).max() < 1e-8 or not (angle >= 0).all():
-            raise ValueError(
-                "the CameraInfo's distortion cannot be undone at every pixel: the iteration does not converge"
-            )
-    widest = angle.max()
-    if not (seen(np.linspace(0, widest, 1024))[1] > 0).all():
-        raise ValueError("the CameraInfo's distortion folds within the image, so a pixel has no single ray")
-    if widest > 1.55:
-        raise ValueError(
-            f"a pixel looks {np.degrees(widest):.0f} degrees aside, where a depth along the axis says nothing"
-        )
-    by = np.where(far > 0, np.tan(angle) / np.where(far > 0, far, 1), 1)
-    return x * by, y * by
+    made = _core.Camera(
+        int(info.width),
+        int(info.height),
+        k,
+        d,
+        "" if rectified else info.distortion_model,
+        binning=(int(info.binning_x), int(info.binning_y)),
+        roi=(int(roi.x_offset), int(roi.y_offset), int(roi.width), int(roi.height)),
+    )
+    if (made.height, made.width) != (rows, columns):
+        raise ValueError(f"the CameraInfo is of {made.height} x {made.width} pixels, the image of {rows} x {columns}")
+    return {"rays": made.rays()} if made.intrinsics is None else {"intrinsics": made.intrinsics}
 
 
 # ---- what is known at a stamp ---------------------------------------------------------------------------------------

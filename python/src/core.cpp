@@ -4,6 +4,7 @@
 #include "query.hpp"
 #include "questions.hpp"
 #include "robot.hpp"
+#include "sensor_messages.hpp"
 
 template <class E>
 void bind_enum(nb::module_& m) {
@@ -23,6 +24,7 @@ NB_MODULE(_core, m) {
       });
   bind_robot(m);
   bind_clouds(m);
+  bind_sensor_messages(m);
   for_each_declared([&]<class T>() {
     if constexpr (declared_enum<T>)
       bind_enum<T>(m);

@@ -408,7 +408,9 @@ def test_a_cloud_without_points_is_empty():
     ("change", "says"),
     [
         ({"is_bigendian": True}, "big-endian"),
-        ({"fields": []}, "no field 'x'"),
+        ({"fields": []}, "no field x"),
+        ({"width": -1}, "width is -1"),
+        ({"row_step": 1 << 40}, "row_step is 1099511627776"),
         ({"point_step": 10}, "point_step"),
         ({"point_step": 0}, "point_step"),
         ({"width": 21}, "holds"),
@@ -520,18 +522,61 @@ def test_of_a_rectified_image_p_holds():
         (dict(k=(50, 50, 32, 24), model="", d=(0.1, 0.2, 0, 0, 0)), "''"),
         (dict(k=(50, 50, 32, 24), d=(0.1, 0.2)), "2 coefficients"),
         (dict(k=(50, 50, 32, 24), model="rational_polynomial", d=(0.1,) * 14), "14 coefficients"),
-        (dict(k=(50, 50, 32, 24), model="equidistant", d=()), "0"),
+        (dict(k=(50, 50, 32, 24), model="equidistant", d=()), "0 coefficients"),
         (dict(k=(0, 0, 0, 0)), "not calibrated"),
-        (dict(k=(math.nan, 50, 0, 0)), "not calibrated"),
-        (dict(k=(20, 20, 32, 24), d=(-0.5, 0, 0, 0, 0)), "distortion"),  # the polynomial turns back before the corner
-        (dict(k=(20, 20, 32, 24), model="equidistant", d=(0, 0, 0, 0)), "degrees"),
-        (dict(k=(50, 50, 32, 24), shape=(24, 64)), "pixels"),
+        (dict(k=(math.nan, 50, 0, 0)), "K that is not finite"),
+        (dict(k=(50, 50, 32, 24), shape=(24, 64)), "24 x 64 pixels, the image of 48 x 64"),
+        (dict(k=(1, 1, -900, -900), model="equidistant", d=(0, 0, 0, 0)), "leaves no pixel a ray"),
     ],
 )
-def test_a_camera_that_cannot_be_inverted_is_refused(info, says):
+def test_a_camera_that_contradicts_itself_is_refused(info, says):
     message = info_message(START, "f", info.pop("shape", (48, 64)), **{"model": "plumb_bob", "d": (), **info})
     with pytest.raises(ValueError, match=says):
         recordings.camera(message, (48, 64))
+
+
+@pytest.mark.parametrize(
+    ("model", "d", "reach"),
+    [
+        ("plumb_bob", (-0.5, 0, 0, 0, 0), 2 / 3 * math.sqrt(2 / 3)),  # r (1 - r^2 / 2) turns back there
+        ("equidistant", (0, 0, 0, 0), 1.55),  # wider, depth along the axis says nothing
+    ],
+)
+def test_a_pixel_without_a_ray_is_dropped_and_counted(model, d, reach):
+    import clearance
+
+    info = info_message(START, "f", (48, 64), (20.0, 20.0, 32, 24), d, model)
+    lens = recordings.camera(info, (48, 64))
+    v, u = np.mgrid[0:48, 0:64]
+    blind = np.hypot(u - 32, v - 24) / 20 > reach
+    assert 0 < blind.sum() < blind.size and np.array_equal(np.isnan(lens["rays"]).any(-1), blind)
+    robot = clearance.Robot.from_spheres({"ball": np.array([[0.0, 0, 1, 0.5]])})
+    seen = clearance.depth_image(np.full((48, 64), 2.0, np.float32), **lens)
+    result = clearance.Query(robot, clearance.MinDistance())(clouds=[seen], poses=np.eye(4)[None])
+    assert result.dropped["not_finite"] == blind.sum() and result.valid == (~blind).sum()
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        (dict(k=np.eye(4)), "k is a matrix of shape"),
+        (dict(k="K"), "k is an array of numbers, not str"),
+        (dict(d=[[1], [1, 2]]), "d is an array of numbers, not list"),
+        (dict(roi=(600, 0, 41, 480)), "reaches beyond its 640 x 480"),
+        (dict(binning=(-1, 0)), "bins -1 x 0 pixels"),
+        (dict(width=0), "0 x 480 pixels"),
+    ],
+)
+def test_a_camera_without_ros_is_refused_in_the_same_way(given, says):
+    import clearance
+
+    k = [[500, 0, 320], [0, 500, 240], [0, 0, 1]]
+    good = dict(width=640, height=480, k=k)
+    seen = clearance.Camera(**good, roi=(100, 40, 400, 200), binning=(2, 2))
+    assert (seen.width, seen.height, seen.intrinsics) == (200, 100, (250.0, 250.0, 110.0, 100.0))
+    assert seen.rays().shape == (100, 200, 2)
+    with pytest.raises(ValueError, match=f"^clearance: .*{says}"):
+        clearance.Camera(**{**good, **given})
 
 
 def test_a_camera_is_computed_once():

@@ -205,6 +205,24 @@ TEST_CASE("A pixel that a folded lens shows several rays at has none, is counted
         "clearance: the camera has a lens whose distortion leaves no pixel a ray");
 }
 
+TEST_CASE("An image that is not of its table's size is refused, and one with padded rows is not") {
+  const clearance::ray_table table = camera(seen_by(lenses[0].model, lenses[0].d)).rays();
+  const std::vector<std::uint16_t> pixels(480 * 700, 1000);
+  const auto says = [&](std::uint32_t width, std::uint32_t height, std::size_t row) {
+    return refusal([&] { table.image(pixels, width, height, row); });
+  };
+  CHECK(says(320, 240, 0) == "clearance: the camera has rays for 640 x 480 pixels, but the image has 320 x 240");
+  CHECK(says(480, 640, 0) == "clearance: the camera has rays for 640 x 480 pixels, but the image has 480 x 640");
+  CHECK(says(640, 480, 701) ==
+        "clearance: the camera has an image of 640 x 480 pixels in rows of 701, but it holds 336000");
+  CHECK(says(640, 480, 639).find("in rows of 639") != std::string::npos);
+  CHECK(says(640, 480, std::size_t(1) << 33).find("in rows of 8589934592") != std::string::npos);
+  CHECK(says(640, 480, 0) == "not refused");
+  const auto padded = table.image(pixels, 640, 480, 700);
+  CHECK((padded.row == 700 && padded.width == 640 && padded.pixels == pixels.data()));
+  CHECK(padded[640 * 2 + 5].position.x == float(table.rays[640 * 2 + 5].x * padded[640 * 2 + 5].position.z));
+}
+
 TEST_CASE("A CameraInfo that contradicts itself is refused in a sentence") {
   const double d[14] = {0.1, 0.2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.1, 0.1}, not_finite[] = {0.1, nan, 0, 0};
   const auto says = [&](auto change) {
@@ -238,6 +256,8 @@ TEST_CASE("A CameraInfo that contradicts itself is refused in a sentence") {
   CHECK(says([](camera_info& c) { c.distortion_model = ""; }).find("has a lens '' with 5") != std::string::npos);
   CHECK(says([&](camera_info& c) { c.d = d; }).find("with 14 coefficients; known are 0, 4, 5, 8 and 12") !=
         std::string::npos);
+  const std::vector<double> upright = {0.1, 0.2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+  CHECK(says([&](camera_info& c) { c.d = upright; }) == "not refused");
   CHECK(says([&](camera_info& c) { c.distortion_model = "fisheye"; }) ==
         "clearance: the camera has a lens 'fisheye' with 5 coefficients; known are 4");
 }

@@ -7,6 +7,7 @@
 #include <clearance/points/ray_image.hpp>
 
 #include <algorithm>
+#include <ranges>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -32,6 +33,12 @@ struct ray_table {
   std::uint32_t width = 0, height = 0;
   std::vector<ray> rays;  ///< Row by row.
   std::size_t blind = 0;  ///< Pixels without a ray. Theirs is NaN, so that their points are dropped as `not_finite`.
+
+  /// An image of this camera, 16-bit integers or floats, whose rows begin `row` pixels apart (0: width). It views the
+  /// pixels and these rays. Throws std::invalid_argument if it has another size, or fewer pixels than it says.
+  template <std::ranges::contiguous_range Pixels>
+  ray_image<std::ranges::range_value_t<Pixels>> image(const Pixels& pixels, std::uint32_t wide, std::uint32_t high,
+                                                      std::size_t row = 0) const;
 };
 
 /// A calibrated camera, with its lens, its binning and its region. Made once, when a CameraInfo comes or changes.
@@ -88,10 +95,29 @@ namespace detail {
 inline void require_camera(bool holds, const std::string& otherwise) {
   if (!holds) throw std::invalid_argument("clearance: the camera " + otherwise);
 }
+inline std::string pixels(std::int64_t wide, std::int64_t high) {
+  return std::to_string(wide) + " x " + std::to_string(high);
+}
 }  // namespace detail
 
+template <std::ranges::contiguous_range Pixels>
+ray_image<std::ranges::range_value_t<Pixels>> ray_table::image(const Pixels& pixels, std::uint32_t wide,
+                                                               std::uint32_t high, std::size_t row) const {
+  detail::require_camera(
+      wide == width && high == height,
+      "has rays for " + detail::pixels(width, height) + " pixels, but the image has " + detail::pixels(wide, high));
+  if (row == 0) row = wide;
+  const std::size_t held = std::ranges::size(pixels), needed = (std::size_t(high) - 1) * row + wide;
+  detail::require_camera(row >= wide && row <= UINT32_MAX && held >= needed,
+                         "has an image of " + detail::pixels(wide, high) + " pixels in rows of " + std::to_string(row) +
+                             ", but it holds " + std::to_string(held));
+  ray_image<std::ranges::range_value_t<Pixels>> made(std::ranges::data(pixels), rays.data(), wide, high);
+  made.row = std::uint32_t(row);
+  return made;
+}
+
 inline camera::camera(const camera_info& info) {
-  const auto pixels = [](std::int64_t w, std::int64_t h) { return std::to_string(w) + " x " + std::to_string(h); };
+  using detail::pixels;
   const auto& roi = info.roi;
   const auto within = [](std::int64_t x, std::int64_t low, std::int64_t high) { return x >= low && x <= high; };
   detail::require_camera(within(info.width, 1, 65535) && within(info.height, 1, 65535),
@@ -131,9 +157,11 @@ inline void camera::take_lens(const camera_info& info) {
     detail::require_camera(n == 4, has + "known are 4");
     lens_ = fisheye_lens({info.d[0], info.d[1], info.d[2], info.d[3]});
   } else if (model == "plumb_bob" || model == "rational_polynomial") {
-    detail::require_camera(n == 0 || n == 4 || n == 5 || n == 8 || n == 12, has + "known are 0, 4, 5, 8 and 12");
+    const bool upright = n == 14 && info.d[12] == 0 && info.d[13] == 0;  // OpenCV's tilted sensor, not tilted
+    detail::require_camera(n == 0 || n == 4 || n == 5 || n == 8 || n == 12 || upright,
+                           has + "known are 0, 4, 5, 8 and 12");
     brown_lens lens;
-    std::ranges::copy(info.d, lens.d.begin());
+    std::ranges::copy(info.d.first(std::min(n, lens.d.size())), lens.d.begin());
     if (bends) lens_ = lens;
   } else {
     detail::require_camera((model.empty() || model == "none" || model == "None") && !bends,

@@ -55,7 +55,8 @@ point_field field_of(const Message& message, std::string_view name, std::uint8_t
   if (found.count == ~0u) refuse_cloud("has no " + its + " (it has: " + (others.empty() ? "none" : others) + ")");
   if (found.datatype != wanted) {
     const bool known = found.datatype >= 1 && found.datatype <= 8;
-    const char* const hint = found.datatype == point_field::float64 ? "; point_cloud2_view<double> reads it" : "";
+    const bool first = name == "x" && found.datatype == point_field::float64;
+    const char* const hint = first ? "; point_cloud2_view<double> reads it" : "";
     refuse_cloud("holds its " + its + " as " +
                  (known ? types[found.datatype - 1] : "datatype " + std::to_string(found.datatype)) + ", not as " +
                  types[wanted - 1] + hint);
