@@ -48,7 +48,7 @@ struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames,
       trajectory, unfolded;
   std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, support_limit, svg,
-      deadline, nearest;
+      report, deadline, nearest;
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges;
   bool ignore_limits = false, strict = false, json = false, no_cache = false, merge = false, csv = false,
        gradient = false, shard = false, is_signed = false, between = false;
@@ -234,6 +234,11 @@ void read_questions(const raw_options& raw, query_options& o) {
   o.recording.svg = raw.svg;
   if (!raw.svg.empty() && clearance::io::extension(raw.svg) != ".svg")
     throw usage_error("--svg", raw.svg + ": its name must end in .svg, which is what is written");
+  if (!raw.report.empty())
+    throw usage_error("--report",
+                      "is of the Python package, whose command takes all of these options: python3 -m "
+                      "clearance run --report " +
+                          raw.report + " ...");
   if (!raw.d_max.empty()) {
     o.d_max = number("--d-max", raw.d_max);
     if (!(o.d_max > 0)) throw usage_error("--d-max", "must be above 0 (metres)");
@@ -424,6 +429,8 @@ void add_run_questions(CLI::App& app, raw_options& raw) {
       "--svg", raw.svg,
       "Write a picture to this .svg file once all frames are answered: the distance in every frame, in the band of "
       "its bracket");
+  app.add_option("--report", raw.report,
+                 "Write one HTML page about all frames; of the Python package: python3 -m clearance run --report ...");
   app.footer(
       "Prints one line per frame, a JSON object. latency_us is the time of the query alone, on the host's clock; a "
       "frame's points\n"

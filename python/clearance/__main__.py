@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command `clearance`: what Python adds. Each file in commands/ is a subcommand: its docstring, add(parser), run(asked)."""
+"""The command `clearance`: what Python adds. Each file in commands/ is a subcommand: its docstring, add(parser), run(asked).
+
+One that has HANDS_ON = True gets the words that it does not know as asked.others.
+"""
 
 import argparse
 import importlib
 import os
 import pathlib
 import pkgutil
+import re
 import shutil
 import sys
 
@@ -17,9 +21,27 @@ def compiled_command():
     here = pathlib.Path(sys.argv[0]).resolve()
     for folder in os.environ.get("PATH", "").split(os.pathsep):
         found = shutil.which("clearance", path=folder)
-        if found and pathlib.Path(found).resolve() != here:
+        if found and pathlib.Path(found).resolve() != here and not _of_python(found):
             return found
     return None
+
+
+def _of_python(file):
+    """Whether it is this command, as pip installed it elsewhere: the two would call one another for ever."""
+    with open(file, "rb") as script:
+        head = script.read(1000)
+    return head.startswith(b"#!") and b"clearance.__main__" in head
+
+
+def joined(words):
+    """`--option -0.5,1` as one word: argparse would take such a value for an option."""
+    out = []
+    for word in words:
+        if out and re.fullmatch(r"--[\w-]+", out[-1]) and re.match(r"-[\d.]", word):
+            out[-1] += f"={word}"
+        else:
+            out.append(word)
+    return out
 
 
 def main(arguments=None):
@@ -29,7 +51,7 @@ def main(arguments=None):
         if found := compiled_command():
             os.execv(found, [found, *arguments])
         print(f"clearance: {arguments[0]} is no command of the Python package (it has: {', '.join(sorted(known))}); "
-              "query, run, plan, pack, info and demo are of the compiled command, which is not on the PATH", file=sys.stderr)
+              "query, plan, pack, info and demo are of the compiled command, which is not on the PATH", file=sys.stderr)
         return 1
     parser = argparse.ArgumentParser(prog="clearance", description="How far a robot is from what its sensors see.")
     of = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -37,8 +59,11 @@ def main(arguments=None):
         if arguments and arguments[0] not in (name, "-h", "--help"):
             continue
         each = importlib.import_module(f"{commands.__name__}.{module}")
-        each.add(of.add_parser(name, help=each.__doc__.strip().splitlines()[0], description=each.__doc__))
-    asked = parser.parse_args(arguments)
+        each.add(of.add_parser(name, help=each.__doc__.strip().splitlines()[0], description=each.__doc__, allow_abbrev=False))
+    asked, others = parser.parse_known_args(joined(arguments))
+    if others and not getattr(importlib.import_module(f"{commands.__name__}.{known[asked.command]}"), "HANDS_ON", False):
+        parser.error(f"unrecognized arguments: {' '.join(others)}")
+    asked.others = others
     try:
         return importlib.import_module(f"{commands.__name__}.{known[asked.command]}").run(asked) or 0
     except (ValueError, RuntimeError, OSError, ImportError) as error:

@@ -118,6 +118,33 @@ def depth_image(depth: object, intrinsics: object | None = None, pose: object | 
     A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): x / z and y / z of each pixel. pose: world-from-camera, z forward.
     """
 
+class Camera:
+    """A calibrated camera of a ROS CameraInfo: which ray each pixel sees."""
+
+    def __init__(self, width: int, height: int, k: object, d: object = (), distortion_model: str = '', *, binning: Sequence[int] = [0, 0], roi: Sequence[int] = [0, 0, 0, 0]) -> None:
+        """
+        width, height: pixels of the sensor. k: (3, 3), pixels. d: the coefficients of distortion_model (plumb_bob, rational_polynomial, equidistant, or none). binning: (x, y). roi: (x_offset, y_offset, width, height) in the sensor's pixels. Of a rectified image give P[:, :3] as k, and no d. ValueError if they contradict one another.
+        """
+
+    @property
+    def width(self) -> int:
+        """Of the images, pixels."""
+
+    @property
+    def height(self) -> int:
+        """Of the images, pixels."""
+
+    @property
+    def intrinsics(self) -> tuple[float, float, float, float] | None:
+        """
+        (fx, fy, cx, cy), pixels; None if the lens bends rays or pixels have skew: then rays() is needed.
+        """
+
+    def rays(self) -> NDArray[numpy.float32]:
+        """
+        x / z and y / z of each pixel, (height, width, 2), float32: about a microsecond each. NaN where the lens folds or sees too wide, so the points of such pixels are dropped as not_finite. ValueError if all are.
+        """
+
 class PairDistance:
     """A pair of a point and a part, and their distance."""
 

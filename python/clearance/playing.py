@@ -12,6 +12,7 @@ import pathlib
 import numpy as np
 
 from . import _core, recordings
+from .seeing import scenes
 from .recordings import Damaged, Unknown, nanoseconds
 
 WAIT = 1_000_000_000  # ns of recorded time that a frame waits for later joints and transforms
@@ -44,6 +45,20 @@ class Row:
     checked: float | None = None  # the distance by NumPy, if a check was asked for
 
 
+@dataclasses.dataclass(slots=True)
+class Sight:
+    """What a row is about: the robot's poses, what its sensor saw (arguments of Query), and the result."""
+
+    robot: object
+    poses: np.ndarray
+    result: object
+    seen: dict
+
+    def scene(self, **what):
+        """The seeing.Scene of it. what: as in seeing.scene, such as margin."""
+        return scenes.compose(self.robot, scenes.Seen(**self.seen), self.poses, self.result, **what)
+
+
 class Watch:
     """A robot, and what its sensors' messages say of it: take() the joints and transforms, then ask for a row()."""
 
@@ -61,7 +76,10 @@ class Watch:
         zero_is_missing=False,
         camera_info=None,
         check=False,
+        each=None,
+        only=None,
     ):
+        self.each, self.only = each, only
         self.robot = robot = the_robot(robot)
         self.question = _core.MinDistance() if question is None else question
         kinds = (_core.MinDistance, _core.MinDistancePerPart, _core.MinDistanceSupported)
@@ -140,12 +158,18 @@ class Watch:
     def row(self, topic, kind, message):
         """The Row of a PointCloud2 or Image, with what is known now."""
         row = Row(nanoseconds(message.header.stamp) / 1e9, topic, message.header.frame_id)
+        if self.only is not None and (row.stamp, topic) not in self.only:
+            row.note = "not asked"
+            return row
         try:
-            self._ask(row, topic, kind, message)
+            sight = self._ask(row, topic, kind, message)
         except ValueError as error:  # Unknown, or a message that cannot be
+            sight = None
             row.note = str(error).removeprefix("clearance: ")
             if self.notes:
                 row.note += f"; {sum(self.notes.values())} messages were refused before ({next(iter(self.notes))})"
+        if sight and self.each:
+            self.each(row, sight)
         return row
 
     def _base(self):
@@ -204,16 +228,24 @@ class Watch:
         limits = {"nearest": self.nearest, "farthest": self.farthest}
         if kind == recordings.IMAGE:
             cloud = _core.depth_image(image, pose=where, **lens, **limits)
+            seen = {"depth": image, "camera_pose": where, **lens}
         else:
             cloud = _core.points(points, where, zero_is_missing=self.zero_is_missing, **limits)
-        self._write(row, self.ask(clouds=[cloud], poses=poses))
+            seen = {"points": points, "cloud_pose": where}
+        result = self.ask(clouds=[cloud], poses=poses)
+        self._write(row, result)
         if self.check:
-            seen = _seen_depth(image, lens) if kind == recordings.IMAGE else _seen_points(points, self.zero_is_missing)
-            far = np.linalg.norm(seen, axis=1)
-            seen = seen[(far >= self.nearest) & (far <= self.farthest)]
-            row.checked = by_numpy(self.robot, poses, seen @ where[:3, :3].T + where[:3, 3])
+            local = _seen_depth(image, lens) if kind == recordings.IMAGE else scenes.as_points(points).astype(float)
+            row.checked = by_numpy(self.robot, poses, local[self._counts(local)] @ where[:3, :3].T + where[:3, 3])
             if not agree(row):
                 row.note = f"NumPy says {row.checked:.9g} m"
+        return Sight(self.robot, poses, result, seen)
+
+    def _counts(self, local):
+        """Which points count, in the sensor's frame."""
+        far = np.linalg.norm(local, axis=1)
+        near = (far >= self.nearest) & (far <= self.farthest)
+        return near & np.isfinite(far) & ((far > 0) | (not self.zero_is_missing))
 
     def _camera_pose(self, frame, stamp, values):
         # Where no transform can place the sensor, its frame may be a link of the robot.
@@ -259,6 +291,8 @@ def play(
     nearest=0.0,
     farthest=math.inf,
     zero_is_missing=False,
+    each=None,
+    only=None,
 ):
     """Yields a Row for each PointCloud2 and depth Image of a recording: how far the robot was from what was seen.
 
@@ -272,6 +306,8 @@ def play(
     used. camera_info: the topic of the CameraInfo, or {image's topic: topic}; `camera_info` beside the image, unless
     given. nearest, farthest: metres from the sensor between which points count. zero_is_missing: a point at the sensor
     is none. check: computes each distance again by NumPy, from the spheres; a row that differs says so in its note.
+    each: is called with each row that was asked and its Sight, whose scene() can be drawn. only: {(stamp, topic)} of the
+    frames that are asked; the rows of others are "unknown".
 
     A frame that cannot be asked (a transform is missing, say) has the state "unknown", and a note. A robot that has no
     URDF is placed by the transforms of frames that are named as its parts. Raises recordings.Damaged after the last
@@ -289,6 +325,8 @@ def play(
         zero_is_missing=zero_is_missing,
         camera_info=camera_info,
         check=check,
+        each=each,
+        only=only,
     )
     recording = recordings.Recording(path)
     try:
@@ -410,28 +448,10 @@ def rows(path, robot, **options):
 # ---- the check ------------------------------------------------------------------------------------------------------
 
 
-def _seen_points(view, zero_is_missing):
-    points = np.stack([np.asarray(view[name], float).ravel() for name in "xyz"], -1)
-    keep = np.isfinite(points).all(1)
-    if zero_is_missing:
-        keep &= points.any(1)
-    return points[keep]
-
-
 def _seen_depth(image, lens):
-    rows_, columns = image.shape
-    z = (
-        np.where((image == 0) | (image == 65535), np.nan, image * 0.001)
-        if image.dtype.kind == "u"
-        else image.astype(float)
-    )
-    if "rays" in lens:
-        x, y = np.moveaxis(lens["rays"].astype(float), -1, 0)
-    else:
-        fx, fy, cx, cy = lens["intrinsics"]
-        x, y = np.meshgrid((np.arange(columns) - cx) / fx, (np.arange(rows_) - cy) / fy)
-    points = np.stack([x * z, y * z, z], -1).reshape(-1, 3)
-    return points[np.isfinite(points).all(1) & (points[:, 2] > 0)]
+    """The points of an image in the camera's frame, by NumPy in double."""
+    scale = 0.001 if image.dtype.kind == "u" else 1.0
+    return scenes.deprojected(image, scale, lens.get("intrinsics"), lens.get("rays"))
 
 
 def by_numpy(robot, poses, points):
@@ -468,7 +488,8 @@ def agree(row):
 COLUMNS = [each.name for each in dataclasses.fields(Row)]
 
 
-def _flat(row):
+def flat(row):
+    """A Row as a line of a table: a dictionary of numbers and words."""
     flat = dataclasses.asdict(row)
     flat["dropped"] = json.dumps(row.dropped)
     flat["parts"] = None if row.parts is None else json.dumps(row.parts)
@@ -484,11 +505,11 @@ class Csv:
 
     def __init__(self, path):
         self.file = open(path, "w", newline="", encoding="utf-8")
-        self.table = csv.DictWriter(self.file, list(_flat(Row(0.0, "", ""))))
+        self.table = csv.DictWriter(self.file, list(flat(Row(0.0, "", ""))))
         self.table.writeheader()
 
     def write(self, row):
-        self.table.writerow(_flat(row))
+        self.table.writerow(flat(row))
 
     def __enter__(self):
         return self
@@ -511,14 +532,14 @@ class Parquet:
         self.schema = pyarrow.schema(
             [
                 (name, pyarrow.int64() if name in whole else pyarrow.string() if name in text else pyarrow.float64())
-                for name in _flat(Row(0.0, "", ""))
+                for name in flat(Row(0.0, "", ""))
             ]
         )
         self.file = pyarrow.parquet.ParquetWriter(pathlib.Path(path), self.schema)
         self.rows = []
 
     def write(self, row):
-        self.rows.append(_flat(row))
+        self.rows.append(flat(row))
         if len(self.rows) >= 10_000:
             self._flush()
 

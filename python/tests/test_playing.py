@@ -353,7 +353,7 @@ def test_a_broken_message_is_unknown_and_the_rest_is_played(robot, tmp_path):
     messages[index][2].fields = messages[index][2].fields[:2]
     rows = list(playing.play(bag(tmp_path / "bag", messages), robot, topics="/lidar/points"))
     assert len(rows) == 3
-    unknown(rows[:1], "no field 'z'")
+    unknown(rows[:1], "no field z")
     assert all(row.state != "unknown" for row in rows[1:])
 
 
@@ -461,3 +461,65 @@ def test_the_command_fails_where_it_must(urdf, tmp_path, capsys):
     assert status == 1 and "NAME=VALUE" in err
     status, _, err = played(capsys, tmp_path / "none.mcap", *arguments)
     assert status == 1 and "there is no recording" in err
+
+
+def test_a_play_is_one_page_with_pictures_and_a_recording_for_rerun(urdf, robot, drive_bag, tmp_path, capsys):
+    pytest.importorskip("rerun", reason="rerun-sdk is not installed")
+    import base64
+    import re
+
+    from test_seeing import decode, read_back
+
+    page, recording = tmp_path / "out.html", tmp_path / "out.rrd"
+    what = (drive_bag, "--robot", urdf, "--spheres", 64, "--margin", 0.3, "--report", page, "--rerun", recording)
+    status, out, _ = played(capsys, *what, "--worst", 2)
+    assert status == 0 and f"written: {page}" in out
+    rows = list(clearance.playing.play(drive_bag, robot))
+    told = page.read_text()
+    pictures = re.findall(r"data:image/png;base64,([^\"]+)", told)
+    assert len(pictures) == 2 and all(decode(base64.b64decode(each)).shape == (560, 860, 3) for each in pictures)
+    assert pictures[0] != pictures[1]
+    least = min(rows, key=lambda row: row.lower)
+    assert f"1. {least.distance:.3f} m</b> (certainly {least.lower:.3f} to {least.upper:.3f})" in told
+    assert 'class="band"' in told and 'class="margin"' in told
+    assert f"{sum(row.seen for row in rows):,} points in 24 frames" in told
+
+    read = read_back(recording)
+    for name in ("distance", "lower", "upper"):
+        assert read[f"/clearance/{name}"] == pytest.approx([getattr(row, name) for row in rows], abs=1e-9)
+    band = sorted(v for row in rows for v in (row.lower, row.lower, row.upper))
+    assert sorted(read["/clearance/bracket"]) == pytest.approx(band, abs=1e-9)
+
+
+def test_a_recording_for_rerun_has_a_gap_where_nothing_is_known(urdf, tmp_path, capsys):
+    pytest.importorskip("rerun", reason="rerun-sdk is not installed")
+    from test_seeing import read_back
+
+    damaged = [each for each in drive(4) if each[0] != "/far/camera_info"]
+    folder = bag(tmp_path / "bag", damaged)
+    status, out, _ = played(capsys, folder, "--robot", urdf, "--spheres", 64, "--rerun", tmp_path / "out.rrd")
+    states = [" unknown: " in line for line in out.splitlines()[:-1]]
+    assert status == 0 and states.count(True) == 4 and len(states) == 12
+    assert [math.isnan(v) for v in read_back(tmp_path / "out.rrd")["/clearance/distance"]] == states
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("--report", "out.txt"), "--report writes an .html file, not out.txt"),
+        (("--report", "no/folder/out.html"), "there is no folder no/folder"),
+        (("--worst", -1), "--worst is -1"),
+        (("--margin", 0.1), "--margin is for --rerun and --report"),
+    ],
+)
+def test_a_page_that_cannot_be_is_refused_before_it_is_played(urdf, drive_bag, capsys, words, says):
+    status, out, err = played(capsys, drive_bag, "--robot", urdf, *words)
+    assert status == 1 and out == "" and says in err and err.count("\n") == 1
+
+
+def test_of_a_damaged_recording_the_page_shows_what_was_read(urdf, tmp_path, capsys):
+    file = write_bag(tmp_path / "bag", sorted(drive(60), key=lambda each: each[1]))
+    file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    status, _, err = played(capsys, file, "--robot", urdf, "--spheres", 64, "--report", tmp_path / "out.html")
+    told = (tmp_path / "out.html").read_text()
+    assert status == 1 and "truncated" in err and "truncated" in told and "data:image/png" in told

@@ -284,6 +284,7 @@ def test_a_recording_holds_robot_points_segment_image_and_plots(arm, before_the_
         "/clearance/distance",
         "/clearance/lower",
         "/clearance/upper",
+        "/clearance/bracket",
         "/clearance/margin",
         "/points/valid",
         "/points/missing",
@@ -295,6 +296,9 @@ def test_a_recording_holds_robot_points_segment_image_and_plots(arm, before_the_
     for k in range(3):
         for name in ("distance", "lower", "upper"):
             assert read[f"/clearance/{name}"][k] == pytest.approx(getattr(moments[k].result, name), abs=1e-9)
+        low, high = moments[k].result.lower, moments[k].result.upper
+        band = read["/clearance/bracket"][3 * k : 3 * k + 3]
+        assert sorted(band) == pytest.approx([low, low, high], abs=1e-9)
     assert math.isnan(read["/clearance/distance"][3])
 
 
@@ -502,6 +506,97 @@ def test_a_report_draws_the_worst_moments_and_says_where_its_answer_differs(tmp_
     assert told.count("own answer is") == 2  # as a note and beside the picture; only the row that says 0.004
     assert f"moment 1: the picture&#x27;s own answer is {right.distance:.4f} m" in told
     assert "moment 1: the picture's own answer" in capsys.readouterr().out
+
+
+@pytest.fixture
+def compiled(tmp_path, monkeypatch):
+    """A stand-in for the compiled command: it notes its words, prints rows and ends with a code."""
+
+    def make(lines, code=0):
+        folder = tmp_path / "bin"
+        folder.mkdir(exist_ok=True)
+        (tmp_path / "printed").write_text("".join(line + "\n" for line in lines))
+        script = folder / "clearance"
+        script.write_text(
+            f'#!/bin/sh\nfor word; do echo "$word"; done > {tmp_path}/words\ncat {tmp_path}/printed\nexit {code}\n'
+        )
+        script.chmod(0o755)
+        monkeypatch.setenv("PATH", f"{folder}:/bin:/usr/bin")
+        return lambda: (tmp_path / "words").read_text().splitlines()
+
+    return make
+
+
+def test_a_run_of_the_compiled_command_gets_a_page(tmp_path, before_the_arm, capsys, compiled):
+    import re
+
+    from clearance.seeing.page import quaternion
+
+    robot = demo.write_urdf(tmp_path)
+    np.save(tmp_path / "f.npy", before_the_arm["depth"])
+    pose = demo.camera_pose()
+    q = quaternion(pose[:3, :3])
+    right = clearance.Query(clearance.Robot.from_urdf(robot, spheres=64), clearance.MinDistance())(
+        joints=demo.JOINTS, **before_the_arm
+    )
+    rows = [json.loads(line) | {"file": str(tmp_path / "f.npy")} for line in JSON]
+    rows[0] |= {"distance": right.distance, "lower": right.lower, "upper": right.upper}
+    words = compiled([json.dumps(row) for row in rows], 2)
+    own = ["--robot", robot, "--frames", str(tmp_path), "--spheres", "64", "--check", "0.1", "--merge"]
+    own += [word for name, value in demo.JOINTS.items() for word in ("--joint", f"{name}={value}")]
+    own += ["--intrinsics", ",".join(map(str, demo.CAMERA))]
+    own += ["--camera-pose", ",".join(map(str, (*pose[:3, 3], *q[1:], q[0])))]
+    page = tmp_path / "out.html"
+    code = main(["run", *own[:4], "--report", str(page), *own[4:], "--worst=2", "--title", "a b"])
+    said = capsys.readouterr()
+    told = page.read_text()
+    assert code == 2 and said.out.splitlines() == [json.dumps(row) for row in rows]  # as without the page
+    assert words() == ["run", *own]
+    assert len(re.findall("data:image/png", told)) == 2 and "<h1>a b</h1>" in told and "clearance run --robot" in told
+    assert told.count("own answer is") == 2  # of the row that says 0.004
+    assert "above the margin of 0.100 m" in told and "all at most 90 us" in told and 'class="margin"' in told
+
+
+@pytest.mark.parametrize(
+    "lines, code, words, sentence",
+    [
+        ([], 1, ["--report", "out.txt"], "--report writes an .html file"),
+        ([], 1, ["--title", "x"], "--title and --worst are for --report"),
+        (["oops"], 0, ["--report", "out.html"], "what clearance run printed has no column state"),
+    ],
+)
+def test_a_run_without_a_page_is_said(tmp_path, monkeypatch, capsys, compiled, lines, code, words, sentence):
+    monkeypatch.chdir(tmp_path)
+    compiled(lines, code)
+    assert main(["run", "--robot", "r.urdf", *words]) == 1
+    said = capsys.readouterr().err
+    assert sentence in said and said.count("\n") == 1 and not (tmp_path / "out.html").exists()
+
+
+def test_a_run_that_fails_keeps_its_code_and_what_it_answered(tmp_path, capsys, compiled):
+    compiled(JSON[:2], 1)
+    assert main(["run", "--robot", str(tmp_path / "no.urdf"), "--report", str(tmp_path / "out.html")]) == 1
+    told = (tmp_path / "out.html").read_text()
+    assert "clearance run failed after 2 frames" in told and "no pictures: " in told
+    compiled([], 1)
+    (tmp_path / "out.html").unlink()
+    assert main(["run", "--report", str(tmp_path / "out.html")]) == 1 and not (tmp_path / "out.html").exists()
+
+
+def test_a_value_that_begins_with_a_minus_is_one():
+    from clearance.__main__ import joined
+
+    given = ["report", "--base-pose", "-0.5,0,1", "--joint", "a=-1", "--x", "--y=1", "-2", "-h"]
+    assert joined(given) == ["report", "--base-pose=-0.5,0,1", "--joint", "a=-1", "--x", "--y=1", "-2", "-h"]
+
+
+def test_a_run_needs_the_compiled_command_and_not_this_one_again(tmp_path, monkeypatch, capsys):
+    script = tmp_path / "clearance"
+    script.write_text("#!/bin/sh\nexec python3 -c 'from clearance.__main__ import main' \n")
+    script.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert main(["run", "--robot", "r.urdf"]) == 1
+    assert "the compiled command clearance, which answers, is not on the PATH" in capsys.readouterr().err
 
 
 # Files.

@@ -404,6 +404,7 @@ TEST_CASE("--csv says of every frame what the lines say, and of a plan which way
   CHECK(rows[2][2] == "no_data");
   for (int i = 3; i < 16; ++i) CHECK(rows[2][i].empty());
   refuses(r.run() + " --csv --json", "--json");
+  refuses(r.run() + " --report out.html", "python3 -m clearance run --report out.html");
   refuses(r.run() + " --csv=yes", "--csv");
   r.put("1.xyz", "0 0 zero\n");
   refuses(r.run() + " --csv", r.frame(0));  // no line of names either

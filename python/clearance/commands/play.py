@@ -6,8 +6,14 @@ if the recording is damaged (after the last whole frame), if no frame could be a
 """
 
 import contextlib
+import pathlib
 
 from clearance import playing
+from clearance.commands import report
+from clearance.seeing import report as pages
+from clearance.seeing import rerun_file
+from clearance.seeing.pictures import render
+from clearance.seeing.raster import png
 
 
 def add(parser):
@@ -26,6 +32,10 @@ def add(parser):
     parser.add_argument("--csv", metavar="FILE", help="write the rows as CSV")
     parser.add_argument("--parquet", metavar="FILE", help="write the rows as Parquet (extra parquet)")
     parser.add_argument("--check", action="store_true", help="compute each distance again by NumPy, from the spheres")
+    parser.add_argument("--rerun", metavar="FILE.rrd", help="write all frames as a recording for rerun (extra rerun)")
+    parser.add_argument("--report", metavar="FILE.html", help="write one page that needs nothing else")
+    parser.add_argument("--margin", type=float, metavar="METRES", help="of --rerun and --report")
+    report.add_page(parser)
 
 
 def add_robot(parser):
@@ -110,38 +120,83 @@ def sentence(row):
 
 
 def run(asked):
-    found = playing.play(
-        asked.recording,
-        robot(asked),
-        topics=asked.topic,
-        device=asked.device,
-        joint_topic=asked.joint_topic,
-        tf_topics=asked.tf_topic,
-        check=asked.check,
+    if asked.margin is not None and not (asked.rerun or asked.report):
+        raise ValueError("--margin is for --rerun and --report")
+    report.check_page(asked)
+    page = report.page_file(asked.report, "--report") if asked.report else None
+    options = {
+        "topics": asked.topic,
+        "device": asked.device,
+        "joint_topic": asked.joint_topic,
+        "tf_topics": asked.tf_topic,
         **frames(asked),
-    )
+    }
+    who = robot(asked)
     count = unknown = differ = 0
     least = None
+    rows, damage = [], None
     try:
-        with contextlib.ExitStack() as tables:
+        with contextlib.ExitStack() as files:
             into = [
-                tables.enter_context(kind(path))
+                files.enter_context(kind(path)).write
                 for kind, path in ((playing.Csv, asked.csv), (playing.Parquet, asked.parquet))
                 if path
             ]
-            for row in found:
-                for table in into:
-                    table.write(row)
+            each = None
+            if asked.rerun:
+                scenes = files.enter_context(rerun_file.Recording(asked.rerun))
+
+                def each(row, sight):
+                    scenes.add(sight.scene(margin=asked.margin), stamp=row.stamp)
+
+            for row in playing.play(asked.recording, who, check=asked.check, each=each, **options):
+                for write in into:
+                    write(row)
+                if page:
+                    rows.append(row)
+                if asked.rerun and row.state == "unknown":
+                    scenes.add_unknown(sentence(row), stamp=row.stamp)
                 print(sentence(row), flush=True)
                 count += 1
                 unknown += row.state in ("unknown", "no_data")
                 differ += not playing.agree(row)
                 if row.state not in ("unknown", "no_data") and (least is None or row.distance < least.distance):
                     least = row
+    except playing.Damaged as error:
+        damage = str(error)
+        raise
     finally:
         print(
             f"{count} frames, {unknown} of them unknown"
             + (f", {differ} of them differ from NumPy" if asked.check else "")
             + (f"; the least is {least.distance:.4f} m at {least.stamp:.6f}" if least else "")
         )
+        if rows:
+            write_page(page, asked, rows, [damage] if damage else [], who, options)
     return 1 if differ or unknown == count else 0
+
+
+def write_page(page, asked, rows, notes, who, options):
+    """The page about rows. The worst are played again, to draw them."""
+    moments = [pages.moment(playing.flat(row), k) for k, row in enumerate(rows)]
+    drawn = {}
+
+    def draw(row, sight):
+        drawn[row.stamp, row.topic] = png(render(sight.scene(margin=asked.margin), width=860, height=560)), ""
+
+    worst = {(rows[k].stamp, rows[k].topic): k for k in pages.worst(moments, asked.worst)}
+    with contextlib.suppress(playing.Damaged):
+        for _ in playing.play(asked.recording, who, each=draw, only=worst, **options):
+            if len(drawn) == len(worst):
+                break
+    told = [("recording", asked.recording), ("robot", asked.robot), ("model", asked.model)]
+    told += [(name.replace("_", " "), value) for name, value in options.items() if value]
+    report.write(
+        page,
+        moments,
+        asked,
+        told=told,
+        notes=notes,
+        pictures={worst[key]: picture for key, picture in drawn.items()},
+        title=pathlib.Path(asked.recording).name,
+    )

@@ -18,14 +18,20 @@ def add(parser):
     parser.add_argument("rows", help="what clearance run printed (JSON or --csv), or what clearance play --csv wrote")
     parser.add_argument("--output", "-o", required=True, metavar="FILE.html", help="the page")
     parser.add_argument("--margin", type=float, help="metres")
-    parser.add_argument("--worst", type=int, default=3, metavar="N", help="how many moments are shown (default: 3)")
-    parser.add_argument("--title", help="default: the name of the file of rows")
+    add_page(parser)
+    add_pictures(parser)
+
+
+def add_pictures(parser):
+    """What pictures of the worst moments need."""
     pictures = parser.add_argument_group("for pictures, as they were given to clearance run")
     pictures.add_argument("--robot", metavar="FILE", help="URDF")
     pictures.add_argument(
         "--trajectory", metavar="FILE", help="CSV: names of joints, then one row for each frame, or one for all"
     )
     pictures.add_argument("--joints", metavar="NAME=VALUE,...", help="of joints without a column; others are at rest")
+    pictures.add_argument("--joint", metavar="NAME=VALUE", action="append", default=[], help="one of them")
+    pictures.add_argument("--ignore-limits", action="store_true", help="joints may be outside their limits")
     pictures.add_argument("--intrinsics", metavar="FX,FY,CX,CY", help="of depth images, pixels")
     pictures.add_argument("--depth-scale", type=float, help="metres per unit of a depth image (default: 0.001)")
     pictures.add_argument(
@@ -63,7 +69,7 @@ class Pictures:
         make, model = view.robot_maker(asked, asked.robot)
         self.robot, self.asked = make(model), asked
         self.names, self.rows = trajectory(asked.trajectory) if asked.trajectory else ([], [[]])
-        self.fixed = view.joints_of(asked.joints)
+        self.fixed = view.joints_of(asked.joints) | view.joints_of(",".join(asked.joint), "--joint")
         self.pose, self.base = view.pose(asked.camera_pose, "--camera-pose"), view.pose(asked.base_pose, "--base-pose")
         self.camera = tuple(view.numbers(asked.intrinsics, 4, "--intrinsics")) if asked.intrinsics else None
 
@@ -100,7 +106,14 @@ class Pictures:
             }
         else:
             seen = {"points": files.read_cloud(file)[0], "cloud_pose": pose}
-        made = seeing.scene(self.robot, joints=joints, base=self.base, margin=self.asked.margin, **seen)
+        made = seeing.scene(
+            self.robot,
+            joints=joints,
+            base=self.base,
+            margin=self.asked.margin,
+            ignore_limits=self.asked.ignore_limits,
+            **seen,
+        )
         answer = seeing.least_of(made.result)
         apart = abs(float(answer.distance) - moment.distance)
         within = max(moment.upper - moment.lower, float(answer.upper) - float(answer.lower), 1e-4)
@@ -113,41 +126,52 @@ class Pictures:
         return png(render(made, width=860, height=560)), said
 
     def _found(self, name):
-        for file in (pathlib.Path(name), pathlib.Path(self.asked.rows).parent / name):
-            if file.is_file():
+        for folder in ("", pathlib.Path(self.asked.rows).parent):
+            if (file := folder / pathlib.Path(name)).is_file():
                 return file
         raise ValueError(f"{name}, which the rows name, is no file (neither from here nor from the rows' folder)")
 
 
-def run(asked):
-    from clearance.seeing import report
-
-    output = pathlib.Path(asked.output)
+def page_file(name, option="--output"):
+    """The page's path."""
+    output = pathlib.Path(name)
     if output.suffix.lower() not in (".html", ".htm"):
-        raise ValueError(f"--output writes an .html file, not {output}")
-    if output.resolve() == pathlib.Path(asked.rows).resolve():
-        raise ValueError("--output would overwrite the rows")
+        raise ValueError(f"{option} writes an .html file, not {output}")
+    if not output.parent.is_dir():
+        raise ValueError(f"{option}: there is no folder {output.parent}")
+    return output
+
+
+def add_page(parser):
+    """How the page is made, whoever makes it."""
+    parser.add_argument("--worst", type=int, default=3, metavar="N", help="how many moments are shown (default: 3)")
+    parser.add_argument("--title", help="of the page (default: the name of what it is about)")
+
+
+def check_page(asked):
     if asked.worst < 0:
         raise ValueError(f"--worst is {asked.worst}; it is 0 or more")
-    moments, notes = report.read_rows(asked.rows)
-    pictures, told = {}, [("rows", asked.rows)]
-    chosen = report.worst(moments, asked.worst)
-    if asked.robot:
-        draws = Pictures(asked)
-        told += [("robot", asked.robot), ("parts", ", ".join(draws.robot.parts)), ("model", draws.robot.model)]
-        for k in chosen:
-            try:
-                pictures[k] = draws.of(moments[k])
-            except (ValueError, RuntimeError, OSError) as error:
-                pictures[k] = None, f"no picture: {str(error).removeprefix('clearance: ')}"
-            if pictures[k][1]:
-                notes.append(f"moment {chosen.index(k) + 1}: {pictures[k][1]}")
-        notes += draws.robot.notes
-    elif asked.trajectory or asked.intrinsics or asked.camera_pose:
-        raise ValueError("--trajectory, --intrinsics and --camera-pose are for pictures, which need --robot")
-    for name in ("trajectory", "intrinsics", "camera_pose", "camera_link", "base_pose"):
-        if getattr(asked, name):
-            told.append((name.replace("_", " "), getattr(asked, name)))
+
+
+def drawn(moments, count, draw):
+    """{index of a moment: (PNG or None, sentence)} of the worst ones, and notes. draw: from a moment to that pair."""
+    from clearance.seeing import report
+
+    pictures, notes = {}, []
+    for number, k in enumerate(report.worst(moments, count), 1):
+        try:
+            pictures[k] = draw(moments[k])
+        except (ValueError, RuntimeError, OSError) as error:
+            pictures[k] = None, f"no picture: {str(error).removeprefix('clearance: ')}"
+        if pictures[k][1]:
+            notes.append(f"moment {number}: {pictures[k][1]}")
+    return pictures, notes
+
+
+def write(output, moments, asked, *, told, notes=(), pictures=None, title, to=None):
+    """Writes the page, and says so."""
+    from clearance.seeing import report
+
     text = report.page(
         moments,
         asked=told,
@@ -155,10 +179,38 @@ def run(asked):
         notes=notes,
         pictures=pictures,
         count=asked.worst,
-        title=asked.title or pathlib.Path(asked.rows).name,
+        title=asked.title or title,
     )
     output.write_text(text, encoding="utf-8")
     for note in notes:
-        print(f"note: {note}")
+        print(f"note: {note}", file=to)
     least = min((m.lower for m in moments), default=math.nan)
-    print(f"{len(moments)} frames, least lower end {least:.3f} m; written: {output}")
+    print(f"{len(moments)} frames, least lower end {least:.3f} m; written: {output}", file=to)
+
+
+def pictures_of(asked, moments):
+    """Pictures, notes and what was asked, of options that were given to clearance run."""
+    draws = Pictures(asked)
+    told = [("robot", asked.robot), ("parts", ", ".join(draws.robot.parts)), ("model", draws.robot.model)]
+    pictures, notes = drawn(moments, asked.worst, draws.of)
+    return pictures, notes + draws.robot.notes, told
+
+
+def run(asked):
+    from clearance.seeing import report
+
+    output = page_file(asked.output)
+    if output.resolve() == pathlib.Path(asked.rows).resolve():
+        raise ValueError("--output would overwrite the rows")
+    check_page(asked)
+    moments, notes = report.read_rows(asked.rows)
+    pictures, told = {}, [("rows", asked.rows)]
+    if asked.robot:
+        pictures, said, about = pictures_of(asked, moments)
+        notes, told = notes + said, told + about
+    elif asked.trajectory or asked.intrinsics or asked.camera_pose:
+        raise ValueError("--trajectory, --intrinsics and --camera-pose are for pictures, which need --robot")
+    for name in ("trajectory", "intrinsics", "camera_pose", "camera_link", "base_pose"):
+        if getattr(asked, name):
+            told.append((name.replace("_", " "), getattr(asked, name)))
+    write(output, moments, asked, told=told, notes=notes, pictures=pictures, title=pathlib.Path(asked.rows).name)

@@ -48,8 +48,8 @@ def _number(value, name, where, whole=False):
         raise ValueError(f"clearance: {where}: {name} is {value!r}, which is no number") from None
 
 
-def _moment(row, k, where):
-    """A row of either kind, a dictionary of words or of JSON's values."""
+def moment(row, k, where="a row"):
+    """Row k, of either kind: a dictionary of words or of JSON's values."""
     state = row.get("state")
     if state not in STATES:
         raise ValueError(f"clearance: {where}: the state is {state!r}, which is none of {', '.join(STATES)}")
@@ -100,13 +100,18 @@ def read_rows(file):
         text = file.read_text(encoding="utf-8")
     except UnicodeDecodeError:
         raise ValueError(f"clearance: {file} is no text in UTF-8") from None
+    return rows_of(text, file)
+
+
+def rows_of(text, file):
+    """read_rows of a text; file: what it is called."""
     if not text.strip():
         raise ValueError(f"clearance: {file} is empty")
     if text.lstrip()[0] in "[{":
         rows, notes = _json_rows(text, file)
     else:
         rows, notes = _csv_rows(text, file)
-    moments = [_moment(row, k, where) for k, (where, row) in enumerate(rows)]
+    moments = [moment(row, k, where) for k, (where, row) in enumerate(rows)]
     if not moments:
         raise ValueError(f"clearance: {file} has no rows" + (f" ({notes[0]})" if notes else ""))
     return moments, notes

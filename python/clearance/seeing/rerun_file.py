@@ -42,6 +42,17 @@ class Recording:
             ),
         )
         self.stream.log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+        # rerun draws no areas. A line that runs down and up at each moment is a band where moments are dense.
+        self.stream.log(
+            "clearance/bracket",
+            rr.SeriesLines(
+                colors=[(143, 182, 221, 150)],
+                names=["bracket"],
+                widths=[4],
+                aggregation_policy=rr.components.AggregationPolicy.Off,
+            ),
+            static=True,
+        )
         for line, colour, width in (
             ("lower", (143, 182, 221), 1.5),
             ("distance", (31, 79, 139), 2.5),
@@ -66,13 +77,7 @@ class Recording:
     def add(self, scene, *, stamp=None, frame=None):
         """One more moment: stamp, seconds since 1970 (or since any start); frame: its number, else one more."""
         rr, log = self.rr, self.stream.log
-        self.stream.set_time(self.timeline, sequence=self.added if frame is None else frame)
-        if stamp is not None:
-            if stamp > 1e8:
-                self.stream.set_time("time", timestamp=float(stamp))
-            else:
-                self.stream.set_time("time", duration=float(stamp))
-        self.added += 1
+        self._time(stamp, frame)
         for part in scene.parts:
             at = f"world/robot/{rr.escape_entity_path_part(part.name)}"
             log(at, rr.Transform3D(translation=part.pose[:3, 3], mat3x3=part.pose[:3, :3]))
@@ -109,6 +114,32 @@ class Recording:
             self._image(scene.image)
         self._numbers(scene)
 
+    def add_unknown(self, sentence, *, stamp=None, frame=None):
+        """A moment of which nothing is known: a gap in the plots, nothing in the scene, and the sentence."""
+        rr = self.rr
+        self._time(stamp, frame)
+        for gone in ("world/points", "world/segment", "image/depth"):
+            self.stream.log(gone, rr.Clear(recursive=False))
+        self._bracket(math.nan, math.nan, math.nan)
+        self.stream.log("answer", rr.TextLog(sentence, level=rr.TextLogLevel.WARN))
+
+    def _time(self, stamp, frame):
+        self.stream.set_time(self.timeline, sequence=self.added if frame is None else frame)
+        if stamp is not None and math.isfinite(stamp):
+            if stamp > 1e8:
+                self.stream.set_time("time", timestamp=float(stamp))
+            else:
+                self.stream.set_time("time", duration=float(stamp))
+        self.added += 1
+
+    def _bracket(self, distance, lower, upper):
+        # rerun draws no infinity: a gap, and the sentence says it.
+        distance, lower, upper = (v if math.isfinite(v) else math.nan for v in (distance, lower, upper))
+        for name, value in (("distance", distance), ("lower", lower), ("upper", upper)):
+            self.stream.log(f"clearance/{name}", self.rr.Scalars(value))
+        for value in (lower, upper, lower):
+            self.stream.log("clearance/bracket", self.rr.Scalars(value))
+
     def _image(self, image):
         rr = self.rr
         rows, columns = image.depth.shape
@@ -127,9 +158,7 @@ class Recording:
 
     def _numbers(self, scene):
         rr, log, least = self.rr, self.stream.log, least_of(scene.result)
-        for name in ("distance", "lower", "upper"):
-            value = float(getattr(least, name))  # rerun draws no infinity: a gap, and the sentence below
-            log(f"clearance/{name}", rr.Scalars(value if math.isfinite(value) else math.nan))
+        self._bracket(*(float(getattr(least, name)) for name in ("distance", "lower", "upper")))
         if scene.margin is not None:
             log("clearance/margin", rr.Scalars(scene.margin))
         log("points/valid", rr.Scalars(least.valid))

@@ -120,6 +120,35 @@ def on_host(array, name):
     return array
 
 
+def as_points(points):
+    """(n, 3), in the sensor's frame, of what points= takes."""
+    local = on_host(points, "points")
+    if local.dtype.names:
+        local = np.stack([local[axis] for axis in "xyz"], axis=-1)
+    if local.ndim < 2 or local.shape[-1] != 3:
+        raise ValueError(
+            f"clearance: points have the shape (n, 3), (rows, columns, 3) or the fields x, y, z; not {local.shape}"
+        )
+    return local.reshape(-1, 3)
+
+
+def deprojected(pixels, scale, camera=None, rays=None):
+    """The points of a depth image, (n, 3), double, in the camera's frame: NaN where a pixel is no measurement.
+
+    scale: metres per unit. camera: fx, fy, cx, cy; or rays, (rows, columns, 2).
+    """
+    z = pixels.astype(float) * scale
+    z[(pixels == 0) | (pixels == 65535) if pixels.dtype.kind == "u" else ~(z > 0)] = np.nan
+    if rays is not None:
+        across = on_host(rays, "rays").astype(float)
+    elif camera is None:
+        raise ValueError("clearance: depth needs intrinsics= (fx, fy, cx, cy) or rays=")
+    else:
+        v, u = np.indices(z.shape)
+        across = np.stack([(u - camera[2]) / camera[0], (v - camera[3]) / camera[1]], axis=-1)
+    return np.concatenate([across * z[..., None], z[..., None]], axis=-1).reshape(-1, 3)
+
+
 class Seen:
     """The points of one call, in world coordinates, and the arguments with which the library is asked about them."""
 
@@ -145,15 +174,7 @@ class Seen:
         self.image = None
         if points is not None:
             self.asked = {"points": points, "cloud_pose": cloud_pose}
-            local = on_host(points, "points")
-            if local.dtype.names:
-                local = np.stack([local[axis] for axis in "xyz"], axis=-1)
-            if local.ndim < 2 or local.shape[-1] != 3:
-                raise ValueError(
-                    f"clearance: points have the shape (n, 3), (rows, columns, 3) or the fields x, y, z; not "
-                    f"{local.shape}"
-                )
-            local, pose = local.reshape(-1, 3), pose_of(cloud_pose, "cloud_pose")
+            local, pose = as_points(points), pose_of(cloud_pose, "cloud_pose")
         else:
             self.asked = {
                 "depth": depth,
@@ -165,20 +186,9 @@ class Seen:
             pixels = on_host(depth, "depth")
             if pixels.ndim != 2:
                 raise ValueError(f"clearance: depth has the shape (rows, columns), not {pixels.shape}")
-            integers = pixels.dtype.kind == "u"
-            scale = depth_scale if depth_scale is not None else 0.001 if integers else 1.0
-            z = pixels.astype(float) * scale
-            z[(pixels == 0) | (pixels == 65535) if integers else ~(z > 0)] = np.nan
-            camera = camera_of(intrinsics)
-            if rays is not None:
-                across = on_host(rays, "rays").astype(float)
-            elif camera is None:
-                raise ValueError("clearance: depth needs intrinsics= (fx, fy, cx, cy) or rays=")
-            else:
-                v, u = np.indices(z.shape)
-                across = np.stack([(u - camera[2]) / camera[0], (v - camera[3]) / camera[1]], axis=-1)
-            local = np.concatenate([across * z[..., None], z[..., None]], axis=-1).reshape(-1, 3)
-            pose = pose_of(camera_pose, "camera_pose")
+            scale = depth_scale if depth_scale is not None else 0.001 if pixels.dtype.kind == "u" else 1.0
+            camera, pose = camera_of(intrinsics), pose_of(camera_pose, "camera_pose")
+            local = deprojected(pixels, scale, camera, rays)
             self.image = Image(pixels, scale, camera, pose)
         there = np.flatnonzero(np.isfinite(local).all(axis=1))
         self.points = (local[there] @ pose[:3, :3].T + pose[:3, 3]).astype(np.float32)
@@ -226,13 +236,6 @@ def scene(
     *,
     poses=None,
     base=None,
-    cloud_pose=None,
-    depth=None,
-    intrinsics=None,
-    rays=None,
-    depth_scale=None,
-    camera_pose=None,
-    clouds=None,
     result=None,
     zones=None,
     margin=None,
@@ -240,25 +243,17 @@ def scene(
     most=60000,
     colour="distance",
     ignore_limits=False,
+    **seen,
 ):
     """What is to be seen of one frame.
 
-    Where the robot is and what is seen: as in a call of Query. result: what the library answered about this frame;
+    Where the robot is, and what is seen (Seen's arguments): as in a call of Query. result: what the library answered about this frame;
     without it, the least distance is asked. zones: thresholds in metres; points in them get the zones' colours.
     Otherwise they are coloured by their distance up to `farthest` metres (colour="distance"), or not at all ("none").
     most: how many points are drawn, evenly chosen (0: all of them); the answer is about all of them. margin: metres,
     said in the title.
     """
-    seen = Seen(
-        points,
-        cloud_pose=cloud_pose,
-        depth=depth,
-        intrinsics=intrinsics,
-        rays=rays,
-        depth_scale=depth_scale,
-        camera_pose=camera_pose,
-        clouds=clouds,
-    )
+    seen = Seen(points, **seen)
     placed = poses_of(robot, joints, poses, base, ignore_limits)
     if result is None:
         result = _core.Query(robot, _core.MinDistance())(poses=placed, **seen.asked)
