@@ -1,8 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The node of packaging/ros2 with stand-ins for ROS 2, and four frames for it.
-#include "clearance_node.cpp"
+// Says a few frames to the node of packaging/ros2, and prints what it published.
+#include <tf2_ros/buffer.h>
+#include <clearance_msgs/msg/clearance.hpp>
+#include <rclcpp/rclcpp.hpp>
+#include <sensor_msgs/msg/camera_info.hpp>
+#include <sensor_msgs/msg/image.hpp>
+#include <sensor_msgs/msg/point_cloud2.hpp>
+#include <sensor_msgs/msg/range.hpp>
+
+#include <cmath>
+#include <cstring>
 
 namespace {
+
+using clearance_msgs::msg::Clearance;
+using sensor_msgs::msg::CameraInfo, sensor_msgs::msg::Image, sensor_msgs::msg::PointCloud2, sensor_msgs::msg::Range;
 
 template <class M>
 void say(const std::string& topic, const M& message) {
