@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Recordings of a fleet as a data set of Ray: one row for each frame, to filter, group and write.
 
-pip install clearance[ros] "ray[data]"
+pip install clearance[ros] "ray[data]" mcap
 python fleet_ray.py arm.urdf drive1.mcap drive2.mcap ...
 """
 
@@ -13,11 +13,12 @@ import sys
 import ray
 
 import clearance.playing
+import clearance.recordings
 
 
-def rows(item, recipe):
-    """Pure: the rows depend on the file and the robot only, so a lost task is simply done again."""
-    for row in clearance.playing.rows(item["item"], recipe):
+def rows(path, recipe, recording=None):
+    """Pure: the rows depend on the recording and the robot only, so a lost task is simply done again."""
+    for row in clearance.playing.rows(recording or path, recipe):
         # Columns are numbers and texts; the points are left out, as some rows have none.
         each = {
             name: value
@@ -25,7 +26,7 @@ def rows(item, recipe):
             if name not in ("at", "nearest", "parts", "checked")
         }
         yield each | {
-            "path": item["item"],
+            "path": path,
             "dropped": json.dumps(row.dropped),
             "point": -1 if row.point is None else row.point,
         }
@@ -33,7 +34,22 @@ def rows(item, recipe):
 
 def data_set(paths, recipe):
     """A data set with the columns path, stamp, topic, state, distance, lower, upper, link, ..."""
-    return ray.data.from_items(list(paths)).flat_map(lambda item: list(rows(item, recipe)))
+    return ray.data.from_items(list(paths)).flat_map(lambda item: list(rows(item["item"], recipe)))
+
+
+def rows_of_messages(group, recipe):
+    """The rows of one recording, whose messages Ray has read."""
+    path = str(group["path"][0])
+    # Ray has the name of a type as the recording has it, such as sensor_msgs/msg/PointCloud2.
+    read = zip(group["topic"], group["schema_name"], map(int, group["log_time"]), group["data"], strict=True)
+    found = list(rows(path, recipe, clearance.recordings.Messages(path, read)))
+    return {name: [row[name] for row in found] for name in found[0]}
+
+
+def data_set_in_a_bucket(paths, recipe):
+    """The same of whole .mcap files that Ray reads, wherever it can: s3://..., gs://..., or a folder."""
+    messages = ray.data.read_mcap(list(paths), include_paths=True)
+    return messages.groupby("path").map_groups(lambda group: rows_of_messages(group, recipe), batch_format="numpy")
 
 
 def main(urdf, *paths):

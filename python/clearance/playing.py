@@ -296,7 +296,8 @@ def play(
 ):
     """Yields a Row for each PointCloud2 and depth Image of a recording: how far the robot was from what was seen.
 
-    path: an MCAP file, a rosbag2 folder or database, or a ROS 1 bag. It is read as rows are asked for.
+    path: an MCAP file, a rosbag2 folder or database, or a ROS 1 bag; or recordings.Messages. It is read as rows are
+    asked for.
     robot: a Robot; or the name of its URDF file, or a dict of Robot.from_urdf's arguments.
     topics: of clouds and images; all PointCloud2 and all Images of 16UC1 or 32FC1, unless given.
     question: MinDistance(), MinDistancePerPart() or MinDistanceSupported(...).
@@ -328,7 +329,7 @@ def play(
         each=each,
         only=only,
     )
-    recording = recordings.Recording(path)
+    recording = path if isinstance(path, recordings.Messages) else recordings.Recording(path)
     try:
         frames, others = _chosen(recording, watch, topics, joint_topic, tf_topics)
     except ValueError as error:

@@ -343,6 +343,34 @@ class Recording:
         self.close()
 
 
+class Messages:
+    """Messages that something else has read, such as Ray's read_mcap, as a Recording. A context manager.
+
+    read: (topic, type, when it was recorded (ns), CDR bytes) of each message, in any order.
+    """
+
+    damage = None
+
+    def __init__(self, path, read):
+        try:
+            import rosbags.typesys
+        except ImportError as error:
+            raise needs("ros", error) from None
+        decode = rosbags.typesys.get_typestore(rosbags.typesys.Stores.LATEST).deserialize_cdr
+        self.path = path
+        self._read = sorted((Message(*each, decode) for each in read), key=lambda each: each.log_time)
+        self.topics = {each.topic: each.type for each in self._read}
+
+    def messages(self, topics=None):
+        """Yields each Message of the topics (all, unless given) in the order of time."""
+        return (each for each in self._read if topics is None or each.topic in topics)
+
+    def close(self):
+        self._read = []
+
+    __enter__, __exit__ = Recording.__enter__, Recording.__exit__
+
+
 def _opened(reader):
     reader.open()
     return reader

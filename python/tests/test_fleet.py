@@ -93,8 +93,21 @@ def test_ray_gives_the_same_rows(fleet):
     ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False, runtime_env={"env_vars": {"PYTHONPATH": path}})
     try:
         found = fleet_ray.data_set(paths, recipe).take_all()
+        whole = [str(file) for each in paths for file in pathlib.Path(each).glob("*.mcap")]
+        read_by_ray = fleet_ray.data_set_in_a_bucket(whole, recipe).take_all() if has_mcap() else []
     finally:
         ray.shutdown()
+    same_rows(found, paths, recipe)
+    if has_mcap():
+        assert len(whole) == 3
+        same_rows(read_by_ray, whole, recipe)
+
+
+def has_mcap():
+    return importlib.util.find_spec("mcap") is not None
+
+
+def same_rows(found, paths, recipe):
     expected = {path: playing.rows(path, recipe) for path in paths}
     assert len(found) == sum(map(len, expected.values()))
     for path, rows in expected.items():

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Recordings: files whole, damaged and truncated; clouds, images and cameras; joints and transforms at a stamp."""
 
+import io
 import math
 import shutil
 import sqlite3
+import struct
 import zlib
 
 import numpy as np
@@ -736,3 +738,60 @@ def test_a_survey_keeps_its_millimetres(tmp_path, suffix, offsets):
     (tmp_path / f"cut{suffix}").write_bytes(data[: len(data) * 2 // 3])
     with pytest.raises(ValueError, match="cut"):
         recordings.las(tmp_path / f"cut{suffix}")
+
+
+def copc_file(path, points, scale=0.001):
+    """A small COPC file of two nodes, by its specification: chunks of different sizes, and where each of them lies."""
+    laspy = pytest.importorskip("laspy", reason="laspy is not installed (extra las)")
+    lazrs = pytest.importorskip("lazrs", reason="lazrs is not installed (extra las)")
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    origin = np.floor(points.min(0))
+    header.offsets, header.scales = origin, [scale] * 3
+    whole = laspy.LasData(header)
+    whole.x, whole.y, whole.z = points.T
+    header.update(whole.points)
+    middle, half = (points.min(0) + points.max(0)) / 2, np.ptp(points, axis=0).max() / 2 + 1
+    packed = lazrs.LazVlr.new_for_compression(6, 0, True)
+    points_at = 375 + 2 * 54 + 160 + len(packed.record_data())
+    out = io.BytesIO()
+    out.write(bytes(points_at))
+    compressor = lazrs.LasZipCompressor(out, packed)
+    compressor.reserve_offset_to_chunk_table()
+    raw = np.frombuffer(whole.points.memoryview(), np.uint8)
+    size, split, nodes = whole.points.point_size, len(points) // 3, []
+    for level, (first, last) in enumerate(((0, split), (split, len(points)))):
+        begin = out.tell()
+        compressor.compress_many(raw[first * size : last * size])
+        compressor.finish_current_chunk()
+        nodes.append(struct.pack("<4iQ2i", level, 0, 0, 0, begin, out.tell() - begin, last - first))
+    compressor.done()
+    pages_at = out.tell() + 60
+    out.write(struct.pack("<H16sHQ32s", 0, b"copc", 1000, 32 * len(nodes), b"") + b"".join(nodes))
+    info = struct.pack("<5d2Q2d", *middle, half, half / 64, pages_at, 32 * len(nodes), 0, 0) + bytes(88)
+    data = bytearray(out.getvalue())
+    with io.BytesIO() as text:
+        header.write_to(text)
+        data[:375] = text.getvalue()[:375]
+    struct.pack_into("<HIIBH", data, 94, 375, points_at, 2, 6 | 0x80, size)
+    struct.pack_into("<QIQ", data, 235, pages_at - 60, 1, len(points))
+    vlr = struct.pack("<H16sHH32s", 0, b"copc", 1, 160, b"") + info
+    vlr += struct.pack("<H16sHH32s", 0, b"laszip encoded", 22204, len(packed.record_data()), b"")
+    data[375:points_at] = vlr + bytes(packed.record_data())
+    path.write_bytes(data)
+
+
+def test_a_copc_file_is_read_whole(tmp_path):
+    laspy = pytest.importorskip("laspy", reason="laspy is not installed (extra las)")
+    points = np.array([445_123.4, 1_412_345.6, 101.0]) + np.random.default_rng(2).uniform(-40, 40, (6000, 3))
+    copc_file(tmp_path / "survey.copc.laz", points)
+    with laspy.CopcReader.open(tmp_path / "survey.copc.laz") as reader:  # so it is one
+        assert len(reader.query(level=0)) == 2000 and len(reader.query()) == 6000
+    found, origin = recordings.las(tmp_path / "survey.copc.laz")
+    assert found + origin == pytest.approx(points, abs=0.00051)
+    from clearance.seeing import files
+
+    assert np.array_equal(files.read_cloud(tmp_path / "survey.copc.laz")[0], found + origin)
+    data = (tmp_path / "survey.copc.laz").read_bytes()
+    (tmp_path / "cut.copc.laz").write_bytes(data[: len(data) // 2])
+    with pytest.raises(ValueError, match="cut"):
+        recordings.las(tmp_path / "cut.copc.laz")

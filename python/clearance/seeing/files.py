@@ -116,11 +116,10 @@ def _ply(file):
 
 
 def _las(file):
-    try:
-        import laspy
-    except ImportError:
-        raise ImportError(f"clearance: a {file.suffix} file needs laspy: pip install laspy[lazrs]") from None
-    return laspy.read(str(file)).xyz, []
+    from clearance import recordings
+
+    points, origin = recordings.las(file)
+    return points + origin, []
 
 
 _readers = {
