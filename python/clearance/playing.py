@@ -235,17 +235,21 @@ class Watch:
         result = self.ask(clouds=[cloud], poses=poses)
         self._write(row, result)
         if self.check:
-            local = _seen_depth(image, lens) if kind == recordings.IMAGE else scenes.as_points(points).astype(float)
-            row.checked = by_numpy(self.robot, poses, local[self._counts(local)] @ where[:3, :3].T + where[:3, 3])
+            local = _seen_depth(image, lens) if kind == recordings.IMAGE else scenes.as_points(points)
+            # The robot is put into the sensor's frame: it has fewer numbers than the points.
+            row.checked = by_numpy(self.robot, recordings.inverse(where) @ poses, local, self._counting)
             if not agree(row):
                 row.note = f"NumPy says {row.checked:.9g} m"
         return Sight(self.robot, poses, result, seen)
 
-    def _counts(self, local):
-        """Which points count, in the sensor's frame."""
-        far = np.linalg.norm(local, axis=1)
-        near = (far >= self.nearest) & (far <= self.farthest)
-        return near & np.isfinite(far) & ((far > 0) | (not self.zero_is_missing))
+    def _counting(self, local):
+        """Those points, in the sensor's frame, that count."""
+        local = local.astype(float)
+        far = _lengths(local)
+        near = (far >= self.nearest) & (far <= self.farthest) & np.isfinite(far)
+        if self.zero_is_missing:
+            near &= far > 0
+        return local if near.all() else local[near]
 
     def _camera_pose(self, frame, stamp, values):
         # Where no transform can place the sensor, its frame may be a link of the robot.
@@ -455,26 +459,38 @@ def _seen_depth(image, lens):
     return scenes.deprojected(image, scale, lens.get("intrinsics"), lens.get("rays"))
 
 
-def by_numpy(robot, poses, points):
+def _lengths(vectors):
+    return np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
+
+
+def by_numpy(robot, poses, points, counting=None, block=1 << 17):
     """The least distance of points (n, 3) to the spheres of a robot whose parts are at poses: plain NumPy, in double.
 
-    Points that are farther from a ball around a part than the least so far are left out; the others meet every sphere.
+    counting: from a block of points to those that count; all, unless given. Points that are farther from a ball around
+    a part than the least so far are left out; the others meet every sphere.
     """
-    least = math.inf
+    parts = []
     for part, at in enumerate(np.asarray(poses, float)):
         spheres = np.asarray(robot.spheres(part), float)
-        centres = spheres[:, :3] @ at[:3, :3].T + at[:3, 3]
+        centres, radii = spheres[:, :3] @ at[:3, :3].T + at[:3, 3], spheres[:, 3]
         middle = centres.mean(0)
-        reach = (np.linalg.norm(centres - middle, axis=1) + spheres[:, 3]).max()
-        far = np.linalg.norm(points - middle, axis=1)
-        for some in (np.argsort(far)[:100], slice(None)):
-            near = points[some][far[some] - reach <= least + 1e-9]
-            step = max(1, 2_000_000 // max(1, len(centres)))
-            for first in range(0, len(near), step):
-                p, c = near[first : first + step] - middle, centres - middle  # products of small numbers lose little
-                square = (p * p).sum(1)[:, None] + (c * c).sum(1) - 2 * (p @ c.T)
-                least = min(least, (np.sqrt(np.maximum(square, 0)) - spheres[:, 3]).min())
-    return float(least) if len(points) else math.nan
+        parts.append((middle, centres - middle, radii, (_lengths(centres - middle) + radii).max()))
+    least = math.inf
+    for begin in range(0, len(points), block):  # so that a block stays in the processor's cache
+        some = points[begin : begin + block]
+        some = some if counting is None else counting(some)
+        for middle, centres, radii, reach in parts:
+            from_middle = some - middle  # products of small numbers lose little
+            far = _lengths(from_middle)
+            order = [slice(None)] if len(far) <= 100 else [np.argpartition(far, 100)[:100], slice(None)]
+            for chosen in order:
+                near = from_middle[chosen][far[chosen] - reach <= least + 1e-9]
+                step = max(1, 2_000_000 // max(1, len(centres)))
+                for first in range(0, len(near), step):
+                    p = near[first : first + step]
+                    square = (p * p).sum(1)[:, None] + (centres * centres).sum(1) - 2 * (p @ centres.T)
+                    least = min(least, (np.sqrt(np.maximum(square, 0)) - radii).min())
+    return float(least) if math.isfinite(least) else math.nan
 
 
 def agree(row):
