@@ -76,7 +76,7 @@ int main() {
                                   .binning_x = info.binning_x,
                                   .binning_y = info.binning_y});
   const clearance::ray_table table = camera.rays();                         // once; table.blind pixels have no ray
-  const auto image = table.image(depth.pixels, depth.width, depth.height);  // throws if it is not of the camera's size
+  const auto image = table.image(depth.pixels, depth.width, depth.height);  // throws if of another size
   // [camera]
   const auto to_wall = clearance::ask(cpu, part, pose, image, clearance::min_distance{});
 
