@@ -402,7 +402,7 @@ def cloud(message):
 
     ValueError with a sentence if it has no x, y and z of FLOAT32 or FLOAT64, is big-endian, or is shorter than it says.
     """
-    data = memoryview(message.data)
+    data = memoryview(message.data).cast("B")
     offsets, size, rows, columns, step, row_step = _core._cloud_layout(message, data)
     point = np.dtype({"names": ["x", "y", "z"], "formats": [f"<f{size}"] * 3, "offsets": offsets, "itemsize": step})
     if not rows or not columns:

@@ -508,13 +508,34 @@ def test_a_recording_for_rerun_has_a_gap_where_nothing_is_known(urdf, tmp_path, 
     [
         (("--report", "out.txt"), "--report writes an .html file, not out.txt"),
         (("--report", "no/folder/out.html"), "there is no folder no/folder"),
+        (("--report", "folder.html"), "folder.html cannot be written"),
+        (("--rerun", "out.mcap"), "--rerun writes an .rrd file, not out.mcap"),
         (("--worst", -1), "--worst is -1"),
         (("--margin", 0.1), "--margin is for --rerun and --report"),
     ],
 )
-def test_a_page_that_cannot_be_is_refused_before_it_is_played(urdf, drive_bag, capsys, words, says):
+def test_a_page_that_cannot_be_is_refused_before_it_is_played(
+    urdf, drive_bag, tmp_path, monkeypatch, capsys, words, says
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder.html").mkdir()
     status, out, err = played(capsys, drive_bag, "--robot", urdf, *words)
     assert status == 1 and out == "" and says in err and err.count("\n") == 1
+
+
+def test_a_table_does_not_overwrite_the_recording(urdf, tmp_path, capsys):
+    file = next(bag(tmp_path / "bag", drive(2)).glob("*.mcap"))
+    before = file.read_bytes()
+    for option in ("--csv", "--parquet"):
+        status, _, err = played(capsys, file, "--robot", urdf, option, file.parent / "." / file.name)
+        assert status == 1 and f"{option} would overwrite the recording" in err and file.read_bytes() == before
+
+
+def test_a_check_leaves_out_what_does_not_count(robot, drive_bag):
+    whole = [row.distance for row in playing.play(drive_bag, robot, check=True)]
+    rows = list(playing.play(drive_bag, robot, check=True, nearest=1.5, farthest=2.2, zero_is_missing=True))
+    assert all(playing.agree(row) and row.note == "" for row in rows)
+    assert sum(row.checked is not None and row.distance != far for row, far in zip(rows, whole, strict=True)) > 5
 
 
 def test_of_a_damaged_recording_the_page_shows_what_was_read(urdf, tmp_path, capsys):

@@ -402,6 +402,14 @@ def test_a_cloud_is_a_view_of_its_points(kind, padding):
     assert distance == pytest.approx(np.linalg.norm(points.astype(float) - [0, 0, 3], axis=-1).min() - 0.5, abs=1e-6)
 
 
+@pytest.mark.parametrize("data", [bytes, bytearray, lambda raw: memoryview(raw).cast("i")])
+def test_a_cloud_of_any_bytes_is_read(data):
+    message = cloud_message(START, "f", np.arange(12.0).reshape(4, 3))
+    expected = recordings.cloud(message).copy()
+    message.data = data(message.data.tobytes())
+    assert np.array_equal(recordings.cloud(message), expected)
+
+
 def test_a_cloud_without_points_is_empty():
     assert recordings.cloud(cloud_message(START, "f", np.zeros((0, 3)))).shape == (0,)
 

@@ -148,6 +148,7 @@ def test_what_is_not_asked_or_is_no_robot_is_a_sentence(node):
         ((), "say one topic: cloud or image"),
         (("cloud:=/a", "image:=/b"), "say one topic: cloud or image"),
         (("cloud:=/a", "urdf:=/no/arm.urdf"), "/no/arm.urdf"),
+        (("cloud:=/a", "spheres:=-1"), "spheres is -1; it is 1 or more"),
     ):
         done = node(*parameters)
         assert done.returncode == 1 and says in done.stderr

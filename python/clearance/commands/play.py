@@ -122,6 +122,11 @@ def sentence(row):
 def run(asked):
     if asked.margin is not None and not (asked.rerun or asked.report):
         raise ValueError("--margin is for --rerun and --report")
+    if asked.rerun and pathlib.Path(asked.rerun).suffix.lower() != ".rrd":
+        raise ValueError(f"--rerun writes an .rrd file, not {asked.rerun}")
+    for option, file in (("--csv", asked.csv), ("--parquet", asked.parquet)):
+        if file and pathlib.Path(file).resolve() == pathlib.Path(asked.recording).resolve():
+            raise ValueError(f"{option} would overwrite the recording")
     report.check_page(asked)
     page = report.page_file(asked.report, "--report") if asked.report else None
     options = {

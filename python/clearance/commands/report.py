@@ -7,6 +7,7 @@ rows name, the worst moments get pictures; their distances are then asked again 
 
 import csv
 import math
+import os
 import pathlib
 
 import numpy as np
@@ -139,6 +140,8 @@ def page_file(name, option="--output"):
         raise ValueError(f"{option} writes an .html file, not {output}")
     if not output.parent.is_dir():
         raise ValueError(f"{option}: there is no folder {output.parent}")
+    if output.is_dir() or not os.access(output if output.exists() else output.parent, os.W_OK):
+        raise ValueError(f"{option}: {output} cannot be written")
     return output
 
 

@@ -247,8 +247,8 @@ def scene(
 ):
     """What is to be seen of one frame.
 
-    Where the robot is, and what is seen (Seen's arguments): as in a call of Query. result: what the library answered about this frame;
-    without it, the least distance is asked. zones: thresholds in metres; points in them get the zones' colours.
+    Where the robot is, and what is seen (Seen's arguments): as in a call of Query. result: what the library answered
+    about this frame; without it, the least distance is asked. zones: thresholds in metres; points in them get the zones' colours.
     Otherwise they are coloured by their distance up to `farthest` metres (colour="distance"), or not at all ("none").
     most: how many points are drawn, evenly chosen (0: all of them); the answer is about all of them. margin: metres,
     said in the title.

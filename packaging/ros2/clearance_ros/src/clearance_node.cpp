@@ -32,10 +32,11 @@ using clearance_msgs::msg::Clearance;
 using sensor_msgs::msg::CameraInfo, sensor_msgs::msg::Image, sensor_msgs::msg::PointCloud2, sensor_msgs::msg::Range;
 using question = clearance::min_distance_per_part;
 
-auto packed_model(const clearance::io::robot& robot, std::size_t spheres) {
+auto packed_model(const clearance::io::robot& robot, std::int64_t spheres) {
+  if (spheres < 1) throw std::invalid_argument("spheres is " + std::to_string(spheres) + "; it is 1 or more");
   const auto& parts = robot.parts();
   const auto packed =
-      clearance::pack(parts | std::views::transform(&clearance::io::robot_part::mesh), {.count = spheres});
+      clearance::pack(parts | std::views::transform(&clearance::io::robot_part::mesh), {.count = std::size_t(spheres)});
   return clearance::make_model<clearance::sphere>(
       packed, [&](std::size_t k) { return clearance::part_options{.tolerance = parts[k].tessellation_error}; });
 }
@@ -71,7 +72,7 @@ class clearance_node : public rclcpp::Node {
         base_(declare_parameter<std::string>("base_frame", "base_link")),
         wait_(rclcpp::Duration::from_seconds(declare_parameter<double>("wait", 0.05))),
         robot_(clearance::io::load_robot(declare_parameter<std::string>("urdf", ""))),
-        model_(packed_model(robot_, std::size_t(declare_parameter<std::int64_t>("spheres", 2048)))),
+        model_(packed_model(robot_, declare_parameter<std::int64_t>("spheres", 2048))),
         ask_(clearance::host{}, model_, question{}),
         transforms_(get_clock()),
         listener_(transforms_) {
