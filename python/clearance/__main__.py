@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command `clearance`: what Python adds. Each file in commands/ is a subcommand: its docstring, add(parser), run(asked).
 
-One that has HANDS_ON = True gets the words that it does not know as asked.others.
+One that has HANDS_ON = True gets the words that it does not know as asked.others, and -h as asked.help.
 """
 
 import argparse
@@ -59,7 +59,8 @@ def main(arguments=None):
         if arguments and arguments[0] not in (name, "-h", "--help"):
             continue
         each = importlib.import_module(f"{commands.__name__}.{module}")
-        each.add(of.add_parser(name, help=each.__doc__.strip().splitlines()[0], description=each.__doc__, allow_abbrev=False))
+        each.add(of.add_parser(name, help=each.__doc__.strip().splitlines()[0], description=each.__doc__, allow_abbrev=False,
+                               add_help=not getattr(each, "HANDS_ON", False)))
     asked, others = parser.parse_known_args(joined(arguments))
     if others and not getattr(importlib.import_module(f"{commands.__name__}.{known[asked.command]}"), "HANDS_ON", False):
         parser.error(f"unrecognized arguments: {' '.join(others)}")

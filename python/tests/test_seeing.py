@@ -590,6 +590,13 @@ def test_a_value_that_begins_with_a_minus_is_one():
     assert joined(given) == ["report", "--base-pose=-0.5,0,1", "--joint", "a=-1", "--x", "--y=1", "-2", "-h"]
 
 
+def test_the_help_of_run_is_that_of_both_commands(tmp_path, compiled):
+    words = compiled(["what the compiled command takes"])
+    done = subprocess.run([sys.executable, "-m", "clearance", "run", "--help"], capture_output=True, text=True)
+    assert done.returncode == 0 and words() == ["run", "--help"]
+    assert "--report FILE.html" in done.stdout and done.stdout.rstrip().endswith("what the compiled command takes")
+
+
 def test_a_run_needs_the_compiled_command_and_not_this_one_again(tmp_path, monkeypatch, capsys):
     script = tmp_path / "clearance"
     script.write_text("#!/bin/sh\nexec python3 -c 'from clearance.__main__ import main' \n")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The least distance in every frame of a recording: the compiled command's `clearance run`, and one HTML page about it.
 
-All words but these go to the compiled command, which must be on the PATH: clearance run --help says what it takes.
+All words but these go to the compiled command, which must be on the PATH.
 """
 
 import argparse
@@ -18,6 +18,8 @@ def add(parser):
 
     parser.add_argument("--report", metavar="FILE.html", help="also write one page that needs nothing else")
     report.add_page(parser)
+    parser.add_argument("-h", "--help", action="store_true", help="say this, and what the compiled command takes")
+    parser.set_defaults(print_help=parser.print_help)
 
 
 def as_pictures(words):
@@ -38,6 +40,12 @@ def run(asked):
     from clearance.seeing import report as pages
 
     found = compiled_command()
+    if asked.help:
+        asked.print_help()
+        print(flush=True)
+        if found:
+            os.execv(found, [found, "run", "--help"])
+        return 0
     if found is None:
         raise ValueError("the compiled command clearance, which answers, is not on the PATH")
     if asked.report is None:
