@@ -531,6 +531,18 @@ def test_a_table_does_not_overwrite_the_recording(urdf, tmp_path, capsys):
         assert status == 1 and f"{option} would overwrite the recording" in err and file.read_bytes() == before
 
 
+def test_messages_that_something_else_has_read_give_the_same_rows(robot, drive_bag):
+    with recordings.Recording(drive_bag) as recording:
+        read = [(each.topic, each.type, each.log_time, bytes(each._data)) for each in recording.messages()]
+    np.random.default_rng(3).shuffle(order := np.arange(len(read)))
+    messages = recordings.Messages("elsewhere", [read[k] for k in order])
+    rows = list(playing.play(messages, robot, topics=["/lidar/points", "/far/image"]))
+    expected = playing.play(drive_bag, robot, topics=["/lidar/points", "/far/image"])
+    assert len(rows) == 16 and sorted(map(str, rows)) == sorted(map(str, expected))
+    with pytest.raises(ValueError, match="elsewhere has: no topic"):
+        playing.play(recordings.Messages("elsewhere", []), robot)
+
+
 def test_a_check_leaves_out_what_does_not_count(robot, drive_bag):
     whole = [row.distance for row in playing.play(drive_bag, robot, check=True)]
     rows = list(playing.play(drive_bag, robot, check=True, nearest=1.5, farthest=2.2, zero_is_missing=True))
