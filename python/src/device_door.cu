@@ -35,11 +35,13 @@ void bring(void* to, const void* from, std::size_t bytes, int device, void* stre
                         "cudaMemcpyAsync");
 }
 
+void wait(int device, void* stream) { clearance::device{device, static_cast<cudaStream_t>(stream)}.wait(); }
+
 void fetch(void* to, const void* from, std::size_t bytes, int device, void* stream) {
   const clearance::device_guard guard(device);
-  const auto its = static_cast<cudaStream_t>(stream);
-  clearance::check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, its), "cudaMemcpyAsync");
-  clearance::check_cuda(cudaStreamSynchronize(its), "cudaStreamSynchronize");
+  clearance::check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, static_cast<cudaStream_t>(stream)),
+                        "cudaMemcpyAsync");
+  wait(device, stream);
 }
 
 int holder(const void* memory) {
@@ -52,7 +54,7 @@ int holder(const void* memory) {
 }  // namespace
 
 const device_door& this_door() {
-  static const device_door door{upload, prepare_any, allocate, order, bring, fetch, holder};
+  static const device_door door{upload, prepare_any, allocate, order, bring, fetch, wait, holder};
   return door;
 }
 

@@ -17,6 +17,7 @@ struct device_door {
   void (*bring)(void* to, const void* from, std::size_t bytes, int device, void* stream);
   /// Copies to the host, and waits.
   void (*fetch)(void* to, const void* from, std::size_t bytes, int device, void* stream);
+  void (*wait)(int device, void* stream);
   /// The device whose memory this is; -1: none's.
   int (*holder)(const void* memory);
 };
