@@ -3,9 +3,20 @@
 
 import numpy as np
 import torch
-from torch.autograd.function import once_differentiable
 
 from ._core import MinDistances, Query, joint_gradients, none
+
+
+class _FirstOnly(torch.autograd.Function):
+    """Rows of a first derivative, which change with `by` in a way that is not known."""
+
+    @staticmethod
+    def forward(context, rows, *by):
+        return rows.clone()
+
+    @staticmethod
+    def backward(context, upstream):
+        raise RuntimeError("clearance: the second derivative of distances is not known")
 
 
 class _LeastDistances(torch.autograd.Function):
@@ -14,29 +25,29 @@ class _LeastDistances(torch.autograd.Function):
         values = joints.detach().to("cpu", torch.float64).numpy().copy()  # they may change before backward
         given = {} if points is None else {"points": points.detach() if isinstance(points, torch.Tensor) else points}
         result = query(joints=values, **given, **seen)
-        context.about = query.robot, values, result.of, result, seen, points
+        context.about = query.robot, values, result, seen
+        context.by = [each for each in (joints, points) if isinstance(each, torch.Tensor)]
         distances = torch.tensor(result.of["distance"].copy()).reshape(joints.shape[:-1])
         return distances.to(joints)
 
     @staticmethod
-    @once_differentiable
     def backward(context, upstream):
-        robot, values, of, result, seen, points = context.about
+        robot, values, result, seen = context.about
         by_joints = by_points = None
         if context.needs_input_grad[0]:
             rows = joint_gradients(robot, values, result, seen.get("base"), seen.get("ignore_limits", False))
             # Without a gradient the distance does not change to first order, or is not known to.
-            by_joints = torch.nan_to_num(torch.from_numpy(rows)).to(upstream) * upstream.unsqueeze(-1)
+            known = torch.nan_to_num(torch.from_numpy(rows)).to(upstream)
+            by_joints = _FirstOnly.apply(known, *context.by) * upstream.unsqueeze(-1)
         if context.needs_input_grad[1]:
-            pose = seen.get("cloud_pose")
+            of, pose, points = result.of, seen.get("cloud_pose"), context.by[-1]
             turn = np.eye(3) if pose is None else np.asarray(pose.cpu() if isinstance(pose, torch.Tensor) else pose)[:3, :3]
-            known = (of["part"] != none) & (of["cloud"] == 0) & np.isfinite(of["distance"]) & (of["distance"] != 0)
-            rows = torch.from_numpy(of["normal"][known].astype("f8") @ turn)
-            nearest = torch.from_numpy(of["point"][known].astype("i8"))
-            each = upstream.reshape(-1)[torch.from_numpy(known).to(upstream.device)].to("cpu", torch.float64)
-            by_points = torch.zeros((points.numel() // 3, 3), dtype=torch.float64)
-            by_points.index_add_(0, nearest, rows * each.unsqueeze(-1))
-            by_points = by_points.reshape(points.shape).to(points)
+            moves = (of["part"] != none) & (of["cloud"] == 0) & np.isfinite(of["distance"]) & (of["distance"] != 0)
+            rows = _FirstOnly.apply(torch.from_numpy(of["normal"][moves].astype("f8") @ turn), *context.by)
+            each = upstream.reshape(-1)[torch.from_numpy(moves).to(upstream.device)].to("cpu", torch.float64)
+            zeros = torch.zeros((points.numel() // 3, 3), dtype=torch.float64)
+            nearest = torch.from_numpy(of["point"][moves].astype("i8"))
+            by_points = zeros.index_add(0, nearest, rows * each.unsqueeze(-1)).reshape(points.shape).to(points)
         return by_joints, by_points, None, None
 
 
