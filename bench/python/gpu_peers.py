@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How far is each of 300,000 points from a robot, and how far the nearest: this library, Warp and torch on one GPU.
 
-  bench/python/gpu_peers.py [--device cuda:0] [--urdf ROBOT.urdf] [--json FILE]
+  bench/python/gpu_peers.py [--device cuda:0] [--points 300000] [--urdf ROBOT.urdf] [--json FILE]
 
 Two robots of the same shape: of triangles, as Warp's mesh_query_point takes them, and of spheres, as torch.cdist does.
 The points lie on the device, and answers stay there; a time is that of a call until the device has finished: the median
@@ -9,8 +9,8 @@ of up to 101, after ten to warm up. All that is timed runs in turn, call after c
 all of them. "worst" is the largest difference to our distances on the CPU, which are exact; more than 10 um fails, or
 2 cm of cdist's matrix product. Ours takes the parts' poses in every call; the others take one mesh or one list of
 spheres in the world ("build": what they do when the robot moves). Every call is about the same frame, which is the best
-case of what we remember from the last one. A library that is not installed is left out, and named. --device cpu tries
-the program without a GPU.
+case of what we remember from the last one. A library that is not installed is left out, and named. --device cpu
+--points 3000 tries the program without a GPU.
 """
 
 import argparse
@@ -174,6 +174,7 @@ def main(arguments):
     parser.add_argument("--device", default="cuda:0")
     parser.add_argument("--urdf", type=pathlib.Path)
     parser.add_argument("--json", type=pathlib.Path)
+    parser.add_argument("--points", type=int, default=300_000)
     parser.add_argument("--seconds", type=float, default=20, help="for each robot")
     given = parser.parse_args(arguments)
     robot = clearance.Robot.from_urdf(str(given.urdf), model="triangles") if given.urdf else None
@@ -184,6 +185,7 @@ def main(arguments):
     spheres = np.concatenate([np.column_stack([s[:, :3] @ pose[:3, :3].T + pose[:3, 3], s[:, 3]])
                               for s, pose in ((filled.spheres(k), poses[k]) for k in range(len(filled)))]).astype("f4")
     points = kinect_like(vertices.mean(axis=0))
+    points = np.ascontiguousarray(points[::max(1, len(points) // given.points)][:given.points])
     try:
         name = device_says(given.device)
     except ImportError:
