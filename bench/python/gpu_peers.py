@@ -57,8 +57,8 @@ def ours(robot, poses, points, device):
             def read(r, first=first):
                 its = r[first].numpy()
                 return its if first == "distance" else its["distance"]
-            made.append(Timed(f"clearance {name}, enqueued", lambda ask=ask, out=answer: ask.enqueue(there, poses=poses, out=out),
-                              answer.wait, read))
+            made.append(Timed(f"clearance {name}, enqueued",
+                              lambda ask=ask, out=answer: ask.enqueue(there, poses=poses, out=out), answer.wait, read))
         made.append(Timed(f"clearance {name}, to the host", lambda ask=ask: ask(there, poses=poses), lambda: None,
                           lambda r: np.atleast_1d(r.distance)))
     return made

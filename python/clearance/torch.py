@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Clearance as a differentiable function of joints and points, for PyTorch (which is optional)."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 import torch
 
-from ._core import MinDistances, Query, joint_gradients, none
+from ._core import MinDistances, MinDistancesResult, Query, joint_gradients, none
 
 
 class _FirstOnly(torch.autograd.Function):
@@ -51,7 +55,7 @@ class _LeastDistances(torch.autograd.Function):
         return by_joints, by_points, None, None
 
 
-def least_distances(query, joints, points=None, **seen):
+def least_distances(query: Query[MinDistancesResult], joints: torch.Tensor, points: Any = None, **seen: Any) -> torch.Tensor:
     """The least distance of each configuration: joints (..., joints), floating, to distances (...), metres.
 
     query: a Query of MinDistances. points, and seen (cloud_pose, depth, clouds, base, and so on) as for the query.

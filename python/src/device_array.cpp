@@ -58,14 +58,16 @@ void copied_there(device_array* self, nb::handle given, const std::string& devic
   const nb::gil_scoped_acquire python;
   const auto strides = strides_of(shape, nb::cast<std::size_t>(dtype.attr("itemsize")));
   auto* const data = static_cast<std::byte*>(memory.get());
-  new (self) device_array{data, std::move(shape), strides, dtype, there, nullptr, std::move(memory), nullptr};
+  auto kept = std::make_shared<device_memory>(device_memory{std::move(memory), nullptr, nullptr});
+  new (self) device_array{data, std::move(shape), strides, dtype, there, std::move(kept)};
 }
 
 nb::object on_host(const device_array& a) {
   std::vector<std::uint8_t> bytes(extent(a));
   if (!bytes.empty()) {
+    const device_memory its = *a.memory;  // as it is now
     const nb::gil_scoped_release others;
-    open_device_door().fetch(bytes.data(), a.data, bytes.size(), a.device, a.stream);
+    open_device_door().fetch(bytes.data(), a.data, bytes.size(), a.device, its.stream);
   }
   const std::size_t size = bytes.size();
   const nb::module_ numpy = nb::module_::import_("numpy");
@@ -97,7 +99,7 @@ nb::dict cuda_interface(const device_array& a) {
   made["shape"] = tuple_of(a.shape), made["strides"] = tuple_of(a.strides);
   made["typestr"] = a.dtype.attr("str"), made["descr"] = a.dtype.attr("descr");
   made["data"] = nb::make_tuple(reinterpret_cast<std::uintptr_t>(a.data), false);
-  const auto stream = reinterpret_cast<std::uintptr_t>(a.stream);
+  const auto stream = reinterpret_cast<std::uintptr_t>(a.memory->stream);
   made["stream"] = stream == 0 ? 1 : stream;  // the legacy default stream
   return made;
 }
@@ -117,7 +119,7 @@ nb::object dlpack_of(nb::handle_t<device_array> self, nb::handle stream, const n
   const auto item = std::int64_t(item_of(a));
   std::vector<std::int64_t> steps;
   for (const std::int64_t s : a.strides) steps.push_back(s / item);
-  if (then != -1) open_device_door().order(a.stream, reinterpret_cast<void*>(then), a.device);
+  if (then != -1) open_device_door().order(a.memory->stream, reinterpret_cast<void*>(then), a.device);
   const nb::ndarray<nb::array_api> made(a.data, a.shape.size(), a.shape.data(), self, steps.data(),
                                         nb::dlpack::dtype{std::uint8_t(code), std::uint8_t(8 * item), 1},
                                         nb::device::cuda::value, a.device);
@@ -142,9 +144,10 @@ std::string device_name(int device) {
 device_array make_device_array(nb::object dtype, std::size_t count, int device, void* stream,
                                std::shared_ptr<void> writer) {
   const auto item = nb::cast<std::size_t>(dtype.attr("itemsize"));
-  auto memory = open_device_door().allocate(count * item, device);
-  auto* const data = static_cast<std::byte*>(memory.get());
-  return {data, {count}, {std::int64_t(item)}, std::move(dtype), device, stream, std::move(memory), std::move(writer)};
+  auto bytes = open_device_door().allocate(count * item, device);
+  auto* const data = static_cast<std::byte*>(bytes.get());
+  auto memory = std::make_shared<device_memory>(device_memory{std::move(bytes), std::move(writer), stream});
+  return {data, {count}, {std::int64_t(item)}, std::move(dtype), device, std::move(memory)};
 }
 
 std::byte* writable_there(nb::handle given, const std::string& argument, nb::handle dtype, std::size_t& count,
@@ -155,7 +158,6 @@ std::byte* writable_there(nb::handle given, const std::string& argument, nb::han
     throw std::invalid_argument("clearance: " + argument + " is " + wanted + ", not " + but);
   };
   const auto item = nb::cast<std::size_t>(dtype.attr("itemsize"));
-  device_array own;
   const device_array* known = nullptr;
   seen_array seen;
   if (nb::try_cast(given, known) && known) {

@@ -13,15 +13,20 @@
 
 namespace nb = nanobind;
 
-/// What Python's DeviceArray holds: a view, and what keeps its memory and its stream.
+/// Memory of a device that arrays view, and who writes it.
+struct device_memory {
+  std::shared_ptr<void> bytes, writer;
+  void* stream = nullptr;  ///< In which it is written.
+};
+
+/// What Python's DeviceArray holds.
 struct device_array {
   std::byte* data = nullptr;
   std::vector<std::size_t> shape;
   std::vector<std::int64_t> strides;  // bytes
   nb::object dtype;
   int device = 0;
-  void* stream = nullptr;  ///< In which it is written.
-  std::shared_ptr<void> memory, writer;
+  std::shared_ptr<device_memory> memory;
 };
 
 /// "cuda:0"; "cpu" is on_the_host. Throws std::invalid_argument for another text.
@@ -32,8 +37,8 @@ std::string device_name(int device);
 device_array make_device_array(nb::object dtype, std::size_t count, int device, void* stream,
                                std::shared_ptr<void> writer);
 
-/// The memory of an array that a device may write. Throws std::invalid_argument, which names it, unless it lies on the
-/// device, without gaps, and has `count` values of that dtype (any number: if count is none).
+/// The memory of an array of Python that a device may write. Throws std::invalid_argument, which names the array,
+/// unless it lies there, without gaps, and has `count` values of this dtype; if `any_count`, `count` becomes how many.
 std::byte* writable_there(nb::handle given, const std::string& argument, nb::handle dtype, std::size_t& count,
                           bool any_count, int device);
 

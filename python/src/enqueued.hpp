@@ -6,6 +6,8 @@
 #include "device_entry.hpp"
 #include "values.hpp"
 
+#include <nanobind/stl/optional.h>
+
 /// An answer on a device, which may be on its way: arrays by name, and what the device reads until then.
 struct enqueued_answer {
   nb::dict arrays;
@@ -14,6 +16,7 @@ struct enqueued_answer {
   void* stream = nullptr;
   std::shared_ptr<void> writer;
   nb::object kept;
+  std::vector<std::shared_ptr<device_memory>> rewritten;  ///< Memory that others wrote before.
 };
 
 /// What a question is told to say how much room it needs: stands for pairwise::asked. A room is a number, not memory.
@@ -95,6 +98,7 @@ typename out_of<Q>::type arrays_for(const Q& question, const room_sizes& sizes, 
       pointer = reinterpret_cast<value*>(writable_there(one, "out[\"" + std::string(array.name) + "\"]",
                                                         dtype_of<value>(), count, any, answer.device));
       if constexpr (is_list) to.capacity = count;
+      if (device_array* its = nullptr; nb::try_cast(one, its) && its && !reads) answer.rewritten.push_back(its->memory);
       answer.arrays[array.name] = one;
       return;
     }

@@ -75,12 +75,13 @@ class query_of final : public any_query {
         const nb::gil_scoped_release others;
         return take();
       }();
-      enqueued_answer answer{{}, {}, device_, mine->stream(), mine, std::move(kept)};
+      enqueued_answer answer{{}, {}, device_, mine->stream(), mine, std::move(kept), {}};
       const auto to = arrays_for(asked, sizes, capacity, out, *mine, answer);
       {
         const nb::gil_scoped_release others;
         answer.certain = mine->enqueue(poses, clouds, asked, to, stream);
       }
+      for (const auto& memory : answer.rewritten) memory->stream = answer.stream, memory->writer = mine;
       give_back(mine);
       return nb::cast(std::move(answer));
     } else {

@@ -253,9 +253,12 @@ def test_images_on_the_device_are_read_there(small, rng, kind):
     assert same_as(ask.enqueue(**on_device, poses=poses)["result"].numpy()[0], expected)
 
 
-@pytest.mark.parametrize("array", [np.arange(12, dtype="f4").reshape(3, 4), np.arange(5, dtype="u2"), np.float64(2.5), np.zeros((0, 3)),
-                                   np.arange(24, dtype="i8").reshape(2, 3, 4)[:, ::2], np.array([True, False]),
-                                   np.array([(1, 2.5)], [("a", "u1"), ("b", "f8")])], ids=lambda a: str(np.asarray(a).dtype))
+ARRAYS = [np.arange(12, dtype="f4").reshape(3, 4), np.arange(5, dtype="u2"), np.float64(2.5), np.zeros((0, 3), "i2"),
+          np.arange(24, dtype="i8").reshape(2, 3, 4)[:, ::2], np.array([True, False]),
+          np.array([(1, 2.5)], [("a", "u1"), ("b", "f8")])]
+
+
+@pytest.mark.parametrize("array", ARRAYS, ids=lambda a: str(np.asarray(a).dtype))
 def test_a_copy_comes_back_as_it_was(array):
     there = clearance.DeviceArray(array, GPU)
     array = np.asarray(array)
@@ -427,9 +430,24 @@ def test_another_stream_waits_for_what_it_takes_by_dlpack(small, driver):
     assert copied.numpy().tobytes() == expected.tobytes()
 
 
+def test_the_host_waits_for_the_last_one_that_writes_an_array(small, driver):
+    robot, poses, points = small
+    expected = clearance.Query(robot, clearance.Distances())(points, poses=poses).distance
+    one, other = (clearance.Query(robot, clearance.Distances(), device=GPU) for _ in range(2))
+    stream, there = driver.stream(), clearance.DeviceArray(points)
+    answer = one.enqueue(clearance.DeviceArray(points + 1), poses=poses)
+    distance = answer["distance"]
+    other.enqueue(there, poses=poses)
+    driver.delay(stream, 0.1)
+    other.enqueue(there, poses=poses, out=answer, stream=stream)
+    assert not driver.is_done(stream)
+    assert distance.numpy().tobytes() == expected.tobytes()
+
+
 def test_python_runs_while_a_call_waits_for_the_device(small, driver):
     robot, poses, points = small
-    ask, stream, there = clearance.Query(robot, clearance.MinDistance(), device=GPU), driver.stream(), clearance.DeviceArray(points)
+    ask, there = clearance.Query(robot, clearance.MinDistance(), device=GPU), clearance.DeviceArray(points)
+    stream = driver.stream()
     ask(there, poses=poses)
     driver.delay(stream, 0.3)
     work = threading.Thread(target=lambda: ask(there, poses=poses, stream=stream))
@@ -491,8 +509,9 @@ def test_enqueue_takes_what_lies_on_the_device(small):
     here = clearance.Query(robot, clearance.MinDistance())
     refused(lambda: here.enqueue(there, poses=poses), "enqueue is for a query on a CUDA device")
     refused(lambda: here(there, poses=poses), "points lies on cuda:0", "asks on the cpu")
-    refused(lambda: clearance.Query(robot, clearance.MinDistance(), device="cuda:63"), "invalid device ordinal", kind=RuntimeError)
-    refused(lambda: clearance.DeviceArray(points, "cuda:63"), "invalid device ordinal", kind=RuntimeError)
+    for call in (lambda: clearance.Query(robot, clearance.MinDistance(), device="cuda:63"),
+                 lambda: clearance.DeviceArray(points, "cuda:63")):
+        refused(call, "invalid device ordinal", kind=RuntimeError)
     assert same_as(ask.enqueue(there, poses=poses)["result"].numpy()[0], ask(points, poses=poses))
 
 
@@ -515,12 +534,13 @@ def test_arrays_to_write_are_checked(small):
     robot, poses, points = small
     there, n = clearance.DeviceArray(points), len(points)
     ask = clearance.Query(robot, clearance.Distances(), device=GPU)
-    for wrong, said in ((np.zeros(n, "f4"), "one on the cpu"), (clearance.DeviceArray(np.zeros(n - 1, "f4")), "(4999,)"),
-                        (clearance.DeviceArray(np.zeros(n, "f8")), "float64"), (clearance.DeviceArray(np.zeros(n, "u4")), "uint32"),
-                        (clearance.DeviceArray(np.zeros((n, 2), "f4")), "(5000, 2)"), ("text", "str"), (None, "None")):
-        refused(lambda: ask.enqueue(there, poses=poses, out={"distance": wrong}), 'out["distance"] is an array of 5000 values', said)
-    refused(lambda: ask.enqueue(there, poses=poses, out={"distances": there}), "out['distances']", "it writes: distance, counts")
-    refused(lambda: ask.enqueue(there, poses=poses, out={"part": there}), "out['part']", "it writes: distance, counts")
+    wrong_ones = [(clearance.DeviceArray(np.zeros(shape, kind)), said) for shape, kind, said in (
+        (n - 1, "f4", "(4999,)"), (n, "f8", "float64"), (n, "u4", "uint32"), ((n, 2), "f4", "(5000, 2)"))]
+    for wrong, said in (*wrong_ones, (np.zeros(n, "f4"), "one on the cpu"), ("text", "str"), (None, "None")):
+        refused(lambda: ask.enqueue(there, poses=poses, out={"distance": wrong}),
+                'out["distance"] is an array of 5000 values', said)
+    for name in ("distances", "part"):  # the second one only if `which` is set
+        refused(lambda: ask.enqueue(there, poses=poses, out={name: there}), f"out['{name}']", "it writes: distance, counts")
     refused(lambda: ask.enqueue(there, poses=poses, out=there), "out is a mapping")
     refused(lambda: ask.enqueue(there, poses=poses, capacity=5), "capacity is of pairs, and Distances lists none")
     gaps = clearance.DeviceArray(np.zeros(n, [("a", "f4"), ("b", "f4")]))["a"]
@@ -543,8 +563,9 @@ def test_pairs_beyond_the_capacity_are_counted(small):
     assert few["pairs"].shape == (10,) and few["count"].numpy()[0] == len(expected)
     known = {pair.tobytes() for pair in expected}
     assert all(pair.tobytes() in known for pair in few["pairs"].numpy())
-    enough = ask.enqueue(there, poses=poses, out={"pairs": clearance.DeviceArray(np.zeros(len(expected) + 5, expected.dtype))})
-    assert np.sort(enough["pairs"].numpy()[:len(expected)], order=["part", "distance", "point"]).tobytes() == expected.tobytes()
+    room = clearance.DeviceArray(np.zeros(len(expected) + 5, expected.dtype))
+    its = ask.enqueue(there, poses=poses, out={"pairs": room})["pairs"].numpy()[:len(expected)]
+    assert np.sort(its, order=["part", "distance", "point"]).tobytes() == expected.tobytes()
     for wrong in (-1, 1.5, "many"):
         refused(lambda: ask.enqueue(there, poses=poses, capacity=wrong), "capacity is a whole number")
 
@@ -560,8 +581,9 @@ def test_minima_on_the_device_lead_to_witnesses(small):
     refused(lambda: ask.enqueue(there, poses=poses), "minima of PartWitnesses has 0 values, and there are 3 parts")
 
 
-@pytest.mark.parametrize("wrong, said, kind", [("0", "stream is an integer", TypeError), (1.5, "stream is an integer", TypeError),
-                                               (-2, "stream is -2", ValueError), (object(), "stream is an integer", TypeError)])
+@pytest.mark.parametrize("wrong, said, kind", [
+    ("0", "stream is an integer", TypeError), (1.5, "stream is an integer", TypeError), (-2, "stream is -2", ValueError),
+    (object(), "stream is an integer", TypeError)])
 def test_what_is_no_stream(small, wrong, said, kind):
     robot, poses, points = small
     there, ask = clearance.DeviceArray(points), clearance.Query(robot, clearance.MinDistance(), device=GPU)
