@@ -14,6 +14,7 @@ import time
 import numpy as np
 import pytest
 from conftest import ARM, random_robot, rigid
+from test_errors import refused
 from test_questions import questions
 
 import clearance
@@ -489,13 +490,6 @@ def test_many_threads_ask_and_enqueue_one_query(rng):
 
 
 # ---- what is refused ---------------------------------------------------------------------------------------------------
-
-
-def refused(call, *said, kind=ValueError):
-    with pytest.raises(kind) as error:
-        call()
-    for words in said:
-        assert words in str(error.value), f"{words!r} is not in {error.value}"
 
 
 def test_enqueue_takes_what_lies_on_the_device(small):
