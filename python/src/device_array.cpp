@@ -118,7 +118,13 @@ nb::object dlpack_of(nb::handle_t<device_array> self, nb::handle stream, const n
     throw nb::type_error(("stream is an integer or None, not " + nb::cast<std::string>(nb::repr(stream))).c_str());
   const auto item = std::int64_t(item_of(a));
   std::vector<std::int64_t> steps;
-  for (const std::int64_t s : a.strides) steps.push_back(s / item);
+  for (const std::int64_t s : a.strides) {
+    if (s % item != 0)
+      throw nb::buffer_error(("clearance: DLPack has no steps of " + std::to_string(s) + " bytes between values of " +
+                              std::to_string(item) + "; __cuda_array_interface__ has")
+                                 .c_str());
+    steps.push_back(s / item);
+  }
   if (then != -1) open_device_door().order(a.memory->stream, reinterpret_cast<void*>(then), a.device);
   const nb::ndarray<nb::array_api> made(a.data, a.shape.size(), a.shape.data(), self, steps.data(),
                                         nb::dlpack::dtype{std::uint8_t(code), std::uint8_t(8 * item), 1},

@@ -8,6 +8,12 @@
 
 #include <nanobind/stl/optional.h>
 
+/// A NumPy dtype, of a plain number too.
+template <class T>
+nb::object numpy_dtype() {
+  return nb::module_::import_("numpy").attr("dtype")(dtype_of<T>());
+}
+
 /// An answer on a device, which may be on its way: arrays by name, and what the device reads until then.
 struct enqueued_answer {
   nb::dict arrays;
@@ -96,13 +102,13 @@ typename out_of<Q>::type arrays_for(const Q& question, const room_sizes& sizes, 
       const nb::object one = there[array.name];
       const bool any = is_list && !capacity;
       pointer = reinterpret_cast<value*>(writable_there(one, "out[\"" + std::string(array.name) + "\"]",
-                                                        dtype_of<value>(), count, any, answer.device));
+                                                        numpy_dtype<value>(), count, any, answer.device));
       if constexpr (is_list) to.capacity = count;
       if (device_array* its = nullptr; nb::try_cast(one, its) && its && !reads) answer.rewritten.push_back(its->memory);
       answer.arrays[array.name] = one;
       return;
     }
-    device_array made = make_device_array(dtype_of<value>(), count, answer.device, answer.stream, answer.writer);
+    device_array made = make_device_array(numpy_dtype<value>(), count, answer.device, answer.stream, answer.writer);
     if constexpr (reads) {  // what stands in the question
       if (question.minima.size() != count)
         throw std::invalid_argument(std::string("clearance: ") + array.name + " of " + declared<Q>::name + " has " +

@@ -187,7 +187,8 @@ struct query_object {
                                     device_name(device) + "\") or the like; a call copies by itself");
       made.on_device |= cloud.device != on_the_host;
       made.seen.push_back(near_robot(cloud, places));
-      made.kept.append(nb::make_tuple(cloud.kept, cloud.also_kept));
+      for (const nb::object& memory : {cloud.kept, cloud.also_kept})
+        if (memory) made.kept.append(memory);
     };
     if (!points.is_none()) {
       cloud_object* ready = nullptr;
