@@ -206,15 +206,17 @@ void bind_device_array(nb::module_& m) {
           "shape", [](const device_array& a) { return tuple_of(a.shape); },
           nb::sig("def shape(self) -> tuple[int, ...]"))
       .def_prop_ro(
-          "dtype", [](const device_array& a) { return a.dtype; }, nb::sig("def dtype(self) -> numpy.dtype[typing.Any]"))
+          "dtype", [](const device_array& a) { return a.dtype; }, nb::sig("def dtype(self) -> typing.Any"))
       .def_prop_ro("device", [](const device_array& a) { return device_name(a.device); })
       .def("numpy", &on_host, "A copy on the host, after what is enqueued has been written.",
            nb::sig("def numpy(self) -> numpy.typing.NDArray[typing.Any]"))
       .def("__getitem__", &field_of, nb::arg("field"), nb::sig("def __getitem__(self, field: str) -> DeviceArray"))
-      .def("__array__",
-           [](const device_array&, const nb::args&, const nb::kwargs&) -> nb::object {
-             throw nb::type_error("clearance: this array lies on a device; array.numpy() copies it");
-           })
+      .def(
+          "__array__",
+          [](const device_array&, const nb::args&, const nb::kwargs&) -> nb::object {
+            throw nb::type_error("clearance: this array lies on a device; array.numpy() copies it");
+          },
+          nb::sig("def __array__(self, *given: typing.Any, **named: typing.Any) -> typing.NoReturn"))
       .def_prop_ro("__cuda_array_interface__", &cuda_interface,
                    nb::sig("def __cuda_array_interface__(self) -> dict[str, typing.Any]"))
       .def("__dlpack__", &dlpack_of, nb::arg("stream").none() = nb::none(), nb::arg("others"),
