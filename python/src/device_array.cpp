@@ -150,6 +150,9 @@ std::string device_name(int device) {
 device_array make_device_array(nb::object dtype, std::size_t count, int device, void* stream,
                                std::shared_ptr<void> writer) {
   const auto item = nb::cast<std::size_t>(dtype.attr("itemsize"));
+  if (count > (std::size_t(1) << 48) / item)
+    throw std::invalid_argument("clearance: no device has room for " + std::to_string(count) + " values of " +
+                                std::to_string(item) + " bytes");
   auto bytes = open_device_door().allocate(count * item, device);
   auto* const data = static_cast<std::byte*>(bytes.get());
   auto memory = std::make_shared<device_memory>(device_memory{std::move(bytes), std::move(writer), stream});
@@ -158,7 +161,7 @@ device_array make_device_array(nb::object dtype, std::size_t count, int device, 
 
 std::byte* writable_there(nb::handle given, const std::string& argument, nb::handle dtype, std::size_t& count,
                           bool any_count, int device) {
-  const std::string wanted = "an array of " + (any_count ? std::string("any number") : std::to_string(count)) +
+  const std::string wanted = "an array of " + (any_count ? std::string("any number of") : std::to_string(count)) +
                              " values of dtype " + text_of(dtype) + " on " + device_name(device) + ", without gaps";
   const auto refuse = [&](const std::string& but) {
     throw std::invalid_argument("clearance: " + argument + " is " + wanted + ", not " + but);
@@ -199,7 +202,7 @@ void bind_device_array(nb::module_& m) {
       "An array in a CUDA device's memory, which it owns: for torch, CuPy, JAX and Numba by DLPack and "
       "__cuda_array_interface__. array[\"distance\"] views a field of records. Its memory is given back with the last "
       "view, which waits for the device.")
-      .def("__init__", &copied_there, nb::arg("array"), nb::arg("device") = "cuda:0",
+      .def("__init__", &copied_there, nb::arg("array").none(), nb::arg("device") = "cuda:0",
            "Copies an array of numbers or records from the host.",
            nb::sig("def __init__(self, array: numpy.typing.ArrayLike, device: str = 'cuda:0') -> None"))
       .def_prop_ro(

@@ -302,7 +302,7 @@ def test_fields_are_views(small):
 
 
 @pytest.mark.parametrize("wrong, said", [
-    (np.array(["a"]), "dtype <U1"), (np.array([None]), "dtype object"), (np.zeros(3, ">f4"), "dtype >f4"),
+    (np.array(["a"]), "dtype <U1"), (np.array([None]), "dtype object"), (None, "dtype object"), (np.zeros(3, ">f4"), "dtype >f4"),
     (np.zeros(2, "c8"), "dtype complex64")])
 def test_what_no_device_knows_is_not_copied(wrong, said):
     with pytest.raises(ValueError, match=f"array is one of numbers or records.*{said}"):
@@ -568,6 +568,9 @@ def test_pairs_beyond_the_capacity_are_counted(small):
     assert np.sort(its, order=["part", "distance", "point"]).tolist() == expected.tolist()
     for wrong in (-1, 1.5, "many"):
         refused(lambda: ask.enqueue(there, poses=poses, capacity=wrong), "capacity is a whole number")
+    refused(lambda: ask.enqueue(there, poses=poses, capacity=10**18), "no device has room for 1000000000000000000 values")
+    none_fits = ask.enqueue(there, poses=poses, capacity=0)
+    assert none_fits["pairs"].numpy().shape == (0,) and none_fits["count"].numpy()[0] == len(expected)
 
 
 def test_minima_on_the_device_lead_to_witnesses(small):
