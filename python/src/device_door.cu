@@ -64,5 +64,7 @@ std::string no_device() {
   const cudaError_t error = cudaGetDeviceCount(&count);
   if (error == cudaSuccess && count > 0) return {};
   cudaGetLastError();
+  int driver = 0;
+  if (cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0) return "there is no NVIDIA driver";
   return error == cudaSuccess ? "there is no CUDA device" : cudaGetErrorString(error);
 }
