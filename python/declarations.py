@@ -47,7 +47,7 @@ def comment(lines, at):
 class Declared:
     def __init__(self, kind, name, doc, header):
         self.kind, self.name, self.doc, self.header = kind, name, doc, header
-        self.members, self.methods, self.question, self.values = [], [], False, []
+        self.members, self.methods, self.question, self.values, self.out = [], [], False, [], None
 
 
 def join_member(lines, at):
@@ -94,6 +94,12 @@ def read_members(lines, at, made):
             seen = False
         elif line.startswith("  using result = "):
             made.question = True
+        elif m := re.match(r"  using (out|searched) = (.*?);", line):
+            made.out = m[2] if m[1] == "out" else "of*"
+        elif line == "  struct out {":
+            made.out = []
+            while lines[at := at + 1] != "  };":
+                made.out.append(lines[at])
         elif seen and (m := METHOD.match(line)) and re.fullmatch(r"((std::size_t|double|real) \w+(, )?)*", m[3]):
             if not lines[at - 1].strip().startswith("template"):
                 made.methods.append((m[2], comment(lines, at), m[3].split(", ") if m[3] else []))
@@ -112,6 +118,23 @@ def words(text):
 
 def quoted(text):
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("`", "") + '"'
+
+
+def out_arrays(out, all_of, to="to"):
+    """The (name, expression) of each array where a device writes: the pointers of `out`, and of what it is made of."""
+    if isinstance(out, str):
+        if out.endswith("*"):
+            return [("of" if out == "of*" else "result", to)]
+        return out_arrays(all_of[out.split("::")[0]].out, all_of, to)
+    arrays = []
+    for line in out:
+        if m := re.match(r"\s+(?:const )?[\w: ]+\* (\w+)(?: = nullptr)?;", line):
+            arrays.append((m[1], f"{to}.{m[1]}"))
+        elif (m := re.match(r"\s+(\w+) (\w+);", line)) and m[1] in all_of:
+            header = (include_folder / all_of[m[1]].header).read_text()
+            body = header[header.index(f"struct {m[1]} {{"):].split("\n};")[0].splitlines()[1:]
+            arrays += out_arrays(body, all_of, f"{to}.{m[2]}")
+    return arrays
 
 
 def reachable(all_of):
@@ -133,7 +156,7 @@ def reachable(all_of):
     return [d for d in all_of.values() if d.name in chosen]
 
 
-def write(chosen, output):
+def write(chosen, all_of, output):
     headers = sorted({str(d.header) for d in chosen})
     text = "// Written by declarations.py from the headers' own words.\n#pragma once\n\n"
     text += "".join(f"#include <{h}>\n" for h in headers)
@@ -157,7 +180,12 @@ def write(chosen, output):
                  f"  static constexpr const char *name = {quoted(python_name(d.name))}, *doc = {quoted(d.doc)};\n"
                  f"  static constexpr bool question = {str(d.question).lower()};\n"
                  f"  static constexpr auto members = std::make_tuple({members});\n"
-                 f"  static constexpr auto methods = std::make_tuple({methods});\n}};\n")
+                 f"  static constexpr auto methods = std::make_tuple({methods});\n")
+        if d.question and d.out:
+            arrays = ", ".join(f"out_as{{{quoted(name)}, [](auto& to) -> auto& {{ return {at}; }}}}"
+                               for name, at in out_arrays(d.out, all_of))
+            text += f"  static constexpr auto out = std::make_tuple({arrays});\n"
+        text += "};\n"
     text += "\n/// Calls `f.template operator()<T>()` for each.\ntemplate <class F>\nvoid for_each_declared(F f) {\n"
     text += "".join(f"  f.template operator()<clearance::{d.name}>();\n" for d in chosen)
     text += "}\n"
@@ -179,4 +207,4 @@ if __name__ == "__main__":
     for path in sorted((include_folder / "clearance").rglob("*.hpp")):
         if "io" not in path.parts:
             found |= {d.name: d for d in read(path, include_folder)}
-    write(reachable(found), out)
+    write(reachable(found), found, out)

@@ -1,7 +1,7 @@
 # Written by python/stubs.
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 import enum
-from typing import Generic, TypeVar, overload
+from typing import Any, Generic, NoReturn, TypeVar, overload
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
@@ -1105,6 +1105,11 @@ class Query(Generic[Answer]):
         Asks about one frame and waits for the answer. Where the robot is: joints (joints,) or {name: value}, with base (world-from-base); or poses (parts, 4, 4), world-from-part. Questions about many configurations take joints (..., joints) or poses (..., parts, 4, 4). What is seen: points with cloud_pose; depth with intrinsics or rays and camera_pose; or clouds, a sequence of points(...) and depth_image(...). question: other options for this call. Raises ValueError with a sentence that names the argument.
         """
 
+    def enqueue(self, points: object | None = None, joints: object | None = None, *, poses: object | None = None, base: object | None = None, cloud_pose: object | None = None, depth: object | None = None, intrinsics: object | None = None, rays: object | None = None, depth_scale: object | None = None, camera_pose: object | None = None, clouds: object | None = None, out: object | None = None, capacity: object | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False) -> DeviceAnswer:
+        """
+        The same on a device, without waiting: clouds are arrays there, and so is the answer, which work in stream waits for. stream: an integer (-1: you see to the order; 1, 2, or a pointer), or one of torch or CuPy; None: the legacy default one. out: arrays to write, by name, such as the last answer. capacity: of pairs. Raises ValueError as a call.
+        """
+
     @property
     def question(self) -> object: ...
 
@@ -1113,6 +1118,61 @@ class Query(Generic[Answer]):
 
     @property
     def device(self) -> str: ...
+
+class DeviceArray:
+    """
+    An array in a CUDA device's memory, which it owns: for torch, CuPy, JAX and Numba by DLPack and __cuda_array_interface__. array["distance"] views a field of records. Its memory is given back with the last view, which waits for the device.
+    """
+
+    def __init__(self, array: ArrayLike, device: str = 'cuda:0') -> None:
+        """Copies an array of numbers or records from the host."""
+
+    @property
+    def shape(self) -> tuple[int, ...]: ...
+
+    @property
+    def dtype(self) -> Any: ...
+
+    @property
+    def device(self) -> str: ...
+
+    def numpy(self) -> NDArray[Any]:
+        """A copy on the host, after what is enqueued has been written."""
+
+    def __getitem__(self, field: str) -> DeviceArray: ...
+
+    def __array__(self, *given: Any, **named: Any) -> NoReturn: ...
+
+    @property
+    def __cuda_array_interface__(self) -> dict[str, Any]: ...
+
+    def __dlpack__(self, stream: int | None = None, **others: Any) -> Any: ...
+
+    def __dlpack_device__(self) -> tuple[int, int]: ...
+
+    def __repr__(self) -> str: ...
+
+class DeviceAnswer:
+    """
+    What Query.enqueue returns: the arrays that a device writes, by the names that C++ has. It may still be on its way; work in the stream that was given waits for it, and so does .numpy() of an array.
+    """
+
+    def __getitem__(self, name: str) -> Any: ...
+
+    def keys(self) -> list[str]: ...
+
+    def __iter__(self) -> Iterator[str]: ...
+
+    def __len__(self) -> int: ...
+
+    @property
+    def certain(self) -> DistanceCertainty | None:
+        """How certain each distance is, where a question says it; or None."""
+
+    def wait(self) -> None:
+        """Waits until it is written."""
+
+    def __repr__(self) -> str: ...
 
 def joint_gradients(robot: Robot, joints: object, result: object, base: object | None = None, ignore_limits: bool = False) -> NDArray[numpy.float64]:
     """

@@ -7,8 +7,9 @@ def door():
     try:
         from . import _cuda
     except ImportError as error:
-        raise ImportError("clearance: this installation has no GPU part (it was built without nvcc, or it does not load: "
-                          f"{error}); device=\"cpu\" works") from None
+        missing = isinstance(error, ModuleNotFoundError) or "cannot import name" in str(error)
+        why = "is not in this installation; CLEARANCE_CUDA=1 pip install . builds it" if missing else f"does not load: {error}"
+        raise ImportError(f"clearance: the GPU part {why}; device=\"cpu\" works") from None
     if why := _cuda.no_device():
         raise RuntimeError(f"clearance: no CUDA device can be used: {why}; device=\"cpu\" works")
     return _cuda.door()

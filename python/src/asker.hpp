@@ -2,6 +2,7 @@
 #pragma once
 // What the modules hand to one another: a question prepared for one robot on one backend, whatever its trees.
 
+#include <clearance/frame/bracket.hpp>
 #include <clearance/frame/clouds.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
@@ -10,6 +11,7 @@
 #include <clearance/usual_models.hpp>
 
 #include <memory>
+#include <optional>
 #include <variant>
 
 /// Everything that Python may pass as a cloud. The questions are compiled for each.
@@ -23,6 +25,26 @@ using any_cloud = placed_any<clearance::point_span, clearance::strided_points<fl
 template <class B = clearance::host>
 using robot_trees = std::variant<clearance::sphere_model<B>, clearance::triangle_model<B>>;
 
+/// Where a device writes the answer to a question that can be enqueued: the question's own `out`, or, about many
+/// configurations, one result of each.
+struct no_out {};
+template <class Q>
+struct out_of {
+  using type = no_out;
+};
+template <class Q>
+  requires requires { typename Q::out; }
+struct out_of<Q> {
+  using type = typename Q::out;
+};
+template <class Q>
+  requires requires { typename Q::searched; }
+struct out_of<Q> {
+  using type = typename Q::searched::result_type*;
+};
+template <class Q>
+inline constexpr bool can_be_enqueued = !std::is_same_v<typename out_of<Q>::type, no_out>;
+
 /// A prepared question. One thread at a time asks it. Throws as `clearance::query`.
 template <class Q>
 struct asker {
@@ -31,6 +53,15 @@ struct asker {
                                  const Q& question) = 0;
   /// On a device: what follows waits for the work in this stream.
   virtual void after(void*) {}
+  /// On a device: enqueues a frame between what is in the caller's stream now and what comes there later. Clouds and
+  /// `to` are in its memory. How certain distances are, where the question says it.
+  virtual std::optional<clearance::distance_certainty> enqueue(std::span<const Eigen::Isometry3d>,
+                                                               const std::vector<any_cloud>&, const Q&,
+                                                               const typename out_of<Q>::type&, void* /*caller*/) {
+    throw std::logic_error("clearance: only a device has a stream to enqueue in");
+  }
+  /// On a device: the stream in which all of that runs.
+  virtual void* stream() const { return nullptr; }
 };
 
 /// Each question's is instantiated in a file of its own, which CMake writes.

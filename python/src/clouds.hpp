@@ -3,14 +3,13 @@
 // Clouds in Python: views of arrays where they lie.
 
 #include "asker.hpp"
+#include "seen_array.hpp"
 
 #include <nanobind/nanobind.h>
 
 #include <optional>
 
 namespace nb = nanobind;
-
-inline constexpr int on_the_host = -1;
 
 /// A cloud with its pose, and what keeps its memory alive.
 struct cloud_object {

@@ -4,7 +4,8 @@
 
 #include <tuple>
 
-/// Specialised for each question, result and enumeration: name, doc, and members and methods, or values.
+/// Specialised for each question, result and enumeration: name, doc, and members and methods, or values; and `out`, if
+/// the question can be enqueued.
 template <class T>
 struct declared;
 
@@ -21,6 +22,15 @@ struct member_as {
 };
 template <class Owner, class T>
 member_as(const char*, T Owner::*, const char*) -> member_as<Owner, T>;
+
+/// An array where a device writes: `at(out)` is the pointer to it.
+template <class At>
+struct out_as {
+  const char* name;
+  At at;
+};
+template <class At>
+out_as(const char*, At) -> out_as<At>;
 
 template <class Call, class... Names>
 struct method_as {

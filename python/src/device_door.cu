@@ -20,10 +20,41 @@ void* prepare_any(const char* type, const std::shared_ptr<void>& trees, const vo
   return found->second(std::static_pointer_cast<const robot_trees<clearance::device>>(trees), question, device);
 }
 
+std::shared_ptr<void> allocate(std::size_t bytes, int device) {
+  const auto memory = std::make_shared<clearance::device_buffer<std::byte>>(std::max<std::size_t>(bytes, 1), device);
+  return {memory, memory->data()};
+}
+
+void order(void* first, void* then, int device) {
+  waiting(device).put(static_cast<cudaStream_t>(first), static_cast<cudaStream_t>(then));
+}
+
+void bring(void* to, const void* from, std::size_t bytes, int device, void* stream) {
+  const clearance::device_guard guard(device);
+  clearance::check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, static_cast<cudaStream_t>(stream)),
+                        "cudaMemcpyAsync");
+}
+
+void wait(int device, void* stream) { clearance::device{device, static_cast<cudaStream_t>(stream)}.wait(); }
+
+void fetch(void* to, const void* from, std::size_t bytes, int device, void* stream) {
+  const clearance::device_guard guard(device);
+  clearance::check_cuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, static_cast<cudaStream_t>(stream)),
+                        "cudaMemcpyAsync");
+  wait(device, stream);
+}
+
+int holder(const void* memory) {
+  cudaPointerAttributes attributes{};
+  clearance::check_cuda(cudaPointerGetAttributes(&attributes, memory), "cudaPointerGetAttributes");
+  const bool there = attributes.type == cudaMemoryTypeDevice || attributes.type == cudaMemoryTypeManaged;
+  return there ? attributes.device : -1;
+}
+
 }  // namespace
 
 const device_door& this_door() {
-  static const device_door door{upload, prepare_any};
+  static const device_door door{upload, prepare_any, allocate, order, bring, fetch, wait, holder};
   return door;
 }
 
@@ -33,5 +64,7 @@ std::string no_device() {
   const cudaError_t error = cudaGetDeviceCount(&count);
   if (error == cudaSuccess && count > 0) return {};
   cudaGetLastError();
+  int driver = 0;
+  if (cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0) return "there is no NVIDIA driver";
   return error == cudaSuccess ? "there is no CUDA device" : cudaGetErrorString(error);
 }

@@ -6,6 +6,7 @@
 
 #include <clearance/backend/own_stream.cuh>
 #include <clearance/device.cuh>
+#include <clearance/plan/configurations.hpp>
 
 #include <map>
 #include <string>
@@ -43,23 +44,83 @@ class waiting {
   cudaEvent_t event_ = nullptr;
 };
 
+/// The library's query, whose answers stay on the device.
+template <class Q, class Backend, class Model>
+class prepared_on_device final : public prepared<Q, Backend, Model> {
+  using in_memory = prepared<Q, Backend, Model>;
+
+ public:
+  prepared_on_device(const Backend& on, std::shared_ptr<const robot_trees<Backend>> trees, const Model& model,
+                     const Q& question)
+      : in_memory(on, std::move(trees), model, question), on_(on), parts_(model.view().size()) {}
+
+  std::optional<clearance::distance_certainty> enqueue(std::span<const Eigen::Isometry3d> poses,
+                                                       const std::vector<any_cloud>& clouds, const Q& question,
+                                                       const typename out_of<Q>::type& to, void*) override {
+    [[maybe_unused]] auto& query = in_memory::query_;
+    if constexpr (requires { typename Q::searched; }) {
+      check_rigid(poses);
+      query.place(poses);
+      const auto* const results = query.enqueue(clouds, question);
+      const std::size_t count = parts_ == 0 ? 0 : poses.size() / parts_;
+      const clearance::device_guard guard(on_.id);
+      clearance::check_cuda(cudaMemcpyAsync(to, results, count * sizeof *results, cudaMemcpyDeviceToDevice, on_.stream),
+                            "cudaMemcpyAsync");
+    } else if constexpr (requires { query.enqueue(poses, clouds, question, to).lower(0); }) {
+      return query.enqueue(poses, clouds, question, to);
+    } else if constexpr (can_be_enqueued<Q>) {
+      query.enqueue(poses, clouds, question, to);
+    }
+    return {};
+  }
+
+ private:
+  /// Kernels cannot throw, so the host looks first.
+  void check_rigid(std::span<const Eigen::Isometry3d> poses) const {
+    for (const Eigen::Isometry3d& pose : poses) {
+      clearance::world_transform its(pose);
+      if (!clearance::make_rigid(its))
+        clearance::detail::named(parts_, poses, [] { throw std::invalid_argument("clearance: a pose is not rigid"); });
+    }
+  }
+
+  Backend on_;
+  std::size_t parts_;
+};
+
 template <class Q>
 class asker_on_device final : public asker<Q> {
  public:
   asker_on_device(const device_trees& trees, const Q& question, int device)
-      : stream_(device), event_(device), inner_(prepare(stream_.on(), trees, question)) {}
+      : stream_(device), event_(device), inner_(prepare<prepared_on_device>(stream_.on(), trees, question)) {}
+  asker_on_device(const asker_on_device&) = delete;
+  asker_on_device& operator=(const asker_on_device&) = delete;
+  /// What was enqueued still uses its memory.
+  ~asker_on_device() override {
+    clearance::on_device(stream_.on().id, [this] { return cudaStreamSynchronize(stream_.on().stream); });
+  }
 
   typename Q::result ask(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds,
                          const Q& question) override {
     return inner_->ask(poses, clouds, question);
   }
-  /// 1 and 2 are the legacy and the per-thread default stream, for CUDA too; -1: the caller has seen to it.
-  void after(void* stream) override {
-    if (reinterpret_cast<std::intptr_t>(stream) != -1)
-      event_.put(static_cast<cudaStream_t>(stream), stream_.on().stream);
+  void after(void* caller) override {
+    if (is_ordered(caller)) event_.put(static_cast<cudaStream_t>(caller), stream_.on().stream);
   }
+  std::optional<clearance::distance_certainty> enqueue(std::span<const Eigen::Isometry3d> poses,
+                                                       const std::vector<any_cloud>& clouds, const Q& question,
+                                                       const typename out_of<Q>::type& to, void* caller) override {
+    after(caller);
+    const auto certain = inner_->enqueue(poses, clouds, question, to, caller);
+    if (is_ordered(caller)) event_.put(stream_.on().stream, static_cast<cudaStream_t>(caller));
+    return certain;
+  }
+  void* stream() const override { return stream_.on().stream; }
 
  private:
+  /// 1 and 2 are the legacy and the per-thread default stream, for CUDA too; -1: the caller sees to the order.
+  static bool is_ordered(void* caller) { return reinterpret_cast<std::intptr_t>(caller) != -1; }
+
   clearance::own_stream stream_;
   waiting event_;
   std::unique_ptr<asker<Q>> inner_;

@@ -7,7 +7,7 @@
 
 /// The library's query about one kind of trees, which it keeps alive.
 template <class Q, class Backend, class Model>
-class prepared final : public asker<Q> {
+class prepared : public asker<Q> {
  public:
   prepared(const Backend& on, std::shared_ptr<const robot_trees<Backend>> trees, const Model& model, const Q& question)
       : trees_(std::move(trees)), query_(on, model, question) {}
@@ -17,7 +17,7 @@ class prepared final : public asker<Q> {
     return query_(poses, clouds, question);
   }
 
- private:
+ protected:
   std::shared_ptr<const robot_trees<Backend>> trees_;
   decltype(clearance::query(std::declval<const Backend&>(), std::declval<const Model&>(),
                             std::declval<const Q&>())) query_;
@@ -34,13 +34,13 @@ consteval bool is_about() {
     return true;
 }
 
-template <class Q, class Backend>
+template <template <class, class, class> class Prepared = prepared, class Q, class Backend>
 std::unique_ptr<asker<Q>> prepare(const Backend& on, std::shared_ptr<const robot_trees<Backend>> trees,
                                   const Q& question) {
   return std::visit(
       [&]<class Model>(const Model& model) -> std::unique_ptr<asker<Q>> {
         if constexpr (is_about<Q, typename decltype(model.view())::part_type>())
-          return std::make_unique<prepared<Q, Backend, Model>>(on, trees, model, question);
+          return std::make_unique<Prepared<Q, Backend, Model>>(on, trees, model, question);
         else
           throw std::invalid_argument("clearance: this question is about robots of triangles (model=\"triangles\")");
       },

@@ -3,7 +3,7 @@
 
 #include "arrays.hpp"
 #include "clouds.hpp"
-#include "device_entry.hpp"
+#include "enqueued.hpp"
 #include "questions.hpp"
 #include "robot.hpp"
 
@@ -29,6 +29,9 @@ struct any_query {
   virtual ~any_query() = default;
   virtual nb::object ask(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds,
                          nb::handle question, std::optional<void*> stream) = 0;
+  virtual nb::object enqueue(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds,
+                             nb::handle question, void* stream, nb::handle out, std::optional<std::size_t> capacity,
+                             nb::object kept) = 0;
 };
 
 /// Any number of threads may ask: each takes a prepared question that no other has, or a new one.
@@ -46,11 +49,10 @@ class query_of final : public any_query {
     typename Q::result result;
     {
       const nb::gil_scoped_release others;
-      std::unique_ptr<asker<Q>> mine = take();
+      const auto mine = take();
       if (stream) mine->after(*stream);
       result = mine->ask(poses, clouds, asked);
-      const std::scoped_lock lock(mutex_);
-      idle_.push_back(std::move(mine));
+      give_back(mine);
     }
     if constexpr (declared_struct<typename Q::result>) {
       return nb::cast(answered<typename Q::result>{std::move(result), robot_->names});
@@ -62,6 +64,32 @@ class query_of final : public any_query {
     }
   }
 
+  nb::object enqueue(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds,
+                     nb::handle question, void* stream, nb::handle out, std::optional<std::size_t> capacity,
+                     nb::object kept) override {
+    if constexpr (can_be_enqueued<Q>) {
+      const Q asked = question.is_none() ? standing_ : other(question);
+      const std::size_t parts = robot_->parts();
+      const room_sizes sizes{count_points(clouds), parts, parts == 0 ? 0 : poses.size() / parts, {}};
+      const auto mine = [this] {
+        const nb::gil_scoped_release others;
+        return take();
+      }();
+      enqueued_answer answer{{}, {}, device_, mine->stream(), mine, std::move(kept), {}};
+      const auto to = arrays_for(asked, sizes, capacity, out, *mine, answer);
+      {
+        const nb::gil_scoped_release others;
+        answer.certain = mine->enqueue(poses, clouds, asked, to, stream);
+      }
+      for (const auto& memory : answer.rewritten) memory->stream = answer.stream, memory->writer = mine;
+      give_back(mine);
+      return nb::cast(std::move(answer));
+    } else {
+      throw std::invalid_argument(std::string("clearance: ") + declared<Q>::name +
+                                  " cannot be enqueued, because the host decides while it is answered; call the query");
+    }
+  }
+
  private:
   static Q other(nb::handle question) {
     if (!nb::isinstance<asked<Q>>(question))
@@ -70,11 +98,11 @@ class query_of final : public any_query {
                                .c_str());
     return nb::cast<const asked<Q>&>(question).question;
   }
-  std::unique_ptr<asker<Q>> make() const {
+  std::shared_ptr<asker<Q>> make() const {
     if (device_ == on_the_host) return ask_on_host(robot_->trees, standing_);
     return ask_on_device(*robot_, standing_, device_);
   }
-  std::unique_ptr<asker<Q>> take() {
+  std::shared_ptr<asker<Q>> take() {
     {
       const std::scoped_lock lock(mutex_);
       if (!idle_.empty()) {
@@ -85,22 +113,26 @@ class query_of final : public any_query {
     }
     return make();
   }
+  void give_back(std::shared_ptr<asker<Q>> one) {
+    const std::scoped_lock lock(mutex_);
+    idle_.push_back(std::move(one));
+  }
 
   std::shared_ptr<robot_model> robot_;
   Q standing_;
   int device_;
   std::mutex mutex_;
-  std::vector<std::unique_ptr<asker<Q>>> idle_;
+  std::vector<std::shared_ptr<asker<Q>>> idle_;
 };
 
-int device_number(const std::string& device) {
-  if (device == "cpu") return on_the_host;
-  if (device == "cuda") return 0;
-  if (device.starts_with("cuda:") && device.size() > 5 && device.size() < 10 &&
-      device.find_first_not_of("0123456789", 5) == device.npos)
-    return std::stoi(device.substr(5));
-  throw std::invalid_argument("clearance: device is \"" + device + "\"; it is \"cpu\" or \"cuda:0\" and so on");
-}
+/// What is asked about: where the robot is, and what is seen.
+struct asked_frame {
+  std::vector<Eigen::Isometry3d> places;
+  std::vector<any_cloud> seen;
+  nb::list kept;
+  bool on_device = false;
+  bool many = false;  ///< Joints gave more than one configuration.
+};
 
 struct query_object {
   std::shared_ptr<robot_model> robot;
@@ -122,11 +154,12 @@ struct query_object {
               .c_str());
   }
 
-  nb::object operator()(nb::handle points, nb::handle joints, nb::handle poses, nb::handle base, nb::handle cloud_pose,
-                        nb::handle depth, nb::handle intrinsics, nb::handle rays, nb::handle depth_scale,
-                        nb::handle camera_pose, nb::handle clouds, nb::handle stream, nb::handle other,
-                        bool ignore_limits) {
-    std::vector<Eigen::Isometry3d> places;
+  /// `stays`: the device reads clouds where they are, after this.
+  asked_frame look(nb::handle points, nb::handle joints, nb::handle poses, nb::handle base, nb::handle cloud_pose,
+                   nb::handle depth, nb::handle intrinsics, nb::handle rays, nb::handle depth_scale,
+                   nb::handle camera_pose, nb::handle clouds, bool ignore_limits, bool stays) const {
+    asked_frame made;
+    auto& places = made.places;
     if (!poses.is_none()) {
       if (!joints.is_none() || !base.is_none())
         throw std::invalid_argument("clearance: poses are given, so joints and base cannot be");
@@ -136,9 +169,7 @@ struct query_object {
     } else {
       places = placed_parts(*robot, joints, pose_of(base, "base"), ignore_limits);
     }
-    std::vector<any_cloud> seen;
-    std::vector<nb::object> kept;
-    bool on_device = false;
+    made.many = !joints.is_none() && places.size() > robot->parts();
     const auto put = [&](const cloud_object& cloud, const char* argument) {
       if (cloud.device != on_the_host && device == on_the_host)
         throw std::invalid_argument(std::string("clearance: ") + argument +
@@ -148,9 +179,16 @@ struct query_object {
         throw std::invalid_argument(std::string("clearance: ") + argument +
                                     " lies on cuda:" + std::to_string(cloud.device) +
                                     ", and this query asks on cuda:" + std::to_string(device));
-      on_device |= cloud.device != on_the_host;
-      seen.push_back(near_robot(cloud, places));
-      kept.push_back(cloud.kept), kept.push_back(cloud.also_kept);
+      if (stays && cloud.device == on_the_host &&
+          std::visit([](const auto& c) { return c.source.size(); }, cloud.cloud))
+        throw std::invalid_argument(std::string("clearance: ") + argument +
+                                    " lies on the cpu, and what is enqueued reads the device's memory: give "
+                                    "DeviceArray(array, \"" +
+                                    device_name(device) + "\") or the like; a call copies by itself");
+      made.on_device |= cloud.device != on_the_host;
+      made.seen.push_back(near_robot(cloud, places));
+      for (const nb::object& memory : {cloud.kept, cloud.also_kept})
+        if (memory) made.kept.append(memory);
     };
     if (!points.is_none()) {
       cloud_object* ready = nullptr;
@@ -182,14 +220,44 @@ struct query_object {
       }
     else if (points.is_none() && depth.is_none())
       throw std::invalid_argument("clearance: nothing is given to look at: points, depth or clouds");
+    return made;
+  }
+
+  template <class Ask>
+  nb::object asked_about(const asked_frame& frame, const Ask& ask) const {
     try {
-      return query->ask(places, seen, other, stream_of(stream, on_device));
+      return ask();
     } catch (const std::invalid_argument& error) {
-      if (joints.is_none() || places.size() <= robot->parts()) throw;
+      if (!frame.many) throw;
       throw std::invalid_argument(std::string(error.what()) + " (joints gives " +
-                                  std::to_string(places.size() / robot->parts()) +
+                                  std::to_string(frame.places.size() / robot->parts()) +
                                   " configurations; MinDistances and its kin ask about many)");
     }
+  }
+
+  nb::object operator()(nb::handle points, nb::handle joints, nb::handle poses, nb::handle base, nb::handle cloud_pose,
+                        nb::handle depth, nb::handle intrinsics, nb::handle rays, nb::handle depth_scale,
+                        nb::handle camera_pose, nb::handle clouds, nb::handle stream, nb::handle other,
+                        bool ignore_limits) {
+    const asked_frame frame = look(points, joints, poses, base, cloud_pose, depth, intrinsics, rays, depth_scale,
+                                   camera_pose, clouds, ignore_limits, false);
+    return asked_about(frame,
+                       [&] { return query->ask(frame.places, frame.seen, other, stream_of(stream, frame.on_device)); });
+  }
+
+  nb::object enqueue(nb::handle points, nb::handle joints, nb::handle poses, nb::handle base, nb::handle cloud_pose,
+                     nb::handle depth, nb::handle intrinsics, nb::handle rays, nb::handle depth_scale,
+                     nb::handle camera_pose, nb::handle clouds, nb::handle out, nb::handle capacity, nb::handle stream,
+                     nb::handle other, bool ignore_limits) {
+    if (device == on_the_host)
+      throw std::invalid_argument("clearance: enqueue is for a query on a CUDA device, and this one asks on the cpu");
+    const asked_frame frame = look(points, joints, poses, base, cloud_pose, depth, intrinsics, rays, depth_scale,
+                                   camera_pose, clouds, ignore_limits, true);
+    std::optional<std::size_t> pairs;
+    if (!capacity.is_none()) pairs = count_of(capacity, "capacity");
+    return asked_about(frame, [&] {
+      return query->enqueue(frame.places, frame.seen, other, *stream_of(stream, true), out, pairs, frame.kept);
+    });
   }
 
   /// The protocols' numbers, or an object of torch or CuPy. Without one, arrays on a device were handed over in order
@@ -203,6 +271,7 @@ struct query_object {
       if (nb::hasattr(stream, name)) number = stream.attr(name);
     if (!nb::try_cast(number, value))
       throw nb::type_error("stream is an integer (-1, 1, 2 or a pointer), or a stream of torch or CuPy");
+    if (value < -1) throw std::invalid_argument("clearance: stream is " + std::to_string(value) + ", which is none");
     return reinterpret_cast<void*>(value);
   }
 };
@@ -230,9 +299,23 @@ void bind_query(nb::module_& m) {
            "joints (..., joints) or poses (..., parts, 4, 4). What is seen: points with cloud_pose; depth with "
            "intrinsics or rays and camera_pose; or clouds, a sequence of points(...) and depth_image(...). question: "
            "other options for this call. Raises ValueError with a sentence that names the argument.")
+      .def("enqueue", &query_object::enqueue, nb::arg("points").none() = nb::none(),
+           nb::arg("joints").none() = nb::none(), nb::kw_only(), nb::arg("poses").none() = nb::none(),
+           nb::arg("base").none() = nb::none(), nb::arg("cloud_pose").none() = nb::none(),
+           nb::arg("depth").none() = nb::none(), nb::arg("intrinsics").none() = nb::none(),
+           nb::arg("rays").none() = nb::none(), nb::arg("depth_scale").none() = nb::none(),
+           nb::arg("camera_pose").none() = nb::none(), nb::arg("clouds").none() = nb::none(),
+           nb::arg("out").none() = nb::none(), nb::arg("capacity").none() = nb::none(),
+           nb::arg("stream").none() = nb::none(), nb::arg("question").none() = nb::none(),
+           nb::arg("ignore_limits") = false,
+           "The same on a device, without waiting: clouds are arrays there, and so is the answer, which work in stream "
+           "waits for. stream: an integer (-1: you see to the order; 1, 2, or a pointer), or one of torch or CuPy; "
+           "None: "
+           "the legacy default one. out: arrays to write, by name, such as the last answer. capacity: of pairs. Raises "
+           "ValueError as a call.")
       .def_prop_ro("question", [](const query_object& q) { return q.question; })
       .def_prop_ro("robot", [](const query_object& q) { return q.robot; })
-      .def_prop_ro("device", [](const query_object& q) {
-        return q.device == on_the_host ? std::string("cpu") : "cuda:" + std::to_string(q.device);
-      });
+      .def_prop_ro("device", [](const query_object& q) { return device_name(q.device); });
+  bind_device_array(m);
+  bind_enqueued(m);
 }

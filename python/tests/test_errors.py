@@ -2,11 +2,13 @@
 """What cannot be asked is refused with one sentence, which names the argument and what it got."""
 
 import re
+import sys
 
 import numpy as np
 import pytest
 
 import clearance
+from clearance import _device
 
 good = np.zeros((5, 3), "f4") + 1
 one = np.eye(4)[None]
@@ -300,6 +302,19 @@ def test_numbers_of_numpy_are_options():
     assert clearance.InCollision(np.float32(0.5)).margins == (0.5,)
     assert clearance.InCollision(np.array([0.5, 0.25])).margins == (0.5, 0.25)
     assert clearance.InCollision(1).margins == (1.0,)
+
+
+def test_without_the_gpu_part_the_sentence_says_how_to_get_it(ball, monkeypatch):
+    monkeypatch.setitem(sys.modules, "clearance._cuda", None)
+    monkeypatch.delattr(clearance, "_cuda", raising=False)
+    refused(_device.door, "the GPU part is not in this installation", "CLEARANCE_CUDA=1 pip install .", kind=ImportError)
+
+
+def test_a_query_on_the_cpu_enqueues_nothing(ball):
+    ask = clearance.Query(ball, clearance.MinDistance())
+    refused(lambda: ask.enqueue(np.zeros((1, 3), "f4")), "enqueue is for a query on a CUDA device", "on the cpu")
+    refused(lambda: ask(np.zeros((1, 3), "f4"), stream=1), "stream is for a query on a CUDA device")
+    refused(lambda: clearance.DeviceArray(np.zeros(3), "cpu"), "lies on a CUDA device")
 
 
 def test_what_is_no_question_or_device(ball):

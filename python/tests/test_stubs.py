@@ -59,6 +59,13 @@ def least(file: str, points: NDArray[np.float32], q: list[float]) -> float:
     witnesses = clearance.Query(robot, clearance.PartWitnesses(
         clearance.Query(robot, clearance.MinDistancePerPart)(points, q).parts))(points, q)
     assert_type(witnesses, NDArray[np.void])
+    there = clearance.DeviceArray(points, "cuda:0")
+    answer = clearance.Query(robot, clearance.Distances(), device="cuda:0").enqueue(there, q, stream=1)
+    assert_type(answer, clearance.DeviceAnswer)
+    assert_type(answer.certain, clearance.DistanceCertainty | None)
+    assert_type(there.shape, tuple[int, ...])
+    enough: NDArray[np.float32] = answer["distance"].numpy()
+    assert enough.shape == there.shape[:1]
     clouds = [clearance.points(points, np.eye(4), nearest=0.3), clearance.depth_image(np.zeros((4, 4), "u2"), (1, 1, 0, 0))]
     return ask(clouds=clouds, joints={"elbow": 0.5}).upper
 """
