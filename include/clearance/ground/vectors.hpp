@@ -10,14 +10,15 @@ namespace clearance {
 namespace detail {
 
 template <class F>
-__attribute__((target("avx2,fma"), flatten)) void compiled_for_vectors(const F& f) {
+__attribute__((target("avx2,fma"), flatten, noinline)) void compiled_for_vectors(const F& f) {
   f();
 }
 
 }  // namespace detail
 
 /// Calls `f()`. On x86-64 it is compiled for AVX2 and fused multiply-add, and used if the processor has both: without a
-/// compiler flag each fma is a call, and loops are half as wide. By the rule of math.hpp the bits are the same.
+/// compiler flag each fma is a call, and loops are half as wide. By the rule of math.hpp the bits are the same. A loop
+/// in it that must become vector code gets a call of its own: within a large function g++ 12 leaves structs in memory.
 template <class F>
 void with_vectors(const F& f) {
   __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? detail::compiled_for_vectors(f) : f();
