@@ -22,10 +22,10 @@ struct host {
 
   unsigned threads = 0;
 
-  /// Calls `body(indices)` for ranges that together cover 0 .. n-1 once and are small enough to balance uneven work.
+  /// Calls `body(indices)` for ranges that together cover 0 .. n-1 once and are small enough to balance uneven work:
+  /// at most `grain` long, if there is more than one thread.
   template <class F>
-  void for_ranges(std::size_t n, F body) const {
-    constexpr std::size_t grain = 1024;
+  void for_ranges(std::size_t n, F body, std::size_t grain = 1024) const {
     if (n <= grain || threads == 1) return body(indices{0, n, 1});
     const auto all = [&] {
       tbb::parallel_for(

@@ -101,30 +101,35 @@ struct triangle {
     const real noise = 0x1p-22f * (extent(aq) + extent(ab) + extent(ca));
     const side sides[3] = {to_side<Rough>(aq, ab, noise), to_side<Rough>(bq, bc, noise), to_side<Rough>(cq, ca, noise)};
     side least = sides[0];
-    for (const side& s : sides)
-      if (s.squared < least.squared) least = s;
-    measured m{least.offset, Rough ? rough_root(least.squared) : square_root(least.squared), dot(aq, unit_normal),
+    for (const side& s : sides) {
+      const bool nearer = s.squared < least.squared;
+      least.offset = choice<Rough>(nearer, s.offset, least.offset);
+      least.squared = choice<Rough>(nearer, s.squared, least.squared);
+    }
+    measured m{least.offset, Rough ? looped_root(least.squared) : square_root(least.squared), dot(aq, unit_normal),
                false};
     const real nearly = (m.edge + noise) * (m.edge + noise);
-    bool interior = false;
-    for (const side& s : sides) interior = interior || (s.interior && s.squared <= nearly);
-    m.over_face = interior && over_face(ab, bc, ca, aq, bq, cq);
+    int interior = 0;
+    for (const side& s : sides) interior |= int(s.interior) & int(s.squared <= nearly);
+    m.over_face = bool(interior & int(over_face(ab, bc, ca, aq, bq, cq)));
     return m;
   }
   /// From the nearest point to the query point.
   template <bool Rough = false>
   CLEARANCE_HD vec3 away(vec3 q) const {
     const measured m = measure<Rough>(q);
-    return m.over_face && absolute(m.height) <= m.edge ? scaled(m.height, unit_normal) : m.offset;
+    const bool face = bool(int(m.over_face) & int(absolute(m.height) <= m.edge));
+    return choice<Rough>(face, scaled(m.height, unit_normal), m.offset);
   }
   /// A side that starts at 0 and goes along `edge`.
   template <bool Rough>
   CLEARANCE_HD static side to_side(vec3 p, vec3 edge, real noise) {
     const real length2 = dot(edge, edge);
-    const real t = length2 > (Rough ? least_normal : 0) ? ratio<Rough>(dot(p, edge), length2) : 0,
+    const bool any = length2 > (Rough ? least_normal : 0);
+    const real t = ratio<Rough>(choice<Rough>(any, dot(p, edge), 0), choice<Rough>(any, length2, 1)),
                beyond = max(-t, t - 1);
-    const vec3 offset = fma(-clamp01(t), edge, p);
-    return {offset, dot(offset, offset), beyond < 0 || beyond * beyond * length2 <= noise * noise};
+    const vec3 offset = fma(-min(max(t, 0), 1), edge, p);
+    return {offset, dot(offset, offset), bool(int(beyond < 0) | int(beyond * beyond * length2 <= noise * noise))};
   }
   template <bool Rough>
   CLEARANCE_HD static real ratio(real a, real b) {
@@ -138,8 +143,8 @@ struct triangle {
   }
   /// Decided by every side's sign.
   CLEARANCE_HD bool over_face(vec3 ab, vec3 bc, vec3 ca, vec3 aq, vec3 bq, vec3 cq) const {
-    return dot(cross(unit_normal, ab), aq) > 0 && dot(cross(unit_normal, bc), bq) > 0 &&
-           dot(cross(unit_normal, ca), cq) > 0;
+    return bool(int(dot(cross(unit_normal, ab), aq) > 0) & int(dot(cross(unit_normal, bc), bq) > 0) &
+                int(dot(cross(unit_normal, ca), cq) > 0));
   }
   CLEARANCE_HD static real near_side(vec3 p, vec3 edge, real length2) {
     const vec3 offset = fma(-saturated(dot(p, edge) * rough_inverse(length2)), edge, p);
