@@ -7,10 +7,10 @@
 #include <clearance/frame/frame.hpp>
 #include <clearance/frame/root_test.hpp>
 #include <clearance/result.hpp>
-#include <clearance/scan/eight.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/packet.hpp>
 #include <clearance/scan/seen_memory.hpp>
+#include <clearance/scan/side_by_side.hpp>
 
 #include <algorithm>
 #include <span>
@@ -189,7 +189,7 @@ class tangent_walk {
   }
   void see(const volume_type* volumes, std::uint32_t count, std::uint32_t k, tangents& its) const {
     with_vectors([&] {
-      eight<volume_type> here;
+      side_by_side<volume_type> here;
       for (std::uint32_t j = 0; j < 8; ++j) here.put(j, volumes[std::min(j, count - 1)]);
       const surroundings all = all_;
       const rigid_transform part_from_cloud = places_[k].part_from_cloud;
@@ -268,46 +268,54 @@ class tangent_walk {
               [](const candidate& a, const candidate& b) { return a.distance < b.distance; });
     for (const candidate& c : candidates_) {
       const auto& [k, place] = c.which;
-      alignas(64) std::uint32_t wants[neighbours::most];
-      if (!which_want(c, near, wants)) continue;
       std::uint64_t inside = 0;
       for (const auto& [part, those] : inner_)
         if (part == k) inside = those;
-      const primitive_type& primitive = parts_[k].tree.primitives[place];
-      const std::uint32_t id = parts_[k].tree.ids[place];
-      for (std::size_t j = 0; j < near.count; ++j)
-        if (wants[j] != 0 && (inside >> j & 1) == 0)
-          near.offer(j, primitive.distance(places_[k].part_from_cloud(near[j])), k, id);
+      const wanted w{parts_[k].tree.primitives[place], parts_[k].tree.ids[place], k, inside};
+      for (std::size_t b = 0; b < near.count; b += neighbours::block)
+        if (some_want(c, near, b)) test(w, near, b);
     }
     candidates_.clear();
   }
-  /// Marks the points that may be as near to a candidate as to what is known. Returns false if there is none.
-  bool which_want(const candidate& c, const neighbours& near, std::uint32_t (&wants)[neighbours::most]) const {
-    bool some = false;
+  struct wanted {
+    primitive_type primitive;
+    std::uint32_t id, part;
+    std::uint64_t inside;  ///< Points that have their answer.
+  };
+  /// May points of a block be as near to a candidate as to what is known?
+  bool some_want(const candidate& c, const neighbours& near, std::size_t b) const {
+    std::uint32_t any = 0;
     with_vectors([&] {
       const surroundings all = all_;
-      const rigid_transform part_from_cloud = places_[c.which.part].part_from_cloud;
-      const primitive_type primitive = parts_[c.which.part].tree.primitives[c.which.place];
-      const real distance = c.distance;
-      const vec3 u = c.direction;
-      for (std::size_t b = 0; b < neighbours::most; b += neighbours::block) {
-        alignas(64) std::uint32_t here[neighbours::block];
-        std::uint32_t any = 0;
-        for (std::size_t l = 0; l < neighbours::block; ++l)
-          here[l] = all.may_reach(distance, u, near[b + l] - all.middle, near.within[b + l]);
-        for (std::size_t l = 0; l < neighbours::block; ++l) any |= here[l];
-        if constexpr (foreseen_primitive<primitive_type>)
-          if (any != 0) {
-            any = 0;
-            for (std::size_t l = 0; l < neighbours::block; ++l)
-              here[l] &= std::uint32_t(primitive.may_reach(part_from_cloud(near[b + l]), near.within[b + l]));
-            for (std::size_t l = 0; l < neighbours::block; ++l) any |= here[l];
-          }
-        some = some || any != 0;
-        for (std::size_t l = 0; l < neighbours::block; ++l) wants[b + l] = here[l];
+      const candidate its = c;
+      std::uint32_t some = 0;
+      for (std::size_t l = b; l < b + neighbours::block; ++l)
+        some |= std::uint32_t(all.may_reach(its.distance, its.direction, near[l] - all.middle, near.within[l]));
+      any = some;
+    });
+    return any != 0;
+  }
+  /// A block's points.
+  void test(const wanted& w, neighbours& near, std::size_t b) const {
+    with_vectors([&] {
+      constexpr std::size_t lanes = neighbours::block;
+      const rigid_transform part_from_cloud = places_[w.part].part_from_cloud;
+      const primitive_type primitive = w.primitive;
+      alignas(64) real distance[lanes];
+      if constexpr (rootless_primitive<primitive_type>) {
+        side_by_side<decltype(primitive.before_root(near[0])), lanes> before;
+        for (std::size_t l = 0; l < lanes; ++l) before.put(l, primitive.before_root(part_from_cloud(near[b + l])));
+        alignas(64) real root[lanes];
+        for (std::size_t l = 0; l < lanes; ++l) root[l] = square_root(before[l].squared);
+        for (std::size_t l = 0; l < lanes; ++l) distance[l] = before[l].distance(root[l]);
+      } else {
+        for (std::size_t l = 0; l < lanes; ++l) distance[l] = primitive.distance(part_from_cloud(near[b + l]));
+      }
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const std::size_t j = b + l;
+        if ((w.inside >> j & 1) == 0) near.offer(j, distance[l], w.part, w.id);
       }
     });
-    return some;
   }
 
   static constexpr std::size_t most_candidates = 256;
@@ -322,7 +330,7 @@ class tangent_walk {
   primitive_of_part hint_{none, 0};                             ///< What was near to the last points.
   struct {
     std::uint32_t part = none, count = 0, place[8];
-    eight<primitive_type> primitives;
+    side_by_side<primitive_type> primitives;
   } batch_;
 };
 

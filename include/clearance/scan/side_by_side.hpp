@@ -4,22 +4,20 @@
 #include <clearance/ground/math.hpp>
 
 #include <array>
-#include <cstring>
 #include <type_traits>
 #include <utility>
 
 namespace clearance::scan {
 
-/// Eight values whose words lie side by side, so that a loop over them becomes vector code on a host.
-template <class T>
-struct eight {
+/// Values whose words lie side by side, so that a loop over them becomes vector code on a host.
+template <class T, std::size_t Lanes = 8>
+struct side_by_side {
   static constexpr std::size_t words = sizeof(T) / sizeof(real);
   using one = std::array<real, words>;
-  alignas(32) real word[words][8];
+  alignas(64) real word[words][Lanes];
 
   void put(std::size_t j, const T& value) {
-    one its;
-    std::memcpy(its.data(), &value, sizeof value);
+    const one its = std::bit_cast<one>(value);
     for (std::size_t w = 0; w < words; ++w) word[w][j] = its[w];
   }
   T operator[](std::size_t j) const { return at(j, std::make_index_sequence<words>{}); }
@@ -32,10 +30,10 @@ struct eight {
 };
 
 /// The same for what is not made of words.
-template <class T>
+template <class T, std::size_t Lanes>
   requires(!std::is_trivially_copyable_v<T> || sizeof(T) % sizeof(real) != 0)
-struct eight<T> {
-  const T* its[8];
+struct side_by_side<T, Lanes> {
+  const T* its[Lanes];
 
   void put(std::size_t j, const T& value) { its[j] = &value; }
   const T& operator[](std::size_t j) const { return *its[j]; }
