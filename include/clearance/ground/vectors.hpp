@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/ground/config.hpp>
+#include <clearance/ground/math.hpp>
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
 
 namespace clearance {
 
@@ -32,5 +36,17 @@ void with_vectors(const F& f) {
 }
 
 #endif
+
+/// The roots of `Count` numbers, aligned for vectors, each correctly rounded. (A loop over square_root stays scalar,
+/// because a root may set errno.)
+template <std::size_t Count>
+inline void square_roots(const real* of, real* to) {
+#if defined(__SSE2__)
+  static_assert(Count % 4 == 0);
+  for (std::size_t i = 0; i < Count; i += 4) _mm_store_ps(to + i, _mm_sqrt_ps(_mm_load_ps(of + i)));
+#else
+  for (std::size_t i = 0; i < Count; ++i) to[i] = square_root(of[i]);
+#endif
+}
 
 }  // namespace clearance

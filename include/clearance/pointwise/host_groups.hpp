@@ -8,6 +8,8 @@
 #include <clearance/pointwise/host_packets.hpp>
 #include <clearance/scan/tangent_walk.hpp>
 
+#include <utility>
+
 namespace clearance::pointwise {
 
 /// What one thread keeps from group to group.
@@ -38,6 +40,9 @@ class host_groups {
  private:
   static constexpr std::size_t most = scan::neighbours::most;
   static constexpr std::size_t few = 4;  ///< So few points that do not lie together walk alone.
+  struct coded {
+    std::uint32_t code, at;
+  };
   struct numbered {
     vec3 at;
     std::uint32_t number;
@@ -57,7 +62,7 @@ class host_groups {
       groups(begin, count / 2, take), groups(begin + count / 2, count - count / 2, take);
     } else {
       found best[few];
-      packets_.ask(count, [&](std::size_t j) { return points_[begin + j].at; }, best);
+      with_vectors([&] { packets_.ask(count, [&](std::size_t j) { return points_[begin + j].at; }, best); });
       for (std::size_t j = 0; j < count; ++j) take(points_[begin + j].number, best[j]);
     }
   }
@@ -65,11 +70,21 @@ class host_groups {
   void put_in_order() {
     if (points_.size() <= few) return;
     const cloud_tree::morton_grid grid(box_.lower, box_.upper);
-    codes_.clear();
-    for (const numbered& p : points_) codes_.push_back(std::uint64_t(grid(p.at)) << 32 | codes_.size());
-    std::sort(codes_.begin(), codes_.end());
+    codes_.resize(points_.size()), sorted_.resize(points_.size());
+    with_vectors([&] {
+      for (std::size_t i = 0; i < codes_.size(); ++i) codes_[i] = {grid(points_[i].at), std::uint32_t(i)};
+    });
+    constexpr int bits = cloud_tree::morton_grid::bits;
+    for (int shift = 0; shift < 3 * bits; shift += bits) {
+      std::uint32_t to[1 << bits] = {}, before = 0;
+      const auto digit = [&](const coded& c) { return c.code >> shift & ((1 << bits) - 1); };
+      for (const coded& c : codes_) ++to[digit(c)];
+      for (std::uint32_t& t : to) before += std::exchange(t, before);
+      for (const coded& c : codes_) sorted_[to[digit(c)]++] = c;
+      codes_.swap(sorted_);
+    }
     others_.clear();
-    for (const std::uint64_t code : codes_) others_.push_back(points_[std::uint32_t(code)]);
+    for (const coded& c : codes_) others_.push_back(points_[c.at]);
     points_.swap(others_);
   }
 
@@ -77,7 +92,7 @@ class host_groups {
   scan::tangent_walk<PartView> walk_;
   real d_max_;
   std::vector<numbered> points_, others_;
-  std::vector<std::uint64_t> codes_;
+  std::vector<coded> codes_, sorted_;
   std::vector<std::uint32_t> parts_;
   extent box_;
 };

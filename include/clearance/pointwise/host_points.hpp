@@ -17,7 +17,7 @@ struct host_points {
   using hierarchy_type = typename PartView::hierarchy_type;
   using packets = host_packets<PartView>;
   static constexpr bool by_tangents = scan::tangent_hierarchy<hierarchy_type>;
-  static constexpr std::size_t grain = by_tangents ? scan::piece_points : 1024;  ///< Points that one thread takes.
+  static constexpr std::size_t most_together = 16384;  ///< Points among which groups are looked for.
 
   const PartView* parts;
   std::span<const frames::placement> places;
@@ -28,6 +28,11 @@ struct host_points {
   scan::drop_counts* counts;
   distances_out out;
   real d_max;
+
+  /// How many points one thread takes at a time: the more, the smaller is the space of a group.
+  static std::size_t grain(const host& on, std::size_t points) {
+    return by_tangents ? std::clamp<std::size_t>(points / (8 * on.concurrency()), 2048, most_together) : 1024;
+  }
 
   void operator()(indices range) const {
     scan::drop_tally mine;
@@ -62,17 +67,21 @@ struct host_points {
     for (std::size_t i = range.begin; i < range.end; i += scan::tile_points) {
       const std::size_t count = load(t, i, range.end, mine);
       const extent box = box_of(t);
-      const bool near =
-          std::ranges::any_of(places, [&](const auto& p) { return scan::may_reach(p.around, d_max, box); });
-      for (std::size_t j = 0; j < count; ++j)
-        if (!packets::is_point(t[j]))
-          put(i + j, {not_a_number});
-        else if (near)
-          groups.add(t[j], std::uint32_t(i + j));
-        else
-          put(i + j, {});
-      if (++tiles % (scan::piece_points / scan::tile_points) == 0 || i + scan::tile_points >= range.end)
-        with_vectors([&] { groups.answer(take); });
+      scan::tile_survivors survivors;
+      bool near = false;
+      for (const auto& place : places)
+        if (scan::may_reach(place.around, d_max, box)) {
+          near = true;
+          if (d_max < infinity) survivors.add(t, place.around, d_max);
+        }
+      for (std::size_t j = 0; j < count; ++j) put(i + j, packets::is_point(t[j]) ? found{} : found{not_a_number});
+      const auto add = [&](std::size_t j) { groups.add(t[j], std::uint32_t(i + j)); };
+      if (near && d_max < infinity)
+        survivors.for_each(add);
+      else if (near)
+        for (std::size_t j = 0; j < count; ++j)
+          if (packets::is_point(t[j])) add(j);
+      if (++tiles % (most_together / scan::tile_points) == 0 || i + scan::tile_points >= range.end) groups.answer(take);
     }
   }
 
@@ -97,7 +106,7 @@ distance_certainty on_host(const host& on, const model_view<PartView>& model, st
         on.for_ranges(source.size(),
                       body{model.parts, frame.places, stack_need(model.depth, model.width), source, frame.origin,
                            now.first, &dropped, out, d_max},
-                      body::grain);
+                      body::grain(on, source.size()));
       });
   scan::count(*counts, dropped.dropped, seen);
   return certainty_of(frame);

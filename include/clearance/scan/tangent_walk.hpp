@@ -13,6 +13,7 @@
 #include <clearance/scan/side_by_side.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,7 +22,7 @@ namespace clearance::scan {
 
 /// Points that lie together, in the cloud's frame, with what is nearest to each.
 struct neighbours : packet<64> {
-  static constexpr std::size_t most = 64, block = 16;
+  static constexpr std::size_t most = 64, block = 32;
   std::uint32_t count = 0;
   std::uint32_t part[most], primitive[most];
 
@@ -29,10 +30,12 @@ struct neighbours : packet<64> {
     part[count] = primitive[count] = none;
     put(count++, p, reach);
   }
-  /// Keeps the nearer one; of equally near ones the lowest part, and of that the lowest primitive.
+  /// Keeps the nearer one; of equally near ones the lowest part, and of that the lowest primitive. Without branches.
   void offer(std::size_t j, real distance, std::uint32_t k, std::uint32_t id) {
-    const bool first = k < part[j] || (k == part[j] && id < primitive[j]);
-    if (distance < within[j] || (distance == within[j] && first)) within[j] = distance, part[j] = k, primitive[j] = id;
+    const auto first = int(k < part[j]) | (int(k == part[j]) & int(id < primitive[j]));
+    const bool nearer = bool(int(distance < within[j]) | (int(distance == within[j]) & first));
+    within[j] = choice(nearer, distance, within[j]);
+    part[j] = nearer ? k : part[j], primitive[j] = nearer ? id : primitive[j];
   }
   real reach() const {
     real largest = -infinity;
@@ -50,15 +53,16 @@ class tangent_walk {
   /// Looks at points from their middle. Returns how far they lie from it at most, and whether they lie together.
   bool look_around(neighbours& near, const std::vector<std::uint32_t>& parts) {
     for (std::size_t j = near.count; j < neighbours::most; ++j) near.put(j, near[0], -infinity);
-    surround(near);
     real gap = infinity;
-    all_.noise = 0;
-    for (const std::uint32_t k : parts) {
-      const vec3 q = places_[k].part_from_cloud(all_.middle);
-      const seen_part seen(all_, places_[k].around, q);
-      seen_[k] = {q, seen.distance};
-      gap = min(gap, seen.distance), all_.noise = max(all_.noise, seen.noise);
-    }
+    with_vectors([&] {
+      surround(near);
+      for (const std::uint32_t k : parts) {
+        const vec3 q = places_[k].part_from_cloud(all_.middle);
+        const seen_part seen(all_, places_[k].around, q);
+        seen_[k] = {q, unit_way(all_.middle - places_[k].around.center).direction, seen.distance};
+        gap = min(gap, seen.distance), all_.noise = max(all_.noise, seen.noise);
+      }
+    });
     const real wide = 0.02f + 0.1f * max(gap, 0);
     return all_.radius <= wide && all_.noise <= wide && gap < 1e15f;
   }
@@ -98,13 +102,19 @@ class tangent_walk {
     bvh_node node;
   };
   struct seen_middle {
-    vec3 q;  ///< In the part's frame.
+    vec3 q;    ///< In the part's frame.
+    vec3 way;  ///< From the part's ball.
     real distance;
   };
   struct tangents {
     alignas(32) real distance[8], x[8], y[8], z[8];
-    std::uint32_t keeps[8];
+    std::uint32_t keeps;  ///< One bit each.
   };
+  static std::uint32_t together(const std::uint32_t (&bits)[8]) {
+    std::uint32_t all = 0;
+    for (const std::uint32_t b : bits) all |= b;
+    return all;
+  }
   struct candidate {
     real distance;
     vec3 direction;
@@ -113,33 +123,31 @@ class tangent_walk {
 
   /// The box around points.
   void surround(const neighbours& near) {
-    with_vectors([&] {
-      const neighbours& n = near;
-      constexpr std::size_t lanes = neighbours::block;
-      alignas(64) real low[3][lanes], high[3][lanes];
-      const auto spread = [&](const real* v, int axis) {
-        for (std::size_t l = 0; l < lanes; ++l) low[axis][l] = high[axis][l] = v[l];
-        for (std::size_t j = lanes; j < neighbours::most; j += lanes)
-          for (std::size_t l = 0; l < lanes; ++l)
-            low[axis][l] = min(low[axis][l], v[j + l]), high[axis][l] = max(high[axis][l], v[j + l]);
-        for (std::size_t l = 1; l < lanes; ++l)
-          low[axis][0] = min(low[axis][0], low[axis][l]), high[axis][0] = max(high[axis][0], high[axis][l]);
-      };
-      spread(n.x, 0), spread(n.y, 1), spread(n.z, 2);
-      const vec3 c{(low[0][0] + high[0][0]) / 2, (low[1][0] + high[1][0]) / 2, (low[2][0] + high[2][0]) / 2};
-      alignas(64) real far[lanes] = {};
-      for (std::size_t j = 0; j < neighbours::most; j += lanes)
-        for (std::size_t l = 0; l < lanes; ++l) {
-          const real dx = n.x[j + l] - c.x, dy = n.y[j + l] - c.y, dz = n.z[j + l] - c.z;
-          far[l] = max(far[l], dx * dx + dy * dy + dz * dz);
-        }
-      for (std::size_t l = 1; l < lanes; ++l) far[0] = max(far[0], far[l]);
-      const auto half = [](real from, real to, real middle) { return max(to - middle, middle - from) * (1 + slack); };
-      all_.middle = c;
-      all_.half = {half(low[0][0], high[0][0], c.x), half(low[1][0], high[1][0], c.y),
-                   half(low[2][0], high[2][0], c.z)};
-      all_.radius = square_root(far[0]) * (1 + 4 * slack) + real(vanishing);
-    });
+    const neighbours& n = near;
+    constexpr std::size_t lanes = neighbours::block;
+    alignas(64) real low[3][lanes], high[3][lanes];
+    const auto spread = [&](const real* v, int axis) {
+      for (std::size_t l = 0; l < lanes; ++l) low[axis][l] = high[axis][l] = v[l];
+      for (std::size_t j = lanes; j < neighbours::most; j += lanes)
+        for (std::size_t l = 0; l < lanes; ++l)
+          low[axis][l] = min(low[axis][l], v[j + l]), high[axis][l] = max(high[axis][l], v[j + l]);
+      for (std::size_t l = 1; l < lanes; ++l)
+        low[axis][0] = min(low[axis][0], low[axis][l]), high[axis][0] = max(high[axis][0], high[axis][l]);
+    };
+    spread(n.x, 0), spread(n.y, 1), spread(n.z, 2);
+    const vec3 c{(low[0][0] + high[0][0]) / 2, (low[1][0] + high[1][0]) / 2, (low[2][0] + high[2][0]) / 2};
+    alignas(64) real far[lanes] = {};
+    for (std::size_t j = 0; j < neighbours::most; j += lanes)
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const real dx = n.x[j + l] - c.x, dy = n.y[j + l] - c.y, dz = n.z[j + l] - c.z;
+        far[l] = max(far[l], dx * dx + dy * dy + dz * dz);
+      }
+    for (std::size_t l = 1; l < lanes; ++l) far[0] = max(far[0], far[l]);
+    const auto half = [](real from, real to, real middle) { return max(to - middle, middle - from) * (1 + slack); };
+    all_.middle = c;
+    all_.half = {half(low[0][0], high[0][0], c.x), half(low[1][0], high[1][0], c.y), half(low[2][0], high[2][0], c.z)};
+    all_.noise = 0;
+    all_.radius = square_root(far[0]) * (1 + 4 * slack) + real(vanishing);
   }
 
   /// Parts, the nearest on top. Points inside of them have their answers.
@@ -148,19 +156,20 @@ class tangent_walk {
       const real d = seen_[k].distance;
       if constexpr (has_interior<PartView>)
         if (d <= all_.radius + all_.noise) find_inside(near, k);
-      if (d <= all_.limit)
-        nodes_.push_back({d, unit_way(all_.middle - places_[k].around.center).direction, k, parts_[k].tree.nodes[0]});
+      if (d <= all_.limit) nodes_.push_back({d, seen_[k].way, k, parts_[k].tree.nodes[0]});
     }
     std::sort(nodes_.begin(), nodes_.end(), [](const pending& a, const pending& b) { return a.distance > b.distance; });
   }
   void find_inside(neighbours& near, std::uint32_t k) {
     std::uint64_t those = 0;
-    for (std::size_t j = 0; j < near.count; ++j)
-      if (frames::may_reach(places_[k].around, 0, near[j]) &&
-          parts_[k].interior.inside(places_[k].part_from_cloud(near[j]))) {
-        those |= std::uint64_t(1) << j;
-        if (near.within[j] >= 0) near.offer(j, 0, k, none);
-      }
+    with_vectors([&] {
+      for (std::size_t j = 0; j < near.count; ++j)
+        if (frames::may_reach(places_[k].around, 0, near[j]) &&
+            parts_[k].interior.inside(places_[k].part_from_cloud(near[j]))) {
+          those |= std::uint64_t(1) << j;
+          if (near.within[j] >= 0) near.offer(j, 0, k, none);
+        }
+    });
     if (those != 0) inner_.emplace_back(k, those);
   }
 
@@ -173,8 +182,8 @@ class tangent_walk {
       const std::uint32_t at = e.node.first + first, count = std::min(8u, e.node.count() - first);
       tangents its;
       see(tree.volumes + at, count, e.part, its);
-      for (std::uint32_t j = 0; j < count; ++j) {
-        if (its.keeps[j] == 0) continue;
+      for (std::uint32_t left = its.keeps; left != 0; left &= left - 1) {
+        const auto j = std::uint32_t(std::countr_zero(left));
         const pending child{its.distance[j], {its.x[j], its.y[j], its.z[j]}, e.part, tree.nodes[at + j]};
         if (child.node.is_leaf()) {
           take_all(child, near);
@@ -195,12 +204,14 @@ class tangent_walk {
       const rigid_transform part_from_cloud = places_[k].part_from_cloud;
       const vec3 q = seen_[k].q;
       tangents found;
+      alignas(32) std::uint32_t keeps[8];
       for (std::size_t j = 0; j < 8; ++j) {
         const tangent t = traits::tangent_at(here[j], q);
         const vec3 u = to_cloud(part_from_cloud, t.direction);
         found.distance[j] = t.distance, found.x[j] = u.x, found.y[j] = u.y, found.z[j] = u.z;
-        found.keeps[j] = all.keeps(t.distance, u);
+        keeps[j] = std::uint32_t(all.keeps(t.distance, u)) << j;
       }
+      found.keeps = together(keeps) & ((2u << (count - 1)) - 1);
       its = found;
     });
   }
@@ -243,21 +254,25 @@ class tangent_walk {
           const vec3 u{found.x[j], found.y[j], found.z[j]};
           all.best = yardstick({{found.distance[j], u}, most[j], radius[j]}, u, all.radius);
           all.within = most[j] + all.radius, nearest = j;
+          if constexpr (has_interior<PartView>) all.best.raise_to_zero(all.half), all.within = max(all.within, 0);
         }
       if (nearest != none) {
         all.limit = min(all.limit, all.within + all.radius + all.noise);
         all_ = all;
       }
+      alignas(32) std::uint32_t keeps[8];
       for (std::size_t j = 0; j < 8; ++j)
-        found.keeps[j] = all.keeps(found.distance[j], {found.x[j], found.y[j], found.z[j]});
+        keeps[j] = std::uint32_t(all.keeps(found.distance[j], {found.x[j], found.y[j], found.z[j]})) << j;
+      found.keeps = together(keeps) & ((2u << (count - 1)) - 1);
       its = found;
     });
     if (nearest != none) hint_ = {k, batch_.place[nearest]};
     batch_.count = 0;
     if (!finds) return;
-    for (std::uint32_t j = 0; j < count; ++j)
-      if (its.keeps[j] != 0)
-        candidates_.push_back({its.distance[j], {its.x[j], its.y[j], its.z[j]}, {k, batch_.place[j]}});
+    for (std::uint32_t left = its.keeps; left != 0; left &= left - 1) {
+      const auto j = std::uint32_t(std::countr_zero(left));
+      candidates_.push_back({its.distance[j], {its.x[j], its.y[j], its.z[j]}, {k, batch_.place[j]}});
+    }
     if (candidates_.size() >= most_candidates) measure(near), all_.set_limit(near.reach());
   }
 
@@ -271,49 +286,43 @@ class tangent_walk {
       std::uint64_t inside = 0;
       for (const auto& [part, those] : inner_)
         if (part == k) inside = those;
-      const wanted w{parts_[k].tree.primitives[place], parts_[k].tree.ids[place], k, inside};
-      for (std::size_t b = 0; b < near.count; b += neighbours::block)
-        if (some_want(c, near, b)) test(w, near, b);
+      test(c, inside, near);
     }
     candidates_.clear();
   }
-  struct wanted {
-    primitive_type primitive;
-    std::uint32_t id, part;
-    std::uint64_t inside;  ///< Points that have their answer.
-  };
-  /// May points of a block be as near to a candidate as to what is known?
-  bool some_want(const candidate& c, const neighbours& near, std::size_t b) const {
-    std::uint32_t any = 0;
-    with_vectors([&] {
-      const surroundings all = all_;
-      const candidate its = c;
-      std::uint32_t some = 0;
-      for (std::size_t l = b; l < b + neighbours::block; ++l)
-        some |= std::uint32_t(all.may_reach(its.distance, its.direction, near[l] - all.middle, near.within[l]));
-      any = some;
-    });
-    return any != 0;
-  }
-  /// A block's points.
-  void test(const wanted& w, neighbours& near, std::size_t b) const {
+  /// Those of `inside` have their answer.
+  void test(const candidate& c, std::uint64_t inside, neighbours& near) const {
     with_vectors([&] {
       constexpr std::size_t lanes = neighbours::block;
-      const rigid_transform part_from_cloud = places_[w.part].part_from_cloud;
-      const primitive_type primitive = w.primitive;
-      alignas(64) real distance[lanes];
-      if constexpr (rootless_primitive<primitive_type>) {
-        side_by_side<decltype(primitive.before_root(near[0])), lanes> before;
-        for (std::size_t l = 0; l < lanes; ++l) before.put(l, primitive.before_root(part_from_cloud(near[b + l])));
-        alignas(64) real root[lanes];
-        for (std::size_t l = 0; l < lanes; ++l) root[l] = square_root(before[l].squared);
-        for (std::size_t l = 0; l < lanes; ++l) distance[l] = before[l].distance(root[l]);
-      } else {
-        for (std::size_t l = 0; l < lanes; ++l) distance[l] = primitive.distance(part_from_cloud(near[b + l]));
-      }
-      for (std::size_t l = 0; l < lanes; ++l) {
-        const std::size_t j = b + l;
-        if ((w.inside >> j & 1) == 0) near.offer(j, distance[l], w.part, w.id);
+      const surroundings all = all_;
+      const auto [k, place] = c.which;
+      const real bound = c.distance;
+      const vec3 u = c.direction;
+      const primitive_type primitive = parts_[k].tree.primitives[place];
+      const std::uint32_t id = parts_[k].tree.ids[place];
+      const rigid_transform part_from_cloud = places_[k].part_from_cloud;
+      neighbours& n = near;
+      for (std::size_t b = 0; b < n.count; b += lanes) {
+        std::uint32_t any = 0;
+        for (std::size_t j = b; j < b + lanes; ++j)
+          any |= std::uint32_t(all.may_reach(bound, u, n[j] - all.middle, n.within[j]));
+        if (any == 0) continue;
+        alignas(64) real distance[lanes];
+        if constexpr (rootless_primitive<primitive_type>) {
+          side_by_side<decltype(primitive.before_root(n[0])), lanes> before;
+          alignas(64) real square[lanes], root[lanes];
+          for (std::size_t l = 0; l < lanes; ++l) {
+            const auto its = primitive.before_root(part_from_cloud(n[b + l]));
+            before.put(l, its), square[l] = its.squared;
+          }
+          square_roots<lanes>(square, root);
+          for (std::size_t l = 0; l < lanes; ++l) distance[l] = before[l].distance(root[l]);
+        } else {
+          for (std::size_t l = 0; l < lanes; ++l) distance[l] = primitive.distance(part_from_cloud(n[b + l]));
+        }
+        for (std::size_t l = 0; inside != 0 && l < lanes; ++l)
+          if ((inside >> (b + l) & 1) != 0) distance[l] = not_a_number;
+        for (std::size_t l = 0; l < lanes; ++l) n.offer(b + l, distance[l], k, id);
       }
     });
   }

@@ -21,6 +21,13 @@ struct alignas(16) yardstick {
     direction = choice(straight, way, vec3{0, 0, 0});
     most = t.most + choice(straight, radius * radius * 0.50001f * rough_inverse(t.radius), radius);
   }
+
+  /// Raises it until it is 0 or more all over a box: a point inside a solid is 0 away, whatever its primitives say.
+  CLEARANCE_HD void raise_to_zero(vec3 half) {
+    const vec3 u = direction;
+    const real least = most - (absolute(u.x) * half.x + absolute(u.y) * half.y + absolute(u.z) * half.z);
+    if (least < 0) most -= least;
+  }
 };
 
 /// Points in a box, and what is known of them.
