@@ -6,7 +6,7 @@
 
 #include <clearance/cloud_tree/morton.hpp>
 #include <clearance/pointwise/host_packets.hpp>
-#include <clearance/scan/tangent_walk.hpp>
+#include <clearance/scan/group_walk.hpp>
 
 #include <utility>
 
@@ -89,7 +89,7 @@ class host_groups {
   }
 
   host_packets<PartView>& packets_;
-  scan::tangent_walk<PartView> walk_;
+  scan::group_walk<PartView> walk_;
   real d_max_;
   std::vector<numbered> points_, others_;
   std::vector<coded> codes_, sorted_;

@@ -45,9 +45,9 @@ struct neighbours : packet<64> {
 };
 
 template <class PartView>
-class tangent_walk {
+class group_walk {
  public:
-  tangent_walk(const PartView* parts, std::span<const frames::placement> places)
+  group_walk(const PartView* parts, std::span<const frames::placement> places)
       : parts_(parts), places_(places), seen_(places.size()) {}
 
   /// Looks at points from their middle. Returns how far they lie from it at most, and whether they lie together.
