@@ -74,13 +74,16 @@ struct host_points {
           near = true;
           if (d_max < infinity) survivors.add(t, place.around, d_max);
         }
-      for (std::size_t j = 0; j < count; ++j) put(i + j, packets::is_point(t[j]) ? found{} : found{not_a_number});
       const auto add = [&](std::size_t j) { groups.add(t[j], std::uint32_t(i + j)); };
-      if (near && d_max < infinity)
-        survivors.for_each(add);
-      else if (near)
-        for (std::size_t j = 0; j < count; ++j)
-          if (packets::is_point(t[j])) add(j);
+      const bool all = near && !(d_max < infinity);
+      for (std::size_t j = 0; j < count; ++j)
+        if (!packets::is_point(t[j]))
+          put(i + j, {not_a_number});
+        else if (all)
+          add(j);
+        else
+          put(i + j, {});
+      if (near && !all) survivors.for_each(add);
       if (++tiles % (most_together / scan::tile_points) == 0 || i + scan::tile_points >= range.end) groups.answer(take);
     }
   }

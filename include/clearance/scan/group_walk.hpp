@@ -6,11 +6,9 @@
 
 #include <clearance/frame/frame.hpp>
 #include <clearance/frame/root_test.hpp>
-#include <clearance/result.hpp>
 #include <clearance/scan/interior.hpp>
-#include <clearance/scan/packet.hpp>
+#include <clearance/scan/neighbours.hpp>
 #include <clearance/scan/seen_memory.hpp>
-#include <clearance/scan/side_by_side.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -20,42 +18,20 @@
 
 namespace clearance::scan {
 
-/// Points that lie together, in the cloud's frame, with what is nearest to each.
-struct neighbours : packet<64> {
-  static constexpr std::size_t most = 64, block = 32;
-  std::uint32_t count = 0;
-  std::uint32_t part[most], primitive[most];
-
-  void add(vec3 p, real reach) {
-    part[count] = primitive[count] = none;
-    put(count++, p, reach);
-  }
-  /// Keeps the nearer one; of equally near ones the lowest part, and of that the lowest primitive. Without branches.
-  void offer(std::size_t j, real distance, std::uint32_t k, std::uint32_t id) {
-    const auto first = int(k < part[j]) | (int(k == part[j]) & int(id < primitive[j]));
-    const bool nearer = bool(int(distance < within[j]) | (int(distance == within[j]) & first));
-    within[j] = choice(nearer, distance, within[j]);
-    part[j] = nearer ? k : part[j], primitive[j] = nearer ? id : primitive[j];
-  }
-  real reach() const {
-    real largest = -infinity;
-    for (std::size_t j = 0; j < count; ++j) largest = max(largest, within[j]);
-    return largest;
-  }
-};
-
+/// A walk through the trees of all parts. It keeps what was near to the last points, as a first bound for the next.
 template <class PartView>
 class group_walk {
  public:
   group_walk(const PartView* parts, std::span<const frames::placement> places)
       : parts_(parts), places_(places), seen_(places.size()) {}
 
-  /// Looks at points from their middle. Returns how far they lie from it at most, and whether they lie together.
+  /// Looks at points from their middle. Returns true if they lie together: much closer to one another than to the
+  /// parts, or within a few centimetres; and if rounding is finer than that.
   bool look_around(neighbours& near, const std::vector<std::uint32_t>& parts) {
-    for (std::size_t j = near.count; j < neighbours::most; ++j) near.put(j, near[0], -infinity);
+    near.fill();
     real gap = infinity;
     with_vectors([&] {
-      surround(near);
+      all_ = near.surround();
       for (const std::uint32_t k : parts) {
         const vec3 q = places_[k].part_from_cloud(all_.middle);
         const seen_part seen(all_, places_[k].around, q);
@@ -120,35 +96,6 @@ class group_walk {
     vec3 direction;
     primitive_of_part which;
   };
-
-  /// The box around points.
-  void surround(const neighbours& near) {
-    const neighbours& n = near;
-    constexpr std::size_t lanes = neighbours::block;
-    alignas(64) real low[3][lanes], high[3][lanes];
-    const auto spread = [&](const real* v, int axis) {
-      for (std::size_t l = 0; l < lanes; ++l) low[axis][l] = high[axis][l] = v[l];
-      for (std::size_t j = lanes; j < neighbours::most; j += lanes)
-        for (std::size_t l = 0; l < lanes; ++l)
-          low[axis][l] = min(low[axis][l], v[j + l]), high[axis][l] = max(high[axis][l], v[j + l]);
-      for (std::size_t l = 1; l < lanes; ++l)
-        low[axis][0] = min(low[axis][0], low[axis][l]), high[axis][0] = max(high[axis][0], high[axis][l]);
-    };
-    spread(n.x, 0), spread(n.y, 1), spread(n.z, 2);
-    const vec3 c{(low[0][0] + high[0][0]) / 2, (low[1][0] + high[1][0]) / 2, (low[2][0] + high[2][0]) / 2};
-    alignas(64) real far[lanes] = {};
-    for (std::size_t j = 0; j < neighbours::most; j += lanes)
-      for (std::size_t l = 0; l < lanes; ++l) {
-        const real dx = n.x[j + l] - c.x, dy = n.y[j + l] - c.y, dz = n.z[j + l] - c.z;
-        far[l] = max(far[l], dx * dx + dy * dy + dz * dz);
-      }
-    for (std::size_t l = 1; l < lanes; ++l) far[0] = max(far[0], far[l]);
-    const auto half = [](real from, real to, real middle) { return max(to - middle, middle - from) * (1 + slack); };
-    all_.middle = c;
-    all_.half = {half(low[0][0], high[0][0], c.x), half(low[1][0], high[1][0], c.y), half(low[2][0], high[2][0], c.z)};
-    all_.noise = 0;
-    all_.radius = square_root(far[0]) * (1 + 4 * slack) + real(vanishing);
-  }
 
   /// Parts, the nearest on top. Points inside of them have their answers.
   void begin(neighbours& near, const std::vector<std::uint32_t>& parts) {
@@ -286,47 +233,12 @@ class group_walk {
       std::uint64_t inside = 0;
       for (const auto& [part, those] : inner_)
         if (part == k) inside = those;
-      test(c, inside, near);
+      const hierarchy& tree = parts_[k].tree;
+      near.test(all_, {c.distance, c.direction}, places_[k].part_from_cloud, tree.primitives[place], k, tree.ids[place],
+                inside);
     }
     candidates_.clear();
   }
-  /// Those of `inside` have their answer.
-  void test(const candidate& c, std::uint64_t inside, neighbours& near) const {
-    with_vectors([&] {
-      constexpr std::size_t lanes = neighbours::block;
-      const surroundings all = all_;
-      const auto [k, place] = c.which;
-      const real bound = c.distance;
-      const vec3 u = c.direction;
-      const primitive_type primitive = parts_[k].tree.primitives[place];
-      const std::uint32_t id = parts_[k].tree.ids[place];
-      const rigid_transform part_from_cloud = places_[k].part_from_cloud;
-      neighbours& n = near;
-      for (std::size_t b = 0; b < n.count; b += lanes) {
-        std::uint32_t any = 0;
-        for (std::size_t j = b; j < b + lanes; ++j)
-          any |= std::uint32_t(all.may_reach(bound, u, n[j] - all.middle, n.within[j]));
-        if (any == 0) continue;
-        alignas(64) real distance[lanes];
-        if constexpr (rootless_primitive<primitive_type>) {
-          side_by_side<decltype(primitive.before_root(n[0])), lanes> before;
-          alignas(64) real square[lanes], root[lanes];
-          for (std::size_t l = 0; l < lanes; ++l) {
-            const auto its = primitive.before_root(part_from_cloud(n[b + l]));
-            before.put(l, its), square[l] = its.squared;
-          }
-          square_roots<lanes>(square, root);
-          for (std::size_t l = 0; l < lanes; ++l) distance[l] = before[l].distance(root[l]);
-        } else {
-          for (std::size_t l = 0; l < lanes; ++l) distance[l] = primitive.distance(part_from_cloud(n[b + l]));
-        }
-        for (std::size_t l = 0; inside != 0 && l < lanes; ++l)
-          if ((inside >> (b + l) & 1) != 0) distance[l] = not_a_number;
-        for (std::size_t l = 0; l < lanes; ++l) n.offer(b + l, distance[l], k, id);
-      }
-    });
-  }
-
   static constexpr std::size_t most_candidates = 256;
 
   const PartView* parts_;
