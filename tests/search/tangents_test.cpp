@@ -13,6 +13,33 @@
 
 namespace tangents_test {
 
+/// A volume of one's own that is not trivially copyable, though it copies as bytes.
+struct own_box {
+  clearance::aabb box;
+
+  own_box() = default;
+  explicit own_box(const clearance::aabb& b) : box(b) {}
+  own_box(const own_box& other) : box(other.box) {}
+  own_box& operator=(const own_box& other) {
+    box = other.box;
+    return *this;
+  }
+};
+
+}  // namespace tangents_test
+
+template <>
+struct clearance::bounding_volume_traits<tangents_test::own_box> {
+  using own_box = tangents_test::own_box;
+  static constexpr bool bitwise_copyable = true;
+
+  static own_box fit(std::span<const ball> balls) { return own_box(aabb::fit(balls)); }
+  static real lower_bound(const own_box& v, vec3 q) { return v.box.lower_bound(q); }
+  static tangent tangent_at(const own_box& v, vec3 q) { return v.box.tangent_at(q); }
+};
+
+namespace tangents_test {
+
 using namespace testing;
 using clearance::distances, clearance::host, clearance::placed, clearance::point_span;
 
@@ -80,6 +107,7 @@ TEST_CASE("By tangents to triangles, in every volume, on the host") {
   all_scenes<clearance::aabb, triangle>(2, 9);
   all_scenes<clearance::obb, triangle>(8, 4);
 }
+TEST_CASE("By tangents in a volume of one's own") { all_scenes<own_box, inner_sphere>(8, 3); }
 
 TEST_CASE("By tangents to solids that overlap and repeat, from inside, on their faces and in their middles") {
   verdict v;
