@@ -68,7 +68,7 @@ class host_groups {
   }
 
   void put_in_order() {
-    if (points_.size() <= few) return;
+    if (points_.size() <= most) return;
     const cloud_tree::morton_grid grid(box_.lower, box_.upper);
     codes_.resize(points_.size()), sorted_.resize(points_.size());
     with_vectors([&] {
