@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/laws.hpp"
 
+#include <clearance/ground/ordered.hpp>
+
 namespace primitives_test {
 
 using namespace testing;
@@ -27,6 +29,12 @@ void check(const P& p, vec3 q, verdict& v) {
             " of ", near.center, " size", size(p));
   if constexpr (clearance::foreseen_primitive<P>)
     v.require(p.may_reach(q, p.distance(q)), "ruled out at ", q, ", though", distance, " away");
+  if constexpr (clearance::rootless_primitive<P>) {
+    const auto before = p.before_root(q);
+    const real by_root = before.distance(clearance::square_root(before.squared));
+    v.require(clearance::to_bits(by_root) == clearance::to_bits(p.distance(q)), "after its root", by_root,
+              " and the distance", distance, " at ", q);
+  }
   if constexpr (clearance::bounded_primitive<P>)
     v.require(p.lower_bound(q) <= p.distance(q), "the lower bound is", p.lower_bound(q), " and the distance", distance,
               " at ", q);

@@ -22,10 +22,14 @@ struct host {
 
   unsigned threads = 0;
 
-  /// Calls `body(indices)` for ranges that together cover 0 .. n-1 once and are small enough to balance uneven work.
+  std::size_t concurrency() const {
+    return threads != 0 ? threads : std::size_t(tbb::this_task_arena::max_concurrency());
+  }
+
+  /// Calls `body(indices)` for ranges that together cover 0 .. n-1 once and are small enough to balance uneven work:
+  /// at most `grain` long, if there is more than one thread.
   template <class F>
-  void for_ranges(std::size_t n, F body) const {
-    constexpr std::size_t grain = 1024;
+  void for_ranges(std::size_t n, F body, std::size_t grain = 1024) const {
     if (n <= grain || threads == 1) return body(indices{0, n, 1});
     const auto all = [&] {
       tbb::parallel_for(
@@ -85,8 +89,7 @@ class host_workers {
   template <class F>
   void for_pieces(std::size_t n, std::size_t grain, const F& body) {
     const std::size_t pieces = (n + grain - 1) / grain;
-    const auto threads =
-        std::min<std::size_t>(threads_ == 0 ? std::size_t(tbb::this_task_arena::max_concurrency()) : threads_, pieces);
+    const auto threads = std::min<std::size_t>(host{threads_}.concurrency(), pieces);
     std::atomic<std::size_t> next = 0;
     const auto work = [&](std::size_t) {
       for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < pieces;)

@@ -30,9 +30,10 @@ struct unit_way {
   real length;
   vec3 direction;
 
-  CLEARANCE_HD explicit unit_way(vec3 way) : length(rough_length(way)) {
-    if (!(length > 1e-18f)) length = 0;
-    direction = scaled(length > 0 ? rough_inverse(length) : 0, way);
+  CLEARANCE_HD explicit unit_way(vec3 way) : length(looped_root(dot(way, way))) {
+    const bool any = length > 1e-18f;
+    length = choice(any, length, 0);
+    direction = scaled(choice(any, rough_inverse(choice(any, length, 1)), 0), way);
   }
 };
 
@@ -43,11 +44,12 @@ struct box_sides {
 
   /// Along the way from the box; inside along the axis of the nearest face. Any half-space would be right.
   CLEARANCE_HD tangent tangent_of_box() const {
-    const unit_way way({rough_max(beyond.x, 0), rough_max(beyond.y, 0), rough_max(beyond.z, 0)});
+    const unit_way way({rough_positive(beyond.x), rough_positive(beyond.y), rough_positive(beyond.z)});
     const real deepest = rough_max(rough_max(beyond.x, beyond.y), beyond.z);
-    const bool out = way.length > 0, x = beyond.x == deepest, y = !x && beyond.y == deepest;
-    const vec3 u = out ? way.direction : vec3{x ? 1.0f : 0.0f, y ? 1.0f : 0.0f, x || y ? 0.0f : 1.0f};
-    const real d = out ? way.length : deepest;
+    const bool out = way.length > 0, x = beyond.x == deepest, y = bool(int(!x) & int(beyond.y == deepest));
+    const vec3 in{choice(x, 1, 0), choice(y, 1, 0), choice(bool(int(x) | int(y)), 0, 1)};
+    const vec3 u = choice(out, way.direction, in);
+    const real d = choice(out, way.length, deepest);
     return {d - 2 * slack * absolute(d), {u.x * side.x, u.y * side.y, u.z * side.z}};
   }
 };

@@ -33,6 +33,16 @@ concept foreseen_primitive = primitive<P> && requires(const P p, vec3 q, real re
   { p.may_reach(q, reach) } -> std::same_as<bool>;
 };
 
+/// A primitive whose distance has one root, with all before and after it without a branch: roots do not become vector
+/// code, the rest does.
+/// Law: `p.distance(q)` is `before.distance(square_root(before.squared))` in every bit, with `before =
+/// p.before_root(q)`.
+template <class P>
+concept rootless_primitive = primitive<P> && requires(const P p, vec3 q, real root) {
+  { p.before_root(q).squared } -> std::convertible_to<real>;
+  { p.before_root(q).distance(root) } -> std::same_as<real>;
+};
+
 /// A primitive with a quick lower bound on its distance.
 /// Law: `p.lower_bound(q)` is never greater than `p.distance(q)`, rounding included.
 template <class P>

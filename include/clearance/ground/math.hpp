@@ -7,6 +7,7 @@
 
 #include <clearance/ground/config.hpp>
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -95,6 +96,18 @@ CLEARANCE_HD inline real rough_root(real a) {
   return square_root(a);
 #endif
 }
+/// The same for loops that should become vector code, which a host's root, with its error for negative numbers,
+/// forbids.
+CLEARANCE_HD inline real looped_root(real a) {
+#if defined(__CUDA_ARCH__)
+  return rough_root(a);
+#else
+  real inverse =
+      std::bit_cast<real>(0x5f3759dfu - (std::bit_cast<std::uint32_t>(a) >> 1));  // to 3 %; then Newton's steps
+  for (int k = 0; k < 3; ++k) inverse *= 1.5f - 0.5f * a * inverse * inverse;
+  return a * inverse;
+#endif
+}
 CLEARANCE_HD inline real rough_length(vec3 a) { return rough_root(dot(a, a)); }
 /// A quicker inverse likewise. That of a subnormal number may be infinite.
 CLEARANCE_HD inline real rough_inverse(real a) {
@@ -120,8 +133,28 @@ CLEARANCE_HD inline real rough_min(real a, real b) {
   return min(a, b);
 #endif
 }
-CLEARANCE_HD inline real rough_max(real a, real b) { return -rough_min(-a, -b); }
+CLEARANCE_HD inline real rough_max(real a, real b) {
+#if defined(__CUDA_ARCH__)
+  return -fminf(-a, -b);
+#else
+  return max(a, b);
+#endif
+}
 CLEARANCE_HD constexpr real clamp01(real t) { return t < 0 ? 0 : (t > 1 ? 1 : t); }
+/// first ? a : b. `Looped`: by bits, for loops where compilers would turn a choice into branches.
+template <bool Looped = true>
+CLEARANCE_HD inline real choice(bool first, real a, real b) {
+#if !defined(__CUDA_ARCH__)
+  const std::uint32_t all = 0u - std::uint32_t(first);
+  if constexpr (Looped)
+    return std::bit_cast<real>((std::bit_cast<std::uint32_t>(a) & all) | (std::bit_cast<std::uint32_t>(b) & ~all));
+#endif
+  return first ? a : b;
+}
+template <bool Looped = true>
+CLEARANCE_HD inline vec3 choice(bool first, vec3 a, vec3 b) {
+  return {choice<Looped>(first, a.x, b.x), choice<Looped>(first, a.y, b.y), choice<Looped>(first, a.z, b.z)};
+}
 /// The same, and 0 for NaN.
 CLEARANCE_HD inline real saturated(real t) {
 #if defined(__CUDA_ARCH__)
@@ -165,6 +198,14 @@ CLEARANCE_HD constexpr real lowered(real distance, real size) { return distance 
 
 /// max(a, 0), but NaN for minus infinity. For loops where compilers would turn max into branches.
 CLEARANCE_HD constexpr real positive_part(real a) { return (a + absolute(a)) * 0.5f; }
+/// The same for finite numbers, in one instruction on a device.
+CLEARANCE_HD inline real rough_positive(real a) {
+#if defined(__CUDA_ARCH__)
+  return rough_max(a, 0);
+#else
+  return positive_part(a);
+#endif
+}
 /// The largest squared distance to a volume, rounding included, at which its content may be within `reach`. It is NaN,
 /// so that no comparison holds, if the reach is minus infinity.
 CLEARANCE_HD constexpr real square_of_reach(real reach) {

@@ -5,23 +5,19 @@
 #include <clearance/backend/host.hpp>
 #include <clearance/frame/clouds.hpp>
 #include <clearance/ground/vectors.hpp>
-#include <clearance/pointwise/each_point.hpp>
+#include <clearance/pointwise/host_groups.hpp>
+#include <clearance/pointwise/host_packets.hpp>
 #include <clearance/robot/model.hpp>
-#include <clearance/scan/interior.hpp>
-#include <clearance/scan/packet.hpp>
-#include <clearance/scan/tile_scan.hpp>
-#include <clearance/volume/sphere.hpp>
-
-#include <span>
-#include <utility>
 
 namespace clearance::pointwise {
 
-/// A range of points, done by one thread. Neighbours walk together if they are much closer to one another than to the
-/// robot. Each starts with the primitive nearest to an earlier point as a bound.
+/// A range of points, done by one thread: tile by tile, or in groups if the trees know their tangents.
 template <class PartView, point_source Source>
 struct host_points {
   using hierarchy_type = typename PartView::hierarchy_type;
+  using packets = host_packets<PartView>;
+  static constexpr bool by_tangents = scan::tangent_hierarchy<hierarchy_type>;
+  static constexpr std::size_t most_together = 16384;  ///< Points among which groups are looked for.
 
   const PartView* parts;
   std::span<const frames::placement> places;
@@ -33,102 +29,72 @@ struct host_points {
   distances_out out;
   real d_max;
 
+  /// How many points one thread takes at a time: the more, the smaller is the space of a group.
+  static std::size_t grain(const host& on, std::size_t points) {
+    return by_tangents ? std::clamp<std::size_t>(points / (8 * on.concurrency()), 2048, most_together) : 1024;
+  }
+
   void operator()(indices range) const {
     scan::drop_tally mine;
-    scan::tile t;
-    memory m;
-    m.pending.resize(stack);
-    for (std::size_t i = range.begin; i < range.end; i += scan::tile_points) {
-      const std::size_t count = std::min(scan::tile_points, range.end - i);
-      t.load(source, i, count, 1, mine);
-      t.subtract(origin);
-      found best[scan::tile_points];
-      with_vectors([&] { look(t, m, best); });
-      for (std::size_t j = 0; j < count; ++j) write(out, first + i + j, is_point(t[j]) ? best[j] : found{not_a_number});
-    }
+    packets m(parts, places, d_max, stack);
+    if constexpr (by_tangents)
+      in_groups(range, m, mine);
+    else
+      in_tiles(range, m, mine);
     mine.add_to(*counts);
   }
 
  private:
-  static constexpr std::size_t together = 16;
-
-  struct seed {
-    std::uint32_t part = none;
-    scan::primitive_place<hierarchy_type> where = {};
-  };
-  struct memory {
-    std::vector<near_first::entry_of<hierarchy_type>> pending;
-    std::vector<std::pair<real, std::uint32_t>> near;  ///< Parts within reach of a tile, nearest first.
-    seed last, next;           ///< The primitive nearest to a point of the last packet, and of this one.
-    real distance = infinity;  ///< The last point's.
-  };
-
-  static bool is_point(vec3 p) { return p.x == p.x; }
-
-  void look(const scan::tile& t, memory& m, found* best) const {
-    const extent box = box_of(t);
-    if (box.lower.x > box.upper.x) return;
-    m.near.clear();
-    for (std::uint32_t k = 0; k < places.size(); ++k)
-      if (const ball& around = places[k].around; scan::may_reach(around, d_max, box))
-        m.near.emplace_back(length(fma(0.5f, box.lower + box.upper, -around.center)) - around.radius, k);
-    if (m.near.empty()) return;
-    std::sort(m.near.begin(), m.near.end());
-    for (std::size_t i = 0; i < scan::tile_points; i += together) {
-      std::size_t lead = 0;
-      while (lead < together && !is_point(t[i + lead])) ++lead;
-      if (lead == together) continue;
-      real widest = 0;  // square
-      for (std::size_t j = lead; j < together; ++j) {
-        const vec3 way = t[i + j] - t[i + lead];
-        widest = max(widest, dot(way, way));
-      }
-      if (const real most = m.distance * 0.25f; widest <= most * most)
-        ask<together>(t, i, lead, m, best);
-      else
-        for (std::size_t j = lead; j < together; ++j)
-          if (is_point(t[i + j])) ask<1>(t, i + j, 0, m, best);
+  void in_tiles(indices range, packets& m, scan::drop_tally& mine) const {
+    scan::tile t;
+    for (std::size_t i = range.begin; i < range.end; i += scan::tile_points) {
+      const std::size_t count = load(t, i, range.end, mine);
+      found best[scan::tile_points];
+      with_vectors([&] {
+        if (!m.look_around(box_of(t))) return;
+        for (std::size_t j = 0; j < scan::tile_points; j += packets::together)
+          m.ask(packets::together, [&](std::size_t l) { return t[j + l]; }, best + j);
+      });
+      for (std::size_t j = 0; j < count; ++j) put(i + j, packets::is_point(t[j]) ? best[j] : found{not_a_number});
     }
   }
 
-  /// The points from `begin` on.
-  template <std::size_t Lanes>
-  void ask(const scan::tile& t, std::size_t begin, std::size_t lead, memory& m, found* best) const {
-    scan::packet<Lanes> all;
-    for (std::size_t j = 0; j < Lanes; ++j) all.put(j, t[begin + j], d_max);
-    if (m.last.part != none) {
-      const auto& primitive = m.last.where.in(parts[m.last.part].tree);
-      for (std::size_t j = 0; j < Lanes; ++j)
-        all.within[j] = min(d_max, primitive.distance(places[m.last.part].part_from_cloud(all[j])));
-    }
-    for (const auto& [away, k] : m.near) visit(k, all, lead, m, best + begin);
-    m.last = m.next;
-    if (is_point(all[Lanes - 1])) m.distance = best[begin + Lanes - 1].distance;
-  }
-
-  /// Points against one part.
-  template <std::size_t Lanes>
-  void visit(std::uint32_t k, scan::packet<Lanes>& all, std::size_t lead, memory& m, found* best) const {
-    const frames::placement& place = places[k];
-    std::uint32_t near[Lanes];
-    if (!all.mark(sphere{place.around.center, place.around.radius}, near)) return;
-    scan::walking_packet<hierarchy_type, Lanes> here;
-    for (std::size_t j = 0; j < Lanes; ++j)
-      here.put(j, place.part_from_cloud(all[j]), near[j] != 0 ? all.within[j] : -infinity);
-    if constexpr (scan::has_interior<PartView>)
-      for (std::size_t j = 0; j < Lanes; ++j)
-        if (here.within[j] > -infinity && parts[k].interior.inside(here[j])) {
-          if (here.within[j] >= 0) best[j].offer({0, k, none}), all.within[j] = 0;
-          here.within[j] = -infinity;
+  void in_groups(indices range, packets& m, scan::drop_tally& mine) const {
+    host_groups<PartView> groups(m, parts, places, d_max);
+    const auto take = [&](std::uint32_t number, const found& f) { put(number, f); };
+    scan::tile t;
+    std::size_t tiles = 0;
+    for (std::size_t i = range.begin; i < range.end; i += scan::tile_points) {
+      const std::size_t count = load(t, i, range.end, mine);
+      const extent box = box_of(t);
+      scan::tile_survivors survivors;
+      bool near = false;
+      for (const auto& place : places)
+        if (scan::may_reach(place.around, d_max, box)) {
+          near = true;
+          if (d_max < infinity) survivors.add(t, place.around, d_max);
         }
-    here.walk(parts[k].tree, lead, m.pending.data());
-    for (std::size_t j = 0; j < Lanes; ++j)
-      if (here.best[j] != none) {
-        best[j].offer({here.within[j], k, here.best[j]});
-        if (best[j].part == k) m.next = {k, here.where[j]};
-        all.within[j] = min(all.within[j], here.within[j]);
-      }
+      const auto add = [&](std::size_t j) { groups.add(t[j], std::uint32_t(i + j)); };
+      const bool all = near && !(d_max < infinity);
+      for (std::size_t j = 0; j < count; ++j)
+        if (!packets::is_point(t[j]))
+          put(i + j, {not_a_number});
+        else if (all)
+          add(j);
+        else
+          put(i + j, {});
+      if (near && !all) survivors.for_each(add);
+      if (++tiles % (most_together / scan::tile_points) == 0 || i + scan::tile_points >= range.end) groups.answer(take);
+    }
   }
+
+  std::size_t load(scan::tile& t, std::size_t begin, std::size_t end, scan::drop_tally& mine) const {
+    const std::size_t count = std::min(scan::tile_points, end - begin);
+    t.load(source, begin, count, 1, mine);
+    t.subtract(origin);
+    return count;
+  }
+  void put(std::size_t i, const found& f) const { write(out, first + i, f); }
 };
 
 /// All clouds of a frame. Returns how certain the distances are.
@@ -139,9 +105,11 @@ distance_certainty on_host(const host& on, const model_view<PartView>& model, st
   frames::cloud_frame frame;
   const std::uint64_t seen = frames::for_each_turn(
       frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+        using body = host_points<PartView, S>;
         on.for_ranges(source.size(),
-                      host_points<PartView, S>{model.parts, frame.places, stack_need(model.depth, model.width), source,
-                                               frame.origin, now.first, &dropped, out, d_max});
+                      body{model.parts, frame.places, stack_need(model.depth, model.width), source, frame.origin,
+                           now.first, &dropped, out, d_max},
+                      body::grain(on, source.size()));
       });
   scan::count(*counts, dropped.dropped, seen);
   return certainty_of(frame);

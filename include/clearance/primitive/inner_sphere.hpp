@@ -13,6 +13,15 @@ struct inner_sphere {
   real radius;
 
   CLEARANCE_HD real distance(vec3 q) const { return length(q - center) - radius; }
+  /// `distance` but for its root: see rootless_primitive.
+  struct rootless {
+    real squared, radius;
+    CLEARANCE_HD real distance(real root) const { return root - radius; }
+  };
+  CLEARANCE_HD rootless before_root(vec3 q) const {
+    const vec3 way = q - center;
+    return {dot(way, way), radius};
+  }
   CLEARANCE_HD vec3 nearest(vec3 q) const {
     const vec3 n = normal(q);
     return fma(radius, n == vec3{0, 0, 0} ? vec3{1, 0, 0} : n,

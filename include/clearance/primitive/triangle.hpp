@@ -33,6 +33,21 @@ struct triangle {
     return m.over_face ? min(m.edge, absolute(m.height) + 0.0f) : m.edge;  // + 0: never -0
   }
 
+  /// `distance` but for one root: see rootless_primitive.
+  struct rootless {
+    real squared;  ///< Of the nearest side,
+    real inner;    ///< and of the nearest whose interior is nearest; NaN if the point does not project inside.
+    real noise, height;
+
+    CLEARANCE_HD real distance(real root) const {
+      return choice(inner <= nearly(root, noise), min(root, absolute(height) + 0.0f), root);
+    }
+  };
+  CLEARANCE_HD rootless before_root(vec3 q) const {
+    const seen<false, true> s(*this, q);
+    return {s.least.squared, choice(over_face(s), s.inner, not_a_number), s.noise, dot(s.aq, unit_normal)};
+  }
+
   /// Like `distance`, but rounded roughly, which it allows for. Only the sides' signs say whether q is over the face.
   CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
     const vec3 ab = b - a, bc = c - b, ca = a - c;
@@ -92,39 +107,60 @@ struct triangle {
     bool interior;  ///< The interior is nearest, not a corner.
   };
 
-  /// `Rough`: with quotients and roots for bounds.
+  /// The three sides from a point. `Rough`: with quotients for bounds. `Looped`: without branches.
+  template <bool Rough, bool Looped>
+  struct seen {
+    vec3 ab, bc, ca, aq, bq, cq;
+    real noise;
+    side least;  ///< The nearest side.
+    real inner;  ///< The least square to a side whose interior is nearest, or NaN.
+
+    CLEARANCE_HD seen(const triangle& t, vec3 q)
+        : ab(t.b - t.a),
+          bc(t.c - t.b),
+          ca(t.a - t.c),
+          aq(q - t.a),
+          bq(q - t.b),
+          cq(q - t.c),
+          // The uncertainty of positions. The factor is a power of two, so that contraction changes no bit.
+          noise(0x1p-22f * (extent(aq) + extent(ab) + extent(ca))),
+          least(to_side<Rough, Looped>(aq, ab, noise)),
+          inner(choice<Looped>(least.interior, least.squared, not_a_number)) {
+      add(to_side<Rough, Looped>(bq, bc, noise)), add(to_side<Rough, Looped>(cq, ca, noise));
+    }
+    CLEARANCE_HD void add(const side& s) {
+      const bool nearer = s.squared < least.squared;
+      least.offset = choice<Looped>(nearer, s.offset, least.offset);
+      least.squared = choice<Looped>(nearer, s.squared, least.squared);
+      inner = choice<Looped>(bool(int(s.interior) & int(!(inner <= s.squared))), s.squared, inner);
+    }
+  };
+
   template <bool Rough = false>
   CLEARANCE_HD measured measure(vec3 q) const {
-    const vec3 ab = b - a, bc = c - b, ca = a - c;
-    const vec3 aq = q - a, bq = q - b, cq = q - c;
-    // The uncertainty of positions below. The factor is a power of two, so that contraction changes no bit.
-    const real noise = 0x1p-22f * (extent(aq) + extent(ab) + extent(ca));
-    const side sides[3] = {to_side<Rough>(aq, ab, noise), to_side<Rough>(bq, bc, noise), to_side<Rough>(cq, ca, noise)};
-    side least = sides[0];
-    for (const side& s : sides)
-      if (s.squared < least.squared) least = s;
-    measured m{least.offset, Rough ? rough_root(least.squared) : square_root(least.squared), dot(aq, unit_normal),
-               false};
-    const real nearly = (m.edge + noise) * (m.edge + noise);
-    bool interior = false;
-    for (const side& s : sides) interior = interior || (s.interior && s.squared <= nearly);
-    m.over_face = interior && over_face(ab, bc, ca, aq, bq, cq);
-    return m;
+    const seen<Rough, Rough> s(*this, q);
+    const real edge = Rough ? looped_root(s.least.squared) : square_root(s.least.squared);
+    const bool interior = s.inner <= nearly(edge, s.noise);
+    const bool over = Rough ? bool(int(interior) & int(over_face(s))) : interior && over_face(s);
+    return {s.least.offset, edge, dot(s.aq, unit_normal), over};
   }
+  CLEARANCE_HD static real nearly(real edge, real noise) { return (edge + noise) * (edge + noise); }
   /// From the nearest point to the query point.
   template <bool Rough = false>
   CLEARANCE_HD vec3 away(vec3 q) const {
     const measured m = measure<Rough>(q);
-    return m.over_face && absolute(m.height) <= m.edge ? scaled(m.height, unit_normal) : m.offset;
+    const bool face = bool(int(m.over_face) & int(absolute(m.height) <= m.edge));
+    return choice<Rough>(face, scaled(m.height, unit_normal), m.offset);
   }
   /// A side that starts at 0 and goes along `edge`.
-  template <bool Rough>
+  template <bool Rough, bool Looped>
   CLEARANCE_HD static side to_side(vec3 p, vec3 edge, real noise) {
     const real length2 = dot(edge, edge);
-    const real t = length2 > (Rough ? least_normal : 0) ? ratio<Rough>(dot(p, edge), length2) : 0,
+    const bool any = length2 > (Rough ? least_normal : 0);
+    const real t = ratio<Rough>(choice<Looped>(any, dot(p, edge), 0), choice<Looped>(any, length2, 1)),
                beyond = max(-t, t - 1);
-    const vec3 offset = fma(-clamp01(t), edge, p);
-    return {offset, dot(offset, offset), beyond < 0 || beyond * beyond * length2 <= noise * noise};
+    const vec3 offset = fma(-min(max(t, 0), 1), edge, p);
+    return {offset, dot(offset, offset), bool(int(beyond < 0) | int(beyond * beyond * length2 <= noise * noise))};
   }
   template <bool Rough>
   CLEARANCE_HD static real ratio(real a, real b) {
@@ -137,9 +173,13 @@ struct triangle {
     return dot(offset, offset);
   }
   /// Decided by every side's sign.
+  template <class Seen>
+  CLEARANCE_HD bool over_face(const Seen& s) const {
+    return over_face(s.ab, s.bc, s.ca, s.aq, s.bq, s.cq);
+  }
   CLEARANCE_HD bool over_face(vec3 ab, vec3 bc, vec3 ca, vec3 aq, vec3 bq, vec3 cq) const {
-    return dot(cross(unit_normal, ab), aq) > 0 && dot(cross(unit_normal, bc), bq) > 0 &&
-           dot(cross(unit_normal, ca), cq) > 0;
+    return bool(int(dot(cross(unit_normal, ab), aq) > 0) & int(dot(cross(unit_normal, bc), bq) > 0) &
+                int(dot(cross(unit_normal, ca), cq) > 0));
   }
   CLEARANCE_HD static real near_side(vec3 p, vec3 edge, real length2) {
     const vec3 offset = fma(-saturated(dot(p, edge) * rough_inverse(length2)), edge, p);

@@ -2,6 +2,7 @@
 #pragma once
 // Neighbouring points that walk a tree together on the host. Loops over them become vector code.
 
+#include <clearance/ground/vectors.hpp>
 #include <clearance/traversal/near_first.hpp>
 #include <clearance/visitor/nearest.hpp>
 
@@ -99,7 +100,9 @@ struct walking_packet : packet<Lanes> {
       const typename H::primitive_type& primitive = tree.primitive(leaf, k);
       const std::uint32_t id = tree.id(leaf, k);
       if constexpr (foreseen_primitive<typename H::primitive_type>) {
-        for (std::size_t j = 0; j < Lanes; ++j) near[j] = primitive.may_reach((*this)[j], within[j]);
+        with_vectors([&] {
+          for (std::size_t j = 0; j < Lanes; ++j) near[j] = primitive.may_reach((*this)[j], within[j]);
+        });
         gather();
       }
       for (std::uint32_t n = 0; n < count; ++n) {

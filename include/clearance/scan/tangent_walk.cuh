@@ -52,9 +52,6 @@ struct tangent_walk : tree_steps<Tally> {
     if (lane() == 0) s.reach = from_ordered(most), s.all.set_limit(s.reach);
     __syncwarp();
   }
-  static __device__ vec3 to_cloud(const rigid_transform& t, vec3 u) {
-    return fma(u.x, t.row[0], fma(u.y, t.row[1], scaled(u.z, t.row[2])));
-  }
   /// From shared memory, sixteen bytes at once.
   template <class T>
   static __device__ T loaded(const T& from) {
@@ -113,11 +110,8 @@ struct tangent_walk : tree_steps<Tally> {
       real noise = 0;
       if (has) {
         const frame_part& place = frame::place(e.part);
-        const ball ball = place.root.around;
-        const real gap = rough_length(s.all.middle - ball.center),
-                   size = ball.radius + gap + rough_length(place.part_from_cloud(s.all.middle));
-        e.distance = lowered(gap - ball.radius, size);
-        noise = 2 * slack * (rough_length(s.all.middle) + size + 2 * s.all.radius);
+        const seen_part seen(s.all, place.root.around, place.part_from_cloud(s.all.middle));
+        e.distance = seen.distance, noise = seen.noise;
         e.node = steps::root(e.part);
       }
       noise = from_bits(most_of(all_lanes, to_bits(noise)));
@@ -250,7 +244,7 @@ struct tangent_walk : tree_steps<Tally> {
   __device__ bool needs(std::uint32_t j, vec3 e) const {
     const seen_primitive c = s.candidates[j];
     const std::uint32_t part = s.which[j].part;
-    return c.distance + dot(c.direction, e) - s.all.noise <= v.reach(part) && part != inner;
+    return s.all.may_reach(c.distance, c.direction, e, v.reach(part)) && part != inner;
   }
 
   /// Each point tests the candidates that it may be nearest to, first the nearest to the middle.

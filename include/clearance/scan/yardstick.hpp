@@ -18,8 +18,15 @@ struct alignas(16) yardstick {
   CLEARANCE_HD yardstick(const primitive_tangent& t, vec3 way, real radius) {
     // Near the primitive its tangent bends too much; then all points are within a radius.
     const bool straight = t.radius > radius;
-    direction = straight ? way : vec3{0, 0, 0};
-    most = t.most + (straight ? radius * radius * 0.50001f * rough_inverse(t.radius) : radius);
+    direction = choice(straight, way, vec3{0, 0, 0});
+    most = t.most + choice(straight, radius * radius * 0.50001f * rough_inverse(t.radius), radius);
+  }
+
+  /// Raises it until it is 0 or more all over a box: a point inside a solid is 0 away, whatever its primitives say.
+  CLEARANCE_HD void raise_to_zero(vec3 half) {
+    const vec3 u = direction;
+    const real least = most - (absolute(u.x) * half.x + absolute(u.y) * half.y + absolute(u.z) * half.z);
+    if (least < 0) most -= least;
   }
 };
 
@@ -39,8 +46,31 @@ struct alignas(16) surroundings {
   CLEARANCE_HD bool keeps(real distance, vec3 way) const {
     const real beside = absolute(best.direction.x - way.x) * half.x + absolute(best.direction.y - way.y) * half.y +
                         absolute(best.direction.z - way.z) * half.z;
-    return distance <= limit && distance - best.most <= beside + noise;
+    return bool(int(distance <= limit) & int(distance - best.most <= beside + noise));
+  }
+  /// May something be so near to the point at middle + e? `distance` and `way` are those of its tangent.
+  CLEARANCE_HD bool may_reach(real distance, vec3 way, vec3 e, real reach) const {
+    return distance + dot(way, e) - noise <= reach;
   }
 };
+
+/// A part as seen from the middle of points.
+struct seen_part {
+  real distance;  ///< At least so far away is everything of it,
+  real noise;     ///< and so much it adds to that of the surroundings.
+
+  /// `around`: a ball around the part; `q`: the middle in the part's frame.
+  CLEARANCE_HD seen_part(const surroundings& all, const ball& around, vec3 q) {
+    const real gap = rough_length(all.middle - around.center), size = around.radius + gap + rough_length(q);
+    distance = lowered(gap - around.radius, size);
+    noise = 2 * slack * (rough_length(all.middle) + size + 2 * all.radius);
+  }
+};
+
+/// A direction of a part's frame in the cloud's.
+CLEARANCE_HD inline vec3 to_cloud(const rigid_transform& part_from_cloud, vec3 u) {
+  const auto& row = part_from_cloud.row;
+  return fma(u.x, row[0], fma(u.y, row[1], scaled(u.z, row[2])));
+}
 
 }  // namespace clearance::scan

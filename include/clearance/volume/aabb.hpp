@@ -43,7 +43,7 @@ struct aabb {
     const vec3 below = lower - q, above = q - upper;
     const box_sides all{
         {rough_max(below.x, above.x), rough_max(below.y, above.y), rough_max(below.z, above.z)},
-        {above.x < below.x ? -1.0f : 1.0f, above.y < below.y ? -1.0f : 1.0f, above.z < below.z ? -1.0f : 1.0f}};
+        {choice(above.x < below.x, -1, 1), choice(above.y < below.y, -1, 1), choice(above.z < below.z, -1, 1)}};
     return all.tangent_of_box();
   }
 

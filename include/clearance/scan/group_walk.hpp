@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// On a host a thread walks once for points that lie together, from their middle: in vector code over eight nodes or
+// primitives at once (tangent_walk.cuh has a warp for that). Few primitives are left, and then the vectors are of
+// points.
+
+#include <clearance/frame/frame.hpp>
+#include <clearance/frame/root_test.hpp>
+#include <clearance/scan/interior.hpp>
+#include <clearance/scan/neighbours.hpp>
+#include <clearance/scan/seen_memory.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace clearance::scan {
+
+/// A walk through the trees of all parts. It keeps what was near to the last points, as a first bound for the next.
+template <class PartView>
+class group_walk {
+ public:
+  group_walk(const PartView* parts, std::span<const frames::placement> places)
+      : parts_(parts), places_(places), seen_(places.size()) {}
+
+  /// Looks at points from their middle. Returns true if they lie together: much closer to one another than to the
+  /// parts, or within a few centimetres; and if rounding is finer than that.
+  bool look_around(neighbours& near, const std::vector<std::uint32_t>& parts) {
+    near.fill();
+    real gap = infinity;
+    with_vectors([&] {
+      all_ = near.surround();
+      for (const std::uint32_t k : parts) {
+        const vec3 q = places_[k].part_from_cloud(all_.middle);
+        const seen_part seen(all_, places_[k].around, q);
+        seen_[k] = {q, unit_way(all_.middle - places_[k].around.center).direction, seen.distance};
+        gap = min(gap, seen.distance), all_.noise = max(all_.noise, seen.noise);
+      }
+    });
+    const real wide = 0.02f + 0.1f * max(gap, 0);
+    return all_.radius <= wide && all_.noise <= wide && gap < 1e15f;
+  }
+
+  /// Searches `parts` for what is nearest to points that lie together.
+  void search(neighbours& near, const std::vector<std::uint32_t>& parts) {
+    all_.best = {}, all_.within = infinity;
+    all_.set_limit(near.reach());
+    inner_.clear();
+    if (std::ranges::find(parts, hint_.part) != parts.end()) {
+      take(hint_);
+      look(false, near);
+    }
+    begin(near, parts);
+    while (!nodes_.empty() || batch_.count > 0) {
+      if (nodes_.empty()) {
+        look(true, near);
+        continue;
+      }
+      const pending e = nodes_.back();
+      nodes_.pop_back();
+      if (all_.keeps(e.distance, e.direction)) open(e, near);
+    }
+    measure(near);
+  }
+
+ private:
+  using hierarchy = typename PartView::hierarchy_type;
+  using volume_type = typename hierarchy::volume_type;
+  using primitive_type = typename hierarchy::primitive_type;
+  using traits = bounding_volume_traits<volume_type>;
+
+  struct pending {
+    real distance;
+    vec3 direction;
+    std::uint32_t part;
+    bvh_node node;
+  };
+  struct seen_middle {
+    vec3 q;    ///< In the part's frame.
+    vec3 way;  ///< From the part's ball.
+    real distance;
+  };
+  struct tangents {
+    alignas(32) real distance[8], x[8], y[8], z[8];
+    std::uint32_t keeps;  ///< One bit each.
+  };
+  static std::uint32_t together(const std::uint32_t (&bits)[8]) {
+    std::uint32_t all = 0;
+    for (const std::uint32_t b : bits) all |= b;
+    return all;
+  }
+  struct candidate {
+    real distance;
+    vec3 direction;
+    primitive_of_part which;
+  };
+
+  /// Parts, the nearest on top. Points inside of them have their answers.
+  void begin(neighbours& near, const std::vector<std::uint32_t>& parts) {
+    for (const std::uint32_t k : parts) {
+      const real d = seen_[k].distance;
+      if constexpr (has_interior<PartView>)
+        if (d <= all_.radius + all_.noise) find_inside(near, k);
+      if (d <= all_.limit) nodes_.push_back({d, seen_[k].way, k, parts_[k].tree.nodes[0]});
+    }
+    std::sort(nodes_.begin(), nodes_.end(), [](const pending& a, const pending& b) { return a.distance > b.distance; });
+  }
+  void find_inside(neighbours& near, std::uint32_t k) {
+    std::uint64_t those = 0;
+    with_vectors([&] {
+      for (std::size_t j = 0; j < near.count; ++j)
+        if (frames::may_reach(places_[k].around, 0, near[j]) &&
+            parts_[k].interior.inside(places_[k].part_from_cloud(near[j]))) {
+          those |= std::uint64_t(1) << j;
+          if (near.within[j] >= 0) near.offer(j, 0, k, none);
+        }
+    });
+    if (those != 0) inner_.emplace_back(k, those);
+  }
+
+  /// Looks at a node's children.
+  void open(const pending& e, neighbours& near) {
+    const hierarchy& tree = parts_[e.part].tree;
+    const std::size_t base = nodes_.size();
+    if (e.node.is_leaf()) return take_all(e, near);
+    for (std::uint32_t first = 0; first < e.node.count(); first += 8) {
+      const std::uint32_t at = e.node.first + first, count = std::min(8u, e.node.count() - first);
+      tangents its;
+      see(tree.volumes + at, count, e.part, its);
+      for (std::uint32_t left = its.keeps; left != 0; left &= left - 1) {
+        const auto j = std::uint32_t(std::countr_zero(left));
+        const pending child{its.distance[j], {its.x[j], its.y[j], its.z[j]}, e.part, tree.nodes[at + j]};
+        if (child.node.is_leaf()) {
+          take_all(child, near);
+          continue;
+        }
+        std::size_t to = nodes_.size();
+        nodes_.push_back(child);
+        for (; to > base && nodes_[to - 1].distance < child.distance; --to) nodes_[to] = nodes_[to - 1];
+        nodes_[to] = child;
+      }
+    }
+  }
+  void see(const volume_type* volumes, std::uint32_t count, std::uint32_t k, tangents& its) const {
+    with_vectors([&] {
+      side_by_side<volume_type> here;
+      for (std::uint32_t j = 0; j < 8; ++j) here.put(j, volumes[std::min(j, count - 1)]);
+      const surroundings all = all_;
+      const rigid_transform part_from_cloud = places_[k].part_from_cloud;
+      const vec3 q = seen_[k].q;
+      tangents found;
+      alignas(32) std::uint32_t keeps[8];
+      for (std::size_t j = 0; j < 8; ++j) {
+        const tangent t = traits::tangent_at(here[j], q);
+        const vec3 u = to_cloud(part_from_cloud, t.direction);
+        found.distance[j] = t.distance, found.x[j] = u.x, found.y[j] = u.y, found.z[j] = u.z;
+        keeps[j] = std::uint32_t(all.keeps(t.distance, u)) << j;
+      }
+      found.keeps = together(keeps) & ((2u << (count - 1)) - 1);
+      its = found;
+    });
+  }
+
+  /// Primitives wait until there are eight of one part.
+  void take_all(const pending& leaf, neighbours& near) {
+    for (std::uint32_t j = 0; j < leaf.node.count(); ++j) {
+      if (batch_.count > 0 && batch_.part != leaf.part) look(true, near);
+      take({leaf.part, leaf.node.first + j});
+      if (batch_.count == 8) look(true, near);
+    }
+  }
+  void take(primitive_of_part p) {
+    batch_.part = p.part;
+    batch_.place[batch_.count] = p.place;
+    batch_.primitives.put(batch_.count++, parts_[p.part].tree.primitives[p.place]);
+  }
+  /// Looks at those that wait. `finds`: what may be nearest to a point becomes a candidate.
+  void look(bool finds, neighbours& near) {
+    const std::uint32_t k = batch_.part, count = batch_.count;
+    for (std::uint32_t j = count; j < 8; ++j) batch_.primitives.put(j, parts_[k].tree.primitives[batch_.place[0]]);
+    tangents its;
+    std::uint32_t nearest = none;
+    with_vectors([&] {
+      surroundings all = all_;
+      const rigid_transform part_from_cloud = places_[k].part_from_cloud;
+      const vec3 q = seen_[k].q;
+      tangents found;
+      alignas(32) real most[8], bound[8], radius[8];
+      const auto& here = batch_.primitives;
+      for (std::size_t j = 0; j < 8; ++j) {
+        const primitive_tangent t = here[j].tangent_at(q);
+        const vec3 u = to_cloud(part_from_cloud, t.direction);
+        found.distance[j] = t.distance, found.x[j] = u.x, found.y[j] = u.y, found.z[j] = u.z;
+        most[j] = t.most, radius[j] = t.radius;
+        bound[j] = yardstick(t, u, all.radius).most;
+      }
+      for (std::uint32_t j = 0; j < count; ++j)
+        if (bound[j] < all.best.most) {
+          const vec3 u{found.x[j], found.y[j], found.z[j]};
+          all.best = yardstick({{found.distance[j], u}, most[j], radius[j]}, u, all.radius);
+          all.within = most[j] + all.radius, nearest = j;
+          if constexpr (has_interior<PartView>) all.best.raise_to_zero(all.half), all.within = max(all.within, 0);
+        }
+      if (nearest != none) {
+        all.limit = min(all.limit, all.within + all.radius + all.noise);
+        all_ = all;
+      }
+      alignas(32) std::uint32_t keeps[8];
+      for (std::size_t j = 0; j < 8; ++j)
+        keeps[j] = std::uint32_t(all.keeps(found.distance[j], {found.x[j], found.y[j], found.z[j]})) << j;
+      found.keeps = together(keeps) & ((2u << (count - 1)) - 1);
+      its = found;
+    });
+    if (nearest != none) hint_ = {k, batch_.place[nearest]};
+    batch_.count = 0;
+    if (!finds) return;
+    for (std::uint32_t left = its.keeps; left != 0; left &= left - 1) {
+      const auto j = std::uint32_t(std::countr_zero(left));
+      candidates_.push_back({its.distance[j], {its.x[j], its.y[j], its.z[j]}, {k, batch_.place[j]}});
+    }
+    if (candidates_.size() >= most_candidates) measure(near), all_.set_limit(near.reach());
+  }
+
+  /// Each point tests the candidates that it may be nearest to, first the nearest to the middle.
+  void measure(neighbours& near) {
+    std::erase_if(candidates_, [&](const candidate& c) { return !all_.keeps(c.distance, c.direction); });
+    std::sort(candidates_.begin(), candidates_.end(),
+              [](const candidate& a, const candidate& b) { return a.distance < b.distance; });
+    for (const candidate& c : candidates_) {
+      const auto& [k, place] = c.which;
+      std::uint64_t inside = 0;
+      for (const auto& [part, those] : inner_)
+        if (part == k) inside = those;
+      const hierarchy& tree = parts_[k].tree;
+      near.test(all_, {c.distance, c.direction}, places_[k].part_from_cloud, tree.primitives[place], k, tree.ids[place],
+                inside);
+    }
+    candidates_.clear();
+  }
+  static constexpr std::size_t most_candidates = 256;
+
+  const PartView* parts_;
+  std::span<const frames::placement> places_;
+  surroundings all_;
+  std::vector<seen_middle> seen_;  ///< By part.
+  std::vector<pending> nodes_;
+  std::vector<candidate> candidates_;
+  std::vector<std::pair<std::uint32_t, std::uint64_t>> inner_;  ///< Parts with points inside, and which.
+  primitive_of_part hint_{none, 0};                             ///< What was near to the last points.
+  struct {
+    std::uint32_t part = none, count = 0, place[8];
+    side_by_side<primitive_type> primitives;
+  } batch_;
+};
+
+}  // namespace clearance::scan
