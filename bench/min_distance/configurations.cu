@@ -188,39 +188,47 @@ void each_part(benchmark::State& state, Make make) {
   });
 }
 
+/// The fields of all parts, sampled on the device, until they are in the host's memory.
+template <class Model>
+void sample(benchmark::State& state, Model (*make)(const scene&, clearance::build_options)) {
+  if (no_device(state)) return;
+  const auto model = make(the_scene(), {});
+  for (auto _ : state) benchmark::DoNotOptimize(clearance::with_fields(device{}, model).model.view());
+}
+
 constexpr float all = clearance::infinity;
-#define BOTH(function, name, make, ...)                \
-  BENCHMARK_CAPTURE(function, name, make, __VA_ARGS__) \
-  TIMES BENCHMARK_CAPTURE(function, name##_by_field, make##_field, __VA_ARGS__) TIMES
-#define TIMES ->Arg(4096)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30);
-BOTH(random, spheres, spheres, all)
-BOTH(random, spheres_within_5cm, spheres, 0.05f)
-BOTH(random, triangles, triangles, all)
-BOTH(random, triangles_within_5cm, triangles, 0.05f)
-BOTH(states, spheres, spheres, 0)
-BOTH(states, spheres_5cm, spheres, 0.05)
-BOTH(states, triangles, triangles, 0)
-BOTH(image, spheres, spheres, all)
-BOTH(image, spheres_within_5cm, spheres, 0.05f)
-BOTH(image_states, spheres, spheres, 0)
-#undef TIMES
-#define TIMES ->Arg(1)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30);
-BENCHMARK_CAPTURE(random, tree_alone, spheres, -1.0f)
-TIMES BENCHMARK_CAPTURE(image, tree_alone, spheres, 0.05f) TIMES
-    BENCHMARK_CAPTURE(image_states, tree_alone, spheres, -1) TIMES
-#undef TIMES
-#define TIMES ->Arg(500)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30);
-    BOTH(monitor, untruncated, spheres, all) BOTH(monitor, within_20cm, spheres, 0.2f)
-#undef TIMES
-#define TIMES ->Arg(4096)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(10);
-        BENCHMARK_CAPTURE(call, spheres, spheres) TIMES BENCHMARK_CAPTURE(call, spheres_by_field, spheres_field) TIMES
-    BENCHMARK_CAPTURE(each_part, spheres, spheres) TIMES
-    BENCHMARK_CAPTURE(each_part, spheres_by_field, spheres_field) TIMES
+#define TIMES(n) ->Arg(n)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30)
+#define CALLS(n) ->Arg(n)->UseRealTime()->Unit(benchmark::kMicrosecond)->Iterations(10)
+#define BOTH(function, name, make, n, ...)                       \
+  BENCHMARK_CAPTURE(function, name, make, __VA_ARGS__) TIMES(n); \
+  BENCHMARK_CAPTURE(function, name##_by_field, make##_field, __VA_ARGS__) TIMES(n)
+BOTH(random, spheres, spheres, 4096, all);
+BOTH(random, spheres_within_5cm, spheres, 4096, 0.05f);
+BOTH(random, triangles, triangles, 4096, all);
+BOTH(random, triangles_within_5cm, triangles, 4096, 0.05f);
+BENCHMARK_CAPTURE(random, tree_alone, spheres, -1.0f) TIMES(1);
+BOTH(states, spheres, spheres, 4096, 0);
+BOTH(states, spheres_5cm, spheres, 4096, 0.05);
+BOTH(states, triangles, triangles, 4096, 0);
+BOTH(image, spheres, spheres, 4096, all);
+BOTH(image, spheres_within_5cm, spheres, 4096, 0.05f);
+BENCHMARK_CAPTURE(image, tree_alone, spheres, 0.05f) TIMES(1);
+BOTH(image_states, spheres, spheres, 4096, 0);
+BENCHMARK_CAPTURE(image_states, tree_alone, spheres, -1) TIMES(1);
+BOTH(monitor, untruncated, spheres, 500, all);
+BOTH(monitor, within_20cm, spheres, 500, 0.2f);
+BENCHMARK_CAPTURE(call, spheres, spheres) CALLS(4096);
+BENCHMARK_CAPTURE(call, spheres_by_field, spheres_field) CALLS(4096);
+BENCHMARK_CAPTURE(each_part, spheres, spheres) CALLS(4096);
+BENCHMARK_CAPTURE(each_part, spheres_by_field, spheres_field) CALLS(4096);
+BENCHMARK_CAPTURE(sample, spheres, sphere_model<clearance::sphere>)->Unit(benchmark::kMillisecond)->Iterations(3);
+BENCHMARK_CAPTURE(sample, triangles, triangle_model<clearance::aabb>)->Unit(benchmark::kMillisecond)->Iterations(3);
 
 }  // namespace
 }  // namespace configurations_bench
 
-#undef TIMES
 #undef BOTH
+#undef CALLS
+#undef TIMES
 
 BENCHMARK_MAIN();

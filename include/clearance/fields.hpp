@@ -12,7 +12,7 @@
 namespace clearance {
 
 struct field_options {
-  std::size_t bytes = std::size_t(1) << 19;  ///< Memory for each part, about.
+  std::size_t bytes = std::size_t(1) << 20;  ///< Memory for each part, about.
 };
 
 /// A robot whose parts have fields, and for each part that has none a sentence that says why; else it is empty.

@@ -16,16 +16,17 @@ __global__ void __launch_bounds__(128)
     finish_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
                           const __grid_constant__ Source source) {
   using walk_type = walk_by_warp<typename PartView::hierarchy_type>;
-  __shared__ typename walk_type::node_type pending[4][walk_type::most];
+  using steps = warp_walk<typename PartView::hierarchy_type>;
+  __shared__ typename steps::node_type pending[4][steps::most];
   const std::uint32_t c = (blockIdx.x * 128 + threadIdx.x) / 32, lane = threadIdx.x % 32;
   if (c >= a.configurations) return;
   const configuration_facts& facts = a.facts[c];
   const shared_bounds bounds{a.all + c, nullptr};
   min_distance_result mine;
   const auto of_part = [&](std::uint32_t k) -> resolve_body<PartView, Source, walk_type> {
-    return {a.parts + k,  a.its_places(c) + k,         1,           source,
-            facts.origin, facts.world_from_cloud,      a.now.first, a.now.cloud,
-            bounds,       {pending[threadIdx.x / 32]}, &mine,       nullptr};
+    return {a.parts + k,  a.its_places(c) + k,           1,           source,
+            facts.origin, facts.world_from_cloud,        a.now.first, a.now.cloud,
+            bounds,       {{pending[threadIdx.x / 32]}}, &mine,       nullptr};
   };
   for (std::uint32_t first = 0; first < a.part_count && __all_sync(scan::all_lanes, mine.part == none); first += 32) {
     unsigned those = __ballot_sync(scan::all_lanes, first + lane < a.part_count && of_part(first + lane).may_be_of(0));

@@ -7,10 +7,10 @@
 
 namespace clearance::minimum {
 
-/// A warp walks one tree for a witness: eight lanes open a node, and a leaf's primitives are dealt out among them. Each
-/// lane has its own visitor. Afterwards only the one with the nearest primitive, of equals the lowest, has any.
+/// A warp walks one tree for one point: eight lanes open a node, and a leaf's primitives are dealt out among them. Each
+/// lane has its own visitor.
 template <hierarchy H>
-struct walk_by_warp {
+struct warp_walk {
   using node_type = typename H::node_type;
   static constexpr std::uint32_t lanes = 8, nodes = 4;
   /// With more than `many` nodes pending, nodes are opened one after another. So the most that can be pending is
@@ -19,15 +19,13 @@ struct walk_by_warp {
 
   node_type* pending;  ///< This warp's memory, for `most` nodes.
 
+  /// Shows the lanes' visitors together each primitive that is no farther than `reach`, or any visitor's.
   CLEARANCE_CALLS_ANYTHING
-  template <primitive P>
-  CLEARANCE_HD void operator()(const H& tree, vec3 q, nearest_primitive<P>& best) const {
+  template <visitor Q>
+  CLEARANCE_HD void operator()(const H& tree, vec3 q, real reach, Q& ask) const {
 #if defined(__CUDA_ARCH__)
     using traits = bounding_volume_traits<typename H::volume_type>;
     const std::uint32_t lane = threadIdx.x % 32, at_once = tree.width() <= lanes ? nodes : 1;
-    real reach = best.reach();
-    if (!(reach < infinity))
-      reach = scan::descend(scan::plain_steps<H>{tree}, q);  // inside a solid: a leaf gives a bound
     if (!(traits::lower_bound(tree.volume(tree.root()), q) <= reach)) return;
     if (lane == 0) pending[0] = tree.root();
     __syncwarp();
@@ -43,8 +41,11 @@ struct walk_by_warp {
         bool near = false;
         node_type child{};
         if (j < size && leaf) {
-          const P& its = tree.primitive(top, j);
-          best.offer(tree.id(top, j), its.distance(q), its);
+          const auto& its = tree.primitive(top, j);
+          if constexpr (requires { ask.offer(0u, real(0), its); })
+            ask.offer(tree.id(top, j), its.distance(q), its);
+          else
+            ask.offer(tree.id(top, j), its.distance(q));
         } else if (j < size) {
           child = tree.child(top, j);
           near = traits::lower_bound(tree.volume(child), q) <= reach;
@@ -53,9 +54,28 @@ struct walk_by_warp {
         if (near) pending[count + __popc(those & ((1u << lane) - 1))] = child;
         count += std::uint32_t(__popc(those));
       }
-      reach = min(reach, from_ordered(scan::least_of(scan::all_lanes, ordered(best.reach()))));
+      reach = min(reach, from_ordered(scan::least_of(scan::all_lanes, ordered(ask.reach()))));
     }
-    const bool nearest = best.id != none && best.within == reach;
+#endif
+  }
+};
+
+/// A warp walks one tree for a witness. Afterwards only the lane with the nearest primitive, of equals the lowest, has
+/// any.
+template <hierarchy H>
+struct walk_by_warp {
+  warp_walk<H> walk;
+
+  CLEARANCE_CALLS_ANYTHING
+  template <primitive P>
+  CLEARANCE_HD void operator()(const H& tree, vec3 q, nearest_primitive<P>& best) const {
+#if defined(__CUDA_ARCH__)
+    real reach = best.reach();
+    if (!(reach < infinity))
+      reach = scan::descend(scan::plain_steps<H>{tree}, q);  // inside a solid: a leaf gives a bound
+    walk(tree, q, reach, best);
+    const real least = from_ordered(scan::least_of(scan::all_lanes, ordered(best.reach())));
+    const bool nearest = best.id != none && best.within == least;
     if (best.id != scan::least_of(scan::all_lanes, nearest ? best.id : none)) best.id = none;
 #endif
   }

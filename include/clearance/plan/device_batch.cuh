@@ -209,7 +209,7 @@ class device_batch {
   void search_by_field(const tree_type& tree, const arguments& a) {
     using by_field = batch_arguments<PartView, Question, field_pair>;
     using shared = field_room<PartView>;
-    unsigned threads = 256;
+    unsigned threads = scan::has_interior<PartView> && !a.question.limited() ? 128 : 256;
     while (shared::bytes(threads) > of_block_) threads /= 2;
     const by_field fields{a.parts,
                           a.fields,

@@ -3,38 +3,67 @@
 // The search of many configurations by the parts' fields, on a device.
 
 #include <clearance/plan/batch_kernel.cuh>
+#include <clearance/plan/batch_walk.cuh>
 #include <clearance/plan/field_search.hpp>
 
 namespace clearance::minimum {
 
-/// The exact search of what a field search has set aside: points with the parts that they may be near to.
-template <class Search>
-struct search_aside : Search {
-  const field_pair* points;
-  std::uint32_t count;
-
-  CLEARANCE_HD std::uint32_t starts() const { return count; }
-  CLEARANCE_HD bool start(std::uint32_t i, typename Search::pair& p) const {
-    const field_pair& its = points[i];
-    if (!(its.bound <= Search::reach(its.part)) || !Search::start_at(its.at, its.part, its.whole, p)) return false;
-    p.bound = max(p.bound, its.bound);
-    return true;
-  }
-};
-
-/// Shared memory of a block: a field search's stack, an exact one's, what both have made in a round, and the points set
-/// aside.
+/// Shared memory of a block: a search's stack and what it makes in a round, the points that it has set aside and their
+/// order, and each warp's nodes of an exact walk.
 template <class PartView>
 struct field_room {
-  using tree_pair = node_pair<typename PartView::hierarchy_type::node_type>;
-  using by_field = batch_room<field_pair, pair_order<PartView>>;
-  using exact = batch_room<tree_pair, pair_order<PartView>>;
+  using walk_type = warp_walk<typename PartView::hierarchy_type>;
+  using node_type = typename walk_type::node_type;
+  using stack_type = batch_room<field_pair, pair_order<PartView>>;
 
   static constexpr std::uint32_t depth(std::uint32_t threads) { return 256 + 2 * threads; }
   static constexpr std::size_t bytes(std::uint32_t threads) {
-    return exact::bytes(threads, depth(threads)) + depth(threads) * sizeof(field_pair) + threads * sizeof(field_pair);
+    return stack_type::bytes(threads, depth(threads)) + threads * (sizeof(field_pair) + sizeof(std::uint32_t)) +
+           threads / 32 * walk_type::most * sizeof(node_type) + alignof(node_type);
   }
+
+  stack_type stack;
+  field_pair* aside;
+  std::uint32_t* order;
+  node_type* nodes;
+
+  __device__ field_room(distance_key* memory, std::uint32_t threads)
+      : stack(memory, threads, depth(threads)),
+        aside(stack.made + stack_type::most(threads)),
+        order(reinterpret_cast<std::uint32_t*>(aside + threads)),
+        nodes(
+            reinterpret_cast<node_type*>((reinterpret_cast<std::uintptr_t>(order + threads) + alignof(node_type) - 1) /
+                                         alignof(node_type) * alignof(node_type))) {}
 };
+
+/// Looks exactly at the points that a search has set aside: those that may be inside a solid by a thread each, and the
+/// others, the nearest first, by a warp that walks the part's tree.
+template <class Search, class Room>
+__device__ void look_at(const Search& search, const Room& room, std::uint32_t count) {
+  const std::uint32_t t = threadIdx.x;
+  if (t < count) {
+    std::uint32_t before = 0;
+    for (std::uint32_t j = 0; j < count; ++j)
+      before += room.aside[j].bound < room.aside[t].bound || (room.aside[j].bound == room.aside[t].bound && j < t);
+    room.order[before] = t;
+    if (const field_pair& its = room.aside[t]; Search::solid && its.whole && !search.settled(its))
+      search.visit(search.tree.points[its.at], its.part);
+  }
+  __syncthreads();
+  const typename Room::walk_type walk{room.nodes + t / 32 * Room::walk_type::most};
+  for (std::uint32_t i = t / 32; i < count; i += blockDim.x / 32) {
+    const field_pair p = room.aside[room.order[i]];
+    if (Search::solid && p.whole) continue;
+    if (__any_sync(scan::all_lanes, search.settled(p))) continue;
+    const cloud_tree::numbered_point here = search.tree.points[p.at];
+    const auto& body = search.body;
+    const std::uint32_t index = body.first + here.number;
+    auto ask = body.answer.visitor(index, p.part);
+    const real reach = scan::from_lane(body.answer.reach(p.part), 0);
+    walk(body.parts[p.part].tree, body.places[p.part].part_from_cloud(here.at - body.origin), reach, ask);
+    body.answer.take(index, p.part, ask);
+  }
+}
 
 /// One block per configuration, as batch_kernel.
 template <class Arguments, class Tree>
@@ -44,24 +73,15 @@ __global__ void __launch_bounds__(256, 4)
   using question = typename Arguments::question_type;
   using memory_type = typename Arguments::memory_type;
   using body_type = typename Arguments::body_type;
-  using room = field_room<typename Arguments::part_type>;
+  using room_type = field_room<typename Arguments::part_type>;
   using search_type = field_search<body_type, Tree>;
-  using exact_type = search_aside<tree_search<body_type, Tree>>;
   using block_type = block_search<search_type>;
-  using exact_block = block_search<exact_type>;
   extern __shared__ distance_key memory[];
   __shared__ alignas(memory_type) std::byte memory_of_best[sizeof(memory_type)];
   __shared__ typename block_type::words words;
-  __shared__ typename exact_block::words exact_words;
   memory_type& best = *reinterpret_cast<memory_type*>(memory_of_best);
-  const std::uint32_t t = threadIdx.x, depth = room::depth(blockDim.x);
-  field_pair* const stack = reinterpret_cast<field_pair*>(memory);
-  field_pair* const aside = stack + depth;
-  distance_key* const others = reinterpret_cast<distance_key*>(aside + blockDim.x);
-  const typename room::exact exact_room(others, blockDim.x, depth);
-  typename room::by_field field_room_of(others, blockDim.x, depth);
-  field_room_of.stack = stack;  // the pairs that it makes lie where the exact search has its own
-  field_room_of.made = reinterpret_cast<field_pair*>(exact_room.stack + depth);
+  const std::uint32_t t = threadIdx.x;
+  const room_type room(memory, blockDim.x);
   for (std::uint32_t i = blockIdx.x, count = a.given.pieces != nullptr ? a.given.size() : a.configurations; i < count;
        i += gridDim.x) {
     const std::uint32_t c = a.given.pieces != nullptr ? a.given.pieces[i].configuration : i;
@@ -69,9 +89,8 @@ __global__ void __launch_bounds__(256, 4)
     if (t == 0) best = a.all[c];
     __syncthreads();
     const body_type body = a.body(c, &best);
-    const ball_bounds* const bounds = a.bounds + std::size_t(c) * a.part_count;
-    const search_type search{body, tree, bounds, a.fields};
-    block_type block{search, field_room_of, words, depth, aside};
+    const search_type search{body, tree, a.bounds + std::size_t(c) * a.part_count, a.fields};
+    block_type block{search, room.stack, words, room_type::depth(blockDim.x), room.aside};
     if (a.given.pieces != nullptr) {
       block.start(a.given.pieces[i]);
     } else {
@@ -83,18 +102,11 @@ __global__ void __launch_bounds__(256, 4)
     }
     for (std::uint32_t rounds = a.rounds;;) {
       const bool done = block.go_on(rounds);
-      if (block.aside != 0) {
-        const exact_type exact{{body, tree, bounds}, aside, block.aside};
-        exact_block rest{exact, exact_room, exact_words, depth};
-        rest.start();
-        rest.go_on(none);
-        block.taken();
-      }
+      if (block.aside != 0) look_at(search, room, block.aside), block.taken();
       if (done) break;
-      if (block.round >= rounds && block.next >= search.starts()) {
-        if (block.count == 0 || block.leave_to(a.left, c)) break;
-        rounds = none;
-      }
+      if (block.round < rounds || block.next < search.starts()) continue;
+      if (block.count == 0 || block.leave_to(a.left, c)) break;
+      rounds = none;
     }
     __syncthreads();
     if (t != 0) continue;

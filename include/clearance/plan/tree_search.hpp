@@ -73,11 +73,7 @@ struct tree_search {
   }
   CLEARANCE_HD bool start(std::uint32_t i, pair& p) const {
     const std::uint32_t top = tree.size(tree.levels - 1);
-    return start_at(i % top, i / top, solid, p, tree.levels);
-  }
-  /// Begins with a point, or a node of a level, and a whole part. `whole`: points may be inside it.
-  CLEARANCE_HD bool start_at(std::uint32_t at, std::uint32_t k, bool whole, pair& p, std::uint32_t level = 0) const {
-    p = {-infinity, at, k, 0, body.parts[k].tree.root(), std::uint8_t(level), 0, true, whole};
+    p = {-infinity, i % top, i / top, 0, body.parts[i / top].tree.root(), std::uint8_t(tree.levels), 0, true, solid};
     return look(p);
   }
   CLEARANCE_HD std::uint32_t children(const pair& p) const {
@@ -235,12 +231,13 @@ struct tree_search {
     if (inside(part, q)) return true;
     nearest near{bounds[p.part].within(reach(p.part), b.radius)};
     body.walk(part.tree, q, near);
-    if (near.best != nearest::none)
-      if (const real most = bounds[p.part].upper(near.within, b.radius); most < reach(p.part))
-        body.answer.lower(none, p.part, most);
     // Within its tolerance of the surface a solid may be wrong about its inside.
     const real least = bounds[p.part].lower(near.within, b.radius);
-    p.whole = !(least > part.facts.tolerance);
+    const bool away = least > part.facts.tolerance;
+    if (near.best == nearest::none) return !away;
+    if (const real most = bounds[p.part].upper(near.within, b.radius); most < reach(p.part))
+      body.answer.lower(none, p.part, most);
+    p.whole = !away;
     if (!p.whole) p.bound = max(p.bound, least);
     return true;
   }
