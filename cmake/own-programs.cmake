@@ -177,6 +177,11 @@ if(CLEARANCE_HAS_CUDA AND CLEARANCE_DEVICE_PROGRAMS STREQUAL "CHECK")
   endif()
 endif()
 
+set(clearance_timeout 600)  # seconds a test may take
+if(CMAKE_CROSSCOMPILING)
+  set(clearance_timeout 7200)  # it is emulated
+endif()
+
 # clearance_program(NAME name SOURCES files... [DEVICE] [TEST] [GPU_RUN kind] [ARGUMENTS args...] [LIBRARIES targets...])
 # One program. DEVICE: needs a GPU to run; TEST: CTest runs it; GPU_RUN: scripts/gpu-test runs it as this kind.
 function(clearance_program)
@@ -197,7 +202,7 @@ function(clearance_program)
   endif()
   if(P_TEST AND CLEARANCE_BUILD_TESTS)
     add_test(NAME ${P_NAME} COMMAND ${P_NAME} ${P_ARGUMENTS})
-    set_tests_properties(${P_NAME} PROPERTIES TIMEOUT 600)
+    set_tests_properties(${P_NAME} PROPERTIES TIMEOUT ${clearance_timeout})
     if(P_DEVICE)
       target_link_libraries(${P_NAME} PRIVATE clearance_require_device)
       set_tests_properties(${P_NAME} PROPERTIES SKIP_RETURN_CODE 77 LABELS device)

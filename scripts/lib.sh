@@ -11,6 +11,7 @@ packages_command="$packages_io libcli11-dev ninja-build"
 packages_test="$packages_command catch2 libfcl-dev python3 ccache libopenmpi-dev openmpi-bin"
 packages_all="$packages_test libbenchmark-dev"
 packages_python="$packages_io python3-dev python3-venv ninja-build"
+packages_aarch64="$packages_test g++-aarch64-linux-gnu qemu-user-static"
 packages_clang="clang-19 libclang-rt-19-dev clang-format-19"  # sanitizers by another compiler, and the style: scripts/test --all
 
 say() { printf '%s\n' "$*"; }
@@ -92,6 +93,18 @@ configure() {
     command -v ninja >/dev/null 2>&1 || generator="-GUnix Makefiles"
   fi
   cmake -S "$root" -B "$at" ${generator:+"$generator"} "$@"
+}
+
+# count_tests REPORT STATUS: of what ctest wrote and its exit code, sets ran, bad and not. CMake writes run, fail, notrun
+# (skipped, or no program) or disabled.
+count_tests() {
+  ran=$(grep -c '<testcase .*status="run"' "$1" || true)
+  bad=$(grep -c '<testcase .*status="fail"' "$1" || true)
+  not=$(grep -c '<testcase .*status="\(notrun\|disabled\)"' "$1" || true)
+  lost=$(grep -c '<skipped message="Unable to find executable' "$1" || true)  # a test that is not there has failed
+  bad=$((bad + lost))
+  not=$((not - lost))
+  if [ "$2" != 0 ] && [ "$bad" = 0 ]; then bad=1; fi
 }
 
 jobs=${CLEARANCE_JOBS:-$(nproc 2>/dev/null || echo 2)}

@@ -30,6 +30,13 @@ def install_command(text, prefix):
     return f"{command} {prefix}"
 
 
+def python_commands(text):
+    """The two commands that lead from a bare machine and a checkout to a number and a picture."""
+    what = "the two commands of the Python package, 'apt install ...' and '... clearance view'"
+    apt = _found(r"^    (apt install .* python3-venv .*)\n    python3 -m venv ", text, what)
+    return apt, _found(r"^    (python3 -m venv .* && .*clearance view)$", text, what)
+
+
 def quotation(text, path):
     """The block that is quoted from a file."""
     return _found(rf"^<!-- quote {re.escape(path)} -->\n```\w*\n((?:(?!```).*\n)*)```$", text, f"a quotation of {path}")

@@ -2,39 +2,46 @@
 #pragma once
 // Are two results of any question the same, numbers by their bits?
 
-#include "support/same_result.hpp"
-
 #include <clearance/query/fields.hpp>
+#include <clearance/questions/min_distance_supported.hpp>
 
 namespace testing {
 
+/// Calls `f` with every number, flag and state in a result, in order; a list is its length, then what it holds. So
+/// padding is left out.
+template <class T, class F>
+void for_each_number(const T& a, const F& f) {
+  const auto all = [&f](const auto&... members) { (for_each_number(members, f), ...); };
+  if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
+    f(a);
+  } else if constexpr (std::is_array_v<T>) {
+    for (const auto& x : a) for_each_number(x, f);
+  } else if constexpr (requires { a.begin(), a.size(); }) {
+    f(a.size());
+    for (const auto& x : a) for_each_number(x, f);
+  } else if constexpr (std::is_same_v<T, clearance::min_distance_result>) {
+    all(a.state, a.distance, a.lower, a.upper, a.cloud, a.point, a.part, a.primitive, a.at, a.nearest, a.normal, a.seen,
+        a.valid, a.dropped);
+  } else if constexpr (std::is_same_v<T, clearance::supported_distance>) {
+    all(a.state, a.distance, a.lower, a.cloud, a.point, a.part, a.primitive, a.isolated, a.nearest_isolated, a.counts);
+  } else if constexpr (std::is_same_v<T, clearance::point_counts>) {
+    all(a.seen, a.valid, a.dropped);
+  } else {
+    std::apply(all, clearance::detail::members_of(a));
+  }
+}
+
+/// All bits of a result.
+template <class T>
+std::vector<std::byte> bits_of(const T& a) {
+  std::vector<std::byte> bits;
+  for_each_number(a, [&](const auto& number) { clearance::detail::pack(bits, number); });
+  return bits;
+}
+
 template <class T>
 bool same_answer(const T& a, const T& b) {
-  if constexpr (std::is_same_v<T, clearance::min_distance_result>) {
-    return same_result(a, b);
-  } else if constexpr (requires { a.nearest_isolated; }) {  // a supported_distance
-    return a.state == b.state && same_bits(a.distance, b.distance) && same_bits(a.lower, b.lower) &&
-           a.cloud == b.cloud && a.point == b.point && a.part == b.part && a.primitive == b.primitive &&
-           a.isolated == b.isolated && same_answer(a.nearest_isolated, b.nearest_isolated) &&
-           same_answer(a.counts, b.counts);
-  } else if constexpr (std::is_same_v<T, clearance::part_witness>) {
-    return same_witness(a, b);
-  } else if constexpr (std::is_floating_point_v<T>) {
-    return same_bytes(a, b);
-  } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
-    return a == b;
-  } else if constexpr (std::is_same_v<T, clearance::point_counts>) {
-    return a.seen == b.seen && a.valid == b.valid &&
-           std::equal(a.dropped, a.dropped + clearance::drop_reasons, b.dropped);
-  } else if constexpr (requires { a.begin(), a.size(); }) {
-    return a.size() == b.size() &&
-           std::equal(a.begin(), a.end(), b.begin(), [](const auto& x, const auto& y) { return same_answer(x, y); });
-  } else {
-    const auto mine = clearance::detail::members_of(a), others = clearance::detail::members_of(b);
-    return [&]<std::size_t... I>(std::index_sequence<I...>) {
-      return (same_answer(std::get<I>(mine), std::get<I>(others)) && ...);
-    }(std::make_index_sequence<std::tuple_size_v<decltype(mine)>>());
-  }
+  return bits_of(a) == bits_of(b);
 }
 
 }  // namespace testing
