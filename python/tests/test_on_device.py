@@ -515,6 +515,24 @@ def test_enqueue_takes_what_lies_on_the_device(small):
     assert same_as(ask.enqueue(there, poses=poses)["result"].numpy()[0], ask(points, poses=poses))
 
 
+def test_a_second_device_answers_alike_and_does_not_read_the_first(small):
+    robot, poses, points = small
+    here = clearance.DeviceArray(points, GPU)
+    try:
+        there = clearance.DeviceArray(points, "cuda:1")
+    except RuntimeError as error:
+        pytest.skip(str(error))
+    ask = clearance.Query(robot, clearance.MinDistance(), device="cuda:1")
+    expected = clearance.Query(robot, clearance.MinDistance())(points, poses=poses)
+    assert bits(ask(there, poses=poses)) == bits(expected) and there.device == "cuda:1"
+    answer = ask.enqueue(there, poses=poses)
+    assert same_as(answer["result"].numpy()[0], expected) and answer["result"].__dlpack_device__() == (2, 1)
+    for call in (ask, ask.enqueue):
+        refused(lambda: call(here, poses=poses), "points lies on cuda:0", "asks on cuda:1")
+    first = clearance.Query(robot, clearance.MinDistance(), device=GPU)
+    refused(lambda: first.enqueue(here, poses=poses, out=answer), 'out["result"]', "not one on cuda:1")
+
+
 @pytest.mark.parametrize("question, n", [("MinDistance", 1), ("MinDistances", 1), ("InCollisions", 4)])
 def test_poses_that_cannot_be_are_named(small, question, n):
     robot, poses, points = small
