@@ -2,6 +2,7 @@
 #pragma once
 // Is a planned trajectory still free in the newest frame, and where is it not?
 
+#include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/in_collisions.hpp>
@@ -52,6 +53,14 @@ int example(const Backend& on) {
   // [in_collisions]
   if (not_free != 73 || clearance::ask(on, arm, trajectory, wall, clearance::in_collisions{{0.05}}).of != states.of)
     return 1;
+
+  // [fields]
+  const auto sampled = clearance::with_fields(on, clearance::make_model<clearance::sphere>(links));
+  for (const std::string& why_not : sampled.without)
+    if (!why_not.empty()) std::printf("no field: %s\n", why_not.c_str());
+  clearance::query sooner(on, sampled.model.on(on), clearance::min_distances{.d_max = 0.2});
+  // [fields]
+  if (sooner(trajectory, wall).first_below(0.05) != 73 || sampled.model.view().fields == nullptr) return 1;
 
   // [parts]
   const auto each = clearance::ask(on, arm, trajectory, wall, clearance::min_distances_per_part{});

@@ -39,14 +39,12 @@ struct batch_pieces {
 };
 
 /// Many configurations and one cloud. Arrays have one entry per configuration, or one per part of each configuration.
-/// `Pair` is what a block's stack holds.
-template <class PartView, class Question, class Pair = node_pair<typename PartView::hierarchy_type::node_type>>
-struct batch_arguments {
+template <class PartView, class Question>
+struct asked_batch {
   using part_type = PartView;
   using question_type = Question;
   using memory_type = typename Question::memory_type;
   using body_type = scan::scan_body<PartView, point_span, any_depth, typename Question::answer_type>;
-  using pair_type = Pair;
 
   const PartView* parts;
   const field_view* fields;
@@ -67,12 +65,7 @@ struct batch_arguments {
   cloud_tree::numbered_point* seeds;
   typename Question::result_type* results;
   scan::drop_counts* dropped;
-  std::uint32_t* lost;                ///< Becomes 1 if a pose is not rigid.
-  batch_pieces<pair_type> left = {};  ///< The pairs that blocks leave.
-  /// What earlier blocks have left. If it is set, blocks take these pieces instead of configurations.
-  batch_pieces<pair_type> given = {};
-  std::uint32_t depth = 0;      ///< Depth of a block's stack, in pairs.
-  std::uint32_t rounds = none;  ///< After so many rounds a block leaves its unfinished pairs.
+  std::uint32_t* lost;  ///< Becomes 1 if a pose is not rigid.
 
   CLEARANCE_HD frames::placement* its_places(std::uint32_t c) const { return places + std::size_t(c) * part_count; }
   /// Tests points against the parts of configuration `c`, one point at a time, from any source.
@@ -88,6 +81,18 @@ struct batch_arguments {
             Question::answer(best, near + first),
             {}};
   }
+};
+
+/// And how blocks search. `Pair` is what a block's stack holds.
+template <class PartView, class Question, class Pair = node_pair<typename PartView::hierarchy_type::node_type>>
+struct batch_arguments : asked_batch<PartView, Question> {
+  using pair_type = Pair;
+
+  batch_pieces<pair_type> left = {};  ///< The pairs that blocks leave.
+  /// What earlier blocks have left. If it is set, blocks take these pieces instead of configurations.
+  batch_pieces<pair_type> given = {};
+  std::uint32_t depth = 0;      ///< Depth of a block's stack, in pairs.
+  std::uint32_t rounds = none;  ///< After so many rounds a block leaves its unfinished pairs.
 };
 
 }  // namespace clearance::minimum

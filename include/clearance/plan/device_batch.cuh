@@ -154,27 +154,27 @@ class device_batch {
 
   template <point_source S>
   arguments told(const S& source, const frames::turn& now, const Question& question, bool foreseen) const {
-    return {model_.parts,
-            model_.fields,
-            std::uint32_t(facts_.size()),
-            configurations_,
-            poses_.data(),
-            now,
-            frame_.world_from_cloud,
-            rounding_of(source),
-            question,
-            foreseen,
-            now.first + source.size(),
-            places_.data(),
-            bounds_.data(),
-            of_all_.data(),
-            all_.data(),
-            near_.data(),
-            last_.data(),
-            seeds_.data(),
-            results_.data(),
-            &counts_.data()->dropped,
-            &counts_.data()->lost,
+    return {{model_.parts,
+             model_.fields,
+             std::uint32_t(facts_.size()),
+             configurations_,
+             poses_.data(),
+             now,
+             frame_.world_from_cloud,
+             rounding_of(source),
+             question,
+             foreseen,
+             now.first + source.size(),
+             places_.data(),
+             bounds_.data(),
+             of_all_.data(),
+             all_.data(),
+             near_.data(),
+             last_.data(),
+             seeds_.data(),
+             results_.data(),
+             &counts_.data()->dropped,
+             &counts_.data()->lost},
             {left_.data(), left_used_.data(), std::uint32_t(left_.size())}};
   }
   template <point_source S>
@@ -211,28 +211,7 @@ class device_batch {
     using shared = field_room<PartView>;
     unsigned threads = scan::has_interior<PartView> && !a.question.limited() ? 128 : 256;
     while (shared::bytes(threads) > of_block_) threads /= 2;
-    const by_field fields{a.parts,
-                          a.fields,
-                          a.part_count,
-                          a.configurations,
-                          a.poses,
-                          a.now,
-                          a.world_from_cloud,
-                          a.off,
-                          a.question,
-                          a.foreseen,
-                          a.seen,
-                          a.places,
-                          a.bounds,
-                          a.facts,
-                          a.all,
-                          a.near,
-                          a.last,
-                          a.seeds,
-                          a.results,
-                          a.dropped,
-                          a.lost,
-                          {pieces_.data(), left_used_.data(), std::uint32_t(pieces_.size())}};
+    const by_field fields{a, {pieces_.data(), left_used_.data(), std::uint32_t(pieces_.size())}};
     search(field_kernel<by_field, tree_type>, tree, fields, threads, shared::bytes(threads), pieces_, pieces_again_);
   }
   unsigned threads_for_all() const {
