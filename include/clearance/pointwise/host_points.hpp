@@ -66,28 +66,29 @@ struct host_points {
     std::size_t tiles = 0;
     for (std::size_t i = range.begin; i < range.end; i += scan::tile_points) {
       const std::size_t count = load(t, i, range.end, mine);
-      const extent box = box_of(t);
-      scan::tile_survivors survivors;
       bool near = false;
-      for (const auto& place : places)
-        if (scan::may_reach(place.around, d_max, box)) {
-          near = true;
-          if (d_max < infinity) survivors.add(t, place.around, d_max);
-        }
-      const auto add = [&](std::size_t j) { groups.add(t[j], std::uint32_t(i + j)); };
-      const bool all = near && !(d_max < infinity);
-      for (std::size_t j = 0; j < count; ++j)
-        if (!packets::is_point(t[j]))
-          put(i + j, {not_a_number});
-        else if (all)
-          add(j);
-        else
-          put(i + j, {});
-      if (near && !all) survivors.for_each(add);
+      with_vectors([&] {
+        const extent box = box_of(t);
+        for (const auto& place : places) near = near || scan::may_reach(place.around, d_max, box);
+      });
+      for (std::size_t j = 0; j < count; ++j) put(i + j, packets::is_point(t[j]) ? found{} : found{not_a_number});
+      if (near) add(groups, t, i, count);
       if (++tiles % (most_together / scan::tile_points) == 0 || i + scan::tile_points >= range.end) groups.answer(take);
     }
   }
 
+  /// A tile's points that may be near a part.
+  void add(host_groups<PartView>& groups, const scan::tile& t, std::size_t begin, std::size_t count) const {
+    const auto one = [&](std::size_t j) { groups.add(t[j], std::uint32_t(begin + j)); };
+    if (d_max < infinity) {
+      scan::tile_survivors survivors;
+      for (const auto& place : places) survivors.add(t, place.around, d_max);
+      survivors.for_each(one);
+      return;
+    }
+    for (std::size_t j = 0; j < count; ++j)
+      if (packets::is_point(t[j])) one(j);
+  }
   std::size_t load(scan::tile& t, std::size_t begin, std::size_t end, scan::drop_tally& mine) const {
     const std::size_t count = std::min(scan::tile_points, end - begin);
     t.load(source, begin, count, 1, mine);
