@@ -25,11 +25,11 @@ struct extremes {
   }
 };
 
-/// The extremes of as many values as a survey has points.
-inline void spread(const real* values, real& low, real& high) {
+/// The extremes of `count` values, a multiple of 16: usually of as many as a survey has points.
+inline void spread(const real* values, real& low, real& high, std::size_t count = surveyed_points) {
   constexpr std::size_t lanes = 16;
   extremes<lanes> all;
-  for (std::size_t i = 0; i < surveyed_points; i += lanes) all.add(values + i);
+  for (std::size_t i = 0; i < count; i += lanes) all.add(values + i);
   for (std::size_t j = 0; j < lanes; ++j) low = min(low, all.low[j]), high = max(high, all.high[j]);
 }
 

@@ -42,7 +42,8 @@ struct neighbours : packet<64> {
   /// The box around them, without noise.
   surroundings surround() const {
     extent box;
-    spread(x, box.lower.x, box.upper.x), spread(y, box.lower.y, box.upper.y), spread(z, box.lower.z, box.upper.z);
+    spread(x, box.lower.x, box.upper.x, most), spread(y, box.lower.y, box.upper.y, most);
+    spread(z, box.lower.z, box.upper.z, most);
     const vec3 c = fma(0.5f, box.lower + box.upper, vec3{0, 0, 0});
     alignas(64) real far[block] = {};
     for (std::size_t b = 0; b < most; b += block)
@@ -95,13 +96,6 @@ struct neighbours : packet<64> {
         for (std::size_t l = 0; l < block; ++l) n.offer(b + l, distance[l], its_part, its_id);
       }
     });
-  }
-
- private:
-  static void spread(const real* v, real& low, real& high) {
-    extremes<16> all;
-    for (std::size_t j = 0; j < most; j += 16) all.add(v + j);
-    for (std::size_t l = 0; l < 16; ++l) low = min(low, all.low[l]), high = max(high, all.high[l]);
   }
 };
 
