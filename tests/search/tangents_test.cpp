@@ -134,8 +134,17 @@ TEST_CASE("A point inside a solid is 0 away, whatever signed primitives of that 
     parts.push_back({part.tree, big_ball{k == 1 ? 0.1f : 0.4f}, part.facts});
     s.poses.push_back(d.pose(0.3));
   }
+  // The middle of a large ball is a metre deep, but 0 away; a small ball there decides.
+  for (const inner_sphere& b : {inner_sphere{{0, 0, 0}, 1}, inner_sphere{{0.05f, 0, 0}, 0.1f}}) {
+    s.parts.push_back({b});
+    const auto part = clearance::make_part(clearance::build<clearance::sphere>(s.parts.back()));
+    parts.push_back({part.tree, big_ball{b.radius == 1 ? 0.4f : 0}, part.facts});
+    s.poses.push_back(shifted(9, 0, 0));
+  }
   const clearance::model model(parts);
-  check(s, model, patches(d, 1), v, s.name, [&](std::uint32_t k, vec3 q) { return parts[k].interior.inside(q); });
+  auto points = patches(d, 1);
+  for (int k = 0; k < 64; ++k) points.push_back(d.point(0.01, {9, 0, 0}));
+  check(s, model, points, v, s.name, [&](std::uint32_t k, vec3 q) { return parts[k].interior.inside(q); });
 }
 
 TEST_CASE("By tangents from few points, and from all numbers of points up to two groups") {
