@@ -4,6 +4,7 @@
 // after another.
 #include "configurations.hpp"
 
+#include <clearance/fields.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -22,6 +23,14 @@ const auto& spheres() {
 }
 const auto& triangles() {
   static const auto model = bench::triangle_model<clearance::aabb>(bench::the_scene());
+  return model;
+}
+const auto& spheres_field() {
+  static const auto model = clearance::with_fields(clearance::host{}, spheres()).model;
+  return model;
+}
+const auto& triangles_field() {
+  static const auto model = clearance::with_fields(clearance::host{}, triangles()).model;
   return model;
 }
 
@@ -54,12 +63,13 @@ void each_part(benchmark::State& state) {
   report(state, found);
 }
 
-void monitor(benchmark::State& state) {
+template <class Model>
+void monitor(benchmark::State& state, const Model& (*model)()) {
   const bench::scene& s = bench::the_scene();
   const clearance::host cpu{.threads = unsigned(state.range(0))};
   const auto poses = bench::trajectory(std::size_t(state.range(1)));
   const std::vector<clearance::vec3> frames[] = {bench::next_frame(s.cloud, 1), bench::next_frame(s.cloud, 2)};
-  clearance::query query(cpu, spheres(), clearance::min_distances{});
+  clearance::query query(cpu, model(), clearance::min_distances{});
   std::size_t n = 0;
   const clearance::min_distances_result* found = &query(poses, placed{point_span(frames[1]), s.world_from_camera});
   for (auto _ : state) found = &query(poses, placed{point_span(frames[n++ % 2]), s.world_from_camera});
@@ -85,12 +95,17 @@ constexpr float all = clearance::infinity;
 #define TIMES(n) \
   ->Args({1, n})->Args({2, n})->ArgNames({"threads", "configurations"})->UseRealTime()->Unit(benchmark::kMillisecond)
 BENCHMARK_CAPTURE(random, spheres, spheres, all) TIMES(1000);
+BENCHMARK_CAPTURE(random, spheres_by_field, spheres_field, all) TIMES(1000);
 BENCHMARK_CAPTURE(random, spheres_within_5cm, spheres, 0.05f) TIMES(1000);
+BENCHMARK_CAPTURE(random, spheres_within_5cm_by_field, spheres_field, 0.05f) TIMES(1000);
 BENCHMARK_CAPTURE(random, triangles, triangles, all) TIMES(1000);
+BENCHMARK_CAPTURE(random, triangles_by_field, triangles_field, all) TIMES(1000);
 BENCHMARK_CAPTURE(random, triangles_within_5cm, triangles, 0.05f) TIMES(1000);
+BENCHMARK_CAPTURE(random, triangles_within_5cm_by_field, triangles_field, 0.05f) TIMES(1000);
 BENCHMARK_CAPTURE(random, tree_alone, spheres, 0.0f) TIMES(1);
 BENCHMARK(each_part) TIMES(1000);
-BENCHMARK(monitor) TIMES(500);
+BENCHMARK_CAPTURE(monitor, spheres, spheres) TIMES(500);
+BENCHMARK_CAPTURE(monitor, spheres_by_field, spheres_field) TIMES(500);
 BENCHMARK(each) TIMES(100);
 
 }  // namespace

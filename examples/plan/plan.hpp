@@ -58,7 +58,8 @@ int example(const Backend& on) {
   const auto sampled = clearance::with_fields(on, clearance::make_model<clearance::sphere>(links));
   for (const std::string& why_not : sampled.without)
     if (!why_not.empty()) std::printf("no field: %s\n", why_not.c_str());
-  clearance::query sooner(on, sampled.model.on(on), clearance::min_distances{.d_max = 0.2});
+  const auto there = sampled.model.on(on);
+  clearance::query sooner(on, there, clearance::min_distances{.d_max = 0.2});
   // [fields]
   if (sooner(trajectory, wall).first_below(0.05) != 73 || sampled.model.view().fields == nullptr) return 1;
 

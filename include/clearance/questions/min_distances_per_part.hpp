@@ -41,8 +41,7 @@ class min_distances_per_part::engine {
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
       : readable_(on, from...), parts_(model.size()) {
-    for (std::size_t k = 0; k < parts_; ++k)
-      each_.emplace_back(on, model.part(k), from...);
+    for (std::size_t k = 0; k < parts_; ++k) each_.emplace_back(on, model.part(k), from...);
   }
 
   /// The result stays valid until the next call. Points that a device cannot read are copied once for all parts.
