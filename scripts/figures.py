@@ -155,12 +155,6 @@ def capt(of, who, spheres, apart, which=0, form=".1f"):
     return format(of.number("peers-capt.txt", f"{who}/spheres:{spheres}/margin_mm:0/apart_mm:{apart}/threads:1", which), form)
 
 
-@figure
-def plan_ms(of, row, threads=1, configurations=1000, form=".0f"):
-    """Milliseconds for many configurations on CPU threads, of two-threads.txt."""
-    return format(of.number("two-threads.txt", f"random/{row}/threads:{threads}/configurations:{configurations}"), form)
-
-
 # A deadline: microseconds in deadline.txt without one, divided into pieces.
 
 

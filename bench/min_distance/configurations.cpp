@@ -46,8 +46,9 @@ void random(benchmark::State& state, const Model& (*model)(), float d_max) {
   const clearance::host cpu{.threads = unsigned(state.range(0))};
   const auto poses = bench::random_configurations(std::size_t(state.range(1)));
   const placed cloud{point_span(s.cloud), s.world_from_camera};
+  const Model& robot = model();
   clearance::min_distances_result found;
-  for (auto _ : state) found = clearance::ask(cpu, model(), poses, cloud, clearance::min_distances{d_max});
+  for (auto _ : state) found = clearance::ask(cpu, robot, poses, cloud, clearance::min_distances{d_max});
   report(state, found);
 }
 

@@ -47,6 +47,24 @@ TEST_CASE("A part that can have no field says why, and then no part has one") {
   CHECK(clearance::attach(host{}, whole, clearance::model{std::vector{part}}).view().fields == nullptr);
 }
 
+TEST_CASE("An open mesh has a field, and one of few bytes is wide") {
+  fields_law<host> law{host{}};
+  dice d(435);
+  auto open = shapes::cube(1);
+  open.triangles.resize(1);
+  const auto mesh = clearance::close_mesh(open, {.cap = false});
+  CHECK_FALSE(mesh.closed);
+  const auto bare = clearance::make_model<clearance::obb>(std::vector(2, mesh));
+  for (const std::size_t bytes : {20480u, 1u << 18}) {
+    const auto fielded = law.with(bare, "an open mesh", bytes);
+    law.check(fielded, d, "an open mesh");
+    configurations poses;
+    for (int c = 0; c < 40; ++c) poses.push_back(d.pose(1));
+    require_no_change(host{}, bare, fielded, poses, clearance::point_span(d.points(500, 2)), 1, law.v, "an open mesh");
+  }
+  CHECK(law.sides[int(clearance::field_side::inside)] == 0);
+}
+
 TEST_CASE("A tree of somebody else's has a field around its ball") {
   dice d(434);
   const auto spheres = random_spheres(d, 100, 0.4);

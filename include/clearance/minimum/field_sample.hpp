@@ -34,9 +34,12 @@ struct lowest_tangent {
       return bounding_volume_traits<V>::lower_bound(volume, q) - 4 * half;
   }
   CLEARANCE_HD void offer(std::uint32_t, real) const {}
+  /// Very near to the middle a tangent's direction may be wrong. But no distance changes faster than its place.
   template <tangent_primitive P>
-  CLEARANCE_HD void offer(std::uint32_t, real, const P& p) {
-    lowest = min(lowest, over_cube(p.tangent_at(middle)));
+  CLEARANCE_HD void offer(std::uint32_t, real distance, const P& p) {
+    const real turn = half * (absolute(way.x) + absolute(way.y) + absolute(way.z));
+    const real slow = distance - 1.7321f * half - turn - slack * (absolute(distance) + 4 * half);
+    lowest = min(lowest, max(over_cube(p.tangent_at(middle)), slow));
   }
 };
 
@@ -58,13 +61,13 @@ struct field_sample {
     nearest_primitive<primitive> near{infinity};
     walk(part->tree, q, near);
     if (near.id == none) return give_up();
-    const primitive_tangent t = near.primitive.tangent_at(q);
+    const vec3 direction = near.primitive.tangent_at(q).direction;
     field_cell c;
-    const real steps = (t.distance - grid.least) * rough_inverse(grid.unit);
+    const real steps = (near.within - grid.least) * rough_inverse(grid.unit);
     if (!(steps >= 0 && steps < 65535)) return give_up();
     c.value = std::uint16_t(steps);
     const auto whole = [](real u) { return std::int8_t(rough_max(rough_min(u * 127, 127), -127)); };
-    c.way[0] = whole(t.direction.x), c.way[1] = whole(t.direction.y), c.way[2] = whole(t.direction.z);
+    c.way[0] = whole(direction.x), c.way[1] = whole(direction.y), c.way[2] = whole(direction.z);
     const vec3 way = scaled(1.0f / 127, {real(c.way[0]), real(c.way[1]), real(c.way[2])});
     const real plane = fma(grid.unit, real(c.value), grid.least), half = grid.step / 2;
     real above = 0;
@@ -74,7 +77,7 @@ struct field_sample {
       above = max(above, d - plane - dot(way, e) + 4 * slack * (absolute(d) + 4 * half));
     }
     lowest_tangent lowest{q, way, half};
-    lowest.offer(near.id, 0, near.primitive);
+    lowest.offer(near.id, near.within, near.primitive);
     walk(part->tree, q, lowest);
     const real most = units(above), least = units(plane - lowest.lowest);
     if (!(most < 255 && least < 255)) return give_up();
