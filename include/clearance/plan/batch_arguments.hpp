@@ -5,6 +5,7 @@
 #include <clearance/frame/clouds.hpp>
 #include <clearance/plan/tree_search.hpp>
 #include <clearance/points/point_span.hpp>
+#include <clearance/robot/field.hpp>
 #include <clearance/traversal/any_depth.hpp>
 
 namespace clearance::minimum {

@@ -3,6 +3,7 @@
 // One configuration by branch and bound in the tree over the points alone: of each part a field says how near it is.
 
 #include <clearance/plan/tree_search.hpp>
+#include <clearance/robot/field.hpp>
 
 namespace clearance::minimum {
 
