@@ -77,6 +77,14 @@ void monitor(benchmark::State& state, const Model& (*model)()) {
   report(state, *found);
 }
 
+/// The fields of all parts, sampled.
+template <class Model>
+void sample(benchmark::State& state, const Model& (*model)()) {
+  const clearance::host cpu{.threads = unsigned(state.range(0))};
+  const Model& robot = model();
+  for (auto _ : state) benchmark::DoNotOptimize(clearance::with_fields(cpu, robot).model.view());
+}
+
 void each(benchmark::State& state) {
   const bench::scene& s = bench::the_scene();
   const clearance::host cpu{.threads = unsigned(state.range(0))};
@@ -108,6 +116,8 @@ BENCHMARK(each_part) TIMES(1000);
 BENCHMARK_CAPTURE(monitor, spheres, spheres) TIMES(500);
 BENCHMARK_CAPTURE(monitor, spheres_by_field, spheres_field) TIMES(500);
 BENCHMARK(each) TIMES(100);
+BENCHMARK_CAPTURE(sample, spheres, spheres) TIMES(0)->Iterations(1);
+BENCHMARK_CAPTURE(sample, triangles, triangles) TIMES(0)->Iterations(1);
 
 }  // namespace
 }  // namespace configurations_bench

@@ -4,7 +4,6 @@
 
 #include <clearance/backend/host.hpp>
 #include <clearance/minimum/field_sample.hpp>
-#include <clearance/minimum/plain_search.hpp>
 #include <clearance/robot/model.hpp>
 
 #include <string>
@@ -83,6 +82,12 @@ field<host> sampled_field(const B& on, const Part& part, const field_options& op
     return why_not = "a part without a finite size has no field", field<host>{};
   const auto there = part.on(on);
   const auto view = there.view();
+  const std::uint64_t need = stack_need(view.tree.depth(), view.tree.width());
+  if constexpr (requires { typename B::own_scan; })
+    if (need > near_first::capacity)
+      return why_not = "its tree needs a stack of " + std::to_string(need) +
+                       " entries, too many for a device; sample its field on a host",
+             field<host>{};
   using part_view = std::remove_const_t<decltype(view)>;
   field<host> f;
   f.shape = field_around(box_around(part), {facts.center, facts.radius}, cubes);
@@ -93,7 +98,7 @@ field<host> sampled_field(const B& on, const Part& part, const field_options& op
   auto lost = on.template make_scratch<std::uint32_t>(1);
   const std::uint32_t nothing = 0;
   on.stage(std::span<const std::uint32_t>(&nothing, 1), lost.data());
-  const any_depth walk{stack_need(view.tree.depth(), view.tree.width())};
+  const any_depth walk{need};
   for (const auto& g : f.shape.grids)
     on.for_each(g.cubes(),
                 minimum::field_sample<part_view>{views.data(), g, walk, cells.data() + g.first, lost.data()});

@@ -47,6 +47,26 @@ TEST_CASE("A part that can have no field says why, and then no part has one") {
   CHECK(clearance::attach(host{}, whole, clearance::model{std::vector{part}}).view().fields == nullptr);
 }
 
+TEST_CASE("A copy of a robot reads its own parts and fields") {
+  dice d(436);
+  const auto original =
+      with_fields(host{}, clearance::model{std::vector{clearance::make_part(
+                              clearance::build<clearance::sphere>(random_spheres(d, 50, 0.4)), 0, 0)}});
+  auto copy = original.model;
+  const auto own = [](const auto& model) {
+    const auto tree = model.view().parts[0].tree;
+    const auto* at = &tree.volume(tree.root());
+    const auto& its = model.parts()[0].tree.volumes;
+    return at >= its.data() && at < its.data() + its.size();
+  };
+  CHECK((own(original.model) && own(copy)));
+  CHECK(copy.view().fields[0].cells != original.model.view().fields[0].cells);
+  const auto moved = std::move(copy);
+  CHECK(own(moved));
+  copy = moved;
+  CHECK((own(copy) && own(moved) && copy.view().fields != moved.view().fields));
+}
+
 TEST_CASE("An open mesh has a field, and one of few bytes is wide") {
   fields_law<host> law{host{}};
   dice d(435);

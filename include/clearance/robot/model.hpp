@@ -4,7 +4,9 @@
 #include <clearance/robot/field.hpp>
 
 #include <algorithm>
+#include <concepts>
 #include <stdexcept>
+#include <utility>
 
 namespace clearance {
 
@@ -99,6 +101,20 @@ class model {
       width_ = std::max(width_, views.back().tree.width());
     }
     views_ = on.copy_in(std::span<const view_type>(views));
+  }
+
+  /// A copy has views of its own parts.
+  model(const model& other)
+    requires std::copy_constructible<Part>
+      : model(other.parts_) {
+    set_fields(other.fields_);
+  }
+  model(model&&) = default;
+  model& operator=(model other) {
+    std::swap(parts_, other.parts_), std::swap(facts_, other.facts_), std::swap(views_, other.views_);
+    std::swap(depth_, other.depth_), std::swap(width_, other.width_);
+    std::swap(fields_, other.fields_), std::swap(field_views_, other.field_views_);
+    return *this;
   }
 
   const std::vector<Part>& parts() const { return parts_; }
