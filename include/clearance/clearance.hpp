@@ -35,6 +35,7 @@
 #include <clearance/questions/part_witnesses.hpp>
 #include <clearance/questions/self_filter.hpp>
 #include <clearance/questions/signed_distances.hpp>
+#include <clearance/questions/unseen.hpp>
 #include <clearance/questions/within.hpp>
 #include <clearance/questions/zones.hpp>
 #include <clearance/robot/attached.hpp>

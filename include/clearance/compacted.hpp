@@ -20,6 +20,8 @@ namespace detail {
 
 template <point_source S>
 struct compact_body {
+  static_assert(points_alone<S>());
+
   S source;
   vec3* points;
   std::uint32_t *numbers, *count;

@@ -4,6 +4,7 @@
 
 #include <clearance/concepts/answer.hpp>
 #include <clearance/concepts/backend.hpp>
+#include <clearance/concepts/capsule.hpp>
 #include <clearance/concepts/question.hpp>
 #include <clearance/concepts/tally.hpp>
 #include <clearance/concepts/traversal.hpp>

@@ -12,10 +12,11 @@ enum class state : std::uint8_t {
   possible,   ///< The bracket contains 0; nothing else is certain.
   collision,  ///< Some point is certainly inside.
   no_data,    ///< There was no valid point: nothing is known.
+  unknown,    ///< The robot reaches into room that no camera sees (`unseen`).
 };
 
 inline const char* to_string(state s) {
-  constexpr const char* names[] = {"free", "possible", "collision", "no_data"};
+  constexpr const char* names[] = {"free", "possible", "collision", "no_data", "unknown"};
   return names[int(s)];
 }
 

@@ -183,6 +183,7 @@ class device_tree {
   /// Enqueues it. Adds invalid points to `dropped`. The device must be able to read the source as it is.
   template <point_source S>
   void build(const S& source, scan::drop_counts* dropped) {
+    static_assert(points_alone<S>());
     const std::size_t n = source.size();
     if constexpr (image_source<S>) {
       const pixel_order pixels(std::uint32_t(n), n == 0 ? 0 : source.columns());

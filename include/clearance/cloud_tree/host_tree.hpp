@@ -21,6 +21,7 @@ class host_tree {
   /// Builds it. Adds invalid points to `dropped`.
   template <point_source S>
   void build(host_workers& workers, const S& source, scan::drop_counts& dropped) {
+    static_assert(points_alone<S>());
     read(workers, source, dropped);
     encode(workers);
     for (int shift = 0; shift < 3 * morton_grid::bits; shift += morton_grid::bits) sort_by(workers, shift);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/ground/math.hpp>
+#include <clearance/concepts/capsule.hpp>
 
 namespace clearance::frames {
 
@@ -13,6 +13,12 @@ CLEARANCE_HD inline bool may_reach(const ball& around, real reach, vec3 p) {
   const vec3 d = p - around.center;
   const real most = limit(around, reach);
   return most >= 0 && d.x * d.x + d.y * d.y + d.z * d.z <= most * most;
+}
+
+/// The same for anything in a capsule.
+CLEARANCE_HD inline bool may_reach(const ball& around, real reach, const capsule& c) {
+  return may_reach(around, reach + c.radius + detail::noise_along(c),
+                   c.at(clearance::least_along(around.center, c.from, c.along)));
 }
 
 /// A ball, with what a test against it needs for any reach.

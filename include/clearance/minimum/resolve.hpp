@@ -35,8 +35,7 @@ struct resolve_body {
   /// Can the key belong to part `k`? If not, the part need not be searched.
   CLEARANCE_HD bool may_be_of(std::uint32_t k) const {
     const distance_key key = bounds.all->best;
-    return mine(key) &&
-           frames::may_reach(places[k].around, key_distance(key), source[key_index(key) - first].position - origin);
+    return mine(key) && frames::may_reach(places[k].around, key_distance(key), element(key_index(key) - first));
   }
 
   CLEARANCE_HD void operator()(std::size_t i) const {
@@ -48,6 +47,10 @@ struct resolve_body {
   }
 
  private:
+  /// Less the origin.
+  CLEARANCE_HD auto element(std::uint32_t point) const {
+    return scan::less(scan::element_of(source, point, source[point].position), origin);
+  }
   CLEARANCE_HD bool mine(distance_key key) const {
     return key != no_key && key_index(key) >= first && key_index(key) - first < source.size();
   }
@@ -56,7 +59,7 @@ struct resolve_body {
     const distance_key key = bounds.part_best[k];
     if (!mine(key)) return;
     const std::uint32_t point = key_index(key) - first;
-    const vec3 q = places[k].part_from_cloud(source[point].position - origin);
+    const auto q = scan::moved(places[k].part_from_cloud, element(point));
     minima[k] = {key_distance(key), cloud, point, evaluate(parts[k], q, key_distance(key), walk).nearest.id};
   }
 
@@ -66,15 +69,17 @@ struct resolve_body {
       for (std::uint32_t k = 0; k < part_count; ++k) key = bounds.part_best[k] < key ? bounds.part_best[k] : key;
     if (!mine(key)) return;
     const std::uint32_t point = key_index(key) - first;
-    const vec3 p = source[point].position;
+    const auto p = scan::element_of(source, point, source[point].position);
     for (std::uint32_t k = 0; k < part_count; ++k) {
-      const vec3 q = places[k].part_from_cloud(p - origin);
+      const auto q = scan::moved(places[k].part_from_cloud, scan::less(p, origin));
       const auto f = evaluate(parts[k], q, key_distance(key), walk);
       if (f.distance != key_distance(key)) continue;
-      const contact here = f.at(q, places[k].world_from_part);
+      const real share = f.inside ? 0 : scan::share_near(f.nearest.primitive, q);
+      const contact here = f.at(scan::place_at(q, share), places[k].world_from_part);
       result->distance = f.distance;
       result->cloud = cloud, result->point = point, result->part = k, result->primitive = f.nearest.id;
-      result->at = world_from_cloud(p), result->nearest = here.nearest, result->normal = here.normal;
+      result->at = world_from_cloud(scan::place_at(p, share)), result->nearest = here.nearest,
+      result->normal = here.normal;
       return;
     }
   }

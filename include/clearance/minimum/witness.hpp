@@ -4,6 +4,7 @@
 
 #include <clearance/ground/pose.hpp>
 #include <clearance/result.hpp>
+#include <clearance/scan/element.hpp>
 #include <clearance/scan/interior.hpp>
 
 namespace clearance::minimum {
@@ -51,15 +52,16 @@ struct nearest_of_part {
   }
 };
 
-/// The distance by the scan's rule: 0 inside, else that of the closest primitive, if it is at most `within`.
-template <class PartView, class Traversal>
-CLEARANCE_HD auto evaluate(const PartView& part, vec3 q, real within, const Traversal& walk) {
+/// The distance of a point or capsule by the scan's rule: 0 inside, else that of the closest primitive, if it is at
+/// most `within`.
+template <class PartView, class Element, class Traversal>
+CLEARANCE_HD auto evaluate(const PartView& part, const Element& q, real within, const Traversal& walk) {
   nearest_of_part<typename PartView::hierarchy_type::primitive_type> f{infinity, false, {within}};
   if constexpr (scan::has_interior<PartView>) {
-    f.inside = part.interior.inside(q);
+    f.inside = part.interior.inside(scan::start_of(q));
     if (f.inside) f.nearest.within = infinity;
   }
-  walk(part.tree, q, f.nearest);
+  scan::walk_for(walk, part.tree, q, f.nearest);
   if (f.nearest.id != none) f.distance = f.inside ? 0 : f.nearest.within;
   return f;
 }

@@ -56,6 +56,7 @@ struct nearest_sample<host> {
     frames::cloud_frame frame;
     std::vector<extent> boxes;
     frames::for_each_turn(frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn&) {
+      static_assert(points_alone<S>());
       boxes.assign((source.size() + scan::tile_points - 1) / scan::tile_points, {});
       workers.for_pieces(boxes.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) boxes[n] = box_of_tile(source, frame.origin, n);

@@ -50,6 +50,16 @@ struct depth_image {
     return deproject(pixels[std::size_t(v) * row + u], u, v);
   }
 
+  /// See `seeing_image`.
+  CLEARANCE_HD vec3 way(std::size_t i) const {
+    const std::uint32_t v = std::uint32_t(i) / width, u = std::uint32_t(i) - v * width;
+    return {(real(u) - cx) * inverse_fx, (real(v) - cy) * inverse_fy, 1};
+  }
+  CLEARANCE_HD real depth(std::size_t i) const {
+    const std::uint32_t v = std::uint32_t(i) / width, u = std::uint32_t(i) - v * width;
+    return product(real(pixels[std::size_t(v) * row + u]), scale);
+  }
+
   /// Four pixels of a row as they lie in memory; see `fetched_source`.
   struct alignas(4 * sizeof(Pixel)) four {
     Pixel d[4];

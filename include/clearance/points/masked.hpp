@@ -36,6 +36,8 @@ struct masked_types<S> {
 /// anywhere.
 template <point_source S>
 struct masked : detail::masked_types<S> {
+  static_assert(points_alone<S>());
+
   S source;
   const point_label* labels;
 
@@ -46,6 +48,17 @@ struct masked : detail::masked_types<S> {
     sample s = source[i];
     if (s.valid() && labels[i] == point_label::own) s.dropped = drop_reason::masked;
     return s;
+  }
+
+  CLEARANCE_HD vec3 way(std::size_t i) const
+    requires requires(const S s) { s.way(i); }
+  {
+    return source.way(i);
+  }
+  CLEARANCE_HD real depth(std::size_t i) const
+    requires requires(const S s) { s.depth(i); }
+  {
+    return source.depth(i);
   }
 
   CLEARANCE_HD bool fetches() const

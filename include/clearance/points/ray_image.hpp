@@ -38,6 +38,12 @@ struct ray_image {
     return along(rays[i], pixels[row == width ? i : i / width * row + i % width]);
   }
 
+  /// See `seeing_image`.
+  CLEARANCE_HD vec3 way(std::size_t i) const { return {rays[i].x, rays[i].y, 1}; }
+  CLEARANCE_HD real depth(std::size_t i) const {
+    return product(real(pixels[row == width ? i : i / width * row + i % width]), scale);
+  }
+
   /// Four pixels and their rays as they lie in memory; see `fetched_source`.
   struct alignas(4 * sizeof(Pixel)) four_pixels {
     Pixel d[4];

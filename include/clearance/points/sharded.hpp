@@ -15,6 +15,8 @@ namespace clearance {
 /// memory of another device, and may be empty.
 template <point_source S>
 class sharded {
+  static_assert(points_alone<S>());
+
  public:
   static constexpr std::size_t most = 16;  // as an argument of a kernel it has 4 KiB
 

@@ -21,6 +21,7 @@ struct fetched_types<S> {
 /// Points `begin` to `begin + count - 1` of any source, as fast as the source itself if `begin` is a multiple of four.
 template <point_source S>
 struct sliced : detail::fetched_types<S> {
+  static_assert(points_alone<S>());
   S whole;
   std::size_t begin, count;
 

@@ -106,6 +106,7 @@ distance_certainty on_host(const host& on, const model_view<PartView>& model, st
   frames::cloud_frame frame;
   const std::uint64_t seen = frames::for_each_turn(
       frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+        static_assert(points_alone<S>());
         using body = host_points<PartView, S>;
         on.for_ranges(source.size(),
                       body{model.parts, frame.places, stack_need(model.depth, model.width), source, frame.origin,

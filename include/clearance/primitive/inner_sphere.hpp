@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/concepts.hpp>
+#include <clearance/concepts/capsule.hpp>
 
 #include <array>
 
@@ -22,6 +22,8 @@ struct inner_sphere {
     const vec3 way = q - center;
     return {dot(way, way), radius};
   }
+  /// See swept_primitive.
+  CLEARANCE_HD real least_along(vec3 from, vec3 along) const { return clearance::least_along(center, from, along); }
   CLEARANCE_HD vec3 nearest(vec3 q) const {
     const vec3 n = normal(q);
     return fma(radius, n == vec3{0, 0, 0} ? vec3{1, 0, 0} : n,
@@ -40,6 +42,6 @@ struct inner_sphere {
   std::array<ball, 1> balls() const { return {{{center, radius}}}; }
 };
 
-static_assert(primitive<inner_sphere>);
+static_assert(swept_primitive<inner_sphere>);
 
 }  // namespace clearance

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/concepts.hpp>
+#include <clearance/concepts/capsule.hpp>
+#include <clearance/ground/segments.hpp>
 
 #include <array>
 
@@ -82,6 +83,21 @@ struct triangle {
     const vec3 u = way.direction;
     const real off = slack * (way.length + extent(b - a) + extent(c - a)) + 0x1p-60f;
     return {{rough_min(rough_min(dot(u, aq), dot(u, bq)), dot(u, cq)) - off, u}, way.length + off, way.length};
+  }
+
+  /// See swept_primitive. An end, where the way crosses the plane, or the place that is nearest to a side is nearest.
+  CLEARANCE_HD real least_along(vec3 from, vec3 along) const {
+    const real height = dot(from - a, unit_normal), rise = dot(along, unit_normal);
+    const real shares[] = {0,
+                           1,
+                           rise < 0 || rise > 0 ? clamp01(divide(-height, rise)) : 0,
+                           share_nearest(from, along, a, b - a),
+                           share_nearest(from, along, b, c - b),
+                           share_nearest(from, along, c, a - c)};
+    real best = 0, least = infinity;
+    for (const real t : shares)
+      if (const real d = distance(fma(t, along, from)); d < least) best = t, least = d;
+    return best;
   }
 
   CLEARANCE_HD vec3 nearest(vec3 q) const { return q - away(q); }
@@ -188,6 +204,6 @@ struct triangle {
   CLEARANCE_HD static real extent(vec3 v) { return absolute(v.x) + absolute(v.y) + absolute(v.z); }
 };
 
-static_assert(bounded_primitive<triangle>);
+static_assert(bounded_primitive<triangle> && swept_primitive<triangle>);
 
 }  // namespace clearance

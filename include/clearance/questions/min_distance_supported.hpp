@@ -89,6 +89,7 @@ std::vector<std::uint32_t> count_around(Passes& passes, std::span<const Eigen::I
                                                        both);  // clang before 16 captures no structured bindings
   frames::cloud_frame frame;
   frames::for_each_turn(frame, facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+    static_assert(points_alone<S>());
     on.for_each(points.size(), place_candidates<S>{source, frame.world_from_cloud, now.first, number, place});
   });
   const std::vector<position> at = on.copy_out(place, points.size());

@@ -32,12 +32,14 @@ struct witness_body {
     if (cloud == 0) witnesses[i] = {};
     if (least.cloud != cloud || least.point >= source.size()) return;
     const frames::placement place = places[std::uint32_t(i)];
-    const vec3 p = source[least.point].position, q = place.part_from_cloud(p - origin);
+    const auto p = scan::element_of(source, least.point, source[least.point].position);
+    const auto q = scan::moved(place.part_from_cloud, scan::less(p, origin));
     const auto f = evaluate(parts[i], q, least.distance, walk);
     if (f.nearest.id == none || f.distance != least.distance) return;
-    const contact here = f.at(q, place.world_from_part);
-    witnesses[i] = {f.distance,   std::uint32_t(i),    cloud,        least.point,
-                    f.nearest.id, world_from_cloud(p), here.nearest, here.normal};
+    const real share = f.inside ? 0 : scan::share_near(f.nearest.primitive, q);
+    const contact here = f.at(scan::place_at(q, share), place.world_from_part);
+    const position at = world_from_cloud(scan::place_at(p, share));
+    witnesses[i] = {f.distance, std::uint32_t(i), cloud, least.point, f.nearest.id, at, here.nearest, here.normal};
   }
 };
 

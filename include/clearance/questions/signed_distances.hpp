@@ -74,6 +74,7 @@ struct signed_distances {
     frames::cloud_frame frame;
     frames::for_each_turn(
         frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+          static_assert(points_alone<S>());
           auto places = on.template make_scratch<frames::placement>(model.size());
           on.stage(std::span<const frames::placement>(frame.places), places.data());
           on.for_each(source.size(), pointwise::deepen_body<PartView, S>{

@@ -39,6 +39,8 @@ inline double away(const ball& around, const extent& box) {
 /// null. An incomplete last tile is not surveyed: call `add_rest` for it.
 template <point_source S>
 struct boxing {
+  static_assert(points_alone<S>());
+
   S source;
   boxed_piece* pieces;
 
@@ -80,6 +82,8 @@ void box_points(const S& source, boxed_piece* pieces) {
 /// may be shorter, may only come last.
 template <point_source S>
 struct listed_pieces {
+  static_assert(points_alone<S>());
+
   S whole;
   const std::uint32_t* numbers;
   std::size_t count;  ///< Number of points.

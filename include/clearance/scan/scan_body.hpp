@@ -3,6 +3,7 @@
 
 #include <clearance/frame/frame.hpp>
 #include <clearance/ground/indices.hpp>
+#include <clearance/scan/element.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/tile_scan.hpp>
 
@@ -35,26 +36,36 @@ struct scan_body {
     mine.add_to(*counts);
   }
 
-  /// Tests one point against every part.
-  CLEARANCE_HD void visit(vec3 p, std::size_t i) const {
-    for (std::uint32_t k = 0; k < part_count; ++k) visit(p, first + std::uint32_t(i), k);
+  /// A point less the origin, or its capsule.
+  CLEARANCE_HD auto element(vec3 p, std::size_t i) const {
+    if constexpr (capsule_source<Source>)
+      return less(source.around(i, p + origin), origin);
+    else
+      return p;
   }
 
-  /// Tests it against one part. `index` is its number among all clouds' points.
-  CLEARANCE_HD void visit(vec3 p, std::uint32_t index, std::uint32_t k) const {
+  /// Tests one point against every part.
+  CLEARANCE_HD void visit(vec3 p, std::size_t i) const {
+    const auto all = element(p, i);
+    for (std::uint32_t k = 0; k < part_count; ++k) visit(all, first + std::uint32_t(i), k);
+  }
+
+  /// Tests it, or its capsule, against one part. `index` is its number among all clouds' points.
+  template <class Element>
+  CLEARANCE_HD void visit(const Element& p, std::uint32_t index, std::uint32_t k) const {
     const frames::placement& place = places[k];
     if (!frames::may_reach(place.around, answer.reach_of_pair(index, k), p)) return;
     const PartView& part = parts[k];
-    const vec3 q = place.part_from_cloud(p);
+    const auto q = moved(place.part_from_cloud, p);
     if constexpr (has_interior<PartView>) {
       if (answer.settled(index, k)) return;
-      if (part.interior.inside(q)) {
-        if (answer.take_inside(index, k) && certainly_inside(part, q, place.error, walk)) answer.take_certain();
+      if (const vec3 start = start_of(q); part.interior.inside(start)) {
+        if (answer.take_inside(index, k) && certainly_inside(part, start, place.error, walk)) answer.take_certain();
         return;
       }
     }
     auto ask = answer.visitor(index, k);
-    walk(part.tree, q, ask);
+    walk_for(walk, part.tree, q, ask);
     answer.take(index, k, ask);
   }
 

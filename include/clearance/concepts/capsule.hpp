@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// A point of a sensor may stand for more than itself: for all that it hides, or for all places where it may be. Both
+// are a swept ball, a capsule. How near one is to a volume and to a primitive.
+
+#include <clearance/concepts/traversal.hpp>
+#include <clearance/point_source.hpp>
+
+namespace clearance {
+
+/// A ball that is swept along a straight way. Metres.
+struct capsule {
+  vec3 from, along;
+  real radius;
+
+  CLEARANCE_HD vec3 at(real t) const { return fma(t, along, from); }
+};
+
+/// A source whose points stand for capsules.
+/// Law: `around(i, s[i].position)` starts there, and is finite.
+template <class S>
+concept capsule_source = point_source<S> && requires(const S s, std::size_t i, vec3 p) {
+  { s.around(i, p) } -> std::same_as<capsule>;
+};
+
+/// For whatever looks at points alone.
+template <point_source S>
+consteval bool points_alone() {
+  static_assert(
+      !capsule_source<S>,
+      "the points of this source stand for more (what they hide, where they may be): a host answers questions "
+      "about pairs and the least distance of such sources, and `unseen` any backend; this does not");
+  return true;
+}
+
+/// A primitive that can be compared with a straight way.
+/// Law: of all places from + t along, 0 <= t <= 1, the one at t = `p.least_along(from, along)` has the least
+/// `p.distance`, up to rounding. That distance is no greater than that of both ends.
+template <class P>
+concept swept_primitive = primitive<P> && requires(const P p, vec3 q) {
+  { p.least_along(q, q) } -> std::same_as<real>;
+};
+
+/// The place of the way that is nearest to a point: between 0 and 1.
+CLEARANCE_HD inline real least_along(vec3 point, vec3 from, vec3 along) {
+  const real square = dot(along, along);
+  return square > 0 ? clamp01(divide(dot(point - from, along), square)) : 0;
+}
+
+namespace detail {
+
+/// More than rounding adds to a bound along a way.
+CLEARANCE_HD inline real noise_along(const capsule& c) {
+  return 2 * slack * (rough_length(c.from) + rough_length(c.along));
+}
+
+CLEARANCE_HD inline real bound_along(const ball& b, const capsule& c) {
+  const real away = rough_length(c.at(least_along(b.center, c.from, c.along)) - b.center);
+  return away * (1 - 2 * slack) - b.radius - noise_along(c);
+}
+
+/// By tangents. Each is a line below the distance along the way, which is convex. So the least is where a falling and a
+/// rising line meet, or above; there the next tangent is laid, until the bound is above `reach` or hardly rises.
+template <tangent_volume V>
+CLEARANCE_HD real bound_along(const V& v, const capsule& c, real reach) {
+  struct line {
+    real t, value, slope;
+    CLEARANCE_HD line(const V& v, const capsule& c, real t) : t(t) {
+      const tangent its = bounding_volume_traits<V>::tangent_at(v, c.at(t));
+      value = its.distance, slope = dot(its.direction, c.along);
+    }
+  };
+  const real noise = noise_along(c);
+  line falling(v, c, 0);
+  if (!(falling.slope < 0)) return falling.value - noise;
+  line rising(v, c, 1);
+  if (!(rising.slope > 0)) return rising.value - noise;
+  for (int k = 0;; ++k) {
+    const real meet = divide(rising.value - falling.value + falling.slope * falling.t - rising.slope * rising.t,
+                             falling.slope - rising.slope);
+    const real t = min(max(meet, falling.t), rising.t);
+    const real least =
+        min(falling.value + falling.slope * (t - falling.t), rising.value + rising.slope * (t - rising.t));
+    if (!(least - noise <= reach) || k == 3) return least - noise;
+    const line next(v, c, t);
+    (next.slope < 0 ? falling : rising) = next;
+  }
+}
+
+}  // namespace detail
+
+/// How near anything in a volume can be to a capsule, for prunings beyond `reach`: exact enough for volumes that are
+/// balls or have tangents; else by a ball around the volume's balls; else nothing is known.
+template <bounding_volume V>
+CLEARANCE_HD real lower_bound(const V& v, const capsule& c, real reach) {
+  using traits = bounding_volume_traits<V>;
+  if (c.along == vec3{0, 0, 0}) return traits::lower_bound(v, c.from) - c.radius;
+  if constexpr (round_volume<V>)
+    return detail::bound_along(traits::as_ball(v), c) - c.radius;
+  else if constexpr (tangent_volume<V>)
+    return detail::bound_along(v, c, reach + c.radius) - c.radius;
+  else
+    return -infinity;
+}
+
+/// Shows a visitor how far primitives are from a capsule. The traversal itself walks with the capsule's start.
+template <class Visitor>
+struct of_capsule {
+  using result_type = typename Visitor::result_type;
+
+  Visitor& ask;
+  const capsule& c;
+
+  CLEARANCE_HD real reach() const { return ask.reach(); }
+  template <class V>
+  CLEARANCE_HD real bound(const V& volume, vec3) const {
+    return lower_bound(volume, c, ask.reach());
+  }
+  CLEARANCE_HD void offer(std::uint32_t, real) {}
+  template <class P>
+  CLEARANCE_HD void offer(std::uint32_t id, real, const P& primitive) {
+    static_assert(swept_primitive<P>,
+                  "to be compared with what a point hides, a primitive needs: real least_along(vec3 from, vec3 along) "
+                  "const");
+    const real d = primitive.distance(c.at(primitive.least_along(c.from, c.along))) - c.radius;
+    if constexpr (requires { ask.offer(id, d, primitive); })
+      ask.offer(id, d, primitive);
+    else
+      ask.offer(id, d);
+  }
+  CLEARANCE_HD result_type result() const { return ask.result(); }
+};
+
+}  // namespace clearance

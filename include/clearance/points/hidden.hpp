@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What a camera does not see: behind everything that returns its light, and where nothing returns.
+
+#include <clearance/concepts/capsule.hpp>
+#include <clearance/points/masked.hpp>
+
+namespace clearance {
+
+/// An image whose pixels can be asked for more than a point.
+/// Law: pixel i looks along `way(i)`, whose z is 1. `depth(i)` is what it holds in metres, even if that is no depth.
+template <class S>
+concept seeing_image = point_source<S> && requires(const S s, std::size_t i) {
+  { s.way(i) } -> std::same_as<vec3>;
+  { s.depth(i) } -> std::same_as<real>;
+};
+
+/// Which room behind its pixels an image hides, in metres of z.
+struct hiding {
+  real nearest = 0.1f;            ///< From here on a pixel without a return hides everything,
+  real farthest = 10;             ///< up to here. What is farther does not matter.
+  bool infinite_is_free = false;  ///< A pixel of +inf says that nothing is there (REP 117); otherwise it is no return.
+};
+
+/// The hidden room of an image as a source: each pixel is the way behind its return, along its middle. Its point is
+/// where that begins. Pixels of the robot's own points (`masked`) hide nothing here; with `Own` they alone do.
+/// `half_pixel` is half the diagonal of a pixel at z = 1: so wide is the room around the way. The bracket carries it.
+template <seeing_image Image, bool Own = false>
+struct hidden {
+  Image image;
+  hiding room;
+  real half_pixel;
+
+  CLEARANCE_HD std::size_t size() const { return image.size(); }
+  CLEARANCE_HD sample operator[](std::size_t i) const {
+    const sample s = image[i];
+    if ((s.dropped == drop_reason::masked) != Own) return {s.position, drop_reason::masked};
+    if constexpr (Own) return starting(image.source[i], i);
+    return starting(s, i);
+  }
+  /// Up to where the room ends.
+  CLEARANCE_HD capsule around(std::size_t, vec3 start) const {
+    return {start, scaled(divide(room.farthest, start.z) - 1, start), 0};
+  }
+
+  /// The image's own, the pixel's width, and what rounding adds to the way.
+  position_error rounding() const {
+    const position_error own = rounding_of(image);
+    return {own.absolute, own.relative + double(half_pixel) + 0x1p-19};
+  }
+
+  std::span<const std::byte> bytes() const { return image.bytes(); }
+  hidden at(const std::byte* copy) const {
+    hidden moved = *this;
+    moved.image = image.at(copy);
+    return moved;
+  }
+
+ private:
+  /// What is too close to be measured hides all that is behind the lens.
+  static constexpr real at_the_lens = 0x1p-20f;
+
+  CLEARANCE_HD sample starting(const sample& s, std::size_t i) const {
+    if (s.valid()) return {s.position, s.position.z < room.farthest ? drop_reason::none : drop_reason::out_of_range};
+    const real depth = image.depth(i);
+    real z = room.nearest;
+    if (s.dropped == drop_reason::too_close) z = at_the_lens * room.farthest;
+    if (s.dropped == drop_reason::out_of_range && depth > 0 && depth < z) z = depth;  // something is there
+    if (room.infinite_is_free && depth == infinity) z = infinity;
+    if (!(z < room.farthest)) return {{0, 0, 0}, drop_reason::out_of_range};
+    const vec3 way = image.way(i);
+    if (!is_finite(way)) return {{0, 0, 0}, drop_reason::not_finite};
+    return {scaled(z, way), drop_reason::none};
+  }
+};
+
+}  // namespace clearance
