@@ -103,6 +103,18 @@ CLEARANCE_HD real lower_bound(const V& v, const capsule& c, real reach) {
     return -infinity;
 }
 
+/// A primitive's distance to a capsule, which is negative if they overlap by more than a touch.
+template <primitive P>
+CLEARANCE_HD real distance_to(const P& primitive, const capsule& c) {
+  static_assert(swept_primitive<P>,
+                "to be compared with what a point hides, a primitive needs: real least_along(vec3 from, vec3 along) "
+                "const");
+  const real away = primitive.distance(c.at(primitive.least_along(c.from, c.along)));
+  // A way that passes through a surface comes to it within rounding.
+  const bool touches = away >= 0 && away <= 0x1p-22f * (length(c.from) + length(c.along));
+  return (touches ? 0 : away) - c.radius;
+}
+
 /// Shows a visitor how far primitives are from a capsule. The traversal itself walks with the capsule's start.
 template <class Visitor>
 struct of_capsule {
@@ -119,10 +131,7 @@ struct of_capsule {
   CLEARANCE_HD void offer(std::uint32_t, real) {}
   template <class P>
   CLEARANCE_HD void offer(std::uint32_t id, real, const P& primitive) {
-    static_assert(swept_primitive<P>,
-                  "to be compared with what a point hides, a primitive needs: real least_along(vec3 from, vec3 along) "
-                  "const");
-    const real d = primitive.distance(c.at(primitive.least_along(c.from, c.along))) - c.radius;
+    const real d = distance_to(primitive, c);
     if constexpr (requires { ask.offer(id, d, primitive); })
       ask.offer(id, d, primitive);
     else

@@ -48,6 +48,13 @@ struct alignas(16) root_test {
 
   CLEARANCE_HD real value(real x, real y, real z) const { return m.x * x + (m.y * y + (m.z * z + w)); }
   CLEARANCE_HD real value(vec3 x) const { return value(x.x, x.y, x.z); }
+  /// Is anything of a capsule? The limit is |c|^2 - w.
+  CLEARANCE_HD bool passes(const capsule& x) const {
+    const vec3 c{-m.x / 2, -m.y / 2, -m.z / 2};
+    const real gap = rough_length(x.at(clearance::least_along(c, x.from, x.along)) - c),
+               away = rough_max(gap - x.radius - detail::noise_along(x), 0);
+    return away * away <= dot(c, c) - w;
+  }
   CLEARANCE_HD bool passes(vec3 x) const { return value(x) <= -(x.x * x.x + x.y * x.y + x.z * x.z); }
 };
 

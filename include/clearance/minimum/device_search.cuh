@@ -106,12 +106,13 @@ class device_search {
              const Place& place) {
     const bool alone = launch_.groups() == 1;
     const std::uint32_t before = group * scan::most_parts;
-    auto a = launch_.template begin<least<PartView, PerPart>>(
+    const auto around = scan::elements_of(source);
+    auto a = launch_.template begin<least<PartView, PerPart, std::remove_const_t<decltype(around)>>>(
         group, now,
         {state_.data() + group, witnesses_.data() + before,
          records_.data() + std::size_t(before) * launch_.most_blocks(),
          candidates_.data() + group * launch_.most_blocks(), alone ? end.result : of_group_.data() + group,
-         PerPart ? end.minima + before : nullptr});
+         PerPart ? end.minima + before : nullptr, around});
     if (alone) a.done = end.done, a.number = end.number;
     place(a);
     launch_(source, a);

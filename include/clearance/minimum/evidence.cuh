@@ -18,14 +18,16 @@ struct evidence {
   using steps = scan::tree_steps<Tally>;
 
   typename Tally::record r;
-  vec3 p;  ///< In the cloud's frame.
+  vec3 p;  ///< In the cloud's frame: the point, or where its capsule starts.
   primitive_type primitive;
+  bool inside_solid = false;  ///< The point, or the capsule's start.
 
   evidence() = default;
   template <class Source>
   __device__ evidence(const arguments& a, const Source& source, const typename Tally::record& of) : r(of) {
     if (r.key == no_key || key_index(r.key) < a.first) return;
     if (r.id != none) primitive = steps::primitive(r.part, r.place);
+    inside_solid = r.id == none;
     p = source[key_index(r.key) - a.first].position;
   }
   /// From a witness whose point is in this cloud.
@@ -33,7 +35,12 @@ struct evidence {
   __device__ evidence(const arguments& a, const Source& source, const typename Tally::witness_type& w)
       : r(w.r), p(source[key_index(w.r.key) - a.first].position), primitive(w.primitive) {}
 
-  __device__ vec3 in_part() const { return steps::place(r.part).part_from_cloud(p - steps::here().origin); }
+  __device__ auto in_part() const {
+    const auto& head = steps::here().head;
+    const vec3 origin = steps::here().origin;
+    const auto all = head.answer.around.less(key_index(r.key) - head.first, p - origin, origin);
+    return scan::moved(steps::place(r.part).part_from_cloud, all);
+  }
 
   /// For a point inside a solid, finds the closest primitive, which the scan has not looked for. Returns true if the
   /// point is below the surface.
@@ -41,18 +48,21 @@ struct evidence {
     if constexpr (scan::has_interior<part_type>)
       if (r.id == none) {
         nearest_primitive<primitive_type> nearest{infinity};
-        scan::walk_alone<Tally>{}(steps::view(r.part).tree, in_part(), nearest);
+        scan::walk_for(scan::walk_alone<Tally>{}, steps::view(r.part).tree, in_part(), nearest);
         r.id = nearest.id, primitive = nearest.primitive;
         return nearest.within > 0;
       }
     return false;
   }
 
+  /// Which place of a capsule is meant.
+  __device__ real share() const { return inside_solid ? 0 : scan::share_near(primitive, in_part()); }
   __device__ position at(const arguments& a) const {
-    return a.placed ? a.rest->frame.world_from_cloud(p) : a.frame.world_from_cloud(p);
+    const vec3 x = scan::place_at(a.answer.around(key_index(r.key) - a.first, p), share());
+    return a.placed ? a.rest->frame.world_from_cloud(x) : a.frame.world_from_cloud(x);
   }
   __device__ contact touching(const arguments& a, bool inside) const {
-    return contact_of(primitive, in_part(), inside, a.pose(r.part));
+    return contact_of(primitive, scan::place_at(in_part(), share()), inside, a.pose(r.part));
   }
 
   /// Writes the witness to the result.

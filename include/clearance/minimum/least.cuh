@@ -11,9 +11,11 @@
 namespace clearance::minimum {
 
 /// `PerPart`: one bound per part, and every part's minimum. Otherwise one bound for all, the paper's Algorithm 3.
-template <class PartView, bool PerPart>
+/// `Around` makes of a position what is measured.
+template <class PartView, bool PerPart, class Around = scan::as_points>
 struct least {
   using part_type = PartView;
+  using element = typename Around::element;
   using hierarchy_type = typename PartView::hierarchy_type;
   using primitive_type = typename hierarchy_type::primitive_type;
   using record = minimum::record<typename scan::node_of<hierarchy_type>::place>;
@@ -34,6 +36,7 @@ struct least {
     witness_type* candidates;  ///< else room for one per block.
     min_distance_result* result;
     part_minimum* minima;  ///< One per part, or null.
+    Around around;
   };
 
   struct memory {
@@ -74,6 +77,10 @@ struct least {
   static __device__ bool settled(const block& s, std::uint32_t part, std::uint32_t point) {
     return scan::fresh(s.answer.least[slot(part)]) < make_key(0, point) &&
            load_relaxed(&s.head.answer.state->certain) != 0;
+  }
+  /// Has a lower point distance 0? A part with an interior has no less.
+  static __device__ bool touched(const block& s, std::uint32_t part, std::uint32_t point) {
+    return scan::fresh(s.answer.least[slot(part)]) < make_key(0, point);
   }
   static constexpr __device__ bool skips(const block&, std::uint32_t, std::uint32_t, std::uint32_t, vec3) {
     return false;

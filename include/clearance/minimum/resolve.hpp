@@ -49,7 +49,7 @@ struct resolve_body {
  private:
   /// Less the origin.
   CLEARANCE_HD auto element(std::uint32_t point) const {
-    return scan::less(scan::element_of(source, point, source[point].position), origin);
+    return scan::element_less(source, point, source[point].position - origin, origin);
   }
   CLEARANCE_HD bool mine(distance_key key) const {
     return key != no_key && key_index(key) >= first && key_index(key) - first < source.size();
@@ -71,7 +71,7 @@ struct resolve_body {
     const std::uint32_t point = key_index(key) - first;
     const auto p = scan::element_of(source, point, source[point].position);
     for (std::uint32_t k = 0; k < part_count; ++k) {
-      const auto q = scan::moved(places[k].part_from_cloud, scan::less(p, origin));
+      const auto q = scan::moved(places[k].part_from_cloud, element(point));
       const auto f = evaluate(parts[k], q, key_distance(key), walk);
       if (f.distance != key_distance(key)) continue;
       const real share = f.inside ? 0 : scan::share_near(f.nearest.primitive, q);

@@ -47,6 +47,10 @@ struct shared_bounds {
   CLEARANCE_HD bool settled(std::uint32_t index, std::uint32_t k) const {
     return load_relaxed(bound_of(k)) <= make_key(0, index) && load_relaxed(&all->certain) != 0;
   }
+  /// The same for what reaches to the surface from outside, whose distance is not below 0 either.
+  CLEARANCE_HD bool touched(std::uint32_t index, std::uint32_t k) const {
+    return load_relaxed(bound_of(k)) <= make_key(0, index);
+  }
   /// With an interior, once the bound is 0, lower point numbers matter before distances.
   CLEARANCE_HD bool lowest_first(std::uint32_t k) const { return reach(k) <= 0; }
   /// Returns true if it is still unknown whether some point is certainly inside.

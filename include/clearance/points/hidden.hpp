@@ -43,6 +43,28 @@ struct hidden {
     return {start, scaled(divide(room.farthest, start.z) - 1, start), 0};
   }
 
+  /// See `surveyed_capsules`: if every pixel hides something, and no depth is strange.
+  bool survey_capsules(std::size_t begin, extent& starts, extent& ends, std::uint32_t (&)[drop_reasons]) const
+    requires(surveyed_source<Image> && !Own && requires(const Image i) { i.deproject(0, 0u, 0u); })
+  {
+    std::uint32_t dropped[drop_reasons] = {}, silent = 0;
+    if (!image.survey(begin, starts, dropped)) return false;
+    for (const std::uint32_t n : dropped) silent += n;
+    if (starts.upper.z >= room.farthest || dropped[int(drop_reason::too_close)] != 0) return false;
+    if (room.infinite_is_free && dropped[int(drop_reason::not_finite)] != 0) return false;
+    const std::size_t last = begin + surveyed_points - 1;
+    const std::size_t first_of_row = begin / image.width * image.width, last_row = last / image.width * image.width;
+    const bool one = first_of_row == last_row;
+    for (const std::size_t row : {first_of_row, last_row})
+      for (const std::size_t i : {one ? begin : row, one ? last : row + image.width - 1}) {
+        const vec3 way = image.way(i);
+        if (silent != 0) starts.add(scaled(room.nearest, way));
+        ends.add(scaled(room.farthest * (1 + slack), way));
+        ends.add(scaled(room.farthest * (1 - slack), way));
+      }
+    return true;
+  }
+
   /// The image's own, the pixel's width, and what rounding adds to the way.
   position_error rounding() const {
     const position_error own = rounding_of(image);

@@ -32,8 +32,9 @@ struct witness_body {
     if (cloud == 0) witnesses[i] = {};
     if (least.cloud != cloud || least.point >= source.size()) return;
     const frames::placement place = places[std::uint32_t(i)];
-    const auto p = scan::element_of(source, least.point, source[least.point].position);
-    const auto q = scan::moved(place.part_from_cloud, scan::less(p, origin));
+    const vec3 start = source[least.point].position;
+    const auto p = scan::element_of(source, least.point, start);
+    const auto q = scan::moved(place.part_from_cloud, scan::element_less(source, least.point, start - origin, origin));
     const auto f = evaluate(parts[i], q, least.distance, walk);
     if (f.nearest.id == none || f.distance != least.distance) return;
     const real share = f.inside ? 0 : scan::share_near(f.nearest.primitive, q);

@@ -8,6 +8,7 @@
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/part_witnesses.hpp>
 
+#include <array>
 #include <bit>
 #include <deque>
 
@@ -98,8 +99,7 @@ class unseen::engine {
 
  private:
   using asks = min_distance_per_part;
-  using there = std::conditional_t<requires { typename On::own_scan; }, plain<On, near_first>, On>;
-  using search = minimum::engine<there, PartView, asks>;
+  using search = minimum::engine<On, PartView, asks>;
 
   /// What one camera says about each part.
   struct camera {
@@ -149,25 +149,26 @@ class unseen::engine {
   template <class S>
   min_distance_per_part_result ask_of(std::size_t slot, std::span<const Eigen::Isometry3d> poses, const S& room,
                                       const Eigen::Isometry3d& pose) {
-    while (searches_.size() <= slot) {
-      if constexpr (std::is_same_v<there, On>)
-        searches_.emplace_back(on_, model_);
-      else
-        searches_.emplace_back(plain{on_, near_first{}}, model_);
-    }
+    while (searches_.size() <= slot) searches_.emplace_back(on_, model_);
     return searches_[slot].run(poses, placed<S>{room, pose}, asks{});
   }
 
   /// Which of 64 places in the ball around a part a camera shows, one bit each.
   static std::uint64_t shown(const pinhole_view& view, const part_facts& facts,
                              const Eigen::Isometry3d& camera_from_part) {
+    static const auto places = [] {  // equal shares of the volume, turned by the golden angle
+      std::array<Eigen::Vector3d, 64> all;
+      for (int i = 0; i < 64; ++i) {
+        const double away = std::cbrt((i * 37 % 64 + 0.5) / 64), up = 1 - (2 * i + 1) / 64.0,
+                     turn = 2.399963229728653 * i, beside = std::sqrt(1 - up * up);
+        all[std::size_t(i)] = away * Eigen::Vector3d(beside * std::cos(turn), beside * std::sin(turn), up);
+      }
+      return all;
+    }();
+    const Eigen::Vector3d center(facts.center.x, facts.center.y, facts.center.z);
     std::uint64_t bits = 0;
-    for (int i = 0; i < 64; ++i) {  // equal shares of the volume, turned by the golden angle
-      const double away = facts.radius * std::cbrt((i * 37 % 64 + 0.5) / 64), up = 1 - (2 * i + 1) / 64.0,
-                   turn = 2.399963229728653 * i, beside = std::sqrt(1 - up * up);
-      const Eigen::Vector3d at(facts.center.x + away * beside * std::cos(turn),
-                               facts.center.y + away * beside * std::sin(turn), facts.center.z + away * up);
-      const Eigen::Vector3d there = camera_from_part * at;
+    for (int i = 0; i < 64; ++i) {
+      const Eigen::Vector3d there = camera_from_part * (center + double(facts.radius) * places[std::size_t(i)]);
       bits |= std::uint64_t(view.shows(there.x(), there.y(), there.z())) << i;
     }
     return bits;

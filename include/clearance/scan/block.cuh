@@ -3,6 +3,7 @@
 // What the threads of a block share: the parts, the pairs still to be tested, and what the answer keeps.
 
 #include <clearance/scan/arguments.hpp>
+#include <clearance/scan/element.hpp>
 #include <clearance/scan/nodes.hpp>
 #include <clearance/scan/threads.cuh>
 
@@ -10,11 +11,13 @@
 
 namespace clearance::scan {
 
-/// A point near a part: first in the cloud's frame, then in the part's.
-struct alignas(16) pair {
-  vec3 x;
+/// A point or capsule near a part: first in the cloud's frame, then in the part's.
+template <class Element>
+struct alignas(16) pair_of {
+  Element x;
   std::uint32_t point;
 };
+using pair = pair_of<vec3>;
 
 /// A pair (in one word with its part) that has to be tested against a node's content, which is no nearer than `bound`.
 template <class Node>
@@ -65,7 +68,7 @@ struct pair_memory : block_memory<Tally> {
 
   std::uint32_t pairs, given;
   unsigned overflow_lock;
-  pair pair_table[pair_capacity];
+  pair_of<typename element_of_tally<Tally>::type> pair_table[pair_capacity];
   std::uint16_t part_of_pair[pair_capacity];
   pending_type stack[warps][stack_capacity];
   pending_type given_nodes[given_capacity];

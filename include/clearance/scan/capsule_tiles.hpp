@@ -3,6 +3,7 @@
 // How the host reads a source whose points stand for capsules: tile by tile, as points.
 
 #include <clearance/frame/root_test.hpp>
+#include <clearance/ground/vectors.hpp>
 #include <clearance/points/extremes.hpp>
 #include <clearance/scan/drops.hpp>
 #include <clearance/scan/element.hpp>
@@ -10,6 +11,49 @@
 #include <algorithm>
 
 namespace clearance::scan {
+
+/// Room that contains capsules: their starts are in one box, their ends in the other, and they are at most so wide.
+struct capsule_hull {
+  extent starts, ends;
+  real wide = 0;
+
+  /// Less an origin.
+  void subtract(vec3 origin) {
+    if (origin == vec3{0, 0, 0}) return;
+    for (extent* box : {&starts, &ends}) box->lower = box->lower - origin, box->upper = box->upper - origin;
+  }
+  /// May any of them touch a box? There must be a share of the way at which the box between starts and ends overlaps it
+  /// along every axis. Up to rounding.
+  bool may_touch(const extent& box) const {
+    real low = 0, high = 1;
+    const auto keep = [&](real at_start, real at_end) {  // shares at which at_start + share (at_end - at_start) >= 0
+      constexpr real more = 8 * slack;
+      if (at_start < 0) at_end >= 0 ? low = std::max(low, at_start / (at_start - at_end) - more) : high = -1;
+      if (at_start >= 0 && at_end < 0) high = std::min(high, at_start / (at_start - at_end) + more);
+    };
+    const auto axis = [&](real lower, real upper, real sl, real su, real el, real eu) {
+      const real off = wide + slack * (absolute(lower) + absolute(upper) + absolute(sl) + absolute(su) + absolute(el) +
+                                       absolute(eu));
+      keep(upper + off - sl, upper + off - el), keep(su - lower + off, eu - lower + off);
+    };
+    axis(box.lower.x, box.upper.x, starts.lower.x, starts.upper.x, ends.lower.x, ends.upper.x);
+    axis(box.lower.y, box.upper.y, starts.lower.y, starts.upper.y, ends.lower.y, ends.upper.y);
+    axis(box.lower.z, box.upper.z, starts.lower.z, starts.upper.z, ends.lower.z, ends.upper.z);
+    return low <= high;
+  }
+  bool may_reach(const ball& around, real reach) const {
+    const real most = frames::limit(around, reach);
+    const vec3 c = around.center, r{most, most, most};
+    return most + wide >= 0 && may_touch({c - r, c + r});
+  }
+};
+
+/// A source that says where the capsules of 128 neighbours are, without taking them apart; see `surveyed_source`.
+template <class S>
+concept surveyed_capsules = capsule_source<S> && requires(const S s, std::size_t begin, extent& starts, extent& ends,
+                                                          std::uint32_t (&dropped)[drop_reasons]) {
+  { s.survey_capsules(begin, starts, ends, dropped) } -> std::same_as<bool>;
+};
 
 /// The capsules of a tile, less the search's origin. That of an invalid point is NaN and fails every comparison.
 class capsule_tile {
@@ -22,37 +66,12 @@ class capsule_tile {
     inverse_[j] = square > 0 ? 1 / square : 0;
     wide_[j] = c.radius + detail::noise_along(c);
   }
-  /// Call it after all are put.
-  void enclose() {
-    starts_.enclose(), ends_.enclose();
-    widest_ = 0;
-    for (std::size_t j = 0; j < points; ++j) widest_ = wide_[j] > widest_ ? wide_[j] : widest_;
+  capsule_hull hull() const {
+    capsule_hull all{starts_.box(), ends_.box()};
+    for (std::size_t j = 0; j < points; ++j) all.wide = wide_[j] > all.wide ? wide_[j] : all.wide;
+    return all;
   }
   vec3 start(std::size_t j) const { return starts_[j]; }
-
-  /// May any of them be within reach of a ball? All are between two boxes, the starts' and the ends'. So there must be
-  /// a share of the way at which the box between those is near along every axis.
-  bool may_reach(const ball& around, real reach) const {
-    const real most = (frames::limit(around, reach) + widest_) * (1 + 4 * slack);
-    if (!(most >= 0)) return false;
-    real low = 0, high = 1;
-    const auto keep = [&](real at_start, real at_end) {  // the share at which start + share (end - start) >= 0
-      const real rise = at_end - at_start, roots = 8 * slack;
-      if (at_start < 0 && !(at_end >= 0)) high = -1;
-      if (at_start < 0 && at_end >= 0) low = std::max(low, -at_start / rise - roots);
-      if (at_start >= 0 && at_end < 0) high = std::min(high, -at_start / rise + roots);
-    };
-    const auto axis = [&](real c, real sl, real su, real el, real eu) {
-      const real off = slack * (absolute(c) + absolute(sl) + absolute(su) + absolute(el) + absolute(eu));
-      keep(c + most + off - sl, c + most + off - el), keep(su - c + most + off, eu - c + most + off);
-    };
-    const vec3 c = around.center;
-    const extent &s = starts_.box, &e = ends_.box;
-    axis(c.x, s.lower.x, s.upper.x, e.lower.x, e.upper.x);
-    axis(c.y, s.lower.y, s.upper.y, e.lower.y, e.upper.y);
-    axis(c.z, s.lower.z, s.upper.z, e.lower.z, e.upper.z);
-    return low <= high;
-  }
 
   /// Marks those that may be within reach of a ball.
   void mark(const ball& around, real reach, std::uint32_t* near) const {
@@ -71,18 +90,58 @@ class capsule_tile {
  private:
   struct places {
     alignas(64) real x[points], y[points], z[points];
-    extent box;
 
     void put(std::size_t j, vec3 p) { x[j] = p.x, y[j] = p.y, z[j] = p.z; }
     vec3 operator[](std::size_t j) const { return {x[j], y[j], z[j]}; }
-    void enclose() {
-      spread(x, box.lower.x, box.upper.x), spread(y, box.lower.y, box.upper.y), spread(z, box.lower.z, box.upper.z);
+    extent box() const {
+      extent b;
+      spread(x, b.lower.x, b.upper.x), spread(y, b.lower.y, b.upper.y), spread(z, b.lower.z, b.upper.z);
+      return b;
     }
   };
 
   places starts_, ends_, along_;
   alignas(64) real inverse_[points], wide_[points];
-  real widest_ = 0;
 };
+
+/// Tests points begin .. end - 1 of a source whose points stand for capsules. `near`: a box around all that is within
+/// reach of some part. `survivors`: those of a tile.
+template <class Survivors, class Body>
+void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const extent& near, drop_tally& mine) {
+  constexpr vec3 nowhere{not_a_number, not_a_number, not_a_number};
+  for (std::size_t i = begin; i < end; i += capsule_tile::points) {
+    capsule_hull hull;
+    const auto counted = [&] {
+      if constexpr (surveyed_capsules<decltype(body.source)>)
+        return i + capsule_tile::points <= end && body.source.survey_capsules(i, hull.starts, hull.ends, mine.dropped);
+      return false;
+    }();
+    const auto may_reach_some = [&] {
+      for (std::uint32_t k = 0; k < body.part_count; ++k)
+        if (hull.may_reach(body.places[k].around, body.answer.reach(k))) return true;
+      return false;
+    };
+    hull.subtract(body.origin);
+    if (counted && !(hull.may_touch(near) && may_reach_some())) continue;
+    capsule_tile t;
+    with_vectors([&] {
+      drop_tally again;
+      for (std::size_t j = 0; j < capsule_tile::points; ++j) {
+        capsule c{nowhere, {0, 0, 0}, 0};
+        if (i + j < end)
+          if (const sample s = body.source[i + j]; (counted ? again : mine).counts(s))
+            c = body.element(s.position - body.origin, i + j);
+        t.put(j, c);
+      }
+      hull = t.hull();
+    });
+    Survivors those;
+    bool any = false;
+    for (std::uint32_t k = 0; k < body.part_count; ++k)
+      if (const ball& around = body.places[k].around; hull.may_reach(around, body.answer.reach(k)))
+        any = true, those.add(t, around, body.answer.reach(k));
+    if (any) with_vectors([&] { those.for_each([&](std::size_t j) { body.visit(t.start(j), i + j); }); });
+  }
+}
 
 }  // namespace clearance::scan

@@ -15,11 +15,67 @@ CLEARANCE_HD auto element_of(const S& s, std::size_t i, vec3 p) {
     return p;
 }
 
+/// The same less an origin; `x` is s[i].position less it. Everything measures this one.
+template <point_source S>
+CLEARANCE_HD auto element_less(const S& s, std::size_t i, vec3 x, vec3 origin) {
+  if constexpr (capsule_source<S>) {
+    const capsule c = s.around(i, x + origin);
+    return capsule{c.from - origin, c.along, c.radius};
+  } else {
+    return x;
+  }
+}
+
+/// What a device's kernels make of a position: the same.
+struct as_points {
+  using element = vec3;
+  CLEARANCE_HD vec3 operator()(std::uint32_t, vec3 p) const { return p; }
+  CLEARANCE_HD vec3 less(std::uint32_t, vec3 x, vec3) const { return x; }
+};
+template <capsule_source S>
+struct as_capsules {
+  using element = capsule;
+  S source;
+  CLEARANCE_HD capsule operator()(std::uint32_t i, vec3 p) const { return source.around(i, p); }
+  CLEARANCE_HD capsule less(std::uint32_t i, vec3 x, vec3 origin) const { return element_less(source, i, x, origin); }
+};
+template <point_source S>
+auto elements_of(const S& source) {
+  if constexpr (capsule_source<S>)
+    return as_capsules<S>{source};
+  else
+    return as_points{};
+}
+/// What a tally's pairs hold.
+template <class Tally>
+struct element_of_tally {
+  using type = vec3;
+};
+template <class Tally>
+  requires requires { typename Tally::element; }
+struct element_of_tally<Tally> {
+  using type = typename Tally::element;
+};
+
+template <bounding_volume V>
+CLEARANCE_HD real bound_of(const V& v, vec3 q, real) {
+  return bounding_volume_traits<V>::lower_bound(v, q);
+}
+template <bounding_volume V>
+CLEARANCE_HD real bound_of(const V& v, const capsule& q, real reach) {
+  return lower_bound(v, q, reach);
+}
+template <primitive P>
+CLEARANCE_HD real distance_of(const P& primitive, vec3 q) {
+  return primitive.distance(q);
+}
+template <primitive P>
+CLEARANCE_HD real distance_of(const P& primitive, const capsule& q) {
+  return distance_to(primitive, q);
+}
+
 CLEARANCE_HD inline vec3 start_of(vec3 p) { return p; }
 CLEARANCE_HD inline vec3 start_of(const capsule& c) { return c.from; }
-
-CLEARANCE_HD inline vec3 less(vec3 p, vec3 origin) { return p - origin; }
-CLEARANCE_HD inline capsule less(const capsule& c, vec3 origin) { return {c.from - origin, c.along, c.radius}; }
 
 CLEARANCE_HD inline vec3 moved(const rigid_transform& to, vec3 p) { return to(p); }
 CLEARANCE_HD inline capsule moved(const rigid_transform& to, const capsule& c) {

@@ -50,14 +50,27 @@ template <class Tally, class Index>
 __device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clusters, unfinished& left) {
   using pairs = pair_search<Tally>;
   const auto& s = pairs::here();
+  constexpr bool points = std::is_same_v<typename pairs::element, vec3>;
   real square[quad];
+  typename pairs::element all[quad];
 #pragma unroll
-  for (int j = 0; j < quad; ++j) square[j] = -dot(p.at[j], p.at[j]);
+  for (int j = 0; j < quad; ++j) {
+    if constexpr (points)
+      square[j] = -dot(p.at[j], p.at[j]);
+    else
+      all[j] = pairs::element_at(first() + j, p.at[j]);
+  }
+  const auto passes = [&](const frames::root_test& test, int j) {
+    if constexpr (points)
+      return test.value(p.at[j]) <= square[j];
+    else
+      return test.passes(all[j]);
+  };
   for (std::uint32_t c = left.clusters == 0 ? 0 : left.clusters - 1; c < clusters; ++c) {
     const frames::root_test together = s.near_cluster[c];
     bool near = false;
 #pragma unroll
-    for (int j = 0; j < quad; ++j) near |= together.value(p.at[j]) <= square[j];
+    for (int j = 0; j < quad; ++j) near |= passes(together, j);
     if (__any_sync(all_lanes, near)) {
       const frames::root_test* const near_part = s.near_part + c * cluster;
       const std::uint32_t parts = s.head.parts - c * cluster;
@@ -67,7 +80,7 @@ __device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clust
         if (k >= parts) break;
         const frames::root_test test = near_part[k];
 #pragma unroll
-        for (int j = 0; j < quad; ++j) those |= unsigned(test.value(p.at[j]) <= square[j]) << (quad * k + j);
+        for (int j = 0; j < quad; ++j) those |= unsigned(passes(test, j)) << (quad * k + j);
       }
 #pragma unroll
       for (int j = 0; j < quad; ++j)

@@ -20,6 +20,8 @@ struct pair_search : tree_steps<Tally> {
   using memory = typename Tally::block;
   using pending = typename memory::pending_type;
   using node_type = typename steps::node_type;
+  using element = typename element_of_tally<Tally>::type;
+  using pair = pair_of<element>;
   static constexpr bool any_size = node_of<hierarchy>::any_size;
 
   /// Keeps pairs for `drain`: `those` of a lane's points that are near a part of the cluster from `first_part` on, four
@@ -33,12 +35,20 @@ struct pair_search : tree_steps<Tally> {
     for (int j = 0; j < quad; ++j) {
       unsigned its = those >> j & 0x11111111u;
       for (; its != 0 && slot < pair_capacity; its &= its - 1, ++slot) {
-        s.pair_table[slot] = {p.at[j], s.head.first + first + j};
+        s.pair_table[slot] = {element_at(first + j, p.at[j]), s.head.first + first + j};
         s.part_of_pair[slot] = std::uint16_t(first_part + (unsigned(__ffs(int(its))) - 1) / quad);
       }
       left |= its << j;
     }
     return left;
+  }
+
+  /// A point of this cloud less the origin, or its capsule.
+  static __device__ element element_at(std::uint32_t i, vec3 x) {
+    if constexpr (std::is_same_v<element, vec3>)
+      return x;
+    else
+      return frame::here().head.answer.around.less(i, x, frame::here().origin);
   }
 
   /// Searches all kept pairs to the end. `found` is at least their number. The whole block calls it together.
@@ -65,10 +75,13 @@ struct pair_search : tree_steps<Tally> {
   static __device__ std::uint32_t group() { return threadIdx.x % 32 / mates; }
 
   /// Is the point in the part's solid? Then its distance is 0, and the tree need not be searched.
-  static __device__ bool inside(vec3 q, std::uint32_t point, std::uint32_t k, std::uint32_t pair) {
+  static __device__ bool inside(const element& whole, std::uint32_t point, std::uint32_t k, std::uint32_t pair) {
     if constexpr (has_interior<typename Tally::part_type>) {
       memory& s = frame::here();
       if (Tally::settled(s, k, point)) return true;
+      if constexpr (std::is_same_v<element, capsule>)
+        if (whole.radius == 0 && Tally::touched(s, k, point)) return true;
+      const vec3 q = start_of(whole);
       const auto& view = frame::view(k);
       if (!view.interior.inside(q)) return false;
       Tally::take_inside(s, k, point, pair);
@@ -85,10 +98,10 @@ struct pair_search : tree_steps<Tally> {
     memory& s = frame::here();
     const pair c = live ? s.pair_table[i] : pair{};
     const std::uint32_t part = live ? s.part_of_pair[i] : 0;
-    live = live && s.near_part[part].passes(c.x) && !Tally::skips(s, part, c.point, i, c.x);
+    live = live && s.near_part[part].passes(c.x) && !Tally::skips(s, part, c.point, i, start_of(c.x));
     if constexpr (Tally::goes_ahead)
       live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0;  // others may be changing its inputs
-    const vec3 q = frame::place(part).part_from_cloud(c.x);
+    const element q = moved(frame::place(part).part_from_cloud, c.x);
     if constexpr (has_interior<typename Tally::part_type>) {
       const unsigned gone =
           __ballot_sync(all_lanes, live && lane() == 0 && inside(q, c.point, part, i)) >> group() * mates;
@@ -241,8 +254,8 @@ struct pair_search : tree_steps<Tally> {
 
   /// Pushes the first of `count` children if within reach, and the node for the rest. Returns the stack's new size.
   static __device__ std::uint32_t push_children(real bound, const node_type& node, std::uint32_t count,
-                                                std::uint32_t pair_and_part, vec3 q, real reach, pending* stack,
-                                                std::uint32_t top) {
+                                                std::uint32_t pair_and_part, const element& q, real reach,
+                                                pending* stack, std::uint32_t top) {
     constexpr std::uint32_t each = most_children / mates;
     if constexpr (any_size) {
       if (count > most_children &&
@@ -260,7 +273,7 @@ struct pair_search : tree_steps<Tally> {
       child[j] = {infinity, {}, of_child(pair_and_part)};
       if (k < count) {
         const auto step = steps::child(steps::part_of(pair_and_part), node, first_of(pair_and_part) + k);
-        child[j] = {traits::lower_bound(step.volume, q), step.node, of_child(pair_and_part)};
+        child[j] = {bound_of(step.volume, q, reach), step.node, of_child(pair_and_part)};
       }
       within[j] = k < count && child[j].bound <= reach;
     }
@@ -279,7 +292,7 @@ struct pair_search : tree_steps<Tally> {
 
   /// Tests the primitives of leaves. All lanes of a warp call it.
   static __device__ void look(const node_type& leaf, std::uint32_t count, std::uint32_t part, std::uint32_t pair,
-                              const scan::pair& v, real reach) {
+                              const pair_search::pair& v, real reach) {
 #pragma unroll 1
     for (std::uint32_t k = lane(); __any_sync(all_lanes, k < count); k += mates) {
       typename Tally::record r;
@@ -288,7 +301,7 @@ struct pair_search : tree_steps<Tally> {
         const auto place = steps::place_of(leaf, k);
         const std::uint32_t id = steps::id(part, place);
         primitive = steps::primitive(part, place);
-        if (const real distance = primitive.distance(v.x); distance <= reach)
+        if (const real distance = distance_of(primitive, v.x); distance <= reach)
           r = {make_key(distance, v.point), part, id, place};
       }
       if (__any_sync(all_lanes, r.key != no_key)) Tally::take(frame::here(), r, primitive, pair);

@@ -37,12 +37,7 @@ struct scan_body {
   }
 
   /// A point less the origin, or its capsule.
-  CLEARANCE_HD auto element(vec3 p, std::size_t i) const {
-    if constexpr (capsule_source<Source>)
-      return less(source.around(i, p + origin), origin);
-    else
-      return p;
-  }
+  CLEARANCE_HD auto element(vec3 p, std::size_t i) const { return element_less(source, i, p, origin); }
 
   /// Tests one point against every part.
   CLEARANCE_HD void visit(vec3 p, std::size_t i) const {
@@ -59,6 +54,8 @@ struct scan_body {
     const auto q = moved(place.part_from_cloud, p);
     if constexpr (has_interior<PartView>) {
       if (answer.settled(index, k)) return;
+      if constexpr (capsule_source<Source> && requires { answer.touched(index, k); })
+        if (p.radius == 0 && answer.touched(index, k)) return;
       if (const vec3 start = start_of(q); part.interior.inside(start)) {
         if (answer.take_inside(index, k) && certainly_inside(part, start, place.error, walk)) answer.take_certain();
         return;

@@ -97,34 +97,13 @@ bool survey(const S& source, std::size_t begin, extent& box, drop_tally& mine) {
   return false;
 }
 
-/// The same for a source whose points stand for capsules.
-template <class Body>
-void scan_capsules(const Body& body, std::size_t begin, std::size_t end, drop_tally& mine) {
-  constexpr vec3 nowhere{not_a_number, not_a_number, not_a_number};
-  for (std::size_t i = begin; i < end; i += tile_points) {
-    capsule_tile t;
-    for (std::size_t j = 0; j < tile_points; ++j) {
-      capsule c{nowhere, {0, 0, 0}, 0};
-      if (i + j < end)
-        if (const sample s = body.source[i + j]; mine.counts(s)) c = body.element(s.position - body.origin, i + j);
-      t.put(j, c);
-    }
-    t.enclose();
-    tile_survivors near;
-    bool any = false;
-    for (std::uint32_t k = 0; k < body.part_count; ++k)
-      if (const ball& around = body.places[k].around; t.may_reach(around, body.answer.reach(k)))
-        any = true, near.add(t, around, body.answer.reach(k));
-    if (any) with_vectors([&] { near.for_each([&](std::size_t j) { body.visit(t.start(j), i + j); }); });
-  }
-}
-
 /// Tests points begin .. end - 1, tile by tile. Nearly all tiles are far from every part and are done after one test.
 template <class Body>
 void scan_tiles(const Body& body, std::size_t begin, std::size_t end, drop_tally& mine) {
-  if constexpr (requires { body.source.around(begin, vec3{}); }) return scan_capsules(body, begin, end, mine);
   const auto reach = [&](std::uint32_t k) { return body.answer.reach(k); };
   const extent near_robot = within_reach(body);  // spares nearly all boxes the test of every part
+  if constexpr (capsule_source<std::remove_cvref_t<decltype(body.source)>>)
+    return scan_capsules<tile_survivors>(body, begin, end, near_robot, mine);
   for (std::size_t i = begin; i < end; i += tile_points) {
     const std::size_t count = std::min(tile_points, end - i);
     tile t;
