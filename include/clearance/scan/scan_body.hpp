@@ -36,10 +36,11 @@ struct scan_body {
     mine.add_to(*counts);
   }
 
-  /// A point less the origin, or its capsule.
+  /// A point less the origin, or its capsule, which begins at the point as it is read, so that its bits are found
+  /// again.
   CLEARANCE_HD auto element(vec3 p, std::size_t i) const {
     if constexpr (capsule_source<Source>)
-      return less(source.around(i, p + origin), origin);
+      return less(element_of(source, i, source[i].position), origin);
     else
       return p;
   }

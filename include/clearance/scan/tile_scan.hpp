@@ -106,7 +106,8 @@ void scan_capsules(const Body& body, std::size_t begin, std::size_t end, drop_ta
     for (std::size_t j = 0; j < tile_points; ++j) {
       capsule c{nowhere, {0, 0, 0}, 0};
       if (i + j < end)
-        if (const sample s = body.source[i + j]; mine.counts(s)) c = body.element(s.position - body.origin, i + j);
+        if (const sample s = body.source[i + j]; mine.counts(s))
+          c = less(element_of(body.source, i + j, s.position), body.origin);
       t.put(j, c);
     }
     t.enclose();
