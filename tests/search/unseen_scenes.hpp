@@ -90,7 +90,7 @@ struct picture {
     if constexpr (sixteen_bits) {
       return std::array<Pixel, 4>{0, 65535, 65534, 1}[d.below(4)];
     } else {
-      constexpr float far = 1e30f, tiny = std::numeric_limits<float>::denorm_min();
+      constexpr float far = 1e17f, tiny = std::numeric_limits<float>::denorm_min();
       return std::array<float, 12>{
           0,      -0.0f, clearance::not_a_number, clearance::infinity, -clearance::infinity, -1, 1e-3f, 1000, far, tiny,
           1e-30f, -far}[d.below(12)];
