@@ -62,7 +62,7 @@ struct hidden {
     const real depth = image.depth(i);
     real z = room.nearest;
     if (s.dropped == drop_reason::too_close) z = 0;  // it hides all that is behind the lens
-    if (s.dropped == drop_reason::out_of_range && depth > 0 && depth < z) z = depth;  // something is there
+    if (s.dropped == drop_reason::out_of_range && depth >= 0 && depth < z) z = depth;  // something is there
     if (room.infinite_is_free && depth == infinity) z = infinity;
     if (!(z < room.farthest)) return {{0, 0, 0}, drop_reason::out_of_range};
     const vec3 way = image.way(i);
