@@ -38,9 +38,9 @@ struct hidden {
     if constexpr (Own) return starting(image.source[i], i);
     return starting(s, i);
   }
-  /// Up to where the room ends.
-  CLEARANCE_HD capsule around(std::size_t, vec3 start) const {
-    return {start, scaled(divide(room.farthest, start.z) - 1, start), 0};
+  /// Up to where the room ends. Along the pixel itself: its point may be too near the camera to tell a direction.
+  CLEARANCE_HD capsule around(std::size_t i, vec3 start) const {
+    return {start, scaled(room.farthest - start.z, image.way(i)), 0};
   }
 
   /// See `surveyed_capsules`: if every pixel hides something, and no depth is strange.
@@ -79,15 +79,12 @@ struct hidden {
   }
 
  private:
-  /// What is too close to be measured hides all that is behind the lens.
-  static constexpr real at_the_lens = 0x1p-20f;
-
   CLEARANCE_HD sample starting(const sample& s, std::size_t i) const {
     if (s.valid()) return {s.position, s.position.z < room.farthest ? drop_reason::none : drop_reason::out_of_range};
     const real depth = image.depth(i);
     real z = room.nearest;
-    if (s.dropped == drop_reason::too_close) z = at_the_lens * room.farthest;
-    if (s.dropped == drop_reason::out_of_range && depth > 0 && depth < z) z = depth;  // something is there
+    if (s.dropped == drop_reason::too_close) z = 0;  // it hides all that is behind the lens
+    if (s.dropped == drop_reason::out_of_range && depth >= 0 && depth < z) z = depth;  // something is there
     if (room.infinite_is_free && depth == infinity) z = infinity;
     if (!(z < room.farthest)) return {{0, 0, 0}, drop_reason::out_of_range};
     const vec3 way = image.way(i);

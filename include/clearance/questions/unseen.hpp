@@ -18,7 +18,8 @@ namespace clearance {
 /// on the pixel's way. Metres.
 struct unseen_part : part_witness {
   real lower = 0;        ///< At least so far away is all that no camera sees and some camera hides.
-  real out_of_view = 0;  ///< Which share of the ball around the part no camera shows. Nothing is said about that.
+  real out_of_view = 0;  ///< Which share of the ball around the part no camera shows. Nothing is said about that. NaN
+                         ///< if a ray image may show the rest.
 };
 
 /// `all`: as a min_distance_result. If the robot reaches into what is hidden its state is `unknown`. `seen` counts
@@ -105,8 +106,10 @@ class unseen::engine {
   struct camera {
     min_distance_result all;
     std::vector<part_witness> nearest;
-    std::vector<double> lower, from_edge;
+    std::vector<double> lower, own;  ///< How far at least all is that it hides, and its own shadow.
+    std::vector<double> from_edge;
     std::vector<std::uint64_t> shown;  ///< Of the samples of a part's ball, one bit each.
+    bool tells_shown;
   };
 
   template <class S>
@@ -126,24 +129,31 @@ class unseen::engine {
     auto found = ask_of(2 * number, poses, room, pose);
     c.all = found.all, c.nearest = witnesses_.run(poses, placed<hidden<S>>{room, pose}, part_witnesses{found.parts});
     const frames::cloud_frame frame(model_.facts, poses, pose, rounding_of(room));
+    const auto lower = [&](std::size_t k, const part_minimum& nearest) {
+      if (nearest.cloud == none) return double(infinity);
+      return minimum::certain_distance(nearest.distance, frames::slop(model_.facts[k]),
+                                       {frame.places[k].error, frame.error.per_metre});
+    };
+    c.own.assign(model_.size(), infinity), c.tells_shown = pinhole;
     for (std::size_t k = 0; k < model_.size(); ++k) {
-      const frames::float_error error{frame.places[k].error, frame.error.per_metre};
-      c.lower.push_back(minimum::certain_distance(found.parts[k].distance, frames::slop(model_.facts[k]), error));
+      c.lower.push_back(lower(k, found.parts[k]));
       c.nearest[k].cloud = c.nearest[k].part == none ? none : number;
-      c.from_edge.push_back(0), c.shown.push_back(~std::uint64_t(0));
+      c.from_edge.push_back(0), c.shown.push_back(0);
       if constexpr (pinhole) {
         const pinhole_view view(bare, q.room.nearest, q.room.farthest);
         const ball& around = frame.places[k].around;
-        c.from_edge.back() = view.from_edge({around.center + frame.origin, around.radius});
+        c.from_edge.back() =
+            view.from_edge({around.center + frame.origin, around.radius}) - frames::slop(model_.facts[k]);
         c.shown.back() = shown(view, model_.facts[k], pose.inverse() * poses[k]);
       }
     }
-    cameras_.push_back(std::move(c));
     if constexpr (requires { image.labels; }) {
-      auto own = ask_of(2 * number + 1, poses, hidden<S, true>{image, q.room, room.half_pixel}, pose).all;
+      auto [own, each] = ask_of(2 * number + 1, poses, hidden<S, true>{image, q.room, room.half_pixel}, pose);
+      for (std::size_t k = 0; k < model_.size(); ++k) c.own[k] = lower(k, each[k]);
       if (own.cloud != none) own.cloud = number;
-      r.own_shadow = number == 0 ? own : minimum::merged(r.own_shadow, own);
+      r.own_shadow = merge(r.own_shadow, own);
     }
+    cameras_.push_back(std::move(c));
   }
 
   template <class S>
@@ -175,9 +185,10 @@ class unseen::engine {
   }
 
   /// A place is unseen only if no camera sees it. So what camera j hides near a part is also hidden by every other
-  /// camera, or out of its view.
+  /// camera, or by the robot before it, or out of its view.
   void conclude(const unseen& q, result& r) const {
     if (cameras_.empty()) return;
+    if (r.own_shadow.state == state::collision) r.own_shadow.state = state::unknown;
     r.all = cameras_[0].all;
     for (std::size_t j = 1; j < cameras_.size(); ++j) {
       const min_distance_result& more = cameras_[j].all;
@@ -191,19 +202,21 @@ class unseen::engine {
       unseen_part& part = r.parts[k];
       double its_lower = infinity;
       std::uint64_t shown = 0;
+      bool tells_shown = true;
       for (const camera& j : cameras_) {
         double distance = j.nearest[k].distance, at_least = j.lower[k];
         for (const camera& i : cameras_)
           if (&i != &j) {
             distance = std::max(distance, std::min<double>(i.nearest[k].distance, std::max(i.from_edge[k], 0.0)));
-            at_least = std::max(at_least, std::min(i.lower[k], i.from_edge[k]));
+            at_least = std::max(at_least, std::min({i.lower[k], i.own[k], i.from_edge[k]}));
           }
         if (distance < part.distance) static_cast<part_witness&>(part) = j.nearest[k], part.distance = real(distance);
         its_lower = std::min(its_lower, at_least);
-        shown |= j.shown[k];
+        shown |= j.shown[k], tells_shown &= j.tells_shown;
       }
       part.lower = its_lower > 0 ? rounded_down(its_lower) : 0;
-      part.out_of_view = real(64 - std::popcount(shown)) / 64;
+      const int out_of_view = 64 - std::popcount(shown);
+      part.out_of_view = tells_shown || out_of_view == 0 ? real(out_of_view) / 64 : not_a_number;
       lower = std::min(lower, its_lower);
       if (least == nullptr || part.distance < least->distance) least = &part;
     }
@@ -214,8 +227,7 @@ class unseen::engine {
     all.distance = least->distance;
     all.lower = lower > 0 ? rounded_down(lower) : 0;
     if (cameras_.size() > 1 || all.part == none) all.upper = infinity;
-    const bool reaches =
-        all.state == state::collision || all.distance <= 4 * slack * q.room.farthest;  // up to rounding
+    const bool reaches = all.distance <= 4 * slack * q.room.farthest;  // up to rounding
     all.state = all.lower > 0 ? state::free : reaches ? state::unknown : state::possible;
   }
 

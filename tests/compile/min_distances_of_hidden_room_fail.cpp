@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// expected-error: the points of this source stand for more (what they hide, where they may be): a host answers questions about pairs and the least distance of such sources
+#include <clearance/make_model.hpp>
+#include <clearance/points/depth_image.hpp>
+#include <clearance/points/hidden.hpp>
+#include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/questions/min_distances.hpp>
+#include <clearance/volume/sphere.hpp>
+
+auto ask(const std::vector<std::vector<clearance::inner_sphere>>& bodies,
+         const clearance::hidden<clearance::depth_image<float>>& room) {
+  return clearance::ask(clearance::host{}, clearance::make_model<clearance::sphere>(bodies),
+                        std::vector{Eigen::Isometry3d::Identity()}, room, clearance::min_distances{});
+}
