@@ -51,6 +51,7 @@ inline double half_pixel_of(const ray* rays, std::size_t width, std::size_t heig
 struct unseen {
   hiding room = {};
   double half_pixel = 0;  ///< For ray images: `half_pixel_of` their table.
+  bool places = false;    ///< Also where every part is nearest: `at`, `nearest` and `normal`, as the robot always has.
 
   using result = unseen_result;
   template <class On, class PartView>
@@ -92,8 +93,10 @@ class unseen::engine {
     cameras_.clear();
     result r;
     std::uint32_t number = 0;
-    for_each_cloud(clouds,
-                   [&](const auto& image, const Eigen::Isometry3d& pose) { look(poses, image, pose, q, number++, r); });
+    const bool places = q.places || count_clouds(clouds) > 1;  // the least of several cameras may be any part's
+    for_each_cloud(clouds, [&](const auto& image, const Eigen::Isometry3d& pose) {
+      look(poses, image, pose, q, number++, places, r);
+    });
     conclude(q, r);
     return r;
   }
@@ -114,7 +117,7 @@ class unseen::engine {
 
   template <class S>
   void look(std::span<const Eigen::Isometry3d> poses, const S& image, const Eigen::Isometry3d& pose, const unseen& q,
-            std::uint32_t number, result& r) {
+            std::uint32_t number, bool places, result& r) {
     static_assert(seeing_image<S>, "unseen is asked about depth_image and ray_image, or masked ones");
     const auto& bare = detail::bare_image<S>::of(image);
     constexpr bool pinhole = requires { bare.inverse_fx; };
@@ -127,7 +130,15 @@ class unseen::engine {
     const hidden<S> room{image, q.room, rounded_up(half)};
     camera c;
     auto found = ask_of(2 * number, poses, room, pose);
-    c.all = found.all, c.nearest = witnesses_.run(poses, placed<hidden<S>>{room, pose}, part_witnesses{found.parts});
+    c.all = found.all;
+    if (places)
+      c.nearest = witnesses_.run(poses, placed<hidden<S>>{room, pose}, part_witnesses{found.parts});
+    else
+      for (std::uint32_t k = 0; k < model_.size(); ++k)
+        if (const part_minimum& its = found.parts[k]; its.cloud != none)
+          c.nearest.push_back({its.distance, k, its.cloud, its.point, its.primitive});
+        else
+          c.nearest.push_back({});
     const frames::cloud_frame frame(model_.facts, poses, pose, rounding_of(room));
     const auto lower = [&](std::size_t k, const part_minimum& nearest) {
       if (nearest.cloud == none) return double(infinity);
@@ -222,11 +233,12 @@ class unseen::engine {
     }
     if (r.all.seen == 0 || least == nullptr) return;  // nothing is known
     min_distance_result& all = r.all;
-    all.cloud = least->cloud, all.point = least->point, all.part = least->part, all.primitive = least->primitive;
-    all.at = least->at, all.nearest = least->nearest, all.normal = least->normal;
-    all.distance = least->distance;
+    if (cameras_.size() > 1 || all.part == none) {
+      all.cloud = least->cloud, all.point = least->point, all.part = least->part, all.primitive = least->primitive;
+      all.at = least->at, all.nearest = least->nearest, all.normal = least->normal;
+      all.distance = least->distance, all.upper = infinity;
+    }
     all.lower = lower > 0 ? rounded_down(lower) : 0;
-    if (cameras_.size() > 1 || all.part == none) all.upper = infinity;
     const bool reaches = all.distance <= 4 * slack * q.room.farthest;  // up to rounding
     all.state = all.lower > 0 ? state::free : reaches ? state::unknown : state::possible;
   }
