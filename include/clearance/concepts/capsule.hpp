@@ -103,6 +103,16 @@ CLEARANCE_HD real lower_bound(const V& v, const capsule& c, real reach) {
     return -infinity;
 }
 
+/// May a primitive be so near? Quickly, by a ball around it, if it says one.
+template <primitive P>
+CLEARANCE_HD bool may_reach(const P& primitive, const capsule& c, real reach) {
+  if constexpr (requires {
+                  { primitive.as_ball() } -> std::same_as<ball>;
+                })
+    return !(detail::bound_along(primitive.as_ball(), c) - c.radius > reach);
+  return true;
+}
+
 /// A primitive's distance to a capsule, which is negative if they overlap by more than a touch.
 template <primitive P>
 CLEARANCE_HD real distance_to(const P& primitive, const capsule& c) {
@@ -131,6 +141,7 @@ struct of_capsule {
   CLEARANCE_HD void offer(std::uint32_t, real) {}
   template <class P>
   CLEARANCE_HD void offer(std::uint32_t id, real, const P& primitive) {
+    if (!may_reach(primitive, c, ask.reach())) return;
     const real d = distance_to(primitive, c);
     if constexpr (requires { ask.offer(id, d, primitive); })
       ask.offer(id, d, primitive);

@@ -31,6 +31,18 @@ struct root_ball {
       : around(b), square(dot(b.center, b.center)), twice(2 * length(b.center)) {}
 };
 
+/// A capsule, with what tests against many balls need.
+struct capsule_test {
+  vec3 from, along;
+  real inverse, wide;  ///< 1 / |along|^2; the radius, and more than rounding can add.
+
+  capsule_test() = default;
+  CLEARANCE_HD explicit capsule_test(const capsule& c)
+      : from(c.from), along(c.along), inverse(0), wide(c.radius + detail::noise_along(c)) {
+    if (const real square = dot(along, along); square > least_normal) inverse = rough_inverse(square);
+  }
+};
+
 /// Cheap and conservative: may a point x be within reach of a part's ball? If `value(x) <= -|x|^2`, it may, in the
 /// cloud's own frame, with three multiply-adds. This is not part of the exact path, so compilers may contract it.
 struct alignas(16) root_test {
@@ -48,12 +60,13 @@ struct alignas(16) root_test {
 
   CLEARANCE_HD real value(real x, real y, real z) const { return m.x * x + (m.y * y + (m.z * z + w)); }
   CLEARANCE_HD real value(vec3 x) const { return value(x.x, x.y, x.z); }
-  /// Is anything of a capsule? The limit is |c|^2 - w.
-  CLEARANCE_HD bool passes(const capsule& x) const {
-    const vec3 c{-m.x / 2, -m.y / 2, -m.z / 2};
-    const real gap = rough_length(x.at(clearance::least_along(c, x.from, x.along)) - c),
-               away = rough_max(gap - x.radius - detail::noise_along(x), 0);
-    return away * away <= dot(c, c) - w;
+  /// Is anything of a capsule? The squared limit is |c|^2 - w.
+  CLEARANCE_HD bool passes(const capsule_test& x) const {
+    const vec3 c{m.x * -0.5f, m.y * -0.5f, m.z * -0.5f}, way = c - x.from;
+    const real share = saturated((way.x * x.along.x + way.y * x.along.y + way.z * x.along.z) * x.inverse);
+    const real dx = way.x - share * x.along.x, dy = way.y - share * x.along.y, dz = way.z - share * x.along.z;
+    const real limit = rough_root(c.x * c.x + c.y * c.y + c.z * c.z - w) + x.wide;  // NaN if nothing is within reach
+    return dx * dx + dy * dy + dz * dz <= limit * limit;
   }
   CLEARANCE_HD bool passes(vec3 x) const { return value(x) <= -(x.x * x.x + x.y * x.y + x.z * x.z); }
 };

@@ -40,7 +40,7 @@ class last_frame {
       const vec3 origin = a.facts().origin;
       const std::uint32_t point = key_index(w_.r.key) - a.first + n - (n == 0 ? 0 : each / 2);
       const auto seen = a.answer.around.less(point, p_.position - origin, origin);
-      const real d = scan::distance_of(w_.primitive, scan::moved(a.part()[w_.r.part].part_from_cloud, seen));
+      const real d = scan::distance_of(w_.primitive, scan::moved(a.part()[w_.r.part].part_from_cloud, seen), infinity);
       if (d < infinity) bound = lower_of(bound, ordered(d));
     }
     if constexpr (per_part) {

@@ -85,6 +85,12 @@ struct triangle {
     return {{rough_min(rough_min(dot(u, aq), dot(u, bq)), dot(u, cq)) - off, u}, way.length + off, way.length};
   }
 
+  /// A ball around it, for quick tests.
+  CLEARANCE_HD ball as_ball() const {
+    const vec3 ab = b - a, ac = c - a, way{(ab.x + ac.x) / 3, (ab.y + ac.y) / 3, (ab.z + ac.z) / 3}, middle = a + way;
+    const real square = rough_max(rough_max(dot(way, way), dot(ab - way, ab - way)), dot(ac - way, ac - way));
+    return {middle, rough_root(square) * (1 + 4 * slack) + slack * (extent(middle) + extent(way))};
+  }
   /// See swept_primitive. An end, where the way crosses the plane, or the place that is nearest to a side is nearest.
   CLEARANCE_HD real least_along(vec3 from, vec3 along) const {
     const real height = dot(from - a, unit_normal), rise = dot(along, unit_normal);

@@ -65,13 +65,14 @@ template <bounding_volume V>
 CLEARANCE_HD real bound_of(const V& v, const capsule& q, real reach) {
   return lower_bound(v, q, reach);
 }
+/// A primitive's distance if it may be within reach; else anything farther.
 template <primitive P>
-CLEARANCE_HD real distance_of(const P& primitive, vec3 q) {
+CLEARANCE_HD real distance_of(const P& primitive, vec3 q, real) {
   return primitive.distance(q);
 }
 template <primitive P>
-CLEARANCE_HD real distance_of(const P& primitive, const capsule& q) {
-  return distance_to(primitive, q);
+CLEARANCE_HD real distance_of(const P& primitive, const capsule& q, real reach) {
+  return may_reach(primitive, q, reach) ? distance_to(primitive, q) : infinity;
 }
 
 CLEARANCE_HD inline vec3 start_of(vec3 p) { return p; }

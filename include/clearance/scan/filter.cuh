@@ -52,13 +52,13 @@ __device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clust
   const auto& s = pairs::here();
   constexpr bool points = std::is_same_v<typename pairs::element, vec3>;
   real square[quad];
-  typename pairs::element all[quad];
+  std::conditional_t<points, vec3, frames::capsule_test> all[quad];
 #pragma unroll
   for (int j = 0; j < quad; ++j) {
     if constexpr (points)
       square[j] = -dot(p.at[j], p.at[j]);
     else
-      all[j] = pairs::element_at(first() + j, p.at[j]);
+      all[j] = frames::capsule_test(pairs::element_at(first() + j, p.at[j]));
   }
   const auto passes = [&](const frames::root_test& test, int j) {
     if constexpr (points)

@@ -74,6 +74,11 @@ struct pair_search : tree_steps<Tally> {
   static __device__ std::uint32_t lane() { return threadIdx.x % mates; }
   static __device__ std::uint32_t group() { return threadIdx.x % 32 / mates; }
 
+  static __device__ bool near_part(const memory& s, std::uint32_t part, vec3 x) { return s.near_part[part].passes(x); }
+  static __device__ bool near_part(const memory& s, std::uint32_t part, const capsule& x) {
+    return s.near_part[part].passes(frames::capsule_test(x));
+  }
+
   /// Is the point in the part's solid? Then its distance is 0, and the tree need not be searched.
   static __device__ bool inside(const element& whole, std::uint32_t point, std::uint32_t k, std::uint32_t pair) {
     if constexpr (has_interior<typename Tally::part_type>) {
@@ -98,7 +103,7 @@ struct pair_search : tree_steps<Tally> {
     memory& s = frame::here();
     const pair c = live ? s.pair_table[i] : pair{};
     const std::uint32_t part = live ? s.part_of_pair[i] : 0;
-    live = live && s.near_part[part].passes(c.x) && !Tally::skips(s, part, c.point, i, start_of(c.x));
+    live = live && near_part(s, part, c.x) && !Tally::skips(s, part, c.point, i, start_of(c.x));
     if constexpr (Tally::goes_ahead)
       live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0;  // others may be changing its inputs
     const element q = moved(frame::place(part).part_from_cloud, c.x);
@@ -301,7 +306,7 @@ struct pair_search : tree_steps<Tally> {
         const auto place = steps::place_of(leaf, k);
         const std::uint32_t id = steps::id(part, place);
         primitive = steps::primitive(part, place);
-        if (const real distance = distance_of(primitive, v.x); distance <= reach)
+        if (const real distance = distance_of(primitive, v.x, reach); distance <= reach)
           r = {make_key(distance, v.point), part, id, place};
       }
       if (__any_sync(all_lanes, r.key != no_key)) Tally::take(frame::here(), r, primitive, pair);
