@@ -33,7 +33,7 @@ class capsule_tile {
   /// May any of them be within reach of a ball? All are between two boxes, the starts' and the ends'. So there must be
   /// a share of the way at which the box between those is near along every axis.
   bool may_reach(const ball& around, real reach) const {
-    const real most = (frames::limit(around, reach) + widest_) * (1 + 4 * slack);
+    const real most = frames::limit(around, reach + widest_) * (1 + 4 * slack);
     if (!(most >= 0)) return false;
     real low = 0, high = 1;
     const auto keep = [&](real at_start, real at_end) {  // the share at which start + share (end - start) >= 0
@@ -56,14 +56,14 @@ class capsule_tile {
 
   /// Marks those that may be within reach of a ball.
   void mark(const ball& around, real reach, std::uint32_t* near) const {
-    const real most = frames::limit(around, reach);
+    const real most = reach + around.radius;
     const vec3 c = around.center;
     for (std::size_t j = 0; j < points; ++j) {
       const real x = c.x - starts_.x[j], y = c.y - starts_.y[j], z = c.z - starts_.z[j];
       const real share = (x * along_.x[j] + y * along_.y[j] + z * along_.z[j]) * inverse_[j];
       const real t = min(max(share, 0), 1);
       const real dx = x - t * along_.x[j], dy = y - t * along_.y[j], dz = z - t * along_.z[j];
-      const real limit = most + wide_[j];
+      const real limit = (most + wide_[j]) * (1 + 4 * slack);
       near[j] |= std::uint32_t(int(limit >= 0) & int(dx * dx + dy * dy + dz * dz <= limit * limit));
     }
   }
