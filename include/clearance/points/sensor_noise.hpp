@@ -127,4 +127,34 @@ struct point_radii {
   }
 };
 
+/// The kind of a sensor that a program learns while it runs.
+enum class noise_kind : std::uint8_t { none, kinect, stereo, tof, lidar };
+
+/// The noise of one of these kinds.
+struct any_noise {
+  noise_kind kind = noise_kind::none;
+  kinect_noise kinect = {};
+  stereo_noise stereo = {1, 1, 0};
+  tof_noise tof = {0, 0};
+  lidar_noise lidar = {0};
+
+  CLEARANCE_HD real operator()(std::size_t i, vec3 p) const {
+    switch (kind) {
+      case noise_kind::kinect:
+        return kinect(i, p);
+      case noise_kind::stereo:
+        return stereo(i, p);
+      case noise_kind::tof:
+        return tof(i, p);
+      case noise_kind::lidar:
+        return lidar(i, p);
+      default:
+        return 0;
+    }
+  }
+  void check(std::size_t points) const {
+    kinect.check(points), stereo.check(points), tof.check(points), lidar.check(points);
+  }
+};
+
 }  // namespace clearance

@@ -21,9 +21,20 @@ struct radius_shares {
   CLEARANCE_HD real sum() const { return noise + calibration + time; }
 };
 
-/// A source whose point i may be anywhere in a ball around it. The radius is that of the noise, `shift + turn |p|`, and
-/// `max_speed * age`, rounded up. Around capsules radii add. A radius of 1e6 m, a negative one and NaN say nothing: the
-/// point may be anywhere, which counts as `too_close`, and nothing is free then.
+/// Where a source's points are seen from, in its frame: (0,0,0), or where its filter has the sensor.
+template <point_source S>
+CLEARANCE_HD vec3 sensor_of(const S& s) {
+  if constexpr (requires { s.filter.sensor; })
+    return s.filter.sensor;
+  else if constexpr (requires { sensor_of(s.source); })
+    return sensor_of(s.source);
+  else
+    return {0, 0, 0};
+}
+
+/// A source whose point i may be anywhere in a ball around it. The radius is that of the noise, `shift + turn |p|`
+/// (from the sensor), and `max_speed * age`, rounded up. Around capsules radii add. A radius of 1e6 m, a negative one
+/// and NaN say nothing: the point may be anywhere, which counts as `too_close`, and nothing is free then.
 ///
 /// `min_distance` and other questions about an uncertain source are about all places where its points may be.
 template <point_source S, sensor_noise N = no_noise>
@@ -70,8 +81,9 @@ struct uncertain {
   }
   /// Point i is at p. What a turn adds along a capsule is in `rounding`.
   CLEARANCE_HD radius_shares shares(std::size_t i, vec3 p) const {
-    const real turned = capsule_source<S> ? 0 : length(p);
-    return {product(noise(i, p), spread), product(fma(turn, turned, shift), spread), product(drift, spread)};
+    const vec3 seen = p - sensor_of(source);
+    const real turned = capsule_source<S> ? 0 : length(seen);
+    return {product(noise(i, seen), spread), product(fma(turn, turned, shift), spread), product(drift, spread)};
   }
 
   /// Another source of as many points, with the same uncertainty.
