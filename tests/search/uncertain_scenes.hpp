@@ -16,7 +16,7 @@ inline bool same_pair(const clearance::certain_pair& a, const clearance::certain
   return same_witness(a, b) && same_bits(a.lower, b.lower) && same_bytes(a.shares, b.shares);
 }
 inline bool same_certain(const certain_distance_result& a, const certain_distance_result& b) {
-  return a.state == b.state && same_bits(a.lower, b.lower) && same_bits(a.upper, b.upper) &&
+  return a.state == b.state && a.anywhere == b.anywhere && same_bits(a.lower, b.lower) && same_bits(a.upper, b.upper) &&
          same_result(a.nominal, b.nominal) && same_pair(a.certain, b.certain) &&
          std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(), same_pair);
 }

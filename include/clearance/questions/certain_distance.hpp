@@ -6,6 +6,8 @@
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/traversal/any_depth.hpp>
 
+#include <optional>
+
 namespace clearance {
 
 /// By how much a part may be elsewhere. Metres.
@@ -42,6 +44,7 @@ struct certain_distance_result {
   min_distance_result nominal;
   certain_pair certain;
   std::vector<certain_pair> parts;
+  std::uint64_t anywhere = 0;  ///< So many points may be anywhere: if it is not 0, nothing is free.
 };
 
 namespace minimum {
@@ -109,12 +112,12 @@ class certain_distance::engine {
   /// Throws std::invalid_argument if a tree is too deep for `near_first` on a device.
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
-      : on_(on),
-        model_(model),
-        nominal_(on, model, from...),
-        search_(placed_there(on), model),
-        memory_(on, from...),
-        readable_(on, from...) {}
+      : on_(on), model_(model), nominal_(on, model, from...), memory_(on, from...), readable_(on, from...) {
+    if constexpr (std::is_same_v<there, On>)
+      search_.emplace(on, model);
+    else
+      search_.emplace(plain{on, near_first{}}, model);
+  }
 
   template <class Clouds>
   result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const certain_distance& q) {
@@ -122,20 +125,13 @@ class certain_distance::engine {
     const auto& here = readable_(clouds);
     result r;
     r.nominal = nominal_.run(poses, mapped_clouds(here, as_measured{}), min_distance{});
-    const min_distance_per_part_result certain = search_.run(poses, here, min_distance_per_part{});
+    const min_distance_per_part_result certain = search_->run(poses, here, min_distance_per_part{});
     const bool vague = read(poses, here, certain.parts, r.nominal);
     conclude(q, certain, vague || !q.parts.empty(), r);
     return r;
   }
 
  private:
-  static there placed_there(const On& on) {
-    if constexpr (std::is_same_v<there, On>)
-      return on;
-    else
-      return {on, near_first{}};
-  }
-
   /// Is there an uncertain cloud?
   template <class Clouds>
   bool read(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::vector<part_minimum> minima,
@@ -164,7 +160,7 @@ class certain_distance::engine {
 
   void conclude(const certain_distance& q, const min_distance_per_part_result& found, bool any_radius,
                 result& r) const {
-    const bool anywhere = found.all.dropped[int(drop_reason::too_close)] != 0;
+    r.anywhere = found.all.dropped[int(drop_reason::too_close)];
     double lower = infinity;
     const auto radius = [&q](std::size_t k) { return q.parts.empty() ? part_radius{} : q.parts[k]; };
     for (std::size_t k = 0; k < model_.size(); ++k) {
@@ -175,7 +171,7 @@ class certain_distance::engine {
       const frames::float_error error{errors_[k], frame_.error.per_metre};
       const real least = found.parts[k].distance;
       const double its = minimum::certain_distance(least, frames::slop(model_.facts[k]), error) - radius(k).sum();
-      part.lower = its > 0 && !anywhere ? rounded_down(its) : 0;
+      part.lower = its > 0 && r.anywhere == 0 ? rounded_down(its) : 0;
       const radius_shares& s = pair.shares;
       part.shares = {s.noise,          s.calibration,   s.time,
                      radius(k).joints, radius(k).delay, frames::slop(model_.facts[k]),
@@ -183,7 +179,7 @@ class certain_distance::engine {
       if (its < lower) lower = its, r.certain = part;
     }
     if (r.nominal.part == none) return;  // nothing is known
-    r.lower = lower > 0 && !anywhere ? rounded_down(lower) : 0;
+    r.lower = lower > 0 && r.anywhere == 0 ? rounded_down(lower) : 0;
     const double uncertain = pairs_.back().shares.sum() + radius(r.nominal.part).sum();
     const double most = double(r.nominal.distance) + model_.facts[r.nominal.part].tolerance +
                         frame_.error.at(r.nominal.distance) + uncertain;
@@ -196,7 +192,7 @@ class certain_distance::engine {
   On on_;
   model_view<PartView> model_;
   min_distance::engine<On, PartView> nominal_;
-  minimum::engine<there, PartView, min_distance_per_part> search_;
+  std::optional<minimum::engine<there, PartView, min_distance_per_part>> search_;
   backends::kept_memory<On> memory_;
   frames::readable_clouds<On> readable_;
   frames::cloud_frame frame_;
