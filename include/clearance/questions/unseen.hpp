@@ -9,6 +9,7 @@
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/part_witnesses.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <deque>
 
@@ -47,7 +48,7 @@ inline double half_pixel_of(const ray* rays, std::size_t width, std::size_t heig
 }
 
 /// How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or `masked` ones, or
-/// `uncertain` ones of those: then hidden is what may be hidden.
+/// `uncertain` ones of those: then hidden is what may be hidden, so that the state is not `unknown` but `possible`.
 /// Throws std::invalid_argument for depths that are no range, and for a ray image without `half_pixel`.
 struct unseen {
   hiding room = {};
@@ -121,7 +122,7 @@ class unseen::engine {
     std::vector<double> lower, own;  ///< How far at least all is that it hides, and its own shadow.
     std::vector<double> from_edge;
     std::vector<std::uint64_t> shown;  ///< Of the samples of a part's ball, one bit each.
-    bool tells_shown;
+    bool tells_shown, vague;
   };
 
   template <class S>
@@ -150,6 +151,7 @@ class unseen::engine {
                                        {frame.places[k].error, frame.error.per_metre});
     };
     c.own.assign(model_.size(), infinity), c.tells_shown = pinhole;
+    c.vague = vague_source<S>;
     for (std::size_t k = 0; k < model_.size(); ++k) {
       c.lower.push_back(lower(k, found));
       c.nearest[k].cloud = c.nearest[k].part == none ? none : number;
@@ -170,6 +172,7 @@ class unseen::engine {
       for (std::size_t k = 0; k < model_.size(); ++k) c.own[k] = lower(k, each);
       min_distance_result own = each.all;
       if (own.cloud != none) own.cloud = number;
+      if (c.vague) own.upper = infinity;
       r.own_shadow = merge(r.own_shadow, own);
     }
     cameras_.push_back(std::move(c));
@@ -244,9 +247,10 @@ class unseen::engine {
     all.at = least->at, all.nearest = least->nearest, all.normal = least->normal;
     all.distance = least->distance;
     all.lower = lower > 0 ? rounded_down(lower) : 0;
-    if (cameras_.size() > 1 || all.part == none) all.upper = infinity;
+    const bool vague = std::ranges::any_of(cameras_, &camera::vague);
+    if (cameras_.size() > 1 || all.part == none || vague) all.upper = infinity;
     const bool reaches = all.distance <= 4 * slack * q.room.farthest;  // up to rounding
-    all.state = all.lower > 0 ? state::free : reaches ? state::unknown : state::possible;
+    all.state = all.lower > 0 ? state::free : reaches && !vague ? state::unknown : state::possible;
   }
 
   On on_;
