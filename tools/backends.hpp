@@ -6,6 +6,7 @@
 #include <clearance/packing/packing.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
+#include <clearance/points/uncertain.hpp>
 #include <clearance/result.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 
@@ -30,6 +31,8 @@ struct supported_distance;
 struct motion_clearance_options;
 struct motion_clearance_result;
 struct part_facts;
+struct part_radius;
+struct certain_distance_result;
 namespace io {
 class joint_motion;
 struct body;
@@ -54,6 +57,8 @@ using clearance::io::body;
 struct seen_points {
   std::variant<clearance::point_span, clearance::depth_image<std::uint16_t>> points;
   Eigen::Isometry3d pose;  // world-from-points
+  clearance::any_noise sensor = {};
+  clearance::cloud_uncertainty off = {};
 };
 
 struct reply {
@@ -89,6 +94,8 @@ class backend_robot {
   /// Which points belong to the robot itself, within `padding` metres of it?
   virtual clearance::self_filter_result own_points(poses_of poses, double padding) = 0;
   virtual clearance::supported_distance supported(poses_of poses, const clearance::min_distance_supported& options) = 0;
+  /// What is certain of the least distance, by the clouds' sensors and one radius per part, or none.
+  virtual clearance::certain_distance_result certain(poses_of poses, std::span<const clearance::part_radius> parts) = 0;
   /// The witnesses of the minima of least_per_part.
   virtual std::vector<clearance::part_witness> witnesses(poses_of poses,
                                                          std::span<const clearance::part_minimum> minima) = 0;

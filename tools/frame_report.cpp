@@ -11,6 +11,7 @@ std::string to_json(const frame_report& report) {
   out["points"] = counts(report.found.result);
   out["upload_us"] = microseconds(report.upload);
   out["latency_us"] = microseconds(report.query);
+  if (report.certain) out["certain"] = certain_of(*report.certain, {report.cloud}, *report.bodies);
   if (report.plan) {
     json& plan = out["plan"] = outcome_of(*report.plan);
     plan["lower"] = json::array();
@@ -25,12 +26,16 @@ std::string to_csv(const frame_report& report) {
   std::string out;
   if (report.frame == 0) {
     out = std::string("frame,file,") + witness_columns + ",latency_us";
+    if (report.certain) out += ",certain_state,certain_lower,certain_upper";
     if (report.plan) out += report.plan->asked->margin ? ",plan_least,plan_at,plan_first_below" : ",plan_least,plan_at";
     out += '\n';
   }
   out += std::to_string(report.frame) + ',' + csv_word(report.file) + ',' +
          witness_cells(report.found.result, report.cloud, report.point, *report.bodies) + ',' +
          csv_word(microseconds(report.query));
+  if (report.certain)
+    out += std::string(",") + to_string(report.certain->state) + ',' + csv_word(or_null(report.certain->lower)) + ',' +
+           csv_word(or_null(report.certain->upper), report.certain->upper);
   if (report.plan)
     for (const auto plan = outcome_of(*report.plan); const char* const name : {"least", "at", "first_below"})
       if (plan.contains(name)) out += ',' + csv_word(plan[name]);

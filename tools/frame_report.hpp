@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "certain_report.hpp"
 #include "plan_report.hpp"
 
 /// What `clearance run` reports about a frame.
@@ -13,6 +14,7 @@ struct frame_report {
   const std::vector<body>* bodies = nullptr;
   double upload = 0, query = 0;       // seconds
   const plan_report* plan = nullptr;  // for --plan
+  std::optional<clearance::certain_distance_result> certain;
 };
 
 /// One JSON object on one line.

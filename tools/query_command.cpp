@@ -127,6 +127,10 @@ void ask_questions(query_report& report, backend_robot& there, poses_of poses, c
   if (asked.support)
     report.support = there.supported(
         poses, {.min_points = asked.support->min_points, .radius = asked.support->radius, .most = asked.support->most});
+  if (asked.certain) {
+    report.certain = there.certain(poses, radii_of(asked, *report.robot, joints, there.facts()));
+    note_anywhere(*report.certain, report.notes);
+  }
   if (asked.gradient)
     report.gradients = gradients(asked, *report.robot, joints, poses, there.witnesses(poses, report.found.parts));
 }

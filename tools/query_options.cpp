@@ -48,11 +48,48 @@ struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames,
       trajectory, unfolded;
   std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, support_limit, svg,
-      report, deadline, nearest;
-  texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges;
+      report, deadline, nearest, delay, max_speed, joint_error, joint_speed;
+  texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges,
+      sensors, calibrations;
   bool ignore_limits = false, strict = false, json = false, no_cache = false, merge = false, csv = false,
        gradient = false, shard = false, is_signed = false, between = false;
 };
+
+/// A number that is not negative.
+double amount(const std::string& option, const std::string& text, const char* unit) {
+  const double x = number(option, text) + 0.0;  // no -0
+  if (!(x >= 0 && x <= 1e15)) throw usage_error(option, std::string("must be from 0 to 1e15 (") + unit + ")");
+  return x;
+}
+
+/// kinect, stereo:F,B,S, tof:C,S or lidar:C,S.
+clearance::any_noise sensor_of(const std::string& option, const std::string& text) {
+  using clearance::real;
+  const std::size_t at = text.find(':');
+  const std::string kind = text.substr(0, at), rest = at == text.npos ? std::string() : text.substr(at + 1);
+  clearance::any_noise sensor;
+  const auto of = [&](std::size_t count, const char* what) { return numbers(option, rest, count, kind + ':' + what); };
+  if (kind == "stereo") {
+    const auto v = of(3, "F,B,S (focal length in pixels, baseline in m, deviation of a disparity in pixels)");
+    sensor.kind = clearance::noise_kind::stereo, sensor.stereo = {real(v[0]), real(v[1]), real(v[2])};
+  } else if (kind == "tof") {
+    const auto v = of(2, "C,S (m, and m for each square metre)");
+    sensor.kind = clearance::noise_kind::tof, sensor.tof = {real(v[0]), real(v[1])};
+  } else if (kind == "lidar") {
+    const auto v = of(2, "C,S (m, and m for each metre)");
+    sensor.kind = clearance::noise_kind::lidar, sensor.lidar = {real(v[0]), real(v[1])};
+  } else if (text == "kinect") {
+    sensor.kind = clearance::noise_kind::kinect;
+  } else {
+    throw usage_error(option, clearance::io::quoted(text) + " is none of kinect, stereo:F,B,S, tof:C,S and lidar:C,S");
+  }
+  try {
+    sensor.check(0);
+  } catch (const std::invalid_argument& error) {
+    throw usage_error(option, without_prefix(error.what()));
+  }
+  return sensor;
+}
 
 /// Sets one per-cloud option, given on the command line.
 void set(cloud_options& cloud, const std::string& option, const std::string& text) {
@@ -72,6 +109,13 @@ void set(cloud_options& cloud, const std::string& option, const std::string& tex
     if (!(v[0] >= 0 && v[0] < v[1])) throw usage_error(option, "needs 0 <= near < far (metres)");
     cloud.nearest = v[0];
     cloud.farthest = v[1];
+  }
+  if (option == "--sensor") cloud.sensor = sensor_of(option, text);
+  if (option == "--calibration") {
+    const auto v = numbers(option, text, 2, "DT,DTHETA");
+    if (!(v[0] >= 0 && v[0] <= 1e15 && v[1] >= 0 && v[1] <= 1e15))
+      throw usage_error(option, "needs 0 or more (metres, and radians)");
+    cloud.off.shift = v[0], cloud.off.turn = v[1];
   }
   if (option == "--use-viewpoint") cloud.use_viewpoint = true;
   if (option == "--zero-is-missing") cloud.zero_is_missing = true;
@@ -160,6 +204,7 @@ void check_alone(const query_options& o) {
                                                  {"--distances", !o.distances.empty()},
                                                  {"--self-filter", o.self_filter.has_value()},
                                                  {"--min-support", o.support.has_value()},
+                                                 {"what is uncertain (--sensor and others)", o.certain.has_value()},
                                                  {"--nearest", o.nearest != 0},
                                                  {"--gradient", o.gradient}};
   for (const auto& [other, asked] : others)
@@ -186,6 +231,41 @@ void read_deadline(const raw_options& raw, query_options& o) {
                       "cannot be mixed with --min-support: points of different ranks may confirm one another");
   if (o.shard && o.deadline)
     throw usage_error("--shard", "cannot be mixed with --deadline: ranks wait for one another");
+}
+
+/// What is uncertain about clouds and joints. It is for all clouds, but for --sensor and --calibration.
+void read_uncertainty(const raw_options& raw, query_options& o) {
+  joints_off off;
+  if (!raw.delay.empty()) off.delay = amount("--delay", raw.delay, "seconds");
+  const double speed = raw.max_speed.empty() ? 0 : amount("--max-speed", raw.max_speed, "m/s");
+  const auto each = [](const char* option, const std::string& text) {
+    std::vector<double> all;
+    if (!text.empty()) all = numbers(option, text);
+    return all;
+  };
+  off.errors = each("--joint-error", raw.joint_error), off.speeds = each("--joint-speed", raw.joint_speed);
+  for (const double x : off.errors)
+    if (!(x >= 0)) throw usage_error("--joint-error", "needs 0 or more (rad, m)");
+  for (const auto& [option, text] : {std::pair("--max-speed", &raw.max_speed), {"--joint-speed", &raw.joint_speed}})
+    if (!text->empty() && raw.delay.empty()) throw usage_error(option, "needs --delay, the time in which things move");
+  if (!raw.delay.empty() && raw.max_speed.empty() && raw.joint_speed.empty())
+    throw usage_error("--delay", "needs --max-speed or --joint-speed: what moves in that time?");
+  const std::pair<const char*, bool> given[] = {{"--sensor", !raw.sensors.empty()},
+                                                {"--calibration", !raw.calibrations.empty()},
+                                                {"--max-speed", !raw.max_speed.empty()},
+                                                {"--joint-error", !raw.joint_error.empty()},
+                                                {"--joint-speed", !raw.joint_speed.empty()}};
+  for (const auto& [option, is] : given) {
+    if (!is) continue;
+    if (o.recording.merge)
+      throw usage_error(option, "cannot be mixed with --merge: a merged cloud does not say what a point was seen from");
+    if (!raw.zones.empty())
+      throw usage_error(option, "cannot be mixed with --zones, which count points where they were measured");
+    if (raw.shard) throw usage_error(option, "cannot be mixed with --shard");
+    o.certain = off;
+  }
+  o.recording.camera.off.max_speed = speed, o.recording.camera.off.age = off.delay;
+  for (cloud_options& cloud : o.clouds) cloud.off.max_speed = speed, cloud.off.age = off.delay;
 }
 
 /// Throws if an option is about spheres, but the model has none.
@@ -254,7 +334,7 @@ void read_questions(const raw_options& raw, query_options& o) {
 std::uint64_t bytes_each(const query_options& o) {
   std::uint64_t bytes = 16;
   for (const bool asked : {!o.zones.empty(), o.nearest != 0, o.support.has_value(), o.self_filter.has_value(),
-                           o.model == model_kind::triangles})
+                           o.certain.has_value(), o.model == model_kind::triangles})
     if (asked) bytes += 16;
   if (!o.distances.empty()) bytes += 64;                                    // the result, and a record of the file
   if (!o.scene.empty()) bytes += 128;                                       // several copies of position and colour
@@ -299,6 +379,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.on_device = raw.backend.empty() ? find_device().present : is_device(raw.backend);
   o.json = raw.json;
   o.scene = raw.scene;
+  read_uncertainty(raw, o);
   read_questions(raw, o);
   read_deadline(raw, o);
   o.recording.camera.bytes_each = bytes_each(o);
@@ -375,6 +456,21 @@ void add_cloud_options(CLI::App& app, raw_options& raw, asking how) {
   app.add_flag("--zero-is-missing")->description("(0,0,0) is no point");
 }
 
+void add_uncertainty(CLI::App& app, raw_options& raw) {
+  app.add_option(
+      "--sensor", raw.sensors,
+      "kinect, stereo:F,B,S (pixels, m, pixels), tof:C,S (m, m/m2) or lidar:C,S (m, m/m): points may be three "
+      "deviations of this sensor's noise away; says what is certain then, and --check is about that");
+  app.add_option("--calibration", raw.calibrations,
+                 "DT,DTHETA: by how much the cloud's pose may be wrong (m, rad about the sensor)");
+  app.add_option("--delay", raw.delay, "Seconds from what was seen and the joints' positions until the answer counts");
+  app.add_option("--max-speed", raw.max_speed, "m/s: no obstacle is faster, in the time of --delay");
+  app.add_option("--joint-error", raw.joint_error,
+                 "By how much joints may be wrong (rad, m): one number, or one each as for --joints");
+  app.add_option("--joint-speed", raw.joint_speed,
+                 "How fast joints move, in the time of --delay (rad/s, m/s): one number, or one each");
+}
+
 void add_model_options(CLI::App& app, raw_options& raw, asking how) {
   const bool recorded = how == asking::run, planned = how == asking::plan;
   app.add_option("--model", raw.model, "spheres (default) or triangles");
@@ -403,7 +499,8 @@ void add_model_options(CLI::App& app, raw_options& raw, asking how) {
 }
 
 const char* const of_clouds =
-    "--camera-pose, --camera-link, --intrinsics, --depth-scale, --range, --use-viewpoint and --zero-is-missing hold\n"
+    "--camera-pose, --camera-link, --intrinsics, --depth-scale, --range, --sensor, --calibration, --use-viewpoint and\n"
+    "--zero-is-missing hold "
     "for all clouds if given before the first --cloud, else for the --cloud before them.";
 
 void add_shard(CLI::App& app, raw_options& raw) {
@@ -499,6 +596,7 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   add_joint_options(app, *raw, how);
   add_robot_options(app, *raw);
   add_cloud_options(app, *raw, how);
+  if (how != asking::plan) add_uncertainty(app, *raw);
   add_model_options(app, *raw, how);
   switch (how) {
     case asking::plan:

@@ -27,6 +27,8 @@ struct cloud_options {
   double scale = 0.001;
   double nearest = 0, farthest = clearance::infinity;
   bool use_viewpoint = false, zero_is_missing = false;
+  clearance::any_noise sensor = {};       // --sensor
+  clearance::cloud_uncertainty off = {};  // --calibration, --delay, --max-speed
   clearance::io::read_limits limits;
   std::uint64_t bytes_each = 0;    // made per point, in memory or in an output file; the limit counts these
   std::vector<std::string> given;  // the options before the first --cloud, by name: for all clouds
@@ -51,6 +53,12 @@ struct support_asked {
   std::uint32_t min_points;
   double radius;            // metres
   std::size_t most = 4096;  // --support-limit
+};
+
+/// What is uncertain about the joints: one number for all, or one each in the file's order (rad, m); empty: 0.
+struct joints_off {
+  std::vector<double> errors, speeds;  // --joint-error, --joint-speed
+  double delay = 0;                    // --delay, seconds
 };
 
 /// The recording that `clearance run` plays.
@@ -92,6 +100,7 @@ struct query_options {
   double d_max = clearance::infinity;
   std::optional<double> self_filter;     // --self-filter: points within this many metres are the robot's own
   std::optional<support_asked> support;  // --min-support
+  std::optional<joints_off> certain;     // any option about uncertainty was given
   bool gradient = false;
   std::optional<double> deadline;  // --deadline: milliseconds for the least distance
   bool shard = false;              // --shard: one of the ranks that mpirun started

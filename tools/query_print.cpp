@@ -22,6 +22,7 @@ json part_of(const query_report& report, std::size_t k) {
   if (report.asked->model == model_kind::spheres) part["gap"] = or_null(made.packed.gap);
   if (const attached_thing* held = report.robot->held_as(k))
     part["attached"] = {{"link", held->from.link}, {"file", held->from.file}, {"pose", pose_of(held->from.pose)}};
+  if (report.certain) part["certain"] = certain_of(report.certain->parts[k], report.all_clouds());
   if (report.zones) part["zones"] = zones_of(report, k);
   if (report.nearest) part["nearest"] = nearest_of(report, k);
   if (!report.gradients.empty()) part["gradient"] = gradient_of(report, k);

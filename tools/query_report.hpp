@@ -3,6 +3,7 @@
 
 #include "asked_robot.hpp"
 #include "backends.hpp"
+#include "certain_report.hpp"
 #include "distances_file.hpp"
 #include "observations.hpp"
 #include "robot_bodies.hpp"
@@ -30,11 +31,20 @@ struct query_report {
   std::optional<clearance::zones_result> zones;
   std::optional<clearance::nearest_k_result> nearest;
   std::optional<clearance::supported_distance> support;
+  std::optional<clearance::certain_distance_result> certain;
   std::vector<part_gradient> gradients;  // of all parts; empty: not asked
   std::optional<distances_written> distances;
   double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds; query: for the least distance
   std::vector<std::string> notes;
 
-  /// Is the lower end of the bracket above the margin of --check?
-  bool passes() const { return found.result.state != clearance::state::no_data && found.result.lower > *asked->margin; }
+  std::vector<const observation*> all_clouds() const {
+    std::vector<const observation*> all;
+    for (const observation& cloud : *clouds) all.push_back(&cloud);
+    return all;
+  }
+  /// Is the lower end of the bracket above the margin of --check? With uncertainty, that of what is certain.
+  bool passes() const {
+    const clearance::real lower = certain ? certain->lower : found.result.lower;
+    return found.result.state != clearance::state::no_data && lower > *asked->margin;
+  }
 };

@@ -238,6 +238,7 @@ void add_questions(const query_report& report, json& out) {
                     {"min_points", report.zones->min_points},
                     {"innermost", z < report.zones->per_part ? json(z) : json(nullptr)}};
   }
+  if (report.certain) out["certain"] = certain_of(*report.certain, report.all_clouds(), *report.bodies);
   if (report.support) out["support"] = support_of(report);
   if (report.gradients.empty()) return;
   const std::uint32_t part = report.found.result.part;
@@ -249,6 +250,7 @@ std::string questions_text(const query_report& report) {
   std::string out;
   if (report.asked->deadline) out += deadline_text(report);
   if (report.filter) out += filter_text(report);
+  if (report.certain) out += certain_text(*report.certain, *report.bodies);
   if (report.zones) out += "zones     " + innermost_text(report) + '\n';
   if (report.support) out += support_text(report);
   return out;

@@ -137,6 +137,7 @@ class robot_of_ranks final : public backend_robot {
   reply least(poses_of) override { none_of_ranks(); }
   reply least_by(poses_of, double) override { none_of_ranks(); }
   supported_distance supported(poses_of, const min_distance_supported&) override { none_of_ranks(); }
+  certain_distance_result certain(poses_of, std::span<const part_radius>) override { none_of_ranks(); }
 
   reply least_per_part(poses_of poses, int repeat) override {
     const auto found = joined<min_distance_per_part>(poses, [&] {

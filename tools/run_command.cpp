@@ -39,6 +39,10 @@ class motion {
 
   std::size_t size() const { return rows_.size(); }
 
+  /// One radius per part, by what is uncertain about the joints.
+  std::vector<part_radius> radii(std::size_t frame, std::span<const part_facts> facts) const {
+    return radii_of(asked_, robot_, row(frame), facts);
+  }
   std::vector<Eigen::Isometry3d> poses(std::size_t frame) const {
     return placed_links(asked_, robot_, row(frame), " in frame " + std::to_string(frame));
   }
@@ -140,7 +144,8 @@ double show(backend_robot& there, observation& frame, const std::string& file, c
 
 int exit_code(const frame_report& report, const std::optional<double>& margin) {
   const min_distance_result& r = report.found.result;
-  const int least = r.state == state::no_data ? 3 : margin && !(r.lower > *margin) ? 2 : 0;
+  const real lower = report.certain ? report.certain->lower : r.lower;
+  const int least = r.state == state::no_data ? 3 : margin && !(lower > *margin) ? 2 : 0;
   return std::max(least, report.plan ? report.plan->code() : 0);
 }
 
@@ -177,6 +182,7 @@ int run_frames(const query_options& asked) {
     frame_report report{.frame = k, .file = frames[k], .found = there->least(moves.poses(k)), .bodies = &bodies};
     report.upload = std::exchange(upload, 0);
     report.query = there->query;
+    if (asked.certain) report.certain = there->certain(moves.poses(k), moves.radii(k, there->facts()));
     const std::optional<plan_report> plan = to_come.ask(*there);
     if (plan) report.plan = &*plan;
     min_distance_result& r = report.found.result;

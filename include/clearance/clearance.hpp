@@ -19,8 +19,10 @@
 #include <clearance/points/point_span.hpp>
 #include <clearance/points/ray_image.hpp>
 #include <clearance/points/strided_points.hpp>
+#include <clearance/points/uncertain.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/primitive/triangle.hpp>
+#include <clearance/questions/certain_distance.hpp>
 #include <clearance/questions/collect.hpp>
 #include <clearance/questions/distances.hpp>
 #include <clearance/questions/distances_per_part.hpp>

@@ -32,7 +32,7 @@ TEST_CASE("Every question is asked on the host, and its answer's bits are printe
       print("part_witnesses", f.number,
             ask(clearance::host{}, model, f.s.poses, f.here(), clearance::part_witnesses{answer.parts}));
   });
-  CHECK(asked == 6 * 18);
+  CHECK(asked == 6 * 19);
 
   moving_frames f(3, 79);  // triangles, in any position
   scene<triangle> s;
@@ -44,7 +44,7 @@ TEST_CASE("Every question is asked on the host, and its answer's bits are printe
     print("distances of triangles", f.number,
           ask(clearance::host{}, model, f.s.poses, f.here(), clearance::distances{.d_max = 0.5}));
   }
-  CHECK(asked == 6 * 20);
+  CHECK(asked == 6 * 21);
 }
 
 }  // namespace answers

@@ -9,6 +9,7 @@
 #include <clearance/chunked_query.hpp>
 #include <clearance/deadline.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/certain_distance.hpp>
 #include <clearance/questions/distances_per_part.hpp>
 #include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distance_supported.hpp>
@@ -36,6 +37,7 @@ template <class F>
 void for_each_question(const F& f) {
   f("min_distance", clearance::min_distance{});
   f("min_distance_per_part", clearance::min_distance_per_part{});
+  f("certain_distance", clearance::certain_distance{});
   f("min_distance_supported", clearance::min_distance_supported{.min_points = 2, .radius = 0.05});
   f("distances", clearance::distances{.d_max = 0.6, .which = true});
   f("distances_per_part", clearance::distances_per_part{.d_max = 0.5});

@@ -39,7 +39,7 @@ TEST_CASE("One call, prepared questions and two devices give the bits of the hos
     }
     ++asked;
   });
-  CHECK(asked == 6 * 17);
+  CHECK(asked == 6 * 18);
 }
 
 }  // namespace forms_device_test

@@ -3,6 +3,7 @@
 // Are two results of any question the same, numbers by their bits?
 
 #include <clearance/query/fields.hpp>
+#include <clearance/questions/certain_distance.hpp>
 #include <clearance/questions/min_distance_supported.hpp>
 
 namespace testing {
@@ -24,6 +25,8 @@ void for_each_number(const T& a, const F& f) {
         a.valid, a.dropped);
   } else if constexpr (std::is_same_v<T, clearance::supported_distance>) {
     all(a.state, a.distance, a.lower, a.cloud, a.point, a.part, a.primitive, a.isolated, a.nearest_isolated, a.counts);
+  } else if constexpr (std::is_same_v<T, clearance::certain_pair>) {
+    all(static_cast<const clearance::part_witness&>(a), a.lower, a.shares);
   } else if constexpr (std::is_same_v<T, clearance::point_counts>) {
     all(a.seen, a.valid, a.dropped);
   } else {

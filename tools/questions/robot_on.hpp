@@ -15,6 +15,12 @@
 using placed_points =
     std::variant<clearance::placed<clearance::point_span>, clearance::placed<clearance::depth_image<std::uint16_t>>>;
 
+/// The same with what is uncertain about it.
+template <class S>
+using placed_uncertain = clearance::placed<clearance::uncertain<S, clearance::any_noise>>;
+using uncertain_points =
+    std::variant<placed_uncertain<clearance::point_span>, placed_uncertain<clearance::depth_image<std::uint16_t>>>;
+
 /// The library's prepared question.
 template <class Q, class Backend, class Model>
 using prepared_for =
@@ -44,11 +50,14 @@ class robot_on_backend final : public backend_robot {
     stopwatch clock;
     copies_.clear();
     clouds_.clear();
+    uncertain_.clear();
     const clearance::frames::readable_on<Backend> readable{on_, copies_};
     for (const seen_points& cloud : clouds)
       std::visit(
           [&](const auto& source) {
-            clouds_.push_back(clearance::placed{readable(source, std::uint32_t(clouds_.size())), cloud.pose});
+            const auto here = readable(source, std::uint32_t(clouds_.size()));
+            clouds_.push_back(clearance::placed{here, cloud.pose});
+            uncertain_.push_back(clearance::placed{clearance::uncertain(here, cloud.sensor, cloud.off), cloud.pose});
           },
           cloud.points);
     on_.wait();
@@ -63,6 +72,7 @@ class robot_on_backend final : public backend_robot {
   clearance::supported_distance supported(poses_of poses, const clearance::min_distance_supported& options) override;
   clearance::point_distances distances(poses_of poses, double d_max, bool is_signed) override;
   clearance::nearest_k_result nearest(poses_of poses, std::size_t k, double d_max) override;
+  clearance::certain_distance_result certain(poses_of poses, std::span<const clearance::part_radius> parts) override;
   std::vector<clearance::part_witness> witnesses(poses_of poses,
                                                  std::span<const clearance::part_minimum> minima) override;
   clearance::min_distances_result plan(poses_of poses, double d_max) override;
@@ -110,5 +120,6 @@ class robot_on_backend final : public backend_robot {
   std::unique_ptr<prepared_query> prepared_;
   std::unique_ptr<prepared_plan> planned_;
   std::vector<placed_points> clouds_;
+  std::vector<uncertain_points> uncertain_;  // the same clouds
   clearance::frames::cloud_copies<Backend> copies_;
 };

@@ -23,6 +23,10 @@ concept capsule_source = point_source<S> && requires(const S s, std::size_t i, v
   { s.around(i, p) } -> std::same_as<capsule>;
 };
 
+/// A source whose points are somewhere in their capsules: nothing is certainly anywhere.
+template <class S>
+concept vague_source = capsule_source<S> && S::vague;
+
 /// For whatever looks at points alone.
 template <point_source S>
 consteval bool points_alone() {
@@ -49,9 +53,9 @@ CLEARANCE_HD inline real least_along(vec3 point, vec3 from, vec3 along) {
 
 namespace detail {
 
-/// More than rounding adds to a bound along a way.
+/// More than rounding adds to a bound along a way, and loses where the radius is added to a reach.
 CLEARANCE_HD inline real noise_along(const capsule& c) {
-  return 2 * slack * (rough_length(c.from) + rough_length(c.along));
+  return 2 * slack * (rough_length(c.from) + rough_length(c.along) + c.radius);
 }
 
 CLEARANCE_HD inline real bound_along(const ball& b, const capsule& c) {

@@ -4,6 +4,7 @@
 
 #include <clearance/query/query.hpp>
 
+#include <algorithm>
 #include <array>
 #include <tuple>
 
@@ -12,8 +13,8 @@ namespace clearance {
 /// Whether a point is within a margin (elsewhere: security margin, safety distance), and which point: the same on every
 /// run and backend.
 struct collision_result {
-  /// collision: certainly a point is. possible: a point may be. free: certainly none is, and nothing was too close to
-  /// be measured. no_data: there was no valid point, or no part.
+  /// collision: certainly a point is, which is never said if a cloud is `uncertain`. possible: a point may be. free:
+  /// certainly none is, and nothing was too close to be measured. no_data: there was no valid point, or no part.
   clearance::state state = clearance::state::no_data;
   std::uint32_t cloud = none, point = none,
                 part = none;  ///< The lowest certain pair (by cloud, point, part), or else the lowest possible one.
@@ -84,8 +85,8 @@ struct in_collision {
     return a.template room<collision_result>(1);
   }
   static point_counts* counts_of(const out& to) { return &to->counts; }
-  template <class Asked>
-  pairwise::first_within prepare(const Asked& a, const out&) const {
+  template <class Asked, class Clouds>
+  pairwise::first_within prepare(const Asked& a, const out&, const Clouds& clouds) const {
     const std::size_t parts = a.parts();
     frames::check_margins(margins, parts);
     a.reaches.resize(2 * parts);
@@ -94,6 +95,9 @@ struct in_collision {
       a.reaches[k] = frames::may_be_within(margin, a.facts[k], a.frame.error);
       a.reaches[parts + k] = frames::is_within(margin, a.facts[k], a.frame.error);
     }
+    for_each_cloud(clouds, [&]<class S>(const S&, const Eigen::Isometry3d&) {
+      if (vague_source<S>) std::fill_n(a.reaches.begin() + std::ptrdiff_t(parts), parts, -infinity);
+    });
     const auto [word, near, start] = a.put(std::array{pairwise::first_within::nothing}, a.reaches, a.first);
     return {word, near, near + parts, start};
   }

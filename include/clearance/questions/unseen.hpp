@@ -5,9 +5,11 @@
 #include <clearance/points/hidden.hpp>
 #include <clearance/points/pinhole_view.hpp>
 #include <clearance/points/ray_image.hpp>
+#include <clearance/points/uncertain.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/part_witnesses.hpp>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <deque>
@@ -46,7 +48,8 @@ inline double half_pixel_of(const ray* rays, std::size_t width, std::size_t heig
   return widest;
 }
 
-/// How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or `masked` ones.
+/// How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or `masked` ones, or
+/// `uncertain` ones of those: then hidden is what may be hidden, so that the state is not `unknown` but `possible`.
 /// Throws std::invalid_argument for depths that are no range, and for a ray image without `half_pixel`.
 struct unseen {
   hiding room = {};
@@ -77,6 +80,16 @@ template <class S>
 struct bare_image<masked<S>> {
   static const S& of(const masked<S>& s) { return s.source; }
 };
+
+/// What of an image is hidden room, with what is uncertain about the image.
+template <bool Own, class S>
+hidden<S, Own> hidden_of(const S& image, const hiding& room, real half_pixel) {
+  return {image, room, half_pixel};
+}
+template <bool Own, class S, class N>
+uncertain<hidden<S, Own>, N> hidden_of(const uncertain<S, N>& image, const hiding& room, real half_pixel) {
+  return image.around_same(hidden<S, Own>{image.source, room, half_pixel});
+}
 
 }  // namespace detail
 
@@ -112,14 +125,16 @@ class unseen::engine {
     std::vector<double> lower, own;  ///< How far at least all is that it hides, and its own shadow.
     std::vector<double> from_edge;
     std::vector<std::uint64_t> shown;  ///< Of the samples of a part's ball, one bit each.
-    bool tells_shown;
+    bool tells_shown, vague;
   };
 
   template <class S>
   void look(std::span<const Eigen::Isometry3d> poses, const S& image, const Eigen::Isometry3d& pose, const unseen& q,
             std::uint32_t number, bool places, result& r) {
-    static_assert(seeing_image<S>, "unseen is asked about depth_image and ray_image, or masked ones");
-    const auto& bare = detail::bare_image<S>::of(image);
+    using seen = std::invoke_result_t<as_measured, const S&>;
+    static_assert(seeing_image<seen>, "unseen is asked about depth_image and ray_image, or masked or uncertain ones");
+    const seen measured = as_measured{}(image);
+    const auto& bare = detail::bare_image<seen>::of(measured);
     constexpr bool pinhole = requires { bare.inverse_fx; };
     double half = q.half_pixel;
     if constexpr (pinhole) half = std::hypot(double(bare.inverse_fx), double(bare.inverse_fy)) / 2;
@@ -127,12 +142,12 @@ class unseen::engine {
       throw std::invalid_argument(
           "clearance: unseen needs half_pixel for a ray image; half_pixel_of(rays, width, "
           "height) computes it");
-    const hidden<S> room{image, q.room, rounded_up(half)};
+    const auto room = detail::hidden_of<false>(image, q.room, rounded_up(half));
     camera c;
     auto found = ask_of(2 * number, poses, room, pose);
     c.all = found.all;
     if (places)
-      c.nearest = witnesses_.run(poses, placed<hidden<S>>{room, pose}, part_witnesses{found.parts});
+      c.nearest = witnesses_.run(poses, placed{room, pose}, part_witnesses{found.parts});
     else
       for (std::uint32_t k = 0; k < model_.size(); ++k)
         if (const part_minimum& its = found.parts[k]; its.cloud != none)
@@ -140,28 +155,35 @@ class unseen::engine {
         else
           c.nearest.push_back({});
     const frames::cloud_frame frame(model_.facts, poses, pose, rounding_of(room));
-    const auto lower = [&](std::size_t k, const part_minimum& nearest) {
-      if (nearest.cloud == none) return double(infinity);
-      return minimum::certain_distance(nearest.distance, frames::slop(model_.facts[k]),
+    const auto lower = [&](std::size_t k, const min_distance_per_part_result& of) {
+      if (of.all.dropped[int(drop_reason::too_close)] != 0) return -double(infinity);  // an unbounded radius
+      if (of.parts[k].cloud == none) return double(infinity);
+      return minimum::certain_distance(of.parts[k].distance, frames::slop(model_.facts[k]),
                                        {frame.places[k].error, frame.error.per_metre});
     };
     c.own.assign(model_.size(), infinity), c.tells_shown = pinhole;
+    c.vague = vague_source<S>;
     for (std::size_t k = 0; k < model_.size(); ++k) {
-      c.lower.push_back(lower(k, found.parts[k]));
+      c.lower.push_back(lower(k, found));
       c.nearest[k].cloud = c.nearest[k].part == none ? none : number;
       c.from_edge.push_back(0), c.shown.push_back(0);
       if constexpr (pinhole) {
         const pinhole_view view(bare, q.room.nearest, q.room.farthest);
         const ball& around = frame.places[k].around;
-        c.from_edge.back() =
-            view.from_edge({around.center + frame.origin, around.radius}) - frames::slop(model_.facts[k]);
+        const vec3 middle = around.center + frame.origin;
+        double& edge = c.from_edge.back() = view.from_edge({middle, around.radius}) - frames::slop(model_.facts[k]);
+        if constexpr (requires { image.turn; })  // the view may be turned and shifted
+          edge = (edge - image.shift - image.turn * (double(length(middle)) + around.radius)) / (1 + image.turn);
         c.shown.back() = shown(view, model_.facts[k], pose.inverse() * poses[k]);
       }
     }
-    if constexpr (requires { image.labels; }) {
-      auto [own, each] = ask_of(2 * number + 1, poses, hidden<S, true>{image, q.room, room.half_pixel}, pose);
-      for (std::size_t k = 0; k < model_.size(); ++k) c.own[k] = lower(k, each[k]);
+    if constexpr (requires { measured.labels; }) {
+      const auto shadow = detail::hidden_of<true>(image, q.room, rounded_up(half));
+      const auto each = ask_of(2 * number + 1, poses, shadow, pose);
+      for (std::size_t k = 0; k < model_.size(); ++k) c.own[k] = lower(k, each);
+      min_distance_result own = each.all;
       if (own.cloud != none) own.cloud = number;
+      if (c.vague) own.upper = infinity;
       r.own_shadow = merge(r.own_shadow, own);
     }
     cameras_.push_back(std::move(c));
@@ -239,8 +261,10 @@ class unseen::engine {
       all.distance = least->distance, all.upper = infinity;
     }
     all.lower = lower > 0 ? rounded_down(lower) : 0;
+    const bool vague = std::ranges::any_of(cameras_, &camera::vague);
+    if (vague) all.upper = infinity;
     const bool reaches = all.distance <= 4 * slack * q.room.farthest;  // up to rounding
-    all.state = all.lower > 0 ? state::free : reaches ? state::unknown : state::possible;
+    all.state = all.lower > 0 ? state::free : reaches && !vague ? state::unknown : state::possible;
   }
 
   On on_;

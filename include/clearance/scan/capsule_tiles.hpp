@@ -24,7 +24,7 @@ struct capsule_hull {
   }
   /// May any of them touch a box? There must be a share of the way at which the box between starts and ends overlaps it
   /// along every axis. Up to rounding.
-  bool may_touch(const extent& box) const {
+  bool may_touch(const extent& box, real beside) const {
     real low = 0, high = 1;
     const auto keep = [&](real at_start, real at_end) {  // shares at which at_start + share (at_end - at_start) >= 0
       constexpr real more = 8 * slack;
@@ -32,8 +32,8 @@ struct capsule_hull {
       if (at_start >= 0 && at_end < 0) high = std::min(high, at_start / (at_start - at_end) + more);
     };
     const auto axis = [&](real lower, real upper, real sl, real su, real el, real eu) {
-      const real off = wide + slack * (absolute(lower) + absolute(upper) + absolute(sl) + absolute(su) + absolute(el) +
-                                       absolute(eu));
+      const real off = beside + slack * (absolute(lower) + absolute(upper) + absolute(sl) + absolute(su) +
+                                         absolute(el) + absolute(eu));
       keep(upper + off - sl, upper + off - el), keep(su - lower + off, eu - lower + off);
     };
     axis(box.lower.x, box.upper.x, starts.lower.x, starts.upper.x, ends.lower.x, ends.upper.x);
@@ -42,13 +42,14 @@ struct capsule_hull {
     return low <= high;
   }
   bool may_reach(const ball& around, real reach) const {
-    const real most = frames::limit(around, reach);
+    const real most = frames::limit(around, reach + wide);
     const vec3 c = around.center, r{most, most, most};
-    return most + wide >= 0 && may_touch({c - r, c + r});
+    return most >= 0 && may_touch({c - r, c + r}, 0);
   }
 };
 
-/// A source that says where the capsules of 128 neighbours are, without taking them apart; see `surveyed_source`.
+/// A source that says where the capsules of 128 neighbours are, whose radius is 0, without taking them apart; see
+/// `surveyed_source`.
 template <class S>
 concept surveyed_capsules = capsule_source<S> && requires(const S s, std::size_t begin, extent& starts, extent& ends,
                                                           std::uint32_t (&dropped)[drop_reasons]) {
@@ -75,14 +76,14 @@ class capsule_tile {
 
   /// Marks those that may be within reach of a ball.
   void mark(const ball& around, real reach, std::uint32_t* near) const {
-    const real most = frames::limit(around, reach);
+    const real most = reach + around.radius;
     const vec3 c = around.center;
     for (std::size_t j = 0; j < points; ++j) {
       const real x = c.x - starts_.x[j], y = c.y - starts_.y[j], z = c.z - starts_.z[j];
       const real share = (x * along_.x[j] + y * along_.y[j] + z * along_.z[j]) * inverse_[j];
       const real t = min(max(share, 0), 1);
       const real dx = x - t * along_.x[j], dy = y - t * along_.y[j], dz = z - t * along_.z[j];
-      const real limit = most + wide_[j];
+      const real limit = (most + wide_[j]) * (1 + 4 * slack);
       near[j] |= std::uint32_t(int(limit >= 0) & int(dx * dx + dy * dy + dz * dz <= limit * limit));
     }
   }
@@ -122,7 +123,7 @@ void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const e
       return false;
     };
     hull.subtract(body.origin);
-    if (counted && !(hull.may_touch(near) && may_reach_some())) continue;
+    if (counted && !(hull.may_touch(near, hull.wide) && may_reach_some())) continue;
     capsule_tile t;
     with_vectors([&] {
       drop_tally again;

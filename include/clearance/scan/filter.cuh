@@ -6,6 +6,13 @@
 
 namespace clearance::scan {
 
+/// A capsule may be within reach of a part though its middle is not, even if the reach is below minus the part's size.
+template <class Tally>
+__device__ real limit_for(const ball& around, real reach) {
+  const real limit = frames::limit(around, reach);
+  return std::is_same_v<typename element_of_tally<Tally>::type, vec3> ? limit : max(limit, 0);
+}
+
 /// Sets the root tests to the present bounds, one thread per test. `bound` is that of all parts, if they share one. No
 /// thread may be reading the tests.
 template <class Tally>
@@ -14,7 +21,7 @@ __device__ void sharpen(std::uint32_t thread, std::uint32_t bound) {
   auto& s = parts::here();
   if (thread < s.head.parts) {
     const frames::root_ball& root = parts::place(thread).root;
-    s.near_part[thread] = {root, frames::limit(root.around, Tally::reach_of_part(s, thread, bound))};
+    s.near_part[thread] = {root, limit_for<Tally>(root.around, Tally::reach_of_part(s, thread, bound))};
   }
   const std::uint32_t c = thread - most_parts, first = c * cluster;
   if (thread < most_parts || first >= s.head.parts) return;
@@ -22,9 +29,9 @@ __device__ void sharpen(std::uint32_t thread, std::uint32_t bound) {
   real most = -infinity;
   if constexpr (Tally::bound_per_part) {
     for (std::uint32_t k = first; k < first + cluster && k < s.head.parts; ++k)
-      most = max(most, frames::limit({{}, parts::place(k).away}, Tally::reach_of_part(s, k, bound)));
+      most = max(most, limit_for<Tally>({{}, parts::place(k).away}, Tally::reach_of_part(s, k, bound)));
   } else {
-    most = frames::limit(root.around, Tally::reach_of_part(s, 0, bound));
+    most = limit_for<Tally>(root.around, Tally::reach_of_part(s, 0, bound));
   }
   s.near_cluster[c] = {root, most};
 }

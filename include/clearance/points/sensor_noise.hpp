@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How far a sensor's point may be from the place that it measured: `k` standard deviations, by kind of sensor.
+
+#include <clearance/point_source.hpp>
+
+#include <stdexcept>
+#include <string>
+
+namespace clearance {
+
+/// How noisy a sensor's points are.
+/// Law: `n(i, p)` is a radius in metres around point i, whose place is p, in the sensor's frame; pure, with the same
+/// bits on every backend (`clearance::fma`, `product`, `divide`). Below 0, NaN and 1e6 m or more: the point may be
+/// anywhere. Optional: `check(points)` throws std::invalid_argument for options that cannot be.
+template <class N>
+concept sensor_noise = std::is_trivially_copyable_v<N> && requires(const N n, std::size_t i, vec3 p) {
+  { n(i, p) } -> std::same_as<real>;
+};
+
+namespace detail {
+
+/// Throws std::invalid_argument unless `x` is finite and not negative.
+inline void check_uncertain(double x, const char* what) {
+  if (!(x >= 0 && x <= double(largest_real)))
+    throw std::invalid_argument(std::string("clearance: ") + what + " is " + std::to_string(x) +
+                                ", which must be 0 or more");
+}
+
+/// A reading is uncertain along z, and its pixel is certain. So its place moves along the pixel's ray, which is longer.
+/// NaN for what no camera sees, behind it.
+CLEARANCE_HD inline real along_ray(real deviation, vec3 p) {
+  if (p == vec3{0, 0, 0}) return deviation;
+  return p.z > 0 ? product(deviation, divide(length(p), p.z)) : not_a_number;
+}
+
+}  // namespace detail
+
+/// The sensor measures without noise.
+struct no_noise {
+  CLEARANCE_HD real operator()(std::size_t, vec3) const { return 0; }
+};
+
+/// Microsoft's first Kinect: 1.2 mm + 1.9 mm/m^2 (z - 0.4 m)^2 along z. Nguyen, Izadi, Lovell, "Modeling Kinect sensor
+/// noise for improved 3D reconstruction and tracking", 3DIMPVT 2012. They measured walls at up to 60 degrees.
+struct kinect_noise {
+  real k = 3;
+
+  CLEARANCE_HD real operator()(std::size_t, vec3 p) const {
+    const real z = p.z - 0.4f;
+    return detail::along_ray(product(k, fma(0.0019f, product(z, z), 0.0012f)), p);
+  }
+  void check(std::size_t) const { detail::check_uncertain(k, "the noise's k"); }
+};
+
+/// Stereo, active or passive, and structured light: z^2 s / (f B) along z. Gallup et al., "Variable baseline/resolution
+/// stereo", CVPR 2008; for structured light Khoshelham and Elberink, Sensors 12(2), 2012.
+struct stereo_noise {
+  real focal_length;  ///< f, in pixels.
+  real baseline;      ///< B, in metres.
+  real disparity;     ///< s, the standard deviation of a disparity, in pixels.
+  real k = 3;
+
+  CLEARANCE_HD real operator()(std::size_t, vec3 p) const {
+    const real each = divide(product(k, disparity), product(focal_length, baseline));
+    return detail::along_ray(product(product(p.z, p.z), each), p);
+  }
+  void check(std::size_t) const {
+    detail::check_uncertain(k, "the noise's k"), detail::check_uncertain(disparity, "a stereo camera's disparity");
+    for (const real x : {focal_length, baseline})
+      if (!(x > 0 && x <= largest_real))
+        throw std::invalid_argument("clearance: a stereo camera's focal length and baseline are " +
+                                    std::to_string(focal_length) + " pixels and " + std::to_string(baseline) +
+                                    " m, which must be above 0");
+  }
+};
+
+/// Time of flight: constant + square |p|^2, because light that returns falls with the square of the way. Lange and
+/// Seitz, "Solid-state time-of-flight range camera", IEEE Journal of Quantum Electronics 37(3), 2001.
+struct tof_noise {
+  real constant;  ///< Metres.
+  real square;    ///< Metres for each square metre.
+  real k = 3;
+
+  CLEARANCE_HD real operator()(std::size_t, vec3 p) const { return product(k, fma(square, dot(p, p), constant)); }
+  void check(std::size_t) const {
+    detail::check_uncertain(k, "the noise's k"),
+        detail::check_uncertain(constant, "a time of flight camera's constant");
+    detail::check_uncertain(square, "what a time of flight camera's noise grows by");
+  }
+};
+
+/// LiDAR: constant + share |p|, as data sheets say it. Glennie and Lichti, "Static calibration and analysis of the
+/// Velodyne HDL-64E S2", Remote Sensing 2(6), 2010.
+struct lidar_noise {
+  real constant;   ///< Metres.
+  real share = 0;  ///< Metres for each metre.
+  real k = 3;
+
+  CLEARANCE_HD real operator()(std::size_t, vec3 p) const { return product(k, fma(share, length(p), constant)); }
+  void check(std::size_t) const {
+    detail::check_uncertain(k, "the noise's k"), detail::check_uncertain(constant, "a LiDAR's constant");
+    detail::check_uncertain(share, "what a LiDAR's noise grows by");
+  }
+};
+
+/// A radius for each point, in metres.
+struct point_radii {
+  const real* radii;
+  std::size_t count;
+
+  /// In memory that the query's backend reads. They are not looked at before.
+  CLEARANCE_HD point_radii(const real* radii, std::size_t count) : radii(radii), count(count) {}
+  /// In host memory. Throws std::invalid_argument if one is negative or not finite.
+  explicit point_radii(std::span<const real> all) : point_radii(all.data(), all.size()) {
+    for (std::size_t i = 0; i < count; ++i)
+      if (!(radii[i] >= 0 && radii[i] <= largest_real))
+        throw std::invalid_argument("clearance: the radius of point " + std::to_string(i) + " is " +
+                                    std::to_string(radii[i]) + " m, which must be 0 or more");
+  }
+
+  CLEARANCE_HD real operator()(std::size_t i, vec3) const { return radii[i]; }
+  void check(std::size_t points) const {
+    if (points != count)
+      throw std::invalid_argument("clearance: there are " + std::to_string(points) + " points, but " +
+                                  std::to_string(count) + " radii");
+  }
+};
+
+/// The kind of a sensor that a program learns while it runs.
+enum class noise_kind : std::uint8_t { none, kinect, stereo, tof, lidar };
+
+/// The noise of one of these kinds.
+struct any_noise {
+  noise_kind kind = noise_kind::none;
+  kinect_noise kinect = {};
+  stereo_noise stereo = {1, 1, 0};
+  tof_noise tof = {0, 0};
+  lidar_noise lidar = {0};
+
+  CLEARANCE_HD real operator()(std::size_t i, vec3 p) const {
+    switch (kind) {
+      case noise_kind::kinect:
+        return kinect(i, p);
+      case noise_kind::stereo:
+        return stereo(i, p);
+      case noise_kind::tof:
+        return tof(i, p);
+      case noise_kind::lidar:
+        return lidar(i, p);
+      default:
+        return 0;
+    }
+  }
+  void check(std::size_t points) const {
+    kinect.check(points), stereo.check(points), tof.check(points), lidar.check(points);
+  }
+};
+
+}  // namespace clearance

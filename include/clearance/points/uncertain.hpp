@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// A source whose points may be somewhere around the places that it gives.
+
+#include <clearance/concepts/capsule.hpp>
+#include <clearance/points/sensor_noise.hpp>
+
+namespace clearance {
+
+/// What moves all points of a cloud, besides noise. Everything is 0 or more, and finite.
+struct cloud_uncertainty {
+  double shift = 0, turn = 0;  ///< By how much the sensor's pose may be wrong: metres, and radians about its (0,0,0).
+  double max_speed = 0;        ///< No obstacle is faster, in m/s.
+  double age = 0;              ///< So old is the cloud, in seconds.
+};
+
+/// What of a point's radius comes from where. Metres.
+struct radius_shares {
+  real noise = 0, calibration = 0, time = 0;
+
+  CLEARANCE_HD real sum() const { return noise + calibration + time; }
+};
+
+/// Where a source's points are seen from, in its frame: (0,0,0), or where its filter has the sensor.
+template <point_source S>
+CLEARANCE_HD vec3 sensor_of(const S& s) {
+  if constexpr (requires { s.filter.sensor; })
+    return s.filter.sensor;
+  else if constexpr (requires { sensor_of(s.source); })
+    return sensor_of(s.source);
+  else
+    return {0, 0, 0};
+}
+
+/// A source whose point i may be anywhere in a ball around it. The radius is that of the noise, `shift + turn |p|`
+/// (from the sensor), and `max_speed * age`, rounded up. Around capsules radii add. A radius of 1e6 m, a negative one
+/// and NaN say nothing: the point may be anywhere, which counts as `too_close`, and nothing is free then.
+///
+/// `min_distance` and other questions about an uncertain source are about all places where its points may be.
+template <point_source S, sensor_noise N = no_noise>
+struct uncertain {
+  static constexpr bool vague = true;
+
+  S source;
+  N noise;
+  real shift, turn, drift;  ///< Metres, radians, metres.
+  real spread;              ///< More than what arithmetic and the source's rounding lose in a radius.
+
+  /// Throws std::invalid_argument for options that are negative or not finite.
+  explicit uncertain(const S& source, const N& noise = {}, const cloud_uncertainty& of = {})
+      : source(source),
+        noise(noise),
+        shift(rounded_up(of.shift)),
+        turn(rounded_up(of.turn)),
+        drift(rounded_up(of.max_speed * of.age)),
+        spread(rounded_up(1 + 0x1p-19 + 1.5 * rounding_of(source).relative)) {
+    detail::check_uncertain(of.shift, "a sensor's shift"), detail::check_uncertain(of.turn, "a sensor's turn");
+    detail::check_uncertain(of.max_speed, "the obstacles' greatest speed");
+    detail::check_uncertain(of.age, "a cloud's age"), detail::check_uncertain(drift, "speed times age");
+    if constexpr (requires { noise.check(source.size()); }) noise.check(source.size());
+  }
+
+  CLEARANCE_HD std::size_t size() const { return source.size(); }
+  CLEARANCE_HD sample operator[](std::size_t i) const {
+    sample s = source[i];
+    if (!s.valid()) return s;
+    const radius_shares all = shares(i, s.position);
+    const bool known = all.noise >= 0 && all.sum() < 1e6f;
+    if (!known) s.dropped = drop_reason::too_close;
+    return s;
+  }
+  CLEARANCE_HD capsule around(std::size_t i, vec3 p) const {
+    const real radius = shares(i, p).sum();
+    if constexpr (capsule_source<S>) {
+      capsule c = source.around(i, p);
+      c.radius = c.radius + radius;
+      return c;
+    } else {
+      return {p, {0, 0, 0}, radius};
+    }
+  }
+  /// Point i is at p. What a turn adds along a capsule is in `rounding`.
+  CLEARANCE_HD radius_shares shares(std::size_t i, vec3 p) const {
+    const vec3 seen = p - sensor_of(source);
+    const real turned = capsule_source<S> ? 0 : length(seen);
+    return {product(noise(i, seen), spread), product(fma(turn, turned, shift), spread), product(drift, spread)};
+  }
+
+  /// Another source of as many points, with the same uncertainty.
+  template <point_source Other>
+  uncertain<Other, N> around_same(const Other& other) const {
+    uncertain<Other, N> same(other, noise);
+    same.shift = shift, same.turn = turn, same.drift = drift;
+    return same;
+  }
+
+  position_error rounding() const {
+    position_error own = rounding_of(source);
+    if constexpr (capsule_source<S>) own.relative += double(turn);
+    return own;
+  }
+
+  std::span<const std::byte> bytes() const
+    requires requires(const S s) { s.bytes(); }
+  {
+    return source.bytes();
+  }
+  uncertain at(const std::byte* copy) const
+    requires requires(const S s, const std::byte* b) { s.at(b); }
+  {
+    uncertain moved = *this;
+    moved.source = source.at(copy);
+    return moved;
+  }
+};
+
+/// The places that a source gives, without what is uncertain about them.
+struct as_measured {
+  template <point_source S>
+  CLEARANCE_HD S operator()(const S& s) const {
+    return s;
+  }
+  template <point_source S, sensor_noise N>
+  CLEARANCE_HD S operator()(const uncertain<S, N>& s) const {
+    return s.source;
+  }
+};
+
+/// What a source says about the radius of its point i at p.
+template <point_source S>
+CLEARANCE_HD radius_shares shares_of(const S& s, std::size_t i, vec3 p) {
+  if constexpr (requires { s.shares(i, p); })
+    return s.shares(i, p);
+  else
+    return {};
+}
+
+}  // namespace clearance

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// How far is a robot at least from what its sensors see, if places of points and of parts are uncertain?
+
+#include <clearance/points/uncertain.hpp>
+#include <clearance/questions/min_distance.hpp>
+#include <clearance/traversal/any_depth.hpp>
+
+namespace clearance {
+
+/// By how much a part may be elsewhere. Metres.
+struct part_radius {
+  double joints = 0;  ///< Because joints are not where they say,
+  double delay = 0;   ///< and because it moves while the answer is made.
+
+  double sum() const { return joints + delay; }
+};
+
+/// What lies between the distance of a pair and what is certain of it, one by one. Metres.
+struct uncertainty_shares {
+  double noise = 0, calibration = 0, time = 0;  ///< Of the point.
+  double joints = 0, delay = 0;                 ///< Of the part.
+  double gap = 0;                               ///< The part's gap and tolerance.
+  double rounding = 0;
+
+  double sum() const { return noise + calibration + time + joints + delay + gap + rounding; }
+};
+
+/// The pair of a part that is least far apart for certain. `distance` is what was measured, `lower` the rest, at least
+/// 0. The pair need not be the nearest. Without a valid point the distance is infinite.
+struct certain_pair : part_witness {
+  real lower = 0;
+  uncertainty_shares shares;
+};
+
+/// `lower <= distance to the solid <= upper` if no radius is too small. `certain` is the pair that decides `lower`.
+/// `collision`: a point is inside by more than all radii, which of a part that is a mesh is not known: `possible`.
+/// `nominal` is what min_distance says about the same points.
+struct certain_distance_result {
+  clearance::state state = clearance::state::no_data;
+  real lower = 0, upper = infinity;
+  min_distance_result nominal;
+  certain_pair certain;
+  std::vector<certain_pair> parts;
+  std::uint64_t anywhere = 0;  ///< So many points may be anywhere: if it is not 0, nothing is free.
+};
+
+namespace minimum {
+
+/// What is known of a part's least pair where its points lie.
+struct uncertain_pair {
+  part_witness measured;
+  radius_shares shares;
+};
+
+/// Reads a part's pair again, as it was measured. The last thread reads that of the nominal answer, of part `nearest`.
+template <class PartView, point_source Source>
+struct read_pair {
+  const PartView* parts;
+  const frames::placement* places;
+  std::uint32_t part_count, nearest;
+  Source source;
+  vec3 origin;
+  world_transform world_from_cloud;
+  std::uint32_t cloud;
+  const part_minimum* minima;
+  any_depth walk;
+  uncertain_pair* pairs;
+
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    if (cloud == 0) pairs[i] = {};
+    const part_minimum least = minima[i];
+    if (least.cloud != cloud || least.point >= source.size()) return;
+    const std::uint32_t k = i < part_count ? std::uint32_t(i) : nearest;
+    const vec3 p = source[least.point].position, q = places[k].part_from_cloud(p - origin);
+    const real radius = i < part_count ? shares_of(source, least.point, p).sum() : 0,
+               within = least.distance + radius + 4 * slack * (absolute(least.distance) + radius + length(q));
+    const auto f = evaluate(parts[k], q, within, walk);  // not far beyond the nearest
+    const contact here = f.at(q, places[k].world_from_part);
+    pairs[i] = {{f.distance, k, cloud, least.point, f.nearest.id, world_from_cloud(p), here.nearest, here.normal},
+                shares_of(source, least.point, p)};
+  }
+};
+
+}  // namespace minimum
+
+/// The least distance as measured, and what is certain of it: the least of (distance - the point's radius - the part's)
+/// over all pairs, less gap, tolerance and rounding. Clouds are `uncertain`; a bare one has radii 0. Throws
+/// std::invalid_argument if there is neither no radius nor one per part, or if one is negative or not finite.
+struct certain_distance {
+  std::vector<part_radius> parts = {};
+
+  using result = certain_distance_result;
+  template <class On, class PartView>
+  class engine;
+
+  void check(std::size_t count) const {
+    if (!parts.empty() && parts.size() != count)
+      throw std::invalid_argument("clearance: there are " + std::to_string(count) + " parts, but " +
+                                  std::to_string(parts.size()) + " radii of parts");
+    for (const part_radius& r : parts)
+      detail::check_uncertain(r.joints, "a part's radius by its joints"),
+          detail::check_uncertain(r.delay, "a part's radius by a delay");
+  }
+};
+
+template <class On, class PartView>
+class certain_distance::engine {
+ public:
+  template <class... Memory>
+  engine(const On& on, const model_view<PartView>& model, Memory... from)
+      : on_(on),
+        model_(model),
+        nominal_(on, model, from...),
+        search_(on, model, from...),
+        memory_(on, from...),
+        readable_(on, from...) {}
+
+  template <class Clouds>
+  result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const certain_distance& q) {
+    q.check(model_.size());
+    const auto& here = readable_(clouds);
+    result r;
+    r.nominal = nominal_.run(poses, mapped_clouds(here, as_measured{}), min_distance{});
+    const min_distance_per_part_result certain = search_.run(poses, here, min_distance_per_part{});
+    const bool vague = read(poses, here, certain.parts, r.nominal);
+    conclude(q, certain, vague || !q.parts.empty(), r);
+    return r;
+  }
+
+ private:
+  /// Is there an uncertain cloud?
+  template <class Clouds>
+  bool read(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::vector<part_minimum> minima,
+            const min_distance_result& nominal) {
+    const auto parts = std::uint32_t(model_.size());
+    minima.push_back({nominal.distance, nominal.cloud, nominal.point, nominal.primitive});
+    memory_.begin();
+    auto* const pairs = memory_.template room<minimum::uncertain_pair>(parts + 1).data();
+    const auto* const wanted = std::get<0>(memory_.put(minima));
+    errors_.assign(parts, 0);
+    bool vague = false;
+    frames::for_each_turn(
+        frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+          static_assert(points_alone<std::invoke_result_t<as_measured, const S&>>());
+          vague = vague || vague_source<S>;
+          for (std::uint32_t k = 0; k < parts; ++k) errors_[k] = std::max(errors_[k], double(frame_.places[k].error));
+          const auto* const places = std::get<0>(memory_.put(frame_.places));
+          on_.for_each(parts + (nominal.part != none),
+                       minimum::read_pair<PartView, S>{model_.parts, places, parts, nominal.part, source, frame_.origin,
+                                                       frame_.world_from_cloud, now.cloud, wanted,
+                                                       any_depth{stack_need(model_.depth, model_.width)}, pairs});
+        });
+    pairs_ = on_.copy_out(pairs, parts + 1);
+    return vague;
+  }
+
+  void conclude(const certain_distance& q, const min_distance_per_part_result& found, bool any_radius,
+                result& r) const {
+    r.anywhere = found.all.dropped[int(drop_reason::too_close)];
+    double lower = infinity;
+    const auto radius = [&q](std::size_t k) { return q.parts.empty() ? part_radius{} : q.parts[k]; };
+    for (std::size_t k = 0; k < model_.size(); ++k) {
+      const minimum::uncertain_pair& pair = pairs_[k];
+      certain_pair& part = r.parts.emplace_back();
+      if (found.parts[k].point == none) continue;
+      static_cast<part_witness&>(part) = pair.measured;
+      const frames::float_error error{errors_[k], frame_.error.per_metre};
+      const real least = found.parts[k].distance;
+      const double its = minimum::certain_distance(least, frames::slop(model_.facts[k]), error) - radius(k).sum();
+      part.lower = its > 0 && r.anywhere == 0 ? rounded_down(its) : 0;
+      const radius_shares& s = pair.shares;
+      part.shares = {s.noise,          s.calibration,   s.time,
+                     radius(k).joints, radius(k).delay, frames::slop(model_.facts[k]),
+                     error.at(least)};
+      if (its < lower) lower = its, r.certain = part;
+    }
+    if (r.nominal.part == none) return;  // nothing is known
+    r.lower = lower > 0 && r.anywhere == 0 ? rounded_down(lower) : 0;
+    const double uncertain = pairs_.back().shares.sum() + radius(r.nominal.part).sum();
+    const double most = double(r.nominal.distance) + model_.facts[r.nominal.part].tolerance +
+                        frame_.error.at(r.nominal.distance) + uncertain;
+    const bool inside = any_radius ? most < 0 : r.nominal.state == state::collision;
+    r.upper = inside ? 0 : any_radius ? rounded_up(most) : r.nominal.upper;
+    if (inside) r.lower = 0;
+    r.state = inside ? state::collision : r.lower > 0 ? state::free : state::possible;
+  }
+
+  On on_;
+  model_view<PartView> model_;
+  min_distance::engine<On, PartView> nominal_;
+  min_distance_per_part::engine<On, PartView> search_;
+  backends::kept_memory<On> memory_;
+  frames::readable_clouds<On> readable_;
+  frames::cloud_frame frame_;
+  std::vector<double> errors_;
+  std::vector<minimum::uncertain_pair> pairs_;
+};
+
+}  // namespace clearance

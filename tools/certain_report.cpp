@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "certain_report.hpp"
+
+#include "report_text.hpp"
+
+#include <clearance/io/part_radii.hpp>
+
+using namespace clearance;
+
+namespace {
+
+json shares_of(const uncertainty_shares& s) {
+  return {{"noise", s.noise}, {"calibration", s.calibration}, {"time", s.time},        {"joints", s.joints},
+          {"delay", s.delay}, {"gap", or_null(s.gap)},        {"rounding", s.rounding}};
+}
+
+/// One number for all values, or one each.
+std::vector<double> each_of(const char* option, const std::vector<double>& given, const io::kinematic_tree& tree) {
+  if (given.size() == 1) return std::vector<double>(tree.size(), given[0]);
+  if (!given.empty() && given.size() != tree.size())
+    throw usage_error(option, "needs one number, or one for each of the robot's " + std::to_string(tree.size()) +
+                                  " movable joints; here are " + std::to_string(given.size()));
+  return given;
+}
+
+/// A part's ball in its link's frame.
+part_facts in_link(const part_facts& facts, const Eigen::Isometry3d& link_from_part) {
+  part_facts moved = facts;
+  const Eigen::Vector3d center = link_from_part * center_of(facts);
+  moved.center = {real(center.x()), real(center.y()), real(center.z())};
+  moved.radius = rounded_up(facts.radius + 0x1p-20 * center.norm());
+  return moved;
+}
+
+}  // namespace
+
+std::vector<part_radius> radii_of(const query_options& asked, const asked_robot& robot,
+                                  const std::vector<double>& joints, std::span<const part_facts> facts) {
+  const joints_off& off = *asked.certain;
+  if (off.errors.empty() && off.speeds.empty()) return {};
+  const io::kinematic_tree& tree = robot.description.kinematics();
+  const auto errors = each_of("--joint-error", off.errors, tree), speeds = each_of("--joint-speed", off.speeds, tree);
+  std::vector<std::size_t> links;
+  std::vector<part_facts> placed;
+  for (std::size_t k = 0; k < facts.size(); ++k) {
+    links.push_back(robot.link_of(k));
+    const attached_thing* held = robot.held_as(k);
+    placed.push_back(held ? in_link(facts[k], held->from.pose) : facts[k]);
+  }
+  return io::part_radii(tree, links, placed, joints, {errors, speeds, off.delay}, {asked.ignore_limits});
+}
+
+json certain_of(const certain_pair& pair, const std::vector<const observation*>& clouds) {
+  if (pair.part == none) return nullptr;
+  const observation* const cloud = clouds[pair.cloud];
+  const auto at = pixel(*cloud, pair.point);
+  return {{"lower", pair.lower},
+          {"distance", or_null(pair.distance)},
+          {"cloud", cloud->name},
+          {"point", pair.point},
+          {"pixel", at ? json{at->first, at->second} : json(nullptr)},
+          {"point_xyz", {pair.at.x, pair.at.y, pair.at.z}},
+          {"primitive", pair.primitive == none ? json(nullptr) : json(pair.primitive)},
+          {"nearest_xyz", {pair.nearest.x, pair.nearest.y, pair.nearest.z}},
+          {"shares", shares_of(pair.shares)}};
+}
+
+json certain_of(const certain_distance_result& r, const std::vector<const observation*>& clouds,
+                const std::vector<body>& bodies) {
+  json out = {{"state", to_string(r.state)}, {"lower", r.lower}, {"upper", or_null(r.upper)}, {"anywhere", r.anywhere}};
+  out["part"] = r.certain.part == none ? json(nullptr) : json(bodies[r.certain.part].name);
+  out["pair"] = certain_of(r.certain, clouds);
+  return out;
+}
+
+std::string certain_text(const certain_distance_result& r, const std::vector<body>& bodies) {
+  std::string out = text("certain   %s: %.6f to %.6f m", to_string(r.state), double(r.lower), double(r.upper));
+  if (r.certain.part == none) return out + '\n';
+  const uncertainty_shares& s = r.certain.shares;
+  out += ", by " + io::printable(bodies[r.certain.part].name) +
+         text(" and point %u, which is measured %.6f m away\n", r.certain.point, double(r.certain.distance));
+  return out + text(
+                   "          less noise %.6f, calibration %.6f, time %.6f, joints %.6f, delay %.6f, gap %.6f, "
+                   "rounding %.6f\n",
+                   s.noise, s.calibration, s.time, s.joints, s.delay, s.gap, s.rounding);
+}
+
+void note_anywhere(const certain_distance_result& r, std::vector<std::string>& notes) {
+  if (r.anywhere != 0)
+    notes.push_back(
+        text("%llu points may be anywhere, so nothing is free: they are too close to be measured, or where "
+             "--sensor measures nothing, such as behind a camera (z is forward)",
+             (unsigned long long)r.anywhere));
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// What the reports say about uncertainty.
+
+#include "asked_robot.hpp"
+#include "report_json.hpp"
+
+#include <clearance/questions/certain_distance.hpp>
+
+/// One radius per part, by --joint-error, --joint-speed and --delay. Empty: none was given.
+std::vector<clearance::part_radius> radii_of(const query_options& asked, const asked_robot& robot,
+                                             const std::vector<double>& joints,
+                                             std::span<const clearance::part_facts> facts);
+
+/// State and bracket, the pair that decides its lower end, and what it loses to what.
+json certain_of(const clearance::certain_distance_result& r, const std::vector<const observation*>& clouds,
+                const std::vector<body>& bodies);
+/// The same of one part.
+json certain_of(const clearance::certain_pair& pair, const std::vector<const observation*>& clouds);
+
+/// Lines of the text.
+std::string certain_text(const clearance::certain_distance_result& r, const std::vector<body>& bodies);
+
+/// Adds a note if points may be anywhere.
+void note_anywhere(const clearance::certain_distance_result& r, std::vector<std::string>& notes);
