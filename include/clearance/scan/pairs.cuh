@@ -7,20 +7,20 @@
 #include <clearance/scan/alone.cuh>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/leaf_first.cuh>
+#include <clearance/scan/pair_elements.cuh>
 #include <clearance/scan/reader.cuh>
 
 namespace clearance::scan {
 
 template <class Tally>
-struct pair_search : tree_steps<Tally> {
+struct pair_search : pair_elements<Tally> {
   using frame = frame_parts<Tally>;
   using steps = tree_steps<Tally>;
   using hierarchy = typename Tally::part_type::hierarchy_type;
-  using traits = bounding_volume_traits<typename hierarchy::volume_type>;
   using memory = typename Tally::block;
   using pending = typename memory::pending_type;
   using node_type = typename steps::node_type;
-  using element = typename element_of_tally<Tally>::type;
+  using typename pair_elements<Tally>::element;
   using pair = pair_of<element>;
   static constexpr bool any_size = node_of<hierarchy>::any_size;
 
@@ -35,20 +35,12 @@ struct pair_search : tree_steps<Tally> {
     for (int j = 0; j < quad; ++j) {
       unsigned its = those >> j & 0x11111111u;
       for (; its != 0 && slot < pair_capacity; its &= its - 1, ++slot) {
-        s.pair_table[slot] = {element_at(first + j, p.at[j]), s.head.first + first + j};
+        s.pair_table[slot] = {pair_search::element_at(first + j, p.at[j]), s.head.first + first + j};
         s.part_of_pair[slot] = std::uint16_t(first_part + (unsigned(__ffs(int(its))) - 1) / quad);
       }
       left |= its << j;
     }
     return left;
-  }
-
-  /// A point of this cloud less the origin, or its capsule.
-  static __device__ element element_at(std::uint32_t i, vec3 x) {
-    if constexpr (std::is_same_v<element, vec3>)
-      return x;
-    else
-      return frame::here().head.answer.around.less(i, x, frame::here().origin);
   }
 
   /// Searches all kept pairs to the end. `found` is at least their number. The whole block calls it together.
@@ -70,27 +62,18 @@ struct pair_search : tree_steps<Tally> {
  private:
   static constexpr std::uint32_t mates = 4;             ///< Lanes that share a node, two children per lane.
   static constexpr std::uint32_t at_once = 32 / mates;  ///< Nodes that a warp tests together.
-
   static __device__ std::uint32_t lane() { return threadIdx.x % mates; }
   static __device__ std::uint32_t group() { return threadIdx.x % 32 / mates; }
 
-  static __device__ bool near_part(const memory& s, std::uint32_t part, vec3 x) { return s.near_part[part].passes(x); }
-  static __device__ bool near_part(const memory& s, std::uint32_t part, const capsule& x) {
-    return s.near_part[part].passes(frames::capsule_test(x));
-  }
-
-  /// Is the point in the part's solid? Then its distance is 0, and the tree need not be searched.
-  static __device__ bool inside(const element& whole, std::uint32_t point, std::uint32_t k, std::uint32_t pair) {
+  /// Is it in the part's solid? Then its distance is 0, and the tree need not be searched.
+  static __device__ bool inside(const element& e, std::uint32_t point, std::uint32_t k, std::uint32_t pair) {
     if constexpr (has_interior<typename Tally::part_type>) {
       memory& s = frame::here();
-      if (Tally::settled(s, k, point)) return true;
-      if constexpr (std::is_same_v<element, capsule>)
-        if (whole.radius == 0 && Tally::touched(s, k, point)) return true;
-      const vec3 q = start_of(whole);
+      if (pair_search::settled(s, k, point, e)) return true;
       const auto& view = frame::view(k);
-      if (!view.interior.inside(q)) return false;
+      if (!view.interior.inside(start_of(e))) return false;
       Tally::take_inside(s, k, point, pair);
-      if (Tally::wants_certain(s) && certainly_inside(view, q, frame::place(k).error, walk_alone<Tally>{}))
+      if (Tally::wants_certain(s) && certainly_inside(view, start_of(e), frame::place(k).error, walk_alone<Tally>{}))
         Tally::take_certain(s);
       return true;
     }
@@ -103,7 +86,7 @@ struct pair_search : tree_steps<Tally> {
     memory& s = frame::here();
     const pair c = live ? s.pair_table[i] : pair{};
     const std::uint32_t part = live ? s.part_of_pair[i] : 0;
-    live = live && near_part(s, part, c.x) && !Tally::skips(s, part, c.point, i, start_of(c.x));
+    live = live && pair_search::near_part(s, part, c.x) && !Tally::skips(s, part, c.point, i, start_of(c.x));
     if constexpr (Tally::goes_ahead)
       live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0;  // others may be changing its inputs
     const element q = moved(frame::place(part).part_from_cloud, c.x);
@@ -120,8 +103,8 @@ struct pair_search : tree_steps<Tally> {
     const std::uint32_t pair_and_part = part << 16 | i;
     const real reach = Tally::reach_of_pair(s, part, i);
     top = push({-infinity, root, pair_and_part}, leaf && lane() == 0, stack, top);
-    return push_children(-infinity, root, live && !leaf ? steps::size(part, root) : 0, pair_and_part, q, reach, stack,
-                         top);
+    const std::uint32_t size = live && !leaf ? steps::size(part, root) : 0;
+    return push_children(-infinity, root, size, pair_and_part, q, reach, stack, top);
   }
 
   /// A warp's share of the pairs, then of what warps have given away: a far point can be about equally far from
@@ -274,8 +257,8 @@ struct pair_search : tree_steps<Tally> {
     bool within[each];
 #pragma unroll
     for (std::uint32_t j = 0; j < each; ++j) {
-      const std::uint32_t k = lane() + j * mates;
       child[j] = {infinity, {}, of_child(pair_and_part)};
+      const std::uint32_t k = lane() + j * mates;
       if (k < count) {
         const auto step = steps::child(steps::part_of(pair_and_part), node, first_of(pair_and_part) + k);
         child[j] = {bound_of(step.volume, q, reach), step.node, of_child(pair_and_part)};
