@@ -84,11 +84,14 @@ inline std::vector<packed_part> load_spheres_yaml(const std::string& file) {
   return parts;
 }
 
-/// Saves each link's spheres with every float exact; the certificates are lost.
+/// Saves each link's spheres with every float exact; the certificates are lost. Throws std::runtime_error for a name
+/// that is not UTF-8, because YAML would hold another one.
 inline void save_spheres_yaml(std::span<const packed_part> parts, const std::string& file) {
   YAML::Emitter out;
   out << YAML::BeginMap << YAML::Key << "collision_spheres" << YAML::Value << YAML::BeginMap;
   for (const packed_part& part : parts) {
+    if (!is_utf8(part.name))
+      refuse(file, "the name " + io::quoted(part.name) + " is not UTF-8, and YAML cannot hold it");
     out << YAML::Key << YAML::DoubleQuoted << part.name << YAML::Value << YAML::BeginSeq;
     for (const inner_sphere& s : part.spheres.spheres)
       out << YAML::BeginMap << YAML::Key << "center" << YAML::Value << YAML::Flow << YAML::BeginSeq
