@@ -3,8 +3,12 @@
 #include "forms/forms.hpp"
 #include "support/catch.hpp"
 
+#include <array>
+#include <atomic>
 #include <fstream>
 #include <sstream>
+#include <thread>
+#include <vector>
 
 namespace forms_test {
 
@@ -73,6 +77,25 @@ TEST_CASE("While points are unseen, nothing is said that another point could mak
       }
     });
   }
+}
+
+TEST_CASE("Threads that share a robot, each with a prepared question of its own, get the bits of one") {
+  verdict v;
+  ask_everything([&]<class Q>(const char* name, const Q& q, const auto& model, const moving_frames& f) {
+    const auto once = ask(host{}, model, f.s.poses, f.here(), q);
+    std::array<std::atomic<bool>, 4> same{};
+    std::vector<std::thread> threads;
+    for (std::size_t k = 0; k < same.size(); ++k)
+      threads.emplace_back([&, k] {
+        clearance::query prepared(host{unsigned(k % 3)}, model, q);  // all threads of TBB, one, two
+        bool all = same_answer(once, ask(host{}, model, f.s.poses, f.here(), q));
+        for (int time = 0; time < 2; ++time)
+          all = all && same_answer(once, typename Q::result(prepared(f.s.poses, f.here())));
+        same[k] = all;
+      });
+    for (std::thread& each : threads) each.join();
+    for (const auto& each : same) v.require(each, name, ", frame ", f.number);
+  });
 }
 
 TEST_CASE("docs/choosing.md has the table of forms that the questions declare") {
