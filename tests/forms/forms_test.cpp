@@ -87,8 +87,9 @@ TEST_CASE("Threads that share a robot, each with a prepared question of its own,
     std::vector<std::thread> threads;
     for (std::size_t k = 0; k < same.size(); ++k)
       threads.emplace_back([&, k] {
-        clearance::query prepared(host{unsigned(k % 3)}, model, q);  // all threads of TBB, one, two
-        bool all = same_answer(once, ask(host{}, model, f.s.poses, f.here(), q));
+        const host on{std::array{0u, 1u, 2u, 1u}[k]};  // all threads of TBB, this one alone, two
+        clearance::query prepared(on, model, q);
+        bool all = same_answer(once, ask(on, model, f.s.poses, f.here(), q));
         for (int time = 0; time < 2; ++time)
           all = all && same_answer(once, typename Q::result(prepared(f.s.poses, f.here())));
         same[k] = all;
