@@ -75,7 +75,7 @@ attached_thing load_attached(const query_options& asked, const attachment_option
   }
   if (asked.model != model_kind::spheres)
     throw usage_error("--attach", from.file + " holds spheres, which are for --model spheres");
-  auto parts = io::within_memory(from.file, [&] { return io::load_spheres(from.file); });
+  auto parts = io::within_memory(from.file, [&] { return io::load_spheres(from.file, asked.limits); });
   if (parts.size() != 1)
     io::refuse(from.file,
                "holds the spheres of " + std::to_string(parts.size()) + " parts, and --attach takes those of one");
@@ -160,7 +160,8 @@ std::vector<body> make_bodies(const query_options& asked, const asked_robot& rob
                               std::vector<std::string>& notes) {
   if (asked.model == model_kind::spheres) check_kept(body_options_of(asked).cache, !asked.cache.empty(), notes);
   std::vector<io::packed_part> given;
-  if (!asked.packing.empty()) given = io::within_memory(asked.packing, [&] { return io::load_spheres(asked.packing); });
+  if (!asked.packing.empty())
+    given = io::within_memory(asked.packing, [&] { return io::load_spheres(asked.packing, asked.limits); });
   const auto spheres_of = assigned(given, robot.description, asked);
   const bool packs_held = std::ranges::any_of(robot.held, [](const auto& thing) { return !thing.spheres; });
   if (asked.spheres && !packs_held && std::ranges::count(spheres_of, nullptr) == 0)

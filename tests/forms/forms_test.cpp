@@ -3,8 +3,12 @@
 #include "forms/forms.hpp"
 #include "support/catch.hpp"
 
+#include <array>
+#include <atomic>
 #include <fstream>
 #include <sstream>
+#include <thread>
+#include <vector>
 
 namespace forms_test {
 
@@ -73,6 +77,26 @@ TEST_CASE("While points are unseen, nothing is said that another point could mak
       }
     });
   }
+}
+
+TEST_CASE("Threads that share a robot, each with a prepared question of its own, get the bits of one") {
+  verdict v;
+  ask_everything([&]<class Q>(const char* name, const Q& q, const auto& model, const moving_frames& f) {
+    const auto once = ask(host{}, model, f.s.poses, f.here(), q);
+    std::array<std::atomic<bool>, 4> same{};
+    std::vector<std::thread> threads;
+    for (std::size_t k = 0; k < same.size(); ++k)
+      threads.emplace_back([&, k] {
+        const host on{std::array{0u, 1u, 2u, 1u}[k]};  // all threads of TBB, this one alone, two
+        clearance::query prepared(on, model, q);
+        bool all = same_answer(once, ask(on, model, f.s.poses, f.here(), q));
+        for (int time = 0; time < 2; ++time)
+          all = all && same_answer(once, typename Q::result(prepared(f.s.poses, f.here())));
+        same[k] = all;
+      });
+    for (std::thread& each : threads) each.join();
+    for (const auto& each : same) v.require(each, name, ", frame ", f.number);
+  });
 }
 
 TEST_CASE("docs/choosing.md has the table of forms that the questions declare") {

@@ -3,9 +3,8 @@
 // Damages a document in every way of a family, one at a time, and says which outcomes are allowed.
 
 #include "io/robot_folder.hpp"
+#include "io/xml_text.hpp"
 #include "support/catch.hpp"
-
-#include <clearance/io/xml.hpp>
 
 #include <functional>
 #include <string>
@@ -28,20 +27,6 @@ inline void check_sentence(const std::string& text, const std::string& file) {
   CHECK(text.size() <= 400);
   for (const char c : text)
     if (static_cast<unsigned char>(c) < ' ') FAIL("a control character in: " << text);
-}
-
-inline std::string escaped(const std::string& text) {
-  std::string made;
-  for (const char c : text) made += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return made;
-}
-
-inline std::string xml_text(const clearance::io::xml_element& e) {
-  std::string made = "<" + e.name;
-  for (const auto& [key, value] : e.attributes) made += " " + key + "=\"" + escaped(value) + "\"";
-  made += ">" + escaped(e.text);
-  for (const auto& child : e.children) made += xml_text(child);
-  return made + "</" + e.name + ">";
 }
 
 /// Every element of a document in order, with the link or joint that it is in.

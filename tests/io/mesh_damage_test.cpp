@@ -344,6 +344,25 @@ TEST_CASE("a line of an OFF or OBJ file has as many numbers as its kind says, or
   }
 }
 
+TEST_CASE("a mesh of too many triangles, with a coordinate that is none, or of several scenes is refused") {
+  const mesh_file obj("m.obj"), ply("m.ply"), binary("m.glb");
+  CHECK(obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n").refusal.empty());
+  CHECK(says(sentence([&] { io::load_mesh(obj.file, {.triangles = 1}); }), "more than the 1 triangles"));
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n";
+  CHECK(ply(head + "0 1 0\n3 0 1 2\n").refusal.empty());
+  for (const std::string z : {"nan", "inf", "-inf"})
+    CHECK(says(ply(head + "0 1 " + z + "\n3 0 1 2\n").refusal, ":12: vertex 2 has a coordinate that is not finite"));
+  nlohmann::json two = glb_json(), many = glb_json();
+  two["scenes"].push_back(two["scenes"][0]);
+  CHECK(binary(glb(two.dump(), glb_bytes())).refusal.empty());  // it says which
+  two.erase("scene");
+  CHECK(says(binary(glb(two.dump(), glb_bytes())).refusal, "has 2 scenes, and does not say which"));
+  many["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"] = nlohmann::json::object();
+  CHECK(says(binary(glb(many.dump(), glb_bytes())).refusal, "has instances by an extension"));
+}
+
 TEST_CASE("what a small file unfolds to has limits, which a sentence names and a caller sets") {
   const mesh_file dae("m.dae"), binary("m.glb");
   // COLLADA: nodes inside one another, instances of instances, a node inside itself, many params, deep elements.

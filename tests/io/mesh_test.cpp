@@ -5,7 +5,9 @@
 
 #include <clearance/io/mesh.hpp>
 
+#include <cmath>
 #include <cstring>
+#include <numbers>
 #include <set>
 
 namespace mesh_test {
@@ -142,6 +144,46 @@ TEST_CASE("a concave polygon becomes triangles that cover it once") {
   // A bow tie and a polygon without area stay whole in number.
   CHECK(load_mesh(folder.put("bow.obj", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n")).triangles.size() == 2);
   CHECK(load_mesh(folder.put("flat.obj", "v 0 0 0\nv 1 1 0\nf 1 2 1 2 1\n")).triangles.size() == 3);
+}
+
+TEST_CASE("a polygon of very many corners is covered once, or refused, and never something else") {
+  const auto comb = [](std::size_t teeth) {  // two corners a tooth, of area 5.5, and a strip of height 1 below
+    io::polygon_mesh made;
+    for (std::size_t i = 2 * teeth; i-- > 0;) made.vertices.push_back({double(i), i % 2 ? 10.0 : 1.0, 0});
+    made.vertices.push_back({0, 0, 0});
+    made.vertices.push_back({2.0 * double(teeth) - 1, 0, 0});
+    return made;
+  };
+  const auto disc = [](std::size_t corners) {
+    io::polygon_mesh made;
+    for (std::size_t i = 0; i < corners; ++i) {
+      const double angle = 2 * std::numbers::pi * double(i) / double(corners);
+      made.vertices.push_back({std::cos(angle), std::sin(angle), 0});
+    }
+    return made;
+  };
+  const auto cut = [](io::polygon_mesh mesh, std::size_t patience = io::usual_patience) {
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) mesh.corners.push_back(std::uint32_t(i));
+    mesh.ends = {mesh.corners.size()};
+    return io::triangulate(std::move(mesh), "m.obj", patience);
+  };
+  CHECK(unsigned_area(cut(comb(2500))) == Approx(2 * 5.5 * 4999));
+  const std::string why = sentence([&] { cut(comb(2500), 5'000'000); });
+  CHECK(why == "m.obj: has a face of 5002 corners that is too intricate to be cut into triangles here");
+  const double round = std::sin(2 * std::numbers::pi / 3000) * 3000;  // twice the area
+  CHECK(unsigned_area(cut(disc(3000))) == Approx(round));
+  CHECK(unsigned_area(cut(disc(3000), 100'000)) == Approx(round));  // a fan will do
+  // All faces of a file share the patience.
+  std::size_t enough = 0;
+  while (!sentence([&] { cut(comb(50), enough); }).empty()) enough += 100;
+  io::polygon_mesh two = comb(50);
+  for (const std::size_t end : {102, 204}) {
+    for (std::uint32_t i = 0; i < 102; ++i) two.corners.push_back(i);
+    two.ends.push_back(end);
+  }
+  CHECK(enough > 1000);
+  CHECK(says(sentence([&] { io::triangulate(io::polygon_mesh(two), "m.obj", enough); }), "a face of 102 corners"));
+  CHECK(io::triangulate(io::polygon_mesh(two), "m.obj").triangles.size() == 200);
 }
 
 TEST_CASE("a COLLADA file's unit counts, its up axis does not, and a mirrored node still faces out") {

@@ -67,6 +67,21 @@ TEST_CASE("the three encodings of a PCD file give the same records, invalid ones
   }
 }
 
+TEST_CASE("whole numbers of a PCD file keep sign and digits, in every type and size") {
+  const auto check = []<class T>(T, const std::string& type) {
+    constexpr T least = std::numeric_limits<T>::min(), most = std::numeric_limits<T>::max();
+    const std::string size = std::to_string(sizeof(T)), sizes = size + ' ' + size + ' ' + size;
+    const io::cloud c = read(
+        header("x y z", sizes, type + ' ' + type + ' ' + type, "1 1 1", "WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA binary\n") +
+        raw_bytes(least, most, T(1), T(100), T(most - 1), T(least + 1)));
+    REQUIRE(c.points.size() == 2);
+    CHECK(c.points[0] == Eigen::Vector3d(double(least), double(most), 1));
+    CHECK(c.points[1] == Eigen::Vector3d(100, double(T(most - 1)), double(T(least + 1))));
+  };
+  check(std::int8_t(), "I"), check(std::int16_t(), "I"), check(std::int32_t(), "I"), check(std::int64_t(), "I");
+  check(std::uint8_t(), "U"), check(std::uint16_t(), "U"), check(std::uint32_t(), "U"), check(std::uint64_t(), "U");
+}
+
 TEST_CASE("fields may have any order and type, and counts above one") {
   const std::string bytes =
       header("z _ y n x", "2 1 8 4 1", "I U F F U", "1 3 1 2 1", "WIDTH 1\nHEIGHT 2\nPOINTS 2\nDATA binary\n");

@@ -174,6 +174,10 @@ TEST_CASE("a part is all shapes of one link, each at its origin, and links witho
   visuals.geometry = io::robot_geometry::visual;
   CHECK(load_robot(file, visuals).parts()[0].tessellation_error > 0);
   CHECK(load_robot(file, visuals).notes().empty());
+  const io::robot seen = load_robot(folder.put("c.urdf", robot(a_link("l", collision(box)))), visuals);
+  CHECK(seen.parts()[0].used == io::robot_geometry::collision);
+  REQUIRE(seen.notes().size() == 1);
+  CHECK(says(seen.notes()[0], "\"l\": has no visual geometry, and its collision is used"));
   io::robot_options without;
   without.exclude_links = {"a_hand", "frame"};
   CHECK(load_robot(file, without).parts().size() == 1);

@@ -112,6 +112,18 @@ TEST_CASE("spheres come back from YAML to the bit, link by link") {
   }
 }
 
+TEST_CASE("YAML refuses to keep a name that it would change") {
+  for (const std::string name : {"\xff", "a\x80", "\xc3", "\xed\xa0\x80", "\xf4\x90\x80\x80"}) {
+    const scratch_file file(".yml");
+    std::vector<io::packed_part> parts(1);
+    parts[0].name = name;
+    parts[0].spheres = io::uncertified({{{0, 0, 0}, 1}});
+    const std::string why = refusal([&] { io::save_spheres_yaml(parts, file.path); });
+    CHECK(why.ends_with("is not UTF-8, and YAML cannot hold it"));
+    CHECK(std::filesystem::file_size(file.path) == 0);  // nothing is written
+  }
+}
+
 TEST_CASE("cuRobo's files are read as its users have them") {
   const std::string list =
       "\n    link_a:\n      - \"center\": [0.0, 0.1, -0.2] # first\n        \"radius\": 0.03\n      - center: [1, 2, "

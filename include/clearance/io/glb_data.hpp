@@ -42,9 +42,11 @@ inline glb_chunks read_glb_chunks(std::string_view bytes, const std::string& fil
 
 class glb_data {
  public:
-  glb_data(const gltf_value& root, std::string_view data) : root_(root), data_(data) {}
+  glb_data(const gltf_value& root, std::string_view data, const mesh_limits& limits)
+      : root_(root), data_(data), limits_(limits) {}
 
-  /// The faces of one mesh. Points, lines, and everything that moves vertices are refused.
+  /// The faces of one mesh, within limits: any number of primitives may use the same data. Points, lines, and
+  /// everything that moves vertices are refused.
   polygon_mesh mesh(const gltf_value& from) const {
     from.only({"primitives", "weights", "name", "extensions", "extras"});
     polygon_mesh made;
@@ -74,6 +76,9 @@ class glb_data {
           made.corners.push_back(std::uint32_t(first + corners[c]));
         made.ends.push_back(made.corners.size());
       }
+      if (made.ends.size() > limits_.triangles || made.vertices.size() / 3 > limits_.triangles)
+        from.refuse("has, with all its primitives, more than the " + std::to_string(limits_.triangles) +
+                    " triangles that the limit leaves (mesh_limits::triangles)");
     }
     return made;
   }
@@ -159,6 +164,7 @@ class glb_data {
 
   const gltf_value& root_;
   std::string_view data_;
+  const mesh_limits& limits_;
 };
 
 }  // namespace clearance::io

@@ -56,7 +56,7 @@ inline triangle_mesh load_mesh(const std::filesystem::path& path, const mesh_lim
     if (mesh.corners.size() - 2 * mesh.ends.size() > limits.triangles)
       refuse(file, "has more than the " + std::to_string(limits.triangles) +
                        " triangles that the limit leaves (mesh_limits::triangles)");
-    return triangulate(std::move(mesh));
+    return triangulate(std::move(mesh), file);
   });
 }
 

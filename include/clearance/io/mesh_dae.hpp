@@ -173,6 +173,7 @@ class dae_reader {
 
   void walk(const xml_place& node, Eigen::Affine3d here, std::size_t depth) {
     scene_.visit(depth);
+    scene_.look_at(node.element.children.size() + node.element.attributes.size());
     node.only({"id", "name", "sid", "type", "layer"},
               {"asset", "matrix", "rotate", "scale", "translate", "node", "instance_node", "instance_geometry",
                "instance_camera", "instance_light", "extra"});

@@ -63,7 +63,7 @@ inline polygon_mesh read_glb(std::string_view bytes, const std::string& file, co
              "textures", "images", "samplers", "skins", "animations", "cameras", "extensionsUsed", "extensionsRequired",
              "extensions", "extras"});
   check_gltf_extensions(root);
-  const glb_data data(root, chunks.data);
+  const glb_data data(root, chunks.data, limits);
   std::vector<std::optional<polygon_mesh>> meshes(root.size("meshes"));
   const std::size_t nodes = root.size("nodes"), scenes = root.size("scenes");
   if (scenes != 1 && !root.has("scene"))

@@ -51,6 +51,14 @@ class mesh_scene {
                         " nodes, instances counted each time (mesh_limits::nodes)");
   }
 
+  /// Counts what has to be looked at within a node, each time that the node has an instance.
+  void look_at(std::size_t children) {
+    looked_at_ += children;
+    if (looked_at_ > limits_.values)
+      refuse(file_, "has more than " + std::to_string(limits_.values) +
+                        " elements in its nodes, instances counted each time (mesh_limits::values)");
+  }
+
   polygon_mesh take() { return std::move(made_); }
 
  private:
@@ -62,7 +70,7 @@ class mesh_scene {
   const std::string& file_;
   const mesh_limits& limits_;
   polygon_mesh made_;
-  std::uint64_t nodes_ = 0;
+  std::uint64_t nodes_ = 0, looked_at_ = 0;
 };
 
 }  // namespace clearance::io

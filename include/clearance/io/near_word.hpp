@@ -32,6 +32,14 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return d[a.size()][b.size()];
 }
 
+/// Is the edit distance 1? Takes time in proportion to the words' length.
+inline bool one_letter_off(std::string_view a, std::string_view b) {
+  const auto same = std::size_t(std::ranges::mismatch(a, b).in1 - a.begin());
+  a.remove_prefix(same), b.remove_prefix(same);
+  while (!a.empty() && !b.empty() && a.back() == b.back()) a.remove_suffix(1), b.remove_suffix(1);
+  return std::max(a.size(), b.size()) == 1 || (a.size() == 2 && b.size() == 2 && a[0] == b[1] && a[1] == b[0]);
+}
+
 /// May a word be a misspelling of another? Yes with up to two wrong letters, or one if the known word has four letters
 /// or fewer; case does not matter.
 inline bool near_word(std::string_view word, std::string_view known) {

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,14 +59,23 @@ struct ply_header {
 
 namespace detail {
 
-inline void take_ply_element(ply_header& header, const std::vector<std::string_view>& line, const std::string& file) {
+/// The names that were declared: elements, and properties of the last one.
+struct ply_names {
+  std::set<std::string_view> elements, properties;
+};
+
+inline void take_ply_element(ply_header& header, ply_names& names, const std::vector<std::string_view>& line,
+                             const std::string& file) {
   const auto count = line.size() == 3 ? number<std::uint64_t>(line[2]) : std::nullopt;
   if (!count) refuse(file, "an element of a PLY header needs a name and a count", header.lines);
-  if (header.find(line[1])) refuse(file, "the element " + quoted(line[1]) + " is declared twice", header.lines);
+  if (!names.elements.insert(line[1]).second)
+    refuse(file, "the element " + quoted(line[1]) + " is declared twice", header.lines);
   header.elements.push_back({std::string(line[1]), *count, {}});
+  names.properties.clear();
 }
 
-inline void take_ply_property(ply_header& header, const std::vector<std::string_view>& line, const std::string& file) {
+inline void take_ply_property(ply_header& header, ply_names& names, const std::vector<std::string_view>& line,
+                              const std::string& file) {
   const bool list = line.size() > 1 && line[1] == "list";
   if (line.size() != (list ? 5 : 3) || header.elements.empty())
     refuse(file, "a PLY property needs an element before it, a known type and a name", header.lines);
@@ -73,9 +83,8 @@ inline void take_ply_property(ply_header& header, const std::vector<std::string_
   if (!type || (list && !count))
     refuse(file, "a PLY property needs an element before it, a known type and a name", header.lines);
   if (count && !is_whole(*count)) refuse(file, "the count of a PLY list must be of a whole type", header.lines);
-  for (const auto& other : header.elements.back().properties)
-    if (other.name == line.back())
-      refuse(file, "the property " + quoted(line.back()) + " is declared twice", header.lines);
+  if (!names.properties.insert(line.back()).second)
+    refuse(file, "the property " + quoted(line.back()) + " is declared twice", header.lines);
   header.elements.back().properties.push_back({std::string(line.back()), *type, count});
 }
 
@@ -84,6 +93,7 @@ inline void take_ply_property(ply_header& header, const std::vector<std::string_
 /// Takes the header off `rest`, which leaves the data.
 inline ply_header take_ply_header(std::string_view& rest, const std::string& file) {
   ply_header header;
+  detail::ply_names names;
   const std::string_view all = rest = without_mark(rest);
   if (const auto first = take_line(rest); first != "ply" && first != "PLY") refuse(file, "is not a PLY file");
   for (header.lines = 1; !rest.empty();) {
@@ -102,9 +112,9 @@ inline ply_header take_ply_header(std::string_view& rest, const std::string& fil
       if (header.format == none || line[2] != "1.0")
         refuse(file, "the PLY format is not ascii, binary_little_endian or binary_big_endian 1.0", header.lines);
     } else if (line[0] == "element") {
-      detail::take_ply_element(header, line, file);
+      detail::take_ply_element(header, names, line, file);
     } else if (line[0] == "property") {
-      detail::take_ply_property(header, line, file);
+      detail::take_ply_property(header, names, line, file);
     } else if (line[0] == "end_header" && line.size() == 1) {
       if (header.format == ply_header::encoding::none) refuse(file, "the PLY header has no format");
       rest = data_after(all, rest);

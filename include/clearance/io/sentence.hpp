@@ -26,6 +26,12 @@ inline std::size_t utf8_character(std::string_view text, std::uint32_t& code) {
   return code < least[size] || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000) ? 0 : size;
 }
 
+inline bool is_utf8(std::string_view text) {
+  std::uint32_t code = 0;
+  while (const std::size_t size = utf8_character(text, code)) text.remove_prefix(size);
+  return text.empty();
+}
+
 /// Does this character control a terminal, end a line, or change the direction of writing?
 constexpr bool controls(std::uint32_t code) {
   return code < 0x20 || (code >= 0x7F && code < 0xA0) || code == 0x61C || code == 0x200E || code == 0x200F ||

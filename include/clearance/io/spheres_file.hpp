@@ -17,10 +17,10 @@ inline std::string spheres_format(const std::filesystem::path& file) {
 }
 
 /// Reads any file of spheres; the part of a CSV file is named after the file. Throws std::runtime_error.
-inline std::vector<packed_part> load_spheres(const std::string& file) {
+inline std::vector<packed_part> load_spheres(const std::string& file, const mesh_limits& limits = {}) {
   const std::string format = spheres_format(file);
   if (format == "ist") return load_ist(file);
-  if (format == "yaml") return load_spheres_yaml(file);
+  if (format == "yaml") return load_spheres_yaml(file, limits);
   if (format != "csv") refuse(file, "spheres are read from .ist, .csv, .yaml and .yml files");
   std::vector<packed_part> parts(1);
   parts[0].name = std::filesystem::path(file).stem().string();

@@ -54,14 +54,14 @@ inline packed_part yaml_link(const YAML::Node& key, const YAML::Node& list, cons
 
 /// Reads each link's spheres in the file's order. `collision_spheres` is at the top, or where a cuRobo robot
 /// description has it (robot_cfg: kinematics:). They have no certificate. Throws std::runtime_error naming file and
-/// line.
-inline std::vector<packed_part> load_spheres_yaml(const std::string& file) {
+/// line, also for more values than the limit: each takes about 500 bytes while the file is read.
+inline std::vector<packed_part> load_spheres_yaml(const std::string& file, const mesh_limits& limits = {}) {
   const std::string bytes = read_bytes(file);
   std::vector<packed_part> parts;
   std::set<std::string> names;
   std::size_t spheres = 0;
   try {
-    YAML::Node at = parse_yaml(bytes, file);
+    YAML::Node at = parse_yaml(bytes, file, limits);
     for (const char* above : {"robot_cfg", "kinematics"})
       if (at.IsMap() && at[above]) at.reset(at[above]);
     if (!at.IsMap() || !at["collision_spheres"]) refuse(file, "has no collision_spheres");
@@ -84,11 +84,14 @@ inline std::vector<packed_part> load_spheres_yaml(const std::string& file) {
   return parts;
 }
 
-/// Saves each link's spheres with every float exact; the certificates are lost.
+/// Saves each link's spheres with every float exact; the certificates are lost. Throws std::runtime_error for a name
+/// that is not UTF-8, because YAML would hold another one.
 inline void save_spheres_yaml(std::span<const packed_part> parts, const std::string& file) {
   YAML::Emitter out;
   out << YAML::BeginMap << YAML::Key << "collision_spheres" << YAML::Value << YAML::BeginMap;
   for (const packed_part& part : parts) {
+    if (!is_utf8(part.name))
+      refuse(file, "the name " + io::quoted(part.name) + " is not UTF-8, and YAML cannot hold it");
     out << YAML::Key << YAML::DoubleQuoted << part.name << YAML::Value << YAML::BeginSeq;
     for (const inner_sphere& s : part.spheres.spheres)
       out << YAML::BeginMap << YAML::Key << "center" << YAML::Value << YAML::Flow << YAML::BeginSeq

@@ -8,6 +8,7 @@
 #include <clearance/io/urdf_words.hpp>
 
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -72,13 +73,19 @@ inline joint read_urdf_joint(const xml_place& at, note_tally& notes) {
 /// name that nearly matches a joint here is a misspelling, and refused.
 inline void free_followers(std::vector<joint>& joints, const std::vector<const xml_element*>& at,
                            const std::string& file, note_tally& notes) {
-  for (std::size_t i = 0; i < joints.size(); ++i) {
+  constexpr std::size_t most = 1000;  // because each is compared with every joint
+  std::set<std::string_view> names;
+  for (const joint& each : joints) names.insert(each.name);
+  for (std::size_t i = 0, freed = 0; i < joints.size(); ++i) {
     if (!joints[i].follows) continue;
     const std::string& leader = joints[i].follows->joint;
-    if (std::ranges::find(joints, leader, &joint::name) != joints.end()) continue;
+    if (names.contains(leader)) continue;
+    if (++freed > most)
+      refuse(file, "more than " + std::to_string(most) + " joints follow joints that are not in this file",
+             at[i]->line);
     const std::string who = "joint " + io::quoted(joints[i].name);
     for (const joint& other : joints)
-      if (&other != &joints[i] && edit_distance(other.name, leader) == 1)
+      if (&other != &joints[i] && one_letter_off(other.name, leader))
         refuse(
             file,
             who + ": follows " + io::quoted(leader) + ", which is not in this file (" + io::quoted(other.name) + "?)",

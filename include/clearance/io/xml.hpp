@@ -13,6 +13,7 @@
 #include <array>
 #include <exception>
 #include <initializer_list>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -58,7 +59,7 @@ class xml_reader {
     XML_SetElementHandler(
         parser_,
         [](void* self, const char* name, const char** with) { static_cast<xml_reader*>(self)->begin(name, with); },
-        [](void* self, const char*) { static_cast<xml_reader*>(self)->open_.pop_back(); });
+        [](void* self, const char*) { static_cast<xml_reader*>(self)->end(); });
     XML_SetCharacterDataHandler(parser_, [](void* self, const char* text, int size) {
       auto& reader = *static_cast<xml_reader*>(self);
       reader.guarded([&] { reader.open_.back()->text.append(text, std::size_t(size)); });
@@ -103,23 +104,33 @@ class xml_reader {
       made.name = name;
       made.line = line();
       for (; *with; with += 2, ++values_) made.attributes.emplace_back(with[0], with[1]);
-      check_prefix(made.name, made);
-      for (const auto& [key, value] : made.attributes) check_prefix(key, made);
+      for (const auto& [key, value] : made.attributes)
+        if (key.starts_with(declares)) ++declared_[key.substr(declares.size())];
+      check_prefix(made.name);
+      for (const auto& [key, value] : made.attributes) check_prefix(key);
       if (++values_ > limits_.values) throw "has too many elements and attributes (mesh_limits::values)";
       open_.push_back(&made);  // stays valid while it is open: nothing is added beside it
     });
   }
 
-  /// Prefixes of other vocabularies are declared; in a damaged name a prefix is an accident.
-  void check_prefix(const std::string& name, const xml_element& here) const {
-    const std::size_t colon = name.find(':');
-    if (prefixes_ == xml_prefixes::any || colon == name.npos || name.starts_with("xml:") || name.starts_with("xmlns:"))
-      return;
-    const std::string declared = "xmlns:" + name.substr(0, colon);
-    if (!here.attribute(declared) &&
-        std::ranges::none_of(open_, [&](const xml_element* around) { return around->attribute(declared); }))
-      throw "uses a prefix that is not declared";
+  void end() {
+    if (thrown_ || why_) return;
+    for (const auto& [key, value] : open_.back()->attributes)
+      if (const auto at = key.starts_with(declares) ? declared_.find(key.substr(declares.size())) : declared_.end();
+          at != declared_.end() && --at->second == 0)
+        declared_.erase(at);
+    open_.pop_back();
   }
+
+  /// Prefixes of other vocabularies are declared; in a damaged name a prefix is an accident.
+  void check_prefix(const std::string& name) const {
+    const std::size_t colon = name.find(':');
+    if (prefixes_ == xml_prefixes::any || colon == name.npos || name.starts_with("xml:") || name.starts_with(declares))
+      return;
+    if (!declared_.contains(name.substr(0, colon))) throw "uses a prefix that is not declared";
+  }
+
+  static constexpr std::string_view declares = "xmlns:";
 
   const std::string& file_;
   const mesh_limits& limits_;
@@ -127,6 +138,7 @@ class xml_reader {
   XML_Parser parser_ = nullptr;
   xml_element above_;
   std::vector<xml_element*> open_{&above_};
+  std::map<std::string, std::size_t> declared_;  // prefixes, by how many open elements declare them
   std::uint64_t values_ = 0;
   std::exception_ptr thrown_;
   const char* why_ = nullptr;

@@ -5,6 +5,7 @@
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
+#include <clearance/io/limits.hpp>
 
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
@@ -17,10 +18,11 @@ namespace clearance::io {
 
 namespace detail {
 
-/// Refuses a map with a duplicate key. It sees each event of the file once, even if an alias repeats it.
+/// Refuses a map with a duplicate key, and more values than the limit. It sees each event of the file once, even if an
+/// alias repeats it.
 class yaml_keys final : public YAML::EventHandler {
  public:
-  explicit yaml_keys(const std::string& file) : file_(file) {}
+  yaml_keys(const std::string& file, const mesh_limits& limits) : file_(file), limits_(limits) {}
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (++documents_ > 1) refuse(file_, "has more than one YAML document", line(mark));
@@ -51,6 +53,9 @@ class yaml_keys final : public YAML::EventHandler {
   static std::size_t line(const YAML::Mark& mark) { return std::size_t(std::max(0, mark.line + 1)); }
 
   void node(const YAML::Mark& mark, const std::optional<std::string>& scalar) {
+    if (++values_ > limits_.values)
+      refuse(file_, "has more than " + std::to_string(limits_.values) + " YAML values (mesh_limits::values)",
+             line(mark));
     if (open_.empty() || !open_.back().map) return;
     level& here = open_.back();
     if (here.key_next && scalar && !here.keys.insert(*scalar).second)
@@ -59,18 +64,20 @@ class yaml_keys final : public YAML::EventHandler {
   }
 
   const std::string& file_;
+  const mesh_limits& limits_;
   std::vector<level> open_;
+  std::uint64_t values_ = 0;
   int documents_ = 0;
 };
 
 }  // namespace detail
 
 /// The only document of a YAML file. Throws std::runtime_error, or YAML::Exception if it is not YAML.
-inline YAML::Node parse_yaml(std::string_view bytes, const std::string& file) {
+inline YAML::Node parse_yaml(std::string_view bytes, const std::string& file, const mesh_limits& limits) {
   std::string text;
   for (std::string_view rest = without_mark(bytes); !rest.empty(); text += '\n') text += take_line(rest);
   std::istringstream in(text);
-  detail::yaml_keys keys(file);
+  detail::yaml_keys keys(file, limits);
   for (YAML::Parser parser(in); parser.HandleNextDocument(keys);) {
   }
   return YAML::Load(text);

@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fuzz/fuzz.hpp"
+
+static const fuzz::target obj("obj", [](std::string_view input) { fuzz::read_mesh("m.obj", input); });
