@@ -30,6 +30,8 @@ struct supported_distance;
 struct motion_clearance_options;
 struct motion_clearance_result;
 struct part_facts;
+struct unseen;
+struct unseen_result;
 namespace io {
 class joint_motion;
 struct body;
@@ -89,6 +91,8 @@ class backend_robot {
   /// Which points belong to the robot itself, within `padding` metres of it?
   virtual clearance::self_filter_result own_points(poses_of poses, double padding) = 0;
   virtual clearance::supported_distance supported(poses_of poses, const clearance::min_distance_supported& options) = 0;
+  /// About what the clouds hide, which must all be images.
+  virtual clearance::unseen_result unseen(poses_of poses, const clearance::unseen& options) = 0;
   /// The witnesses of the minima of least_per_part.
   virtual std::vector<clearance::part_witness> witnesses(poses_of poses,
                                                          std::span<const clearance::part_minimum> minima) = 0;

@@ -24,6 +24,7 @@ json part_of(const query_report& report, std::size_t k) {
     part["attached"] = {{"link", held->from.link}, {"file", held->from.file}, {"pose", pose_of(held->from.pose)}};
   if (report.zones) part["zones"] = zones_of(report, k);
   if (report.nearest) part["nearest"] = nearest_of(report, k);
+  if (report.unseen) part["unseen"] = unseen_of(report.of_unseen(), k);
   if (!report.gradients.empty()) part["gradient"] = gradient_of(report, k);
   return part;
 }

@@ -6,6 +6,7 @@
 #include "distances_file.hpp"
 #include "observations.hpp"
 #include "robot_bodies.hpp"
+#include "unseen_report.hpp"
 
 #include <clearance/gradient.hpp>
 #include <clearance/questions/min_distance_supported.hpp>
@@ -30,6 +31,7 @@ struct query_report {
   std::optional<clearance::zones_result> zones;
   std::optional<clearance::nearest_k_result> nearest;
   std::optional<clearance::supported_distance> support;
+  std::optional<clearance::unseen_result> unseen;
   std::vector<part_gradient> gradients;  // of all parts; empty: not asked
   std::optional<distances_written> distances;
   double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds; query: for the least distance
@@ -37,4 +39,10 @@ struct query_report {
 
   /// Is the lower end of the bracket above the margin of --check?
   bool passes() const { return found.result.state != clearance::state::no_data && found.result.lower > *asked->margin; }
+  unseen_report of_unseen() const {
+    unseen_report its{
+        .asked = asked, .found = &*unseen, .clouds = {}, .bodies = bodies, .filtered = filter.has_value()};
+    for (const observation& cloud : *clouds) its.clouds.push_back(&cloud);
+    return its;
+  }
 };

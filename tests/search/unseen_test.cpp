@@ -89,6 +89,11 @@ void random_frames(unsigned seed, int count) {
                                          placed{image.masked_image(), image.pose}, q),
                           labelled),
               what, ": another tree says something else");
+    unseen with_labels = q;
+    with_labels.labels = image.labels;
+    v.require(same_unseen(clearance::ask(host{}, model, robot.poses, placed{image.image(), image.pose}, with_labels),
+                          labelled),
+              what, ": labels of the question say something else than a mask");
     // Its own shadow.
     const auto own = image.hidden(q.room, true, true);
     double truth = infinity;
@@ -470,8 +475,14 @@ TEST_CASE("A camera inside a part sees only that part, which is unknown") {
 
 TEST_CASE("Pixels that are nearly 0 hide all that is behind them, also far from the camera") {
   for (const float tiny : {std::numeric_limits<float>::denorm_min(), 1e-39f, 1e-30f, 1e-10f}) {
-    const auto r = look(ball_at(0.3, 0.2, 1), wall_camera(tiny).image());
-    CHECK((r.all.state == state::unknown && r.all.valid == 64 * 48));
+    const wall_camera near(tiny);
+    auto image = near.image();
+    image.nearest = 0.01f;
+    for (const real scale : {1.0f, 0.1f}) {  // products may underflow
+      image.scale = scale;
+      const auto r = look(ball_at(0.3, 0.2, 1), image, {{.nearest = 1.5f}});
+      CHECK((r.all.state == state::unknown && r.all.valid == 64 * 48));
+    }
   }
   wall_camera one(200);  // a metre wide at 100 m; one pixel has no return, from 1 mm on
   one.camera = {5000, 5000, 31.5, 23.5};
@@ -493,6 +504,16 @@ TEST_CASE("What would change an answer of `unseen` is refused in a sentence") {
     CHECK(refusal([&] { look(robot, wall.image(), {room}); }).find("must be a range above 0") != std::string::npos);
   for (const double half : {-0.1, 0.25, double(nan)})
     CHECK(refusal([&] { look(robot, wall.image(), {{}, half}); }).find("half a pixel is") != std::string::npos);
+  const std::vector<point_label> labels(wall.pixels.size(), point_label::rest);
+  CHECK(refusal([&] { look(robot, wall.image(), {{}, 0, std::span(labels).first(7)}); }).find("7 labels") !=
+        std::string::npos);
+  CHECK(refusal([&] {
+          look(robot, clearance::masked{wall.image(), labels.data()}, {{}, 0, labels});
+        }).find("has labels, and so has cloud 0") != std::string::npos);
+  using some = std::variant<placed<clearance::point_span>, placed<clearance::depth_image<float>>>;
+  CHECK(refusal([&] {
+          look(robot, std::vector<some>{placed{wall.image()}, placed{clearance::point_span()}});
+        }).find("asked about depth images, and cloud 1 is none") != std::string::npos);
   std::vector<clearance::ray> rays(wall.pixels.size(), {0, 0});
   const clearance::ray_image lens(wall.pixels.data(), rays.data(), 64, 48);
   CHECK(refusal([&] { look(robot, lens); }).find("half_pixel_of(rays, width, height)") != std::string::npos);

@@ -23,19 +23,21 @@ struct hiding {
 };
 
 /// The hidden room of an image as a source: each pixel is the way behind its return, along its middle. Its point is
-/// where that begins. Pixels of the robot's own points (`masked`) hide nothing here; with `Own` they alone do.
-/// `half_pixel` is half the diagonal of a pixel at z = 1: so wide is the room around the way. The bracket carries it.
-template <seeing_image Image, bool Own = false>
+/// where that begins. `half_pixel` is half the diagonal of a pixel at z = 1: so wide is the room around the way. The
+/// bracket carries it.
+template <seeing_image Image>
 struct hidden {
   Image image;
   hiding room;
   real half_pixel;
+  const point_label* labels = nullptr;  ///< One per pixel, where the backend reads them, or null.
+  bool own = false;                     ///< What the robot's own points hide, and not what all others do.
 
   CLEARANCE_HD std::size_t size() const { return image.size(); }
   CLEARANCE_HD sample operator[](std::size_t i) const {
     const sample s = image[i];
-    if ((s.dropped == drop_reason::masked) != Own) return {s.position, drop_reason::masked};
-    if constexpr (Own) return starting(image.source[i], i);
+    const bool is_own = labels != nullptr && s.valid() && labels[i] == point_label::own;
+    if (is_own != own) return {s.position, drop_reason::masked};
     return starting(s, i);
   }
   /// Up to where the room ends. Along the pixel itself: its point may be too near the camera to tell a direction.

@@ -2,6 +2,7 @@
 #pragma once
 // How far is a robot from what no camera sees?
 
+#include <clearance/backend/kept_memory.hpp>
 #include <clearance/points/hidden.hpp>
 #include <clearance/points/pinhole_view.hpp>
 #include <clearance/points/ray_image.hpp>
@@ -10,6 +11,8 @@
 
 #include <bit>
 #include <deque>
+#include <span>
+#include <variant>
 
 namespace clearance {
 
@@ -46,10 +49,11 @@ inline double half_pixel_of(const ray* rays, std::size_t width, std::size_t heig
 }
 
 /// How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or `masked` ones.
-/// Throws std::invalid_argument for depths that are no range, and for a ray image without `half_pixel`.
+/// Refused: depths that are no range, a ray image without `half_pixel`, and not one label per pixel.
 struct unseen {
   hiding room = {};
-  double half_pixel = 0;  ///< For ray images: `half_pixel_of` their table.
+  double half_pixel = 0;                     ///< For ray images: `half_pixel_of` their table.
+  std::span<const point_label> labels = {};  ///< Of all pixels of all clouds, as self_filter gives them, or none.
 
   using result = unseen_result;
   template <class On, class PartView>
@@ -67,14 +71,12 @@ struct unseen {
 
 namespace detail {
 
-template <class S>
-struct bare_image {
-  static const S& of(const S& s) { return s; }
-};
-template <class S>
-struct bare_image<masked<S>> {
-  static const S& of(const masked<S>& s) { return s.source; }
-};
+template <class T>
+concept some_variant = requires { typename std::variant_size<T>::type; };
+/// Is it known only when they are asked about which of these clouds are images?
+template <class T>
+concept clouds_of_variants =
+    some_variant<T> || requires(const T t) { requires some_variant<std::remove_cvref_t<decltype(*std::begin(t))>>; };
 
 }  // namespace detail
 
@@ -83,16 +85,39 @@ class unseen::engine {
  public:
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
-      : on_(on), model_(model), witnesses_(on, model, from...) {}
+      : on_(on), model_(model), memory_(on, from...), witnesses_(on, model, from...) {}
 
   template <class Clouds>
   result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const unseen& q) {
     q.check();
     cameras_.clear();
     result r;
+    const point_label* labels = nullptr;
+    if (!q.labels.empty()) {
+      std::size_t pixels = 0;
+      for_each_cloud(clouds, [&](const auto& image, const auto&) { pixels += image.size(); });
+      if (q.labels.size() != pixels)
+        throw std::invalid_argument("clearance: unseen has " + std::to_string(q.labels.size()) +
+                                    " labels, and there are " + std::to_string(pixels) + " pixels");
+      memory_.begin();
+      labels = std::get<0>(memory_.put(q.labels));
+    }
     std::uint32_t number = 0;
-    for_each_cloud(clouds,
-                   [&](const auto& image, const Eigen::Isometry3d& pose) { look(poses, image, pose, q, number++, r); });
+    for_each_cloud(clouds, [&]<class S>(const S& image, const Eigen::Isometry3d& pose) {
+      if constexpr (seeing_image<S>) {
+        look(poses, image, pose, labels, q, number++, r);
+        if (labels != nullptr) labels += image.size();
+      } else if constexpr (requires { image.labels; }) {
+        if (labels != nullptr)
+          throw std::invalid_argument("clearance: unseen has labels, and so has cloud " + std::to_string(number));
+        look(poses, image.source, pose, image.labels, q, number++, r);
+      } else {
+        static_assert(detail::clouds_of_variants<Clouds>,
+                      "unseen is asked about depth_image and ray_image, or masked ones");
+        throw std::invalid_argument("clearance: unseen is asked about depth images, and cloud " +
+                                    std::to_string(number) + " is none");
+      }
+    });
     conclude(q, r);
     return r;
   }
@@ -112,19 +137,19 @@ class unseen::engine {
     bool tells_shown;
   };
 
+  /// `labels`: of this image, or null.
   template <class S>
-  void look(std::span<const Eigen::Isometry3d> poses, const S& image, const Eigen::Isometry3d& pose, const unseen& q,
-            std::uint32_t number, result& r) {
+  void look(std::span<const Eigen::Isometry3d> poses, const S& image, const Eigen::Isometry3d& pose,
+            const point_label* labels, const unseen& q, std::uint32_t number, result& r) {
     static_assert(seeing_image<S>, "unseen is asked about depth_image and ray_image, or masked ones");
-    const auto& bare = detail::bare_image<S>::of(image);
-    constexpr bool pinhole = requires { bare.inverse_fx; };
+    constexpr bool pinhole = requires { image.inverse_fx; };
     double half = q.half_pixel;
-    if constexpr (pinhole) half = std::hypot(double(bare.inverse_fx), double(bare.inverse_fy)) / 2;
+    if constexpr (pinhole) half = std::hypot(double(image.inverse_fx), double(image.inverse_fy)) / 2;
     if (image.size() != 0 && !(half > 0))
       throw std::invalid_argument(
           "clearance: unseen needs half_pixel for a ray image; half_pixel_of(rays, width, "
           "height) computes it");
-    const hidden<S> room{image, q.room, rounded_up(half)};
+    const hidden<S> room{image, q.room, rounded_up(half), labels};
     camera c;
     auto found = ask_of(2 * number, poses, room, pose);
     c.all = found.all, c.nearest = witnesses_.run(poses, placed<hidden<S>>{room, pose}, part_witnesses{found.parts});
@@ -140,15 +165,15 @@ class unseen::engine {
       c.nearest[k].cloud = c.nearest[k].part == none ? none : number;
       c.from_edge.push_back(0), c.shown.push_back(0);
       if constexpr (pinhole) {
-        const pinhole_view view(bare, q.room.nearest, q.room.farthest);
+        const pinhole_view view(image, q.room.nearest, q.room.farthest);
         const ball& around = frame.places[k].around;
         c.from_edge.back() =
             view.from_edge({around.center + frame.origin, around.radius}) - frames::slop(model_.facts[k]);
         c.shown.back() = shown(view, model_.facts[k], pose.inverse() * poses[k]);
       }
     }
-    if constexpr (requires { image.labels; }) {
-      auto [own, each] = ask_of(2 * number + 1, poses, hidden<S, true>{image, q.room, room.half_pixel}, pose);
+    if (labels != nullptr) {
+      auto [own, each] = ask_of(2 * number + 1, poses, hidden<S>{image, q.room, room.half_pixel, labels, true}, pose);
       for (std::size_t k = 0; k < model_.size(); ++k) c.own[k] = lower(k, each[k]);
       if (own.cloud != none) own.cloud = number;
       r.own_shadow = merge(r.own_shadow, own);
@@ -232,6 +257,7 @@ class unseen::engine {
 
   On on_;
   model_view<PartView> model_;
+  backends::kept_memory<On> memory_;
   part_witnesses::engine<On, PartView> witnesses_;
   std::deque<search> searches_;  // one for each camera, and one for its own shadow
   std::vector<camera> cameras_;
