@@ -33,21 +33,6 @@ struct unseen_result {
   min_distance_result own_shadow;  ///< What pixels of the robot's own points (`masked`) hide, of all cameras together.
 };
 
-/// Half the diagonal of the widest pixel of a ray table, at z = 1, in host memory.
-inline double half_pixel_of(const ray* rays, std::size_t width, std::size_t height) {
-  double widest = 0;
-  const auto apart = [&](std::size_t i, std::size_t j) {
-    const double d = std::hypot(double(rays[i].x) - rays[j].x, double(rays[i].y) - rays[j].y) / 2;
-    if (d > widest) widest = d;
-  };
-  for (std::size_t v = 0; v + 1 < height; ++v)
-    for (std::size_t u = 0; u + 1 < width; ++u) {
-      const std::size_t i = v * width + u;
-      apart(i, i + width + 1), apart(i + 1, i + width);
-    }
-  return widest;
-}
-
 /// How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or `masked` ones.
 /// Refused: depths that are no range, a ray image without `half_pixel`, and not one label per pixel.
 struct unseen {
