@@ -147,6 +147,8 @@ def reachable(all_of):
         if d.name in chosen or d.name in OWN:
             continue
         chosen[d.name] = d
+        if d.base in all_of:  # whose own base, if it had one, would be left out
+            d.members, d.base = all_of[d.base].members + d.members, None
         for _, kind, _ in d.members:
             wanted += [all_of[w] for w in words(kind) if w in all_of]
             if d.question and kind in all_of and all_of[kind].kind == "struct" and kind not in OWN:
@@ -174,7 +176,7 @@ def write(chosen, all_of, output):
                      f"  static constexpr auto values = std::make_tuple({values});\n}};\n")
             continue
         members = ", ".join(f"member_as{{{quoted(name)}, &clearance::{d.name}::{name}, {quoted(said)}}}"
-                            for name, _, said in (all_of[d.base].members if d.base in all_of else []) + d.members)
+                            for name, _, said in d.members)
         methods = ", ".join(
             f"method_as{{{quoted(name)}, [](const clearance::{d.name}& r{''.join(', ' + a for a in given)})"
             f" {{ return r.{name}({', '.join(a.split()[1] for a in given)}); }}, {quoted(said)}"

@@ -77,14 +77,18 @@ std::string signature_of() {
   const nb::object standing = nb::cast(asked<Q>{});
   std::string text = "def __init__(self";
   for_each_member<Q>([&]<class T>(const member_as<Q, T>& m) {
-    text += std::string(", ") + m.name + ": " + type_name<T>();
+    text += std::string(", ") + m.name + ": ";
+    if constexpr (is_array<T> && !std::is_same_v<T, std::vector<double>>) {
+      const bool after_defaults = text.find(" = ") != text.npos;
+      text += after_defaults ? "numpy.typing.ArrayLike = ()" : type_name<T>();
+    } else {
+      text += type_name<T>();
+    }
     if constexpr (std::is_arithmetic_v<T> || declared_struct<T>) {
       std::string shown = nb::cast<std::string>(nb::repr(standing.attr(m.name)));
       text += " = " + (shown == "inf" ? std::string("float('inf')") : shown);
     } else if constexpr (std::is_same_v<T, std::vector<double>>) {
       if (!(Q{}.*m.at).empty()) text += " = " + nb::cast<std::string>(nb::repr(standing.attr(m.name)));
-    } else if (text.find(" = ") != text.npos) {
-      text += " = ()";
     }
   });
   return text + ") -> None";
