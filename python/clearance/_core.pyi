@@ -879,13 +879,14 @@ class Unseen:
 
     def __init__(self, room: Hiding = Hiding(nearest=0.10000000149011612, farthest=10.0, infinite_is_free=False), half_pixel: float = 0.0, labels: ArrayLike = ()) -> None:
         """
-        room: 
+        room: Where hidden room begins and ends.
         half_pixel: For ray images: half_pixel_of their table.
         labels: Of all pixels of all clouds, as self_filter gives them, or none.
         """
 
     @property
-    def room(self) -> Hiding: ...
+    def room(self) -> Hiding:
+        """Where hidden room begins and ends."""
 
     @property
     def half_pixel(self) -> float:

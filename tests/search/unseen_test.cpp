@@ -364,6 +364,29 @@ std::string refusal(const std::function<void()>& call) {
 
 }  // namespace
 
+TEST_CASE("A prepared question says in every frame what a fresh one says, whatever it saw before") {
+  verdict v;
+  dice d(3212);
+  const seen_robot<triangle> robot(d, here, 1);
+  const auto model = robot.model<clearance::obb>(8);
+  auto poses = robot.poses;
+  clearance::query prepared(host{}, model, unseen{});
+  for (int n = 0; n < rounds(60); ++n) {
+    std::vector<picture<std::uint16_t>> images;
+    std::vector<placed<clearance::depth_image<std::uint16_t>>> all;
+    for (unsigned k = 0; k < 1 + d.below(3); ++k) images.emplace_back(d, 0.2, 1.5);
+    std::vector<point_label> labels;
+    for (const auto& image : images) {
+      all.push_back({image.image(), image.pose});
+      labels.insert(labels.end(), image.labels.begin(), image.labels.end());
+    }
+    unseen q{some_room(d, 1.5)};
+    if (d.below(2) == 0) q.labels = labels;
+    if (d.below(2) == 0) poses[0] = d.pose(0.5);
+    v.require(same_unseen(prepared(poses, all, q), clearance::ask(host{}, model, poses, all, q)), "frame ", n);
+  }
+}
+
 TEST_CASE("A ball before a wall is as far from what the wall hides as from the wall, wherever that begins") {
   const wall_camera wall;
   const auto r = look(ball_at(0.02, 0, 1), wall.image());
@@ -454,6 +477,17 @@ TEST_CASE("A picture without pixels says nothing, and one without a return hides
   const clearance::depth_image<float> none(nullptr, 0, 0, {50, 50, 0, 0});
   const auto nothing = look(robot, none);
   CHECK((nothing.all.state == state::no_data && nothing.all.lower == 0 && nothing.all.upper == infinity));
+  CHECK((nothing.parts[0].lower == 0 && nothing.parts[0].out_of_view == 1));
+  const wall_camera wall;
+  const std::vector<placed<clearance::depth_image<float>>> and_one{{none, here}, {wall.image(), here}};
+  CHECK(look(robot, and_one).all.distance == Approx(0.9).margin(5e-3));
+  CHECK(look(robot, and_one).all.lower <= look(robot, wall.image()).all.lower);
+  std::vector<clearance::ray> no_rays(wall.pixels.size(), {clearance::not_a_number, 0});  // as where a lens folds
+  const auto folded = look(robot, clearance::ray_image(wall.pixels.data(), no_rays.data(), 64, 48), {{}, 0.01});
+  CHECK((folded.all.state == state::no_data && folded.all.lower == 0 && folded.parts[0].lower == 0));
+  no_rays[100] = {0, 0};
+  CHECK(look(robot, clearance::ray_image(wall.pixels.data(), no_rays.data(), 64, 48), {{}, 0.01}).all.state ==
+        state::free);
   CHECK(look(robot, std::vector<placed<clearance::depth_image<float>>>{}).all.state == state::no_data);
   for (const float lost : {0.0f, clearance::not_a_number, infinity, -1.0f}) {
     const wall_camera blind(lost);
@@ -504,6 +538,13 @@ TEST_CASE("What would change an answer of `unseen` is refused in a sentence") {
     CHECK(refusal([&] { look(robot, wall.image(), {room}); }).find("must be a range above 0") != std::string::npos);
   for (const double half : {-0.1, 0.25, double(nan)})
     CHECK(refusal([&] { look(robot, wall.image(), {{}, half}); }).find("half a pixel is") != std::string::npos);
+  for (const double odd : {0.0, double(nan), double(infinity)}) {
+    auto image = wall.image();
+    if (!(odd > 0)) image.inverse_fx = real(1 / odd);
+    if (odd == 0) CHECK(refusal([&] { look(robot, image); }).find("focal lengths") != std::string::npos);
+    image.inverse_fx = 0.02f, image.cy = real(odd);
+    if (odd != 0) CHECK(refusal([&] { look(robot, image); }).find("cx, cy") != std::string::npos);
+  }
   const std::vector<point_label> labels(wall.pixels.size(), point_label::rest);
   CHECK(refusal([&] { look(robot, wall.image(), {{}, 0, std::span(labels).first(7)}); }).find("7 labels") !=
         std::string::npos);

@@ -36,7 +36,7 @@ struct unseen_result {
 /// How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or `masked` ones.
 /// Refused: depths that are no range, a ray image without `half_pixel`, and not one label per pixel.
 struct unseen {
-  hiding room = {};
+  hiding room = {};                          ///< Where hidden room begins and ends.
   double half_pixel = 0;                     ///< For ray images: `half_pixel_of` their table.
   std::span<const point_label> labels = {};  ///< Of all pixels of all clouds, as self_filter gives them, or none.
 
@@ -130,10 +130,14 @@ class unseen::engine {
     constexpr bool pinhole = requires { image.inverse_fx; };
     double half = q.half_pixel;
     if constexpr (pinhole) half = std::hypot(double(image.inverse_fx), double(image.inverse_fy)) / 2;
-    if (image.size() != 0 && !(half > 0))
+    if (image.size() != 0 && !(half > 0 && half < infinity))
       throw std::invalid_argument(
-          "clearance: unseen needs half_pixel for a ray image; half_pixel_of(rays, width, "
-          "height) computes it");
+          pinhole
+              ? "clearance: unseen needs focal lengths that are numbers, not 0"
+              : "clearance: unseen needs half_pixel for a ray image; half_pixel_of(rays, width, height) computes it");
+    if constexpr (pinhole)
+      if (!is_finite(vec3{image.cx, image.cy, 0}))
+        throw std::invalid_argument("clearance: unseen needs a centre of the image (cx, cy) that is finite");
     const hidden<S> room{image, q.room, rounded_up(half), labels};
     camera c;
     auto found = ask_of(2 * number, poses, room, pose);
@@ -204,6 +208,8 @@ class unseen::engine {
       r.all.seen += more.seen, r.all.valid += more.valid;
       for (int i = 0; i < drop_reasons; ++i) r.all.dropped[i] += more.dropped[i];
     }
+    // A pixel without a direction shows and hides nothing. If no other is there, nothing is known.
+    const bool blind = r.all.seen == r.all.dropped[int(drop_reason::not_finite)];
     double lower = infinity;
     const unseen_part* least = nullptr;
     r.parts.resize(model_.size());
@@ -223,13 +229,13 @@ class unseen::engine {
         its_lower = std::min(its_lower, at_least);
         shown |= j.shown[k], tells_shown &= j.tells_shown;
       }
-      part.lower = its_lower > 0 ? rounded_down(its_lower) : 0;
+      part.lower = its_lower > 0 && !blind ? rounded_down(its_lower) : 0;
       const int out_of_view = 64 - std::popcount(shown);
       part.out_of_view = tells_shown || out_of_view == 0 ? real(out_of_view) / 64 : not_a_number;
       lower = std::min(lower, its_lower);
       if (least == nullptr || part.distance < least->distance) least = &part;
     }
-    if (r.all.seen == 0 || least == nullptr) return;  // nothing is known
+    if (blind || least == nullptr) return;
     min_distance_result& all = r.all;
     all.cloud = least->cloud, all.point = least->point, all.part = least->part, all.primitive = least->primitive;
     all.at = least->at, all.nearest = least->nearest, all.normal = least->normal;
