@@ -11,7 +11,7 @@ import pathlib
 import re
 import sys
 
-STRUCT = re.compile(r"(struct|enum class) (\w+)(?: : [\w:]+)? \{(.*)")
+STRUCT = re.compile(r"(struct|enum class) (\w+)(?: : ([\w:]+))? \{(.*)")
 MEMBER = re.compile(r"  (unsigned long long|[\w:]+(?:<.*>)?) (\w[^()]*?(?:\{.*\})?[^()]*?);(?: +///< (.*))?$")
 METHOD = re.compile(r"  (?:const )?([\w:]+(?:<.*?>)?(?:&| )?)\s?(\w+)\((.*?)\) const \{")
 # What has a class of its own in values.hpp, not one made from its members.
@@ -48,6 +48,7 @@ class Declared:
     def __init__(self, kind, name, doc, header):
         self.kind, self.name, self.doc, self.header = kind, name, doc, header
         self.members, self.methods, self.question, self.values, self.out = [], [], False, [], None
+        self.base, self.option = None, False  # a struct that a question has as a member is an option of several numbers
 
 
 def join_member(lines, at):
@@ -74,8 +75,9 @@ def read(header, include):
             spaces.pop()
         elif spaces == ["clearance"] and (m := STRUCT.match(line)) and not lines[at - 1].startswith(("template", "  requires")):
             made = Declared(m[1], m[2], comment(lines, at), header.relative_to(include))
+            made.base = m[3]
             if m[1] == "enum class":
-                text = m[3]
+                text = m[4]
                 while "}" not in text:
                     at += 1
                     text += lines[at].split("//")[0]
@@ -145,8 +147,12 @@ def reachable(all_of):
         if d.name in chosen or d.name in OWN:
             continue
         chosen[d.name] = d
+        if d.base in all_of:  # whose own base, if it had one, would be left out
+            d.members, d.base = all_of[d.base].members + d.members, None
         for _, kind, _ in d.members:
             wanted += [all_of[w] for w in words(kind) if w in all_of]
+            if d.question and kind in all_of and all_of[kind].kind == "struct" and kind not in OWN:
+                all_of[kind].option = True
         if d.question:
             text = (include_folder / d.header).read_text()
             own = text[text.index(f"struct {d.name} {{"):]
@@ -166,7 +172,7 @@ def write(chosen, all_of, output):
             values = ", ".join(f"value_as<clearance::{d.name}>{{{quoted(v)}, clearance::{d.name}::{v}}}" for v in d.values)
             text += (f"template <>\nstruct declared<clearance::{d.name}> {{\n"
                      f"  static constexpr const char *name = {quoted(python_name(d.name))}, *doc = {quoted(d.doc)};\n"
-                     f"  static constexpr bool question = false;\n"
+                     f"  static constexpr bool question = false, option = false;\n"
                      f"  static constexpr auto values = std::make_tuple({values});\n}};\n")
             continue
         members = ", ".join(f"member_as{{{quoted(name)}, &clearance::{d.name}::{name}, {quoted(said)}}}"
@@ -178,7 +184,7 @@ def write(chosen, all_of, output):
             for name, said, given in d.methods if not d.question)
         text += (f"template <>\nstruct declared<clearance::{d.name}> {{\n"
                  f"  static constexpr const char *name = {quoted(python_name(d.name))}, *doc = {quoted(d.doc)};\n"
-                 f"  static constexpr bool question = {str(d.question).lower()};\n"
+                 f"  static constexpr bool question = {str(d.question).lower()}, option = {str(d.option).lower()};\n"
                  f"  static constexpr auto members = std::make_tuple({members});\n"
                  f"  static constexpr auto methods = std::make_tuple({methods});\n")
         if d.question and d.out:

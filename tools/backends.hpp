@@ -33,6 +33,8 @@ struct motion_clearance_result;
 struct part_facts;
 struct part_radius;
 struct certain_distance_result;
+struct unseen;
+struct unseen_result;
 namespace io {
 class joint_motion;
 struct body;
@@ -96,6 +98,8 @@ class backend_robot {
   virtual clearance::supported_distance supported(poses_of poses, const clearance::min_distance_supported& options) = 0;
   /// What is certain of the least distance, by the clouds' sensors and one radius per part, or none.
   virtual clearance::certain_distance_result certain(poses_of poses, std::span<const clearance::part_radius> parts) = 0;
+  /// About what the clouds hide, which must all be images.
+  virtual clearance::unseen_result unseen(poses_of poses, const clearance::unseen& options) = 0;
   /// The witnesses of the minima of least_per_part.
   virtual std::vector<clearance::part_witness> witnesses(poses_of poses,
                                                          std::span<const clearance::part_minimum> minima) = 0;

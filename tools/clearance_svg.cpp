@@ -52,17 +52,19 @@ double top_of(const min_distance_result& r) {
 
 /// The axis shows 0, the margin and what is below. It leaves out outliers, which would flatten the rest: frames above
 /// three times the value that nine of ten stay below.
-axes around(std::span<const min_distance_result> frames, std::optional<double> margin) {
+axes around(std::span<const min_distance_result> frames, std::span<const min_distance_result> unseen,
+            std::optional<double> margin) {
   axes made{0, 0, 0, frames.size()};
   const auto hold = [&](double metres) {
     if (std::isfinite(metres)) made.low = std::min(made.low, metres), made.high = std::max(made.high, metres);
   };
   std::vector<double> tops;
-  for (const min_distance_result& r : frames) {
-    if (r.state == state::no_data) continue;
-    hold(std::min(0.0, double(r.distance))), hold(std::min(0.0, double(r.lower)));
-    if (const double above = top_of(r); above > 0) tops.push_back(above);
-  }
+  for (const auto& some : {frames, unseen})
+    for (const min_distance_result& r : some) {
+      if (r.state == state::no_data) continue;
+      hold(std::min(0.0, double(r.distance))), hold(std::min(0.0, double(r.lower)));
+      if (const double above = top_of(r); above > 0) tops.push_back(above);
+    }
   std::sort(tops.begin(), tops.end());
   const double most = tops.empty() ? 0 : 3 * tops[(tops.size() - 1) * 9 / 10];
   for (const double above : tops)
@@ -106,30 +108,62 @@ std::string grid(const axes& to) {
   return out + words((left + right) / 2, height - 12, "middle", "frame") + words(left - 6, top - 12, "end", "m");
 }
 
-}  // namespace
+/// A line of distances in the band of its brackets. Frames that are alone among unknown ones are dots.
+struct curve {
+  std::string band, line, alone;
 
-std::string clearance_svg(std::span<const min_distance_result> frames, const std::string& name,
-                          std::optional<double> margin) {
-  const axes to = around(frames, margin);
-  const std::string above = marks(to, frames);
-  std::string band, line, alone, blind;
+  curve(const axes& to, std::span<const min_distance_result> frames) {
+    for (std::size_t begin = 0, end; begin < frames.size(); begin = end) {
+      const bool known = frames[begin].state != state::no_data;
+      for (end = begin; end < frames.size() && (frames[end].state != state::no_data) == known;) ++end;
+      if (!known) continue;
+      for (std::size_t k = begin; k < end; ++k) {
+        band += (k == begin ? "M " : "L ") + to.at(k, frames[k].upper) + '\n';
+        line += (k == begin ? "M " : "L ") + to.at(k, frames[k].distance) + '\n';
+      }
+      for (std::size_t k = end; k-- > begin;) band += "L " + to.at(k, frames[k].lower) + '\n';
+      band += "Z\n";
+      if (end - begin == 1) alone += "M " + to.at(begin, frames[begin].distance) + " h 0\n";  // a round end is a dot
+    }
+  }
+  /// The colours are the band's and the line's; `of` begins the names of the paths.
+  std::string drawn(const char* of, const char* light, const char* dark) const {
+    std::string out;
+    if (!line.empty())
+      out += text("<path id=\"%sbracket\" fill=\"%s\" fill-opacity=\"0.35\" stroke=\"%s\" stroke-opacity=\"0.6\" ", of,
+                  light, light) +
+             "stroke-width=\"0.5\" d=\"" + band + text("\"/>\n<path id=\"%sdistance\" stroke=\"%s\" ", of, dark) +
+             "stroke-width=\"1.5\" stroke-linecap=\"round\" stroke-linejoin=\"round\" d=\"" + line + "\"/>\n";
+    if (!alone.empty())
+      out += text("<path id=\"%salone\" stroke=\"%s\" stroke-width=\"5\" stroke-linecap=\"round\" d=\"", of, dark) +
+             alone + "\"/>\n";
+    return out;
+  }
+};
+
+/// Bars where nothing is known.
+std::string bars(const axes& to, std::span<const min_distance_result> frames) {
+  std::string out;
   for (std::size_t begin = 0, end; begin < frames.size(); begin = end) {
     const bool known = frames[begin].state != state::no_data;
     for (end = begin; end < frames.size() && (frames[end].state != state::no_data) == known;) ++end;
-    if (!known) {
-      const double from = std::max(left, to.x(double(begin) - 0.5)), until = std::min(right, to.x(double(end) - 0.5));
-      blind += text("<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\"/>\n", from, top,
-                    std::max(until - from, 2.0), bottom - top);
-      continue;
-    }
-    for (std::size_t k = begin; k < end; ++k) {
-      band += (k == begin ? "M " : "L ") + to.at(k, frames[k].upper) + '\n';
-      line += (k == begin ? "M " : "L ") + to.at(k, frames[k].distance) + '\n';
-    }
-    for (std::size_t k = end; k-- > begin;) band += "L " + to.at(k, frames[k].lower) + '\n';
-    band += "Z\n";
-    if (end - begin == 1) alone += "M " + to.at(begin, frames[begin].distance) + " h 0\n";  // a round end is a dot
+    if (known) continue;
+    const double from = std::max(left, to.x(double(begin) - 0.5)), until = std::min(right, to.x(double(end) - 0.5));
+    out += text("<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\"/>\n", from, top,
+                std::max(until - from, 2.0), bottom - top);
   }
+  return out;
+}
+
+}  // namespace
+
+std::string clearance_svg(std::span<const min_distance_result> frames, std::span<const min_distance_result> unseen,
+                          const std::string& name, std::optional<double> margin) {
+  const axes to = around(frames, unseen, margin);
+  const std::string above = marks(to, frames) + marks(to, unseen), blind = bars(to, frames);
+  const std::string legend = std::string("distance, in its bracket") +
+                             (unseen.empty() ? "" : "; orange: to what is not seen") +
+                             (blind.empty() ? "" : "; red: no data");
   std::string out =
       text(
           "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" "
@@ -138,21 +172,12 @@ std::string clearance_svg(std::span<const min_distance_result> frames, const std
       escaped(name) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
   out +=
       "<g fill=\"#333\">\n" + words(left, 20, "start", "Clearance in " + escaped(name)) + grid(to) +
-      words(right, 20, "end", blind.empty() ? "distance, in its bracket" : "distance, in its bracket; red: no data") +
+      words(right, 20, "end", legend) +
       (above.empty() ? ""
                      : words(right, top - 12, "end", text("triangles: above the picture, up to %.3g m", to.highest))) +
       "</g>\n";
   if (!blind.empty()) out += "<g fill=\"#d33\" fill-opacity=\"0.35\">\n" + blind + "</g>\n";
-  if (!line.empty())
-    out +=
-        "<path id=\"bracket\" fill=\"#48c\" fill-opacity=\"0.35\" stroke=\"#48c\" stroke-opacity=\"0.6\" "
-        "stroke-width=\"0.5\" d=\"" +
-        band +
-        "\"/>\n<path id=\"distance\" stroke=\"#136\" stroke-width=\"1.5\" stroke-linecap=\"round\" "
-        "stroke-linejoin=\"round\" d=\"" +
-        line + "\"/>\n";
-  if (!alone.empty())
-    out += "<path id=\"alone\" stroke=\"#136\" stroke-width=\"5\" stroke-linecap=\"round\" d=\"" + alone + "\"/>\n";
+  out += curve(to, unseen).drawn("unseen-", "#e80", "#a50") + curve(to, frames).drawn("", "#48c", "#136");
   if (!above.empty()) out += "<path id=\"above\" fill=\"#136\" d=\"" + above + "\"/>\n";
   if (margin)
     out += text("<path id=\"margin\" stroke=\"#d33\" stroke-dasharray=\"6 4\" d=\"M %.2f %.2f H %.2f\"/>\n", left,

@@ -8,6 +8,7 @@
 #include "report_text.hpp"
 #include "stopwatch.hpp"
 
+#include <clearance/io/hidden_mesh.hpp>
 #include <clearance/io/jacobian.hpp>
 
 #include <CLI/CLI.hpp>
@@ -45,6 +46,34 @@ std::vector<part_gradient> gradients(const query_options& asked, const asked_rob
   return all;
 }
 
+/// What the images hide, and the way behind the pixel that hides it nearest to the robot.
+void draw_unseen(const query_report& report, const asked_clouds& clouds, io::scene& scene) {
+  const min_distance_result& r = report.unseen->all;
+  std::span<const point_label> labels;
+  if (report.filter) labels = report.filter->labels;
+  for (std::size_t i = 0; i < clouds.files.size(); ++i) {
+    const auto& image = std::get<depth_image<std::uint16_t>>(clouds.seen[i].points);
+    const auto its = labels.first(std::min(labels.size(), image.size()));
+    scene.bodies.push_back({.name = clouds.files[i].name + " hides",
+                            .mesh = io::hidden_mesh(image, *report.asked->unseen, its),
+                            .pose = clouds.seen[i].pose,
+                            .paint = {0.5f, 0.3f, 0.6f, 0.25f}});
+    labels = labels.subspan(its.size());
+  }
+  if (r.cloud == none) return;
+  const hidden source{std::get<depth_image<std::uint16_t>>(clouds.seen[r.cloud].points), *report.asked->unseen, 0};
+  const capsule way = source.around(r.point, source[r.point].position);
+  const auto world = [&](vec3 p) {
+    return Eigen::Vector3d(clouds.seen[r.cloud].pose * Eigen::Vector3d(p.x, p.y, p.z));
+  };
+  const io::colour violet{0.6f, 0.1f, 0.8f, 1};
+  scene.segments.push_back({.name = "hidden way", .from = world(way.from), .to = world(way.at(1)), .paint = violet});
+  scene.segments.push_back({.name = "witness of what is hidden",
+                            .from = {r.nearest.x, r.nearest.y, r.nearest.z},
+                            .to = {r.at.x, r.at.y, r.at.z},
+                            .paint = violet});
+}
+
 void draw(const query_report& report, const asked_robot& robot, poses_of poses, const asked_clouds& clouds,
           const point_distances* distances) {
   io::scene scene;
@@ -79,6 +108,7 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
   if (r.state != state::no_data)
     scene.segments.push_back(
         {.name = "witness", .from = {r.nearest.x, r.nearest.y, r.nearest.z}, .to = {r.at.x, r.at.y, r.at.z}});
+  if (report.unseen) draw_unseen(report, clouds, scene);
   io::save_scene(scene, report.asked->scene);
 }
 
@@ -107,6 +137,7 @@ void check_outputs(const query_options& asked, const io::files_read& inputs) {
 /// Hides the points that are the robot's own from the questions that follow.
 void hide_own_points(query_report& report, backend_robot& there, poses_of poses, asked_clouds& clouds) {
   report.filter = there.own_points(poses, *report.asked->self_filter);
+  if (report.asked->unseen) report.unseen = there.unseen(poses, {*report.asked->unseen, 0, report.filter->labels});
   note_hidden(*report.asked, report.notes);
   clouds.hide(report.filter->labels);
   report.upload += there.see(clouds.seen);
@@ -131,6 +162,7 @@ void ask_questions(query_report& report, backend_robot& there, poses_of poses, c
     report.certain = there.certain(poses, radii_of(asked, *report.robot, joints, there.facts()));
     note_anywhere(*report.certain, report.notes);
   }
+  if (asked.unseen && !report.unseen) report.unseen = there.unseen(poses, {*asked.unseen});
   if (asked.gradient)
     report.gradients = gradients(asked, *report.robot, joints, poses, there.witnesses(poses, report.found.parts));
 }
@@ -138,7 +170,8 @@ void ask_questions(query_report& report, backend_robot& there, poses_of poses, c
 int exit_code(const query_report& report) {
   if (report.found.result.state == state::no_data) return 3;
   const bool stopped = report.zones && report.zones->innermost() == 0;
-  return stopped || (report.asked->margin && !report.passes()) ? 2 : 0;
+  const bool passes = !report.asked->margin || (report.passes() && (!report.unseen || report.of_unseen().passes()));
+  return stopped || !passes ? 2 : 0;
 }
 
 /// `ranks`: those of --shard.

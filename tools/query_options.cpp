@@ -21,6 +21,12 @@ void cloud_options::check(const std::string& option) const {
     throw usage_error(option, file + " is a depth image, which needs --intrinsics fx,fy,cx,cy");
 }
 
+void cloud_options::check_hides() const {
+  if (!is_image())
+    throw usage_error("--unseen",
+                      file + " is a point cloud, which does not say what was hidden; it needs a depth image");
+}
+
 namespace {
 
 constexpr std::size_t most_listed = std::size_t(1) << 20;  // the library's limit, for --nearest and --support-limit
@@ -49,6 +55,7 @@ struct raw_options {
       trajectory, unfolded;
   std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, support_limit, svg,
       report, deadline, nearest, delay, max_speed, joint_error, joint_speed;
+  std::optional<std::string> unseen;  // without a value: empty
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges,
       sensors, calibrations;
   bool ignore_limits = false, strict = false, json = false, no_cache = false, merge = false, csv = false,
@@ -182,6 +189,20 @@ double length(const std::string& option, const std::string& text) {
   return metres;
 }
 
+/// NEAR:FAR; without a text the usual ones.
+clearance::hiding room_of(const std::string& option, const std::string& text) {
+  clearance::hiding room;
+  if (text.empty()) return room;
+  const std::size_t at = text.find(':');
+  if (at == text.npos)
+    throw usage_error(option, clearance::io::quoted(text) + " is not of the form NEAR:FAR, such as 0.1:10");
+  const double from = number(option, text.substr(0, at)), to = number(option, text.substr(at + 1));
+  room.nearest = clearance::real(from), room.farthest = clearance::real(to);
+  if (!(room.nearest > 0 && room.nearest < room.farthest && to <= 1e6))
+    throw usage_error(option, "needs 0 < NEAR < FAR <= 1e6 (metres along z)");
+  return room;
+}
+
 support_asked support_of(const std::string& option, const std::string& text) {
   const std::size_t at = text.find('@');
   if (at == text.npos)
@@ -205,6 +226,7 @@ void check_alone(const query_options& o) {
                                                  {"--self-filter", o.self_filter.has_value()},
                                                  {"--min-support", o.support.has_value()},
                                                  {"what is uncertain (--sensor and others)", o.certain.has_value()},
+                                                 {"--unseen", o.unseen.has_value()},
                                                  {"--nearest", o.nearest != 0},
                                                  {"--gradient", o.gradient}};
   for (const auto& [other, asked] : others)
@@ -229,6 +251,8 @@ void read_deadline(const raw_options& raw, query_options& o) {
   if (o.shard && o.support)
     throw usage_error("--shard",
                       "cannot be mixed with --min-support: points of different ranks may confirm one another");
+  if (o.shard && o.unseen)
+    throw usage_error("--shard", "cannot be mixed with --unseen: what one camera hides another may see");
   if (o.shard && o.deadline)
     throw usage_error("--shard", "cannot be mixed with --deadline: ranks wait for one another");
 }
@@ -300,6 +324,12 @@ void read_questions(const raw_options& raw, query_options& o) {
   if (!raw.nearest.empty()) o.nearest = whole_number("--nearest", raw.nearest, most_listed);
   if (!raw.self_filter.empty()) o.self_filter = length("--self-filter", raw.self_filter);
   if (!raw.min_support.empty()) o.support = support_of("--min-support", raw.min_support);
+  if (raw.unseen) {
+    o.unseen = room_of("--unseen", *raw.unseen);
+    for (const cloud_options& cloud : o.clouds) cloud.check_hides();
+    if (o.recording.merge)
+      throw usage_error("--merge", "cannot be mixed with --unseen: a merged cloud does not say what was hidden");
+  }
   if (!raw.support_limit.empty()) {
     if (!o.support) throw usage_error("--support-limit", "is for --min-support");
     o.support->most = whole_number("--support-limit", raw.support_limit, most_listed);
@@ -335,12 +365,14 @@ std::uint64_t bytes_each(const query_options& o) {
   std::uint64_t bytes = 16;
   for (const bool asked : {!o.zones.empty(), o.nearest != 0, o.support.has_value(), o.self_filter.has_value(),
                            o.certain.has_value(), o.model == model_kind::triangles})
+    o.unseen.has_value(), o.model == model_kind::triangles
+})
     if (asked) bytes += 16;
-  if (!o.distances.empty()) bytes += 64;                                    // the result, and a record of the file
-  if (!o.scene.empty()) bytes += 128;                                       // several copies of position and colour
-  if (!o.configurations.empty() || !o.recording.plan.empty()) bytes += 80;  // a tree
-  if (o.recording.merge) bytes += 64;
-  return bytes;
+if (!o.distances.empty()) bytes += 64;                                    // the result, and a record of the file
+if (!o.scene.empty()) bytes += 128;                                       // several copies of position and colour
+if (!o.configurations.empty() || !o.recording.plan.empty()) bytes += 80;  // a tree
+if (o.recording.merge) bytes += 64;
+return bytes;
 }
 
 query_options read(const CLI::App& app, const raw_options& raw) {
@@ -520,7 +552,18 @@ void add_plan_questions(CLI::App& app, raw_options& raw) {
   app.footer(std::string(of_clouds) + "\nThe exit code is 3 without a valid point, also with --check.");
 }
 
+void add_unseen(CLI::App& app, raw_options& raw, const char* more) {
+  app.add_option_function<std::vector<std::string>>(
+         "--unseen",
+         [&raw](const std::vector<std::string>& given) { raw.unseen = given.empty() ? std::string() : given[0]; },
+         std::string("NEAR:FAR (m along z; default 0.1:10): how far each link is from what no depth image shows: from "
+                     "a pixel's depth, or without one from NEAR on, up to FAR; --check is about that, too") +
+             more)
+      ->expected(0, 1);
+}
+
 void add_run_questions(CLI::App& app, raw_options& raw) {
+  add_unseen(app, raw, "");
   app.add_flag("--csv", raw.csv, "Print CSV, one row per frame; without it, one JSON object per frame");
   app.add_option(
       "--svg", raw.svg,
@@ -564,6 +607,7 @@ void add_query_questions(CLI::App& app, raw_options& raw) {
       "--min-support", raw.min_support,
       "N@RADIUS, such as 3@0.02: say also how far the nearest point is that has N points, itself among them, within "
       "RADIUS m; --check stays about all points");
+  add_unseen(app, raw, "; what the points of --self-filter hide is told apart");
   app.add_option(
       "--support-limit", raw.support_limit,
       "How many of the nearest points --min-support asks before it gives up (default 4096, at most 1048576)");

@@ -5,6 +5,7 @@
 
 #include <clearance/io/error.hpp>
 #include <clearance/io/limits.hpp>
+#include <clearance/points/hidden.hpp>
 
 #include <Eigen/Geometry>
 
@@ -37,6 +38,8 @@ struct cloud_options {
 
   /// Throws usage_error about `option` if something is missing.
   void check(const std::string& option) const;
+  /// Throws usage_error unless it is an image, for --unseen.
+  void check_hides() const;
 };
 
 /// Throws usage_error if an option in `all` fits the kind of none of `clouds`.
@@ -98,9 +101,10 @@ struct query_options {
   bool is_signed = false;      // --signed, for --distances
   std::size_t nearest = 0;     // --nearest: points to list per part
   double d_max = clearance::infinity;
-  std::optional<double> self_filter;     // --self-filter: points within this many metres are the robot's own
-  std::optional<support_asked> support;  // --min-support
-  std::optional<joints_off> certain;     // any option about uncertainty was given
+  std::optional<double> self_filter;        // --self-filter: points within this many metres are the robot's own
+  std::optional<support_asked> support;     // --min-support
+  std::optional<joints_off> certain;        // any option about uncertainty was given
+  std::optional<clearance::hiding> unseen;  // --unseen
   bool gradient = false;
   std::optional<double> deadline;  // --deadline: milliseconds for the least distance
   bool shard = false;              // --shard: one of the ranks that mpirun started

@@ -25,6 +25,7 @@ json part_of(const query_report& report, std::size_t k) {
   if (report.certain) part["certain"] = certain_of(report.certain->parts[k], report.all_clouds());
   if (report.zones) part["zones"] = zones_of(report, k);
   if (report.nearest) part["nearest"] = nearest_of(report, k);
+  if (report.unseen) part["unseen"] = unseen_of(report.of_unseen(), k);
   if (!report.gradients.empty()) part["gradient"] = gradient_of(report, k);
   return part;
 }

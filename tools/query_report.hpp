@@ -7,6 +7,7 @@
 #include "distances_file.hpp"
 #include "observations.hpp"
 #include "robot_bodies.hpp"
+#include "unseen_report.hpp"
 
 #include <clearance/gradient.hpp>
 #include <clearance/questions/min_distance_supported.hpp>
@@ -32,6 +33,7 @@ struct query_report {
   std::optional<clearance::nearest_k_result> nearest;
   std::optional<clearance::supported_distance> support;
   std::optional<clearance::certain_distance_result> certain;
+  std::optional<clearance::unseen_result> unseen;
   std::vector<part_gradient> gradients;  // of all parts; empty: not asked
   std::optional<distances_written> distances;
   double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds; query: for the least distance
@@ -46,5 +48,9 @@ struct query_report {
   bool passes() const {
     const clearance::real lower = certain ? certain->lower : found.result.lower;
     return found.result.state != clearance::state::no_data && lower > *asked->margin;
+  }
+  unseen_report of_unseen() const {
+    return {
+        .asked = asked, .found = &*unseen, .clouds = all_clouds(), .bodies = bodies, .filtered = filter.has_value()};
   }
 };

@@ -240,6 +240,7 @@ void add_questions(const query_report& report, json& out) {
   }
   if (report.certain) out["certain"] = certain_of(*report.certain, report.all_clouds(), *report.bodies);
   if (report.support) out["support"] = support_of(report);
+  if (report.unseen) out["unseen"] = unseen_of(report.of_unseen());
   if (report.gradients.empty()) return;
   const std::uint32_t part = report.found.result.part;
   out["gradient"] = {{"part", part == none ? json(nullptr) : json((*report.bodies)[part].name)}};
@@ -253,6 +254,7 @@ std::string questions_text(const query_report& report) {
   if (report.certain) out += certain_text(*report.certain, *report.bodies);
   if (report.zones) out += "zones     " + innermost_text(report) + '\n';
   if (report.support) out += support_text(report);
+  if (report.unseen) out += unseen_text(report.of_unseen());
   return out;
 }
 
@@ -260,6 +262,7 @@ std::string parts_text(const query_report& report) {
   std::string out;
   if (report.zones) out += zones_text(report);
   if (report.nearest) out += nearest_text(report);
+  if (report.unseen) out += unseen_parts_text(report.of_unseen());
   if (!report.gradients.empty()) out += gradients_text(report);
   return out;
 }

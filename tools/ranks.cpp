@@ -15,6 +15,7 @@
 #include <clearance/questions/nearest_k.hpp>
 #include <clearance/questions/part_witnesses.hpp>
 #include <clearance/questions/self_filter.hpp>
+#include <clearance/questions/unseen.hpp>
 #include <clearance/questions/zones.hpp>
 
 #include <cstdlib>
@@ -138,6 +139,7 @@ class robot_of_ranks final : public backend_robot {
   reply least_by(poses_of, double) override { none_of_ranks(); }
   supported_distance supported(poses_of, const min_distance_supported&) override { none_of_ranks(); }
   certain_distance_result certain(poses_of, std::span<const part_radius>) override { none_of_ranks(); }
+  unseen_result unseen(poses_of, const clearance::unseen&) override { none_of_ranks(); }
 
   reply least_per_part(poses_of poses, int repeat) override {
     const auto found = joined<min_distance_per_part>(poses, [&] {

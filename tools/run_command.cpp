@@ -71,6 +71,7 @@ class frame_files {
       files_.push_back(asked_.camera);
       files_.back().file = file;
       files_.back().check("--frames");
+      if (asked.unseen) files_.back().check_hides();
     }
     check_all_clouds(asked_.camera, files_);
   }
@@ -145,7 +146,8 @@ double show(backend_robot& there, observation& frame, const std::string& file, c
 int exit_code(const frame_report& report, const std::optional<double>& margin) {
   const min_distance_result& r = report.found.result;
   const real lower = report.certain ? report.certain->lower : r.lower;
-  const int least = r.state == state::no_data ? 3 : margin && !(lower > *margin) ? 2 : 0;
+  const bool passes = !margin || (lower > *margin && (!report.unseen || report.unseen->passes()));
+  const int least = r.state == state::no_data ? 3 : passes ? 0 : 2;
   return std::max(least, report.plan ? report.plan->code() : 0);
 }
 
@@ -172,17 +174,27 @@ int run_frames(const query_options& asked) {
   int code = 0;
   double upload = asked.recording.merge ? there->see({merged.finish(moves.poses(0))}) : 0;
   std::optional<observation> frame;
-  std::vector<min_distance_result> seen;  // for the picture
+  std::vector<min_distance_result> seen, hidden;  // for the picture
   for (std::size_t k = 0; k < frames.size(); ++k) {
     if (!asked.recording.merge) {
       observation next = frames.load(k);
       frame.emplace(std::move(next));
       upload = show(*there, *frame, frames[k], moves, k);
     }
-    frame_report report{.frame = k, .file = frames[k], .found = there->least(moves.poses(k)), .bodies = &bodies};
+    const std::vector<Eigen::Isometry3d> poses = moves.poses(k);
+    frame_report report{.frame = k,
+                        .file = frames[k],
+                        .found = asked.unseen ? there->least_per_part(poses, 1) : there->least(poses),
+                        .bodies = &bodies};
     report.upload = std::exchange(upload, 0);
     report.query = there->query;
-    if (asked.certain) report.certain = there->certain(moves.poses(k), moves.radii(k, there->facts()));
+    if (asked.certain) report.certain = there->certain(poses, moves.radii(k, there->facts()));
+    std::optional<unseen_result> unseen;
+    if (asked.unseen) {
+      unseen = there->unseen(poses, {*asked.unseen});
+      report.unseen = {.asked = &asked, .found = &*unseen, .clouds = {&*frame}, .bodies = &bodies};
+      report.unseen_query = there->query;
+    }
     const std::optional<plan_report> plan = to_come.ask(*there);
     if (plan) report.plan = &*plan;
     min_distance_result& r = report.found.result;
@@ -193,11 +205,12 @@ int run_frames(const query_options& asked) {
     std::cout << (asked.csv ? to_csv(report) : to_json(report));
     if (!std::cout) return code;  // main reports it
     if (!asked.recording.svg.empty()) seen.push_back(r);
+    if (!asked.recording.svg.empty() && unseen) hidden.push_back(unseen->all);
     code = std::max(code, exit_code(report, asked.margin));
   }
   if (!asked.recording.svg.empty()) {
     io::check_output(asked.recording.svg, inputs);
-    io::write_bytes(asked.recording.svg, clearance_svg(seen, asked.recording.frames, asked.margin));
+    io::write_bytes(asked.recording.svg, clearance_svg(seen, hidden, asked.recording.frames, asked.margin));
   }
   return code;
 }

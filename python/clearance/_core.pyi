@@ -118,6 +118,11 @@ def depth_image(depth: object, intrinsics: object | None = None, pose: object | 
     A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): x / z and y / z of each pixel. pose: world-from-camera, z forward.
     """
 
+def half_pixel_of(rays: object) -> float:
+    """
+    Half the diagonal of the widest pixel at z = 1, of a table of rays (rows, columns, 2), float32: for Unseen.
+    """
+
 class Camera:
     """A calibrated camera of a ROS CameraInfo: which ray each pixel sees."""
 
@@ -208,6 +213,38 @@ class DropReason(enum.Enum):
     masked = 5
 
     too_close = 6
+
+class Hiding:
+    """Which room behind its pixels an image hides, in metres of z."""
+
+    def __init__(self, nearest: float = 0.10000000149011612, farthest: float = 10.0, infinite_is_free: bool = False) -> None:
+        """
+        nearest: From here on a pixel without a return hides everything,
+        farthest: up to here. What is farther does not matter.
+        infinite_is_free: A pixel of +inf says that nothing is there (REP 117); otherwise it is no return.
+        """
+
+    @property
+    def nearest(self) -> float:
+        """From here on a pixel without a return hides everything,"""
+
+    @property
+    def farthest(self) -> float:
+        """up to here. What is farther does not matter."""
+
+    @property
+    def infinite_is_free(self) -> bool:
+        """
+        A pixel of +inf says that nothing is there (REP 117); otherwise it is no return.
+        """
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
 
 class PointLabel(enum.Enum):
     """Whose a point is. One byte, so that a mask of labels is an image."""
@@ -771,6 +808,102 @@ class SignedDistances:
 
     def __hash__(self) -> int: ...
 
+class UnseenPart:
+    """
+    A part, and where the room that no camera sees is nearest to it: cloud is the camera, point the pixel, at lies on the pixel's way. Metres.
+    """
+
+    @property
+    def distance(self) -> float: ...
+
+    @property
+    def part(self) -> int | None: ...
+
+    @property
+    def cloud(self) -> int | None: ...
+
+    @property
+    def point(self) -> int | None: ...
+
+    @property
+    def primitive(self) -> int | None: ...
+
+    @property
+    def at(self) -> tuple[float, float, float]: ...
+
+    @property
+    def nearest(self) -> tuple[float, float, float]: ...
+
+    @property
+    def normal(self) -> tuple[float, float, float]: ...
+
+    @property
+    def lower(self) -> float:
+        """At least so far away is all that no camera sees and some camera hides."""
+
+    @property
+    def out_of_view(self) -> float:
+        """
+        Which share of the ball around the part no camera shows. Nothing is said about that. NaN if a ray image may show the rest.
+        """
+
+    @property
+    def link(self) -> str | None:
+        """The name of that part, or None."""
+
+    def __repr__(self) -> str: ...
+
+class UnseenResult:
+    """
+    all: as a min_distance_result. If the robot reaches into what is hidden its state is unknown. seen counts pixels, valid those that hide room. With several cameras a place is hidden only if no camera sees it: lower holds for that, distance is an estimate, and upper is not known (infinite).
+    """
+
+    @property
+    def all(self) -> MinDistanceResult: ...
+
+    @property
+    def parts(self) -> NDArray[numpy.void]: ...
+
+    @property
+    def own_shadow(self) -> MinDistanceResult:
+        """
+        What pixels of the robot's own points (masked) hide, of all cameras together.
+        """
+
+    def __repr__(self) -> str: ...
+
+class Unseen:
+    """
+    How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or masked ones. Refused: depths that are no range, a ray image without half_pixel, and not one label per pixel.
+    """
+
+    def __init__(self, room: Hiding = Hiding(nearest=0.10000000149011612, farthest=10.0, infinite_is_free=False), half_pixel: float = 0.0, labels: ArrayLike = ()) -> None:
+        """
+        room: Where hidden room begins and ends.
+        half_pixel: For ray images: half_pixel_of their table.
+        labels: Of all pixels of all clouds, as self_filter gives them, or none.
+        """
+
+    @property
+    def room(self) -> Hiding:
+        """Where hidden room begins and ends."""
+
+    @property
+    def half_pixel(self) -> float:
+        """For ray images: half_pixel_of their table."""
+
+    @property
+    def labels(self) -> NDArray[numpy.uint8]:
+        """Of all pixels of all clouds, as self_filter gives them, or none."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
 class WithinResult:
     """
     Points near parts. The pairs of part k are offsets[k] to offsets[k + 1] - 1, the nearest first, then by cloud and point.
@@ -913,6 +1046,8 @@ class State(enum.Enum):
     collision = 2
 
     no_data = 3
+
+    unknown = 4
 
 class PartMinimum:
     """
@@ -1093,6 +1228,9 @@ class Query(Generic[Answer]):
 
     @overload
     def __init__(self: Query[PointDistances], robot: Robot, question: SignedDistances | type[SignedDistances], device: str = 'cpu') -> None: ...
+
+    @overload
+    def __init__(self: Query[UnseenResult], robot: Robot, question: Unseen | type[Unseen], device: str = 'cpu') -> None: ...
 
     @overload
     def __init__(self: Query[WithinResult], robot: Robot, question: Within | type[Within], device: str = 'cpu') -> None: ...

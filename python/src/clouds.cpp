@@ -236,6 +236,17 @@ cloud_object depth_of(nb::handle depth, nb::handle intrinsics, nb::handle pose, 
   return made;
 }
 
+/// Of (rows, columns, 2) float32 in host memory.
+double half_pixel(nb::handle rays) {
+  const seen_array table = array_seen(rays, "rays", "an array of shape (rows, columns, 2) and dtype float32");
+  if (table.shape.size() != 3 || table.shape[2] != 2 || table.kind != 'f' || table.item != 4 || table.strides[2] != 4 ||
+      table.strides[1] != 8 || table.strides[0] != 8 * std::int64_t(table.shape[1]) || table.device != on_the_host)
+    throw std::invalid_argument(
+        "clearance: rays is an array on the cpu of shape (rows, columns, 2) and dtype float32, without gaps, not " +
+        shape_and_type(rays));
+  return half_pixel_of(reinterpret_cast<const ray*>(table.data), table.shape[1], table.shape[0]);
+}
+
 void bind_clouds(nb::module_& m) {
   nb::class_<cloud_object>(m, "Cloud", "Points or a depth image with a pose: a view of arrays where they lie.")
       .def("__len__",
@@ -258,4 +269,6 @@ void bind_clouds(nb::module_& m) {
       "A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or "
       "float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): "
       "x / z and y / z of each pixel. pose: world-from-camera, z forward.");
+  m.def("half_pixel_of", &half_pixel, nb::arg("rays"),
+        "Half the diagonal of the widest pixel at z = 1, of a table of rays (rows, columns, 2), float32: for Unseen.");
 }

@@ -28,7 +28,7 @@ NB_MODULE(_core, m) {
   for_each_declared([&]<class T>() {
     if constexpr (declared_enum<T>)
       bind_enum<T>(m);
-    else if constexpr (declared<T>::question)
+    else if constexpr (declared<T>::question || declared<T>::option)
       bind_question<T>(m);
     else
       bind_result<T>(m);

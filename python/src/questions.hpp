@@ -21,6 +21,10 @@ const char* wanted_as() {
   if constexpr (std::is_floating_point_v<T>) return "a number";
   if constexpr (std::is_integral_v<T>) return "a whole number, 0 or more";
   if constexpr (std::is_same_v<T, std::vector<double>>) return "a number or a sequence of numbers";
+  if constexpr (declared_struct<T>) {
+    static const std::string text = std::string("a ") + declared<T>::name;
+    return text.c_str();
+  }
   return "an array of them";
 }
 template <class T>
@@ -29,6 +33,7 @@ const char* type_name() {
   if constexpr (std::is_floating_point_v<T>) return "float";
   if constexpr (std::is_integral_v<T>) return "int";
   if constexpr (std::is_same_v<T, std::vector<double>>) return "float | collections.abc.Sequence[float]";
+  if constexpr (declared_struct<T>) return declared<T>::name;
   return "numpy.typing.NDArray";
 }
 
@@ -52,6 +57,8 @@ void set_option(asked<Q>& to, T& option, const char* name, nb::handle given) {
       const auto bytes = nb::cast<nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig>>(plain);
       option = {reinterpret_cast<const element*>(bytes.data()), bytes.size() / sizeof(element)};
       to.kept = plain;
+    } else if constexpr (declared_struct<T>) {
+      option = nb::cast<const asked<T>&>(given).question;
     } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
       option = nb::cast<T>(given.attr("__index__")());
     } else {
@@ -70,8 +77,14 @@ std::string signature_of() {
   const nb::object standing = nb::cast(asked<Q>{});
   std::string text = "def __init__(self";
   for_each_member<Q>([&]<class T>(const member_as<Q, T>& m) {
-    text += std::string(", ") + m.name + ": " + type_name<T>();
-    if constexpr (std::is_arithmetic_v<T>) {
+    text += std::string(", ") + m.name + ": ";
+    if constexpr (is_array<T> && !std::is_same_v<T, std::vector<double>>) {
+      const bool after_defaults = text.find(" = ") != text.npos;
+      text += after_defaults ? "numpy.typing.ArrayLike = ()" : type_name<T>();
+    } else {
+      text += type_name<T>();
+    }
+    if constexpr (std::is_arithmetic_v<T> || declared_struct<T>) {
       std::string shown = nb::cast<std::string>(nb::repr(standing.attr(m.name)));
       text += " = " + (shown == "inf" ? std::string("float('inf')") : shown);
     } else if constexpr (std::is_same_v<T, std::vector<double>>) {
@@ -86,6 +99,8 @@ nb::object option_of(const asked<Q>& self, nb::handle owner, const auto& at) {
   using type = std::remove_cvref_t<decltype(self.question.*at)>;
   if constexpr (std::is_same_v<type, std::vector<double>>)
     return nb::tuple(nb::cast(self.question.*at));
+  else if constexpr (declared_struct<type>)
+    return nb::cast(asked<type>{self.question.*at, {}});
   else
     return to_python(self.question.*at, owner, nullptr);
 }

@@ -272,6 +272,8 @@ def test_clouds_are_a_sequence_of_clouds(ask, clouds):
     (lambda: clearance.InCollision([None]), ["margins"]),
     (lambda: clearance.Zones(None), ["thresholds"]),
     (lambda: clearance.PartWitnesses("all"), ["minima"]),
+    (lambda: clearance.Unseen(0.1), ["Unseen", "room is a Hiding", "0.1"]),
+    (lambda: clearance.Hiding("near"), ["Hiding", "nearest", "number"]),
 ])
 def test_options_that_are_none(make, said, recwarn, capfd):
     refused(make, *said, kind=TypeError)
@@ -289,6 +291,9 @@ def test_options_that_are_none(make, said, recwarn, capfd):
     (clearance.Zones([]), "threshold"),
     (clearance.Zones([-0.1]), "threshold"),
     (clearance.SelfFilter(-0.1), "padding"),
+    (clearance.Unseen(clearance.Hiding(0.0)), "unseen room is from"),
+    (clearance.Unseen(labels=[0, 1, 0]), "3 labels"),
+    (clearance.Unseen(), "asked about depth images"),
     (clearance.MinDistanceSupported(min_points=0), "0 points"),
 ])
 def test_options_that_the_question_refuses(ball, question, said):

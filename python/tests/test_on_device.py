@@ -83,7 +83,7 @@ def scene(request, tmp_path_factory):
 
 def asked(scene, name):
     """The questions of a kind; none, if this robot cannot be asked."""
-    if name == "SignedDistances" and scene.robot.model == "spheres":
+    if name == "SignedDistances" and scene.robot.model == "spheres" or name == "Unseen":  # which is about images alone
         return []
     if name == "PartWitnesses":
         least = clearance.Query(scene.robot, clearance.MinDistancePerPart())
@@ -649,3 +649,14 @@ def test_cupy_reads_and_writes_the_same_arrays(small):
     answer = ask.enqueue(there, poses=poses)
     for made in (cupy.from_dlpack(answer["distance"]), cupy.asarray(answer["distance"])):
         assert (cupy.asnumpy(made) == expected).all()
+
+
+def test_what_is_unseen_is_the_same_on_a_device(scene):
+    labels = (np.arange(scene.depth.size) % 7 == 0).astype("u1")
+    for question in (clearance.Unseen(), clearance.Unseen(clearance.Hiding(0.3, 2.0), labels=labels)):
+        there = clearance.DeviceArray(scene.depth, GPU)
+        seen = [clearance.depth_image(d, (70, 70, 40, 30), scene.camera) for d in (scene.depth, there)]
+        expected = clearance.Query(scene.robot, question)(clouds=seen[:1], poses=scene.poses)
+        for image in seen:
+            found = clearance.Query(scene.robot, question, device=GPU)(clouds=[image], poses=scene.poses)
+            assert bits(found) == bits(expected)

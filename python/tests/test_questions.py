@@ -781,6 +781,58 @@ def _(s):
         assert one["normal"] == pytest.approx(direction, abs=2e-4)
 
 
+@check("Unseen")
+def _(s):
+    if not s.clouds:
+        assert s.ask(clearance.Unseen()).all.state == State.no_data
+        return
+    if not (set(s.asked) <= {"depth", "intrinsics", "rays", "camera_pose"}):
+        if isinstance(s.asked.get("points"), clearance.Cloud):
+            assert s.ask(clearance.Unseen()).all.seen == len(s.world)  # an image with limits
+        else:
+            with pytest.raises(ValueError, match="asked about depth images"):
+                s.ask(clearance.Unseen())
+        return
+    image, rays, pose = s.asked["depth"], s.asked.get("rays"), s.asked.get("camera_pose", np.eye(4))
+    k = camera if rays is None else (1, 1, 0, 0)
+    v, u = np.mgrid[:image.shape[0], :image.shape[1]]
+    across = np.stack([(u - k[2]) / k[0], (v - k[3]) / k[1]], axis=-1) if rays is None else rays.astype("f8")
+    ways = np.concatenate([across, np.ones(image.shape + (1,))], axis=-1).reshape(-1, 3)
+    with np.errstate(invalid="ignore"):
+        z = image.astype("f8").reshape(-1) * (0.001 if image.dtype.kind == "u" else 1)
+    labels = np.where(np.arange(z.size) % 5 == 0, 1, 0).astype("u1")
+    for farthest, own in ((10.0, None), (0.6, None), (10.0, labels)):
+        start = np.where(s.why == "valid", z, np.where(s.why == "too_close", 0, 0.2))
+        mine = (labels == 1) & (s.why == "valid") if own is not None else np.zeros(z.size, bool)
+        hides = (start < farthest) & ~mine
+        room = clearance.Hiding(0.2, farthest)
+        r = s.ask(clearance.Unseen(room, 0.2, () if own is None else own))
+        assert r.all.seen == len(s.world) and r.all.valid == hides.sum()
+        assert r.own_shadow.valid == (mine & (start < farthest)).sum()
+        least = []
+        for spheres, part in zip(s.spheres, s.poses):
+            c = moved(np.linalg.inv(pose), moved(part, spheres[:, :3]))
+            t = np.clip((c @ ways.T) / (ways * ways).sum(axis=1), start, farthest)
+            d = np.linalg.norm(c[:, None] - t[..., None] * ways, axis=2) - spheres[:, 3:]
+            least.append(d[:, hides].min() if hides.any() else np.inf)
+        assert np.allclose(r.parts["distance"], least, atol=2e-5)
+        assert (r.parts["lower"] <= np.maximum(least, 0)).all()
+        assert r.all.lower <= max(min(least), 0) <= r.all.upper + 2e-5
+        assert (r.all.state == State.free) == (r.all.lower > 0)
+        if rays is None:
+            assert ((r.parts["out_of_view"] >= 0) & (r.parts["out_of_view"] <= 1)).all()
+        else:
+            assert np.isnan(r.parts["out_of_view"]).all()
+
+
+def test_half_a_pixel_of_a_table_of_rays():
+    v, u = np.mgrid[:6, :8].astype("f4")
+    rays = np.ascontiguousarray(np.stack([(u - 3) / 50, (v - 2) / 40], axis=-1))
+    assert clearance.half_pixel_of(rays) == pytest.approx(np.hypot(1 / 50, 1 / 40) / 2, rel=1e-5)
+    with pytest.raises(ValueError, match="rays"):
+        clearance.half_pixel_of(rays[..., :1])
+
+
 @pytest.mark.parametrize("place", [0.0, 1e3, 5e6, -7.3e6])
 @pytest.mark.parametrize("by_cloud_pose", [False, True])
 def test_far_from_the_origin_the_bracket_contains_the_distance_in_exact_arithmetic(place, by_cloud_pose, rng):

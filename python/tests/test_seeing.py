@@ -423,6 +423,30 @@ def test_a_report_of_json_rows_says_what_is_in_them(tmp_path):
         assert words in told, words
 
 
+def test_a_report_has_a_second_band_about_what_is_not_seen(tmp_path):
+    rows = [
+        {"frame": 0, "state": "free", "distance": 0.5, "lower": 0.49, "upper": 0.51},
+        {"frame": 1, "state": "free", "distance": 0.4, "lower": 0.39, "upper": 0.41},
+        {"frame": 2, "state": "free", "distance": 0.4, "lower": 0.39, "upper": 0.41},
+    ]
+    none = page_of(tmp_path, "\n".join(map(json.dumps, rows)))
+    assert "unseen" not in none and "no camera" not in none
+    rows[0]["unseen"] = {"state": "free", "distance": 0.31, "lower": 0.3, "upper": 0.32}
+    rows[1]["unseen"] = {"state": "unknown", "distance": 0, "lower": 0, "upper": 0.002}
+    rows[2]["unseen"] = {"state": "free", "distance": None, "lower": None, "upper": None}
+    told = page_of(tmp_path, "\n".join(map(json.dumps, rows)))
+    for words in (
+        "What no camera sees is certainly at least 0.000 m away, at frame 1; the robot <b>reaches into it</b> in 1 frames.",
+        'class="unseen-band"',
+        'class="unseen-distance"',
+        "Orange: the same to what no camera sees.",
+    ):
+        assert words in told, words
+    table = "frame,state,distance,lower,upper,unseen_state,unseen_distance,unseen_lower\n0,free,0.5,0.49,0.51,free,0.3,0.25\n"
+    assert "certainly at least 0.250 m away" in page_of(tmp_path, table, name="rows.csv")
+    assert page_of(tmp_path, table.replace("free,0.3", "odd,0.3"), name="rows.csv") == ""
+
+
 def test_a_report_of_played_rows_says_what_is_in_them(tmp_path):
     told = page_of(tmp_path, PLAYED)
     for words in (

@@ -13,7 +13,7 @@ import weakref
 import numpy as np
 import pytest
 from conftest import moved, random_robot, rigid
-from test_questions import configurations, plain, questions
+from test_questions import configurations, depth_of_integers, plain, questions
 
 import clearance
 
@@ -25,7 +25,8 @@ def options():
              "Zones": {"thresholds": [0.1, 0.3], "each_part": False, "min_points": 3}, "Within": {"radius": 0.25},
              "MinDistanceSupported": {"min_points": 4, "radius": 0.5, "most": 100}, "NearestK": {"k": 3, "d_max": 2.0},
              "SelfFilter": {"padding": 0.03}, "MinDistances": {"d_max": 1.5}, "MinDistancesPerPart": {"d_max": 1.5},
-             "DistancesPerPart": {"d_max": 0.5}}
+             "DistancesPerPart": {"d_max": 0.5},
+             "Unseen": {"room": clearance.Hiding(0.25, 5.0, True), "half_pixel": 0.01, "labels": np.array([0, 1], "u1")}}
     minima = np.zeros(2, [("distance", "<f4"), ("cloud", "<u4"), ("point", "<u4"), ("primitive", "<u4")])
     given["PartWitnesses"] = {"minima": minima}
     return {name: given.get(name, {}) for name in questions()}
@@ -52,8 +53,9 @@ def test_a_question_is_a_value(name):
 @pytest.mark.parametrize("name", [n for n in questions() if n != "PartWitnesses"])
 def test_what_is_printed_of_a_question_makes_it_again(name):
     question = getattr(clearance, name)(**options()[name])
-    assert eval(repr(question), {name: getattr(clearance, name), "inf": np.inf}) == question
-    assert eval(repr(type(question)()), {name: getattr(clearance, name), "inf": np.inf}) == type(question)()
+    known = {name: getattr(clearance, name), "inf": np.inf, "Hiding": clearance.Hiding, "array": np.array, "uint8": np.uint8}
+    assert eval(repr(question), known) == question
+    assert eval(repr(type(question)()), known) == type(question)()
 
 
 def ask_all(rng):
@@ -67,6 +69,9 @@ def ask_all(rng):
             question = clearance.PartWitnesses(s.ask(clearance.MinDistancePerPart()).parts)
         if name.startswith("InCollision"):
             question = type(question)(0.1)
+        if name == "Unseen":
+            yield name, depth_of_integers(rng).ask(clearance.Unseen())
+            continue
         plan = name in ("MinDistances", "MinDistancesPerPart", "InCollisions")
         yield name, s.ask(question, **({"poses": configurations(s)[0]} if plan else {}))
 

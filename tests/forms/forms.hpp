@@ -18,6 +18,7 @@
 #include <clearance/questions/part_witnesses.hpp>
 #include <clearance/questions/self_filter.hpp>
 #include <clearance/questions/signed_distances.hpp>
+#include <clearance/questions/unseen.hpp>
 #include <clearance/questions/within.hpp>
 #include <clearance/questions/zones.hpp>
 #include <clearance/solid/mesh_solid.hpp>
@@ -91,6 +92,7 @@ inline std::string table_of_forms() {
   };
   for_each_question(row), for_each_question_of_meshes(row);
   row("part_witnesses", clearance::part_witnesses{});
+  row("unseen", clearance::unseen{});
   return table;
 }
 

@@ -2,6 +2,7 @@
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
 
+#include <clearance/io/hidden_mesh.hpp>
 #include <clearance/io/packing_scene.hpp>
 #include <clearance/io/scene.hpp>
 
@@ -170,6 +171,29 @@ TEST_CASE("a scene that cannot be written is refused") {
   CHECK(!refusal([&] { io::save_scene(world, "/tmp/x.glb"); }).empty());
   world.segments.push_back({.name = "witness", .from = {0, 0, 0}, .to = {0, 0, 1}});
   CHECK(refusal([&] { io::save_scene(world, "/nonexistent/folder/x.glb"); }).find("/nonexistent/folder/x.glb") == 0);
+}
+
+TEST_CASE("hidden room is drawn from what hides it to where it ends, in blocks of the nearest") {
+  std::vector<float> depth(40 * 30, 2);
+  depth[10 * 40 + 20] = 0;  // no return: from `nearest` on
+  const depth_image image(depth.data(), 40, 30, intrinsics{50, 50, 19.5, 14.5});
+  const hiding room{.nearest = 0.5f, .farthest = 3};
+  const auto fine = io::hidden_mesh(image, room), coarse = io::hidden_mesh(image, room, {}, 12);
+  CHECK(coarse.triangles.size() < 200);
+  CHECK(fine.triangles.size() > 2 * 2 * 40 * 30);
+  for (const auto& mesh : {fine, coarse}) {
+    double low = 10, high = 0, wide = 0;
+    for (const auto& v : mesh.vertices) {
+      low = std::min(low, v.z()), high = std::max(high, v.z()), wide = std::max(wide, v.x() / v.z());
+      REQUIRE((v.z() > 0.49 && v.z() < 3.01));
+    }
+    CHECK((low == 0.5 && high == 3));
+    CHECK(wide == Approx(0.4));
+  }
+  const std::vector<point_label> own(depth.size(), point_label::own);  // but for the pixel that has no point
+  CHECK(io::hidden_mesh(image, room, own, 12).triangles.empty());
+  CHECK(io::hidden_mesh(image, {.nearest = 0.1f, .farthest = 0.2f}).triangles.size() == 12);
+  CHECK(io::hidden_mesh(depth_image<float>(), room).triangles.empty());
 }
 
 }  // namespace scene_test

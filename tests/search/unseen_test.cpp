@@ -89,6 +89,11 @@ void random_frames(unsigned seed, int count) {
                                          placed{image.masked_image(), image.pose}, q),
                           labelled),
               what, ": another tree says something else");
+    unseen with_labels = q;
+    with_labels.labels = image.labels;
+    v.require(same_unseen(clearance::ask(host{}, model, robot.poses, placed{image.image(), image.pose}, with_labels),
+                          labelled),
+              what, ": labels of the question say something else than a mask");
     // Its own shadow.
     const auto own = image.hidden(q.room, true, true);
     double truth = infinity;
@@ -359,6 +364,29 @@ std::string refusal(const std::function<void()>& call) {
 
 }  // namespace
 
+TEST_CASE("A prepared question says in every frame what a fresh one says, whatever it saw before") {
+  verdict v;
+  dice d(3212);
+  const seen_robot<triangle> robot(d, here, 1);
+  const auto model = robot.model<clearance::obb>(8);
+  auto poses = robot.poses;
+  clearance::query prepared(host{}, model, unseen{});
+  for (int n = 0; n < rounds(60); ++n) {
+    std::vector<picture<std::uint16_t>> images;
+    std::vector<placed<clearance::depth_image<std::uint16_t>>> all;
+    for (unsigned k = 0; k < 1 + d.below(3); ++k) images.emplace_back(d, 0.2, 1.5);
+    std::vector<point_label> labels;
+    for (const auto& image : images) {
+      all.push_back({image.image(), image.pose});
+      labels.insert(labels.end(), image.labels.begin(), image.labels.end());
+    }
+    unseen q{some_room(d, 1.5)};
+    if (d.below(2) == 0) q.labels = labels;
+    if (d.below(2) == 0) poses[0] = d.pose(0.5);
+    v.require(same_unseen(prepared(poses, all, q), clearance::ask(host{}, model, poses, all, q)), "frame ", n);
+  }
+}
+
 TEST_CASE("A ball before a wall is as far from what the wall hides as from the wall, wherever that begins") {
   const wall_camera wall;
   const auto r = look(ball_at(0.02, 0, 1), wall.image());
@@ -449,6 +477,17 @@ TEST_CASE("A picture without pixels says nothing, and one without a return hides
   const clearance::depth_image<float> none(nullptr, 0, 0, {50, 50, 0, 0});
   const auto nothing = look(robot, none);
   CHECK((nothing.all.state == state::no_data && nothing.all.lower == 0 && nothing.all.upper == infinity));
+  CHECK((nothing.parts[0].lower == 0 && nothing.parts[0].out_of_view == 1));
+  const wall_camera wall;
+  const std::vector<placed<clearance::depth_image<float>>> and_one{{none, here}, {wall.image(), here}};
+  CHECK(look(robot, and_one).all.distance == Approx(0.9).margin(5e-3));
+  CHECK(look(robot, and_one).all.lower <= look(robot, wall.image()).all.lower);
+  std::vector<clearance::ray> no_rays(wall.pixels.size(), {clearance::not_a_number, 0});  // as where a lens folds
+  const auto folded = look(robot, clearance::ray_image(wall.pixels.data(), no_rays.data(), 64, 48), {{}, 0.01});
+  CHECK((folded.all.state == state::no_data && folded.all.lower == 0 && folded.parts[0].lower == 0));
+  no_rays[100] = {0, 0};
+  CHECK(look(robot, clearance::ray_image(wall.pixels.data(), no_rays.data(), 64, 48), {{}, 0.01}).all.state ==
+        state::free);
   CHECK(look(robot, std::vector<placed<clearance::depth_image<float>>>{}).all.state == state::no_data);
   for (const float lost : {0.0f, clearance::not_a_number, infinity, -1.0f}) {
     const wall_camera blind(lost);
@@ -470,8 +509,14 @@ TEST_CASE("A camera inside a part sees only that part, which is unknown") {
 
 TEST_CASE("Pixels that are nearly 0 hide all that is behind them, also far from the camera") {
   for (const float tiny : {std::numeric_limits<float>::denorm_min(), 1e-39f, 1e-30f, 1e-10f}) {
-    const auto r = look(ball_at(0.3, 0.2, 1), wall_camera(tiny).image());
-    CHECK((r.all.state == state::unknown && r.all.valid == 64 * 48));
+    const wall_camera near(tiny);
+    auto image = near.image();
+    image.nearest = 0.01f;
+    for (const real scale : {1.0f, 0.1f}) {  // products may underflow
+      image.scale = scale;
+      const auto r = look(ball_at(0.3, 0.2, 1), image, {{.nearest = 1.5f}});
+      CHECK((r.all.state == state::unknown && r.all.valid == 64 * 48));
+    }
   }
   wall_camera one(200);  // a metre wide at 100 m; one pixel has no return, from 1 mm on
   one.camera = {5000, 5000, 31.5, 23.5};
@@ -493,6 +538,23 @@ TEST_CASE("What would change an answer of `unseen` is refused in a sentence") {
     CHECK(refusal([&] { look(robot, wall.image(), {room}); }).find("must be a range above 0") != std::string::npos);
   for (const double half : {-0.1, 0.25, double(nan)})
     CHECK(refusal([&] { look(robot, wall.image(), {{}, half}); }).find("half a pixel is") != std::string::npos);
+  for (const double odd : {0.0, double(nan), double(infinity)}) {
+    auto image = wall.image();
+    if (!(odd > 0)) image.inverse_fx = real(1 / odd);
+    if (odd == 0) CHECK(refusal([&] { look(robot, image); }).find("focal lengths") != std::string::npos);
+    image.inverse_fx = 0.02f, image.cy = real(odd);
+    if (odd != 0) CHECK(refusal([&] { look(robot, image); }).find("cx, cy") != std::string::npos);
+  }
+  const std::vector<point_label> labels(wall.pixels.size(), point_label::rest);
+  CHECK(refusal([&] { look(robot, wall.image(), {{}, 0, std::span(labels).first(7)}); }).find("7 labels") !=
+        std::string::npos);
+  CHECK(refusal([&] {
+          look(robot, clearance::masked{wall.image(), labels.data()}, {{}, 0, labels});
+        }).find("has labels, and so has cloud 0") != std::string::npos);
+  using some = std::variant<placed<clearance::point_span>, placed<clearance::depth_image<float>>>;
+  CHECK(refusal([&] {
+          look(robot, std::vector<some>{placed{wall.image()}, placed{clearance::point_span()}});
+        }).find("asked about depth images, and cloud 1 is none") != std::string::npos);
   std::vector<clearance::ray> rays(wall.pixels.size(), {0, 0});
   const clearance::ray_image lens(wall.pixels.data(), rays.data(), 64, 48);
   CHECK(refusal([&] { look(robot, lens); }).find("half_pixel_of(rays, width, height)") != std::string::npos);

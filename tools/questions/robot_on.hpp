@@ -73,6 +73,7 @@ class robot_on_backend final : public backend_robot {
   clearance::point_distances distances(poses_of poses, double d_max, bool is_signed) override;
   clearance::nearest_k_result nearest(poses_of poses, std::size_t k, double d_max) override;
   clearance::certain_distance_result certain(poses_of poses, std::span<const clearance::part_radius> parts) override;
+  clearance::unseen_result unseen(poses_of poses, const clearance::unseen& options) override;
   std::vector<clearance::part_witness> witnesses(poses_of poses,
                                                  std::span<const clearance::part_minimum> minima) override;
   clearance::min_distances_result plan(poses_of poses, double d_max) override;

@@ -23,19 +23,21 @@ struct hiding {
 };
 
 /// The hidden room of an image as a source: each pixel is the way behind its return, along its middle. Its point is
-/// where that begins. Pixels of the robot's own points (`masked`) hide nothing here; with `Own` they alone do.
-/// `half_pixel` is half the diagonal of a pixel at z = 1: so wide is the room around the way. The bracket carries it.
-template <seeing_image Image, bool Own = false>
+/// where that begins. `half_pixel` is half the diagonal of a pixel at z = 1: so wide is the room around the way. The
+/// bracket carries it.
+template <seeing_image Image>
 struct hidden {
   Image image;
   hiding room;
   real half_pixel;
+  const point_label* labels = nullptr;  ///< One per pixel, where the backend reads them, or null.
+  bool own = false;                     ///< What the robot's own points hide, and not what all others do.
 
   CLEARANCE_HD std::size_t size() const { return image.size(); }
   CLEARANCE_HD sample operator[](std::size_t i) const {
     const sample s = image[i];
-    if ((s.dropped == drop_reason::masked) != Own) return {s.position, drop_reason::masked};
-    if constexpr (Own) return starting(image.source[i], i);
+    const bool is_own = labels != nullptr && s.valid() && labels[i] == point_label::own;
+    if (is_own != own) return {s.position, drop_reason::masked};
     return starting(s, i);
   }
   /// Up to where the room ends. Along the pixel itself: its point may be too near the camera to tell a direction.
@@ -45,9 +47,10 @@ struct hidden {
 
   /// See `surveyed_capsules`: if every pixel hides something, and no depth is strange.
   bool survey_capsules(std::size_t begin, extent& starts, extent& ends, std::uint32_t (&)[drop_reasons]) const
-    requires(surveyed_source<Image> && !Own && requires(const Image i) { i.deproject(0, 0u, 0u); })
+    requires(surveyed_source<Image> && requires(const Image i) { i.deproject(0, 0u, 0u); })
   {
     std::uint32_t dropped[drop_reasons] = {}, silent = 0;
+    if (own || labels != nullptr) return false;
     if (!image.survey(begin, starts, dropped)) return false;
     for (const std::uint32_t n : dropped) silent += n;
     if (starts.upper.z >= room.farthest || dropped[int(drop_reason::too_close)] != 0) return false;

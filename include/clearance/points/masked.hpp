@@ -50,17 +50,6 @@ struct masked : detail::masked_types<S> {
     return s;
   }
 
-  CLEARANCE_HD vec3 way(std::size_t i) const
-    requires requires(const S s) { s.way(i); }
-  {
-    return source.way(i);
-  }
-  CLEARANCE_HD real depth(std::size_t i) const
-    requires requires(const S s) { s.depth(i); }
-  {
-    return source.depth(i);
-  }
-
   CLEARANCE_HD bool fetches() const
     requires fetched_source<S>
   {

@@ -4,6 +4,8 @@
 #include <clearance/ground/read_only.hpp>
 #include <clearance/points/point_filter.hpp>
 
+#include <cmath>
+
 namespace clearance {
 
 /// The direction of a pixel: x and y at z = 1, in the camera's frame.
@@ -103,5 +105,20 @@ struct ray_image {
 
 static_assert(fetched_source<ray_image<std::uint16_t>> && image_source<ray_image<float>> &&
               fetched_source<ray_image<float>>);
+
+/// Half the diagonal of the widest pixel of a ray table, at z = 1, in host memory.
+inline double half_pixel_of(const ray* rays, std::size_t width, std::size_t height) {
+  double widest = 0;
+  const auto apart = [&](std::size_t i, std::size_t j) {
+    const double d = std::hypot(double(rays[i].x) - rays[j].x, double(rays[i].y) - rays[j].y) / 2;
+    if (d > widest) widest = d;
+  };
+  for (std::size_t v = 0; v + 1 < height; ++v)
+    for (std::size_t u = 0; u + 1 < width; ++u) {
+      const std::size_t i = v * width + u;
+      apart(i, i + width + 1), apart(i + 1, i + width);
+    }
+  return widest;
+}
 
 }  // namespace clearance

@@ -2,6 +2,7 @@
 #pragma once
 // How far is a robot from what no camera sees?
 
+#include <clearance/backend/kept_memory.hpp>
 #include <clearance/points/hidden.hpp>
 #include <clearance/points/pinhole_view.hpp>
 #include <clearance/points/ray_image.hpp>
@@ -13,6 +14,8 @@
 #include <array>
 #include <bit>
 #include <deque>
+#include <span>
+#include <variant>
 
 namespace clearance {
 
@@ -33,28 +36,14 @@ struct unseen_result {
   min_distance_result own_shadow;  ///< What pixels of the robot's own points (`masked`) hide, of all cameras together.
 };
 
-/// Half the diagonal of the widest pixel of a ray table, at z = 1, in host memory.
-inline double half_pixel_of(const ray* rays, std::size_t width, std::size_t height) {
-  double widest = 0;
-  const auto apart = [&](std::size_t i, std::size_t j) {
-    const double d = std::hypot(double(rays[i].x) - rays[j].x, double(rays[i].y) - rays[j].y) / 2;
-    if (d > widest) widest = d;
-  };
-  for (std::size_t v = 0; v + 1 < height; ++v)
-    for (std::size_t u = 0; u + 1 < width; ++u) {
-      const std::size_t i = v * width + u;
-      apart(i, i + width + 1), apart(i + 1, i + width);
-    }
-  return widest;
-}
-
 /// How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or `masked` ones, or
 /// `uncertain` ones of those: then hidden is what may be hidden, so that the state is not `unknown` but `possible`.
-/// Throws std::invalid_argument for depths that are no range, and for a ray image without `half_pixel`.
+/// Refused: depths that are no range, a ray image without `half_pixel`, and not one label per pixel.
 struct unseen {
-  hiding room = {};
-  double half_pixel = 0;  ///< For ray images: `half_pixel_of` their table.
-  bool places = false;    ///< Also where every part is nearest: `at`, `nearest` and `normal`, as the robot always has.
+  hiding room = {};                          ///< Where hidden room begins and ends.
+  double half_pixel = 0;                     ///< For ray images: `half_pixel_of` their table.
+  std::span<const point_label> labels = {};  ///< Of all pixels of all clouds, as self_filter gives them, or none.
+  bool places = false;  ///< Also where every part is nearest: `at`, `nearest` and `normal`, as the robot always has.
 
   using result = unseen_result;
   template <class On, class PartView>
@@ -72,23 +61,21 @@ struct unseen {
 
 namespace detail {
 
-template <class S>
-struct bare_image {
-  static const S& of(const S& s) { return s; }
-};
-template <class S>
-struct bare_image<masked<S>> {
-  static const S& of(const masked<S>& s) { return s.source; }
-};
+template <class T>
+concept some_variant = requires { typename std::variant_size<T>::type; };
+/// Is it known only when they are asked about which of these clouds are images?
+template <class T>
+concept clouds_of_variants =
+    some_variant<T> || requires(const T t) { requires some_variant<std::remove_cvref_t<decltype(*std::begin(t))>>; };
 
-/// What of an image is hidden room, with what is uncertain about the image.
-template <bool Own, class S>
-hidden<S, Own> hidden_of(const S& image, const hiding& room, real half_pixel) {
-  return {image, room, half_pixel};
+/// Hidden room with what is uncertain about its image.
+template <class S>
+hidden<S> as_uncertain(const auto&, const hidden<S>& room) {
+  return room;
 }
-template <bool Own, class S, class N>
-uncertain<hidden<S, Own>, N> hidden_of(const uncertain<S, N>& image, const hiding& room, real half_pixel) {
-  return image.around_same(hidden<S, Own>{image.source, room, half_pixel});
+template <class Image, class S, class N>
+uncertain<hidden<S>, N> as_uncertain(const uncertain<Image, N>& image, const hidden<S>& room) {
+  return image.around_same(room);
 }
 
 }  // namespace detail
@@ -98,17 +85,40 @@ class unseen::engine {
  public:
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
-      : on_(on), model_(model), witnesses_(on, model, from...) {}
+      : on_(on), model_(model), memory_(on, from...), witnesses_(on, model, from...) {}
 
   template <class Clouds>
   result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const unseen& q) {
     q.check();
     cameras_.clear();
     result r;
+    const point_label* labels = nullptr;
+    if (!q.labels.empty()) {
+      std::size_t pixels = 0;
+      for_each_cloud(clouds, [&](const auto& image, const auto&) { pixels += image.size(); });
+      if (q.labels.size() != pixels)
+        throw std::invalid_argument("clearance: unseen has " + std::to_string(q.labels.size()) +
+                                    " labels, and there are " + std::to_string(pixels) + " pixels");
+      memory_.begin();
+      labels = std::get<0>(memory_.put(q.labels));
+    }
     std::uint32_t number = 0;
     const bool places = q.places || count_clouds(clouds) > 1;  // the least of several cameras may be any part's
-    for_each_cloud(clouds, [&](const auto& image, const Eigen::Isometry3d& pose) {
-      look(poses, image, pose, q, number++, places, r);
+    for_each_cloud(clouds, [&]<class S>(const S& given, const Eigen::Isometry3d& pose) {
+      const auto image = as_measured{}(given);
+      if constexpr (seeing_image<decltype(as_measured{}(given))>) {
+        look(poses, given, image, pose, labels, q, number++, places, r);
+        if (labels != nullptr) labels += image.size();
+      } else if constexpr (requires { image.labels; }) {
+        if (labels != nullptr)
+          throw std::invalid_argument("clearance: unseen has labels, and so has cloud " + std::to_string(number));
+        look(poses, given, image.source, pose, image.labels, q, number++, places, r);
+      } else {
+        static_assert(detail::clouds_of_variants<Clouds>,
+                      "unseen is asked about depth_image and ray_image, or masked or uncertain ones");
+        throw std::invalid_argument("clearance: unseen is asked about depth images, and cloud " +
+                                    std::to_string(number) + " is none");
+      }
     });
     conclude(q, r);
     return r;
@@ -128,21 +138,25 @@ class unseen::engine {
     bool tells_shown, vague;
   };
 
-  template <class S>
-  void look(std::span<const Eigen::Isometry3d> poses, const S& image, const Eigen::Isometry3d& pose, const unseen& q,
-            std::uint32_t number, bool places, result& r) {
-    using seen = std::invoke_result_t<as_measured, const S&>;
-    static_assert(seeing_image<seen>, "unseen is asked about depth_image and ray_image, or masked or uncertain ones");
-    const seen measured = as_measured{}(image);
-    const auto& bare = detail::bare_image<seen>::of(measured);
-    constexpr bool pinhole = requires { bare.inverse_fx; };
+  /// `labels`: of this image, or null.
+  template <class Given, seeing_image S>
+  void look(std::span<const Eigen::Isometry3d> poses, const Given& given, const S& image, const Eigen::Isometry3d& pose,
+            const point_label* labels, const unseen& q, std::uint32_t number, bool places, result& r) {
+    constexpr bool pinhole = requires { image.inverse_fx; };
     double half = q.half_pixel;
-    if constexpr (pinhole) half = std::hypot(double(bare.inverse_fx), double(bare.inverse_fy)) / 2;
-    if (image.size() != 0 && !(half > 0))
+    if constexpr (pinhole) half = std::hypot(double(image.inverse_fx), double(image.inverse_fy)) / 2;
+    if (image.size() != 0 && !(half > 0 && half < infinity))
       throw std::invalid_argument(
-          "clearance: unseen needs half_pixel for a ray image; half_pixel_of(rays, width, "
-          "height) computes it");
-    const auto room = detail::hidden_of<false>(image, q.room, rounded_up(half));
+          pinhole
+              ? "clearance: unseen needs focal lengths that are numbers, not 0"
+              : "clearance: unseen needs half_pixel for a ray image; half_pixel_of(rays, width, height) computes it");
+    if constexpr (pinhole)
+      if (!is_finite(vec3{image.cx, image.cy, 0}))
+        throw std::invalid_argument("clearance: unseen needs a centre of the image (cx, cy) that is finite");
+    const auto hides = [&](bool own) {
+      return detail::as_uncertain(given, hidden<S>{image, q.room, rounded_up(half), labels, own});
+    };
+    const auto room = hides(false);
     camera c;
     auto found = ask_of(2 * number, poses, room, pose);
     c.all = found.all;
@@ -162,24 +176,23 @@ class unseen::engine {
                                        {frame.places[k].error, frame.error.per_metre});
     };
     c.own.assign(model_.size(), infinity), c.tells_shown = pinhole;
-    c.vague = vague_source<S>;
+    c.vague = vague_source<Given>;
     for (std::size_t k = 0; k < model_.size(); ++k) {
       c.lower.push_back(lower(k, found));
       c.nearest[k].cloud = c.nearest[k].part == none ? none : number;
       c.from_edge.push_back(0), c.shown.push_back(0);
       if constexpr (pinhole) {
-        const pinhole_view view(bare, q.room.nearest, q.room.farthest);
+        const pinhole_view view(image, q.room.nearest, q.room.farthest);
         const ball& around = frame.places[k].around;
         const vec3 middle = around.center + frame.origin;
         double& edge = c.from_edge.back() = view.from_edge({middle, around.radius}) - frames::slop(model_.facts[k]);
-        if constexpr (requires { image.turn; })  // the view may be turned and shifted
-          edge = (edge - image.shift - image.turn * (double(length(middle)) + around.radius)) / (1 + image.turn);
+        if constexpr (requires { given.turn; })  // the view may be turned and shifted
+          edge = (edge - given.shift - given.turn * (double(length(middle)) + around.radius)) / (1 + given.turn);
         c.shown.back() = shown(view, model_.facts[k], pose.inverse() * poses[k]);
       }
     }
-    if constexpr (requires { measured.labels; }) {
-      const auto shadow = detail::hidden_of<true>(image, q.room, rounded_up(half));
-      const auto each = ask_of(2 * number + 1, poses, shadow, pose);
+    if (labels != nullptr) {
+      const auto each = ask_of(2 * number + 1, poses, hides(true), pose);
       for (std::size_t k = 0; k < model_.size(); ++k) c.own[k] = lower(k, each);
       min_distance_result own = each.all;
       if (own.cloud != none) own.cloud = number;
@@ -228,6 +241,8 @@ class unseen::engine {
       r.all.seen += more.seen, r.all.valid += more.valid;
       for (int i = 0; i < drop_reasons; ++i) r.all.dropped[i] += more.dropped[i];
     }
+    // A pixel without a direction shows and hides nothing. If no other is there, nothing is known.
+    const bool blind = r.all.seen == r.all.dropped[int(drop_reason::not_finite)];
     double lower = infinity;
     const unseen_part* least = nullptr;
     r.parts.resize(model_.size());
@@ -247,13 +262,13 @@ class unseen::engine {
         its_lower = std::min(its_lower, at_least);
         shown |= j.shown[k], tells_shown &= j.tells_shown;
       }
-      part.lower = its_lower > 0 ? rounded_down(its_lower) : 0;
+      part.lower = its_lower > 0 && !blind ? rounded_down(its_lower) : 0;
       const int out_of_view = 64 - std::popcount(shown);
       part.out_of_view = tells_shown || out_of_view == 0 ? real(out_of_view) / 64 : not_a_number;
       lower = std::min(lower, its_lower);
       if (least == nullptr || part.distance < least->distance) least = &part;
     }
-    if (r.all.seen == 0 || least == nullptr) return;  // nothing is known
+    if (blind || least == nullptr) return;
     min_distance_result& all = r.all;
     if (cameras_.size() > 1 || all.part == none) {
       all.cloud = least->cloud, all.point = least->point, all.part = least->part, all.primitive = least->primitive;
@@ -269,6 +284,7 @@ class unseen::engine {
 
   On on_;
   model_view<PartView> model_;
+  backends::kept_memory<On> memory_;
   part_witnesses::engine<On, PartView> witnesses_;
   std::deque<search> searches_;  // one for each camera, and one for its own shadow
   std::vector<camera> cameras_;

@@ -18,16 +18,20 @@ def _hex(colour):
     return "#%02x%02x%02x" % tuple(colour)
 
 
-def svg(times, distance, lower, upper, states, *, margin=None, width=900, height=260, unit="frame", marks=()):
+def svg(
+    times, distance, lower, upper, states, *, unseen=None, margin=None, width=900, height=260, unit="frame", marks=()
+):
     """An SVG picture: the distance as a line, [lower, upper] as a band, moments without data as grey bars.
 
     times, distance, lower, upper: sequences of floats, metres; states: words. marks: indices that get a number (worst
-    moments). What is infinite ends at the picture's edge.
+    moments). unseen: (distance, lower, upper) to what no camera sees, each as above, NaN where nothing is known. What is
+    infinite ends at the picture's edge.
     """
     left, right, top, bottom = 62, 14, 12, 38
     w, h = width - left - right, height - top - bottom
     count = len(times)
-    finite = [v for v in [*distance, *lower, *([margin] if margin is not None else [])] if math.isfinite(v)]
+    more = [v for values in (unseen or ())[:2] for v in values]
+    finite = [v for v in [*distance, *lower, *more, *([margin] if margin is not None else [])] if math.isfinite(v)]
     low = min([0.0, *finite])
     high = max([*finite, low + 1e-3]) * 1.08
     t0, t1 = (times[0], times[-1]) if count else (0, 1)
@@ -55,7 +59,6 @@ def svg(times, distance, lower, upper, states, *, margin=None, width=900, height
         out.append(f'<text x="{x(k * step):.1f}" y="{height - 20}" text-anchor="middle">{k * step:g}</text>')
     out.append(f'<text x="{left + w / 2}" y="{height - 5}" text-anchor="middle">{html.escape(unit)}</text>')
     half = w / max(count - 1, 1) / 2
-    runs, run = [], []
     for k in range(count):
         if states[k] == "no_data" or math.isnan(distance[k]):
             out.append(
@@ -63,28 +66,38 @@ def svg(times, distance, lower, upper, states, *, margin=None, width=900, height
                 f'width="{max(2 * half, 1):.1f}" height="{h}" '
                 f'fill="{_hex(colours.UNKNOWN)}" fill-opacity="0.45"/>'
             )
-            run = []
-            continue
-        if not run:
-            runs.append(run := [])
-        run.append(k)
-    for run in runs:
-        if len(run) == 1:
-            k = run[0]
+
+    def curve(distance, lower, upper, known, name, light, dark):
+        runs, run = [], []
+        for k in range(count):
+            if not known(k):
+                run = []
+                continue
+            if not run:
+                runs.append(run := [])
+            run.append(k)
+        for run in runs:
+            if len(run) == 1:
+                k = run[0]
+                out.append(
+                    f'<line x1="{x(times[k]):.1f}" x2="{x(times[k]):.1f}" y1="{y(lower[k]):.1f}" y2="{y(upper[k]):.1f}" '
+                    f'stroke="{light}" stroke-width="5"/>'
+                    f'<circle cx="{x(times[k]):.1f}" cy="{y(distance[k]):.1f}" r="2.5" fill="{dark}"/>'
+                )
+                continue
+            edge = [f"{x(times[k]):.1f},{y(upper[k]):.1f}" for k in run] + [
+                f"{x(times[k]):.1f},{y(lower[k]):.1f}" for k in reversed(run)
+            ]
+            line = " ".join(f"{x(times[k]):.1f},{y(distance[k]):.1f}" for k in run)
             out.append(
-                f'<line x1="{x(times[k]):.1f}" x2="{x(times[k]):.1f}" y1="{y(lower[k]):.1f}" y2="{y(upper[k]):.1f}" '
-                'stroke="#8fb6dd" stroke-width="5"/>'
-                f'<circle cx="{x(times[k]):.1f}" cy="{y(distance[k]):.1f}" r="2.5" fill="#1f4f8b"/>'
+                f'<polygon class="{name}band" points="{" ".join(edge)}" fill="{light}" fill-opacity="0.6"/>'
+                f'<polyline class="{name}distance" points="{line}" fill="none" stroke="{dark}" stroke-width="1.5"/>'
             )
-            continue
-        edge = [f"{x(times[k]):.1f},{y(upper[k]):.1f}" for k in run] + [
-            f"{x(times[k]):.1f},{y(lower[k]):.1f}" for k in reversed(run)
-        ]
-        line = " ".join(f"{x(times[k]):.1f},{y(distance[k]):.1f}" for k in run)
-        out.append(
-            f'<polygon class="band" points="{" ".join(edge)}" fill="#8fb6dd" fill-opacity="0.6"/>'
-            f'<polyline class="distance" points="{line}" fill="none" stroke="#1f4f8b" stroke-width="1.5"/>'
-        )
+
+    if unseen:
+        curve(*unseen, lambda k: not math.isnan(unseen[0][k]), "unseen-", "#f3c58b", "#a55000")
+    known = [states[k] != "no_data" and not math.isnan(distance[k]) for k in range(count)]
+    curve(distance, lower, upper, lambda k: known[k], "", "#8fb6dd", "#1f4f8b")
     if margin is not None:
         out.append(
             f'<line class="margin" x1="{left}" x2="{width - right}" y1="{y(margin):.1f}" y2="{y(margin):.1f}" '

@@ -37,6 +37,8 @@ class Moment:
     dropped: dict = None
     latency: float = None
     note: str = ""
+    unseen: tuple = None  # distance, lower and upper to what no camera sees; infinite where no pixel hides anything
+    reaches: bool = False  # into what no camera sees
 
 
 def _number(value, name, where, whole=False):
@@ -70,6 +72,7 @@ def moment(row, k, where="a row"):
         values = tuple(_number(v, name, where) for v in given)
         return values if None not in values else None
 
+    unseen, reaches = _unseen(row, where)
     return Moment(
         number=_number(row.get("frame"), "frame", where, True)
         if "topic" not in row and row.get("frame") not in (None, "")
@@ -90,6 +93,25 @@ def moment(row, k, where="a row"):
         dropped=dropped,
         latency=value["latency_us"],
         note=row.get("note") or "",
+        unseen=unseen,
+        reaches=reaches,
+    )
+
+
+def _unseen(row, where):
+    """Distance, lower and upper of a row of --unseen, and whether the robot reaches into it; else None, False."""
+    given = row.get("unseen")
+    if not isinstance(given, dict):
+        given = {name: row.get(f"unseen_{name}") for name in ("state", "distance", "lower")}
+    state = given.get("state")
+    if not state or state == "no_data":
+        return None, False
+    if state not in STATES:
+        raise ValueError(f"clearance: {where}: unseen has the state {state!r}, which is none of {', '.join(STATES)}")
+    values = [_number(given.get(name), f"unseen {name}", where) for name in ("distance", "lower", "upper")]
+    distance = math.inf if values[0] is None else values[0]
+    return (distance, distance if values[1] is None else values[1], distance if values[2] is None else values[2]), (
+        state == "unknown"
     )
 
 
@@ -229,6 +251,16 @@ def page(moments, *, asked=(), margin=None, notes=(), pictures=None, count=3, ti
             "point or could "
             "not be asked."
         )
+    hidden = [m for m in moments if m.unseen]
+    if hidden:
+        nearest = min(hidden, key=lambda m: m.unseen[1])
+        reach = sum(m.reaches for m in hidden)
+        away = f"certainly at least {nearest.unseen[1]:.3f} m" if math.isfinite(nearest.unseen[1]) else "as far as asked"
+        verdict.append(
+            f"What no camera sees is {away} away, at {html.escape(_name(nearest))}"
+            + (f"; the robot <b>reaches into it</b> in {reach:,} frames" if reach else "")
+            + "."
+        )
     body.append("<p class=verdict>" + " ".join(verdict) + "</p>")
     body += [f"<p class=note>{html.escape(note)}</p>" for note in notes]
 
@@ -249,6 +281,7 @@ def page(moments, *, asked=(), margin=None, notes=(), pictures=None, count=3, ti
             [m.lower for m in moments],
             [m.upper for m in moments],
             [("no_data" if m.state in BLIND else m.state) for m in moments],
+            unseen=[[m.unseen[i] if m.unseen else math.nan for m in moments] for i in range(3)] if hidden else None,
             margin=margin,
             marks=chosen,
             unit="seconds since the first frame" if moments[0].stamp is not None else "frame",
@@ -257,7 +290,9 @@ def page(moments, *, asked=(), margin=None, notes=(), pictures=None, count=3, ti
     body.append(
         "<p class=small>Line: the distance. Band: the bracket, which certainly holds the distance to the solid. "
         "Grey: nothing is "
-        "known. Dashed: the margin. Numbers: the worst moments below.</p>"
+        "known. Dashed: the margin. Numbers: the worst moments below."
+        + (" Orange: the same to what no camera sees." if hidden else "")
+        + "</p>"
     )
 
     body.append("<h2>Worst moments</h2><div class=moments>")
