@@ -5,8 +5,22 @@
 #include <clearance/backend/plain.hpp>
 #include <clearance/frame/readable.hpp>
 #include <clearance/minimum/host_search.hpp>
+#include <clearance/traversal/near_first.hpp>
 
 namespace clearance::minimum {
+
+/// The loop over points on a backend, which takes capsules: a backend with a scan of its own is asked plainly.
+template <class On>
+struct loop_of {
+  using type = On;
+  static type on(const On& there) { return there; }
+};
+template <class On>
+  requires requires { typename On::own_scan; }
+struct loop_of<On> {
+  using type = plain<On, near_first>;
+  static type on(const On& there) { return {there, near_first{}}; }
+};
 
 /// Where a question about the least distance writes: `Q::per_part` decides whether also every part's.
 template <class Q>

@@ -6,8 +6,6 @@
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/traversal/any_depth.hpp>
 
-#include <optional>
-
 namespace clearance {
 
 /// By how much a part may be elsewhere. Metres.
@@ -106,18 +104,18 @@ struct certain_distance {
 
 template <class On, class PartView>
 class certain_distance::engine {
-  using there = std::conditional_t<requires { typename On::own_scan; }, plain<On, near_first>, On>;
+  using loop = minimum::loop_of<On>;
 
  public:
   /// Throws std::invalid_argument if a tree is too deep for `near_first` on a device.
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
-      : on_(on), model_(model), nominal_(on, model, from...), memory_(on, from...), readable_(on, from...) {
-    if constexpr (std::is_same_v<there, On>)
-      search_.emplace(on, model);
-    else
-      search_.emplace(plain{on, near_first{}}, model);
-  }
+      : on_(on),
+        model_(model),
+        nominal_(on, model, from...),
+        search_(loop::on(on), model),
+        memory_(on, from...),
+        readable_(on, from...) {}
 
   template <class Clouds>
   result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const certain_distance& q) {
@@ -125,7 +123,7 @@ class certain_distance::engine {
     const auto& here = readable_(clouds);
     result r;
     r.nominal = nominal_.run(poses, mapped_clouds(here, as_measured{}), min_distance{});
-    const min_distance_per_part_result certain = search_->run(poses, here, min_distance_per_part{});
+    const min_distance_per_part_result certain = search_.run(poses, here, min_distance_per_part{});
     const bool vague = read(poses, here, certain.parts, r.nominal);
     conclude(q, certain, vague || !q.parts.empty(), r);
     return r;
@@ -192,7 +190,7 @@ class certain_distance::engine {
   On on_;
   model_view<PartView> model_;
   min_distance::engine<On, PartView> nominal_;
-  std::optional<minimum::engine<there, PartView, min_distance_per_part>> search_;
+  minimum::engine<typename loop::type, PartView, min_distance_per_part> search_;
   backends::kept_memory<On> memory_;
   frames::readable_clouds<On> readable_;
   frames::cloud_frame frame_;
