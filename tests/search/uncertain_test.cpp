@@ -190,11 +190,13 @@ TEST_CASE("A point without a radius that is one may be anywhere, and nothing is 
   dice d(5);
   scene<inner_sphere> s{"one bad", {random_spheres(d, 20, 0.1)}, {shifted(0, 0, 3)}, d.points(500, 1)};
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  s.points[123] = {0, 0, 1.5f};  // the nearest
   for (const real bad : {-1e-6f, clearance::not_a_number, infinity, 1e7f, -infinity}) {
     std::vector<real> radii(500, 0.01f);
     radii[123] = bad;
     const uncertain source(point_span(s.points), clearance::point_radii(radii.data(), radii.size()));
     const auto r = ask(host{}, model, s.poses, placed{source}, certain_distance{});
+    CHECK((r.nominal.point == 123 && r.upper == infinity && r.anywhere == 1));
     CHECK((r.state == state::possible && r.lower == 0 && r.parts[0].lower == 0 && r.nominal.state == state::free));
     CHECK(ask(host{}, model, s.poses, placed{source}, clearance::in_collision{}).state == state::possible);
     CHECK(ask(host{}, model, s.poses, placed{source}, clearance::zones{{0.1, 0.2}}).innermost() == 0);

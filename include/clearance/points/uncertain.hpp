@@ -19,6 +19,8 @@ struct radius_shares {
   real noise = 0, calibration = 0, time = 0;
 
   CLEARANCE_HD real sum() const { return noise + calibration + time; }
+  /// Or may the point be anywhere?
+  CLEARANCE_HD bool bounded() const { return noise >= 0 && sum() < 1e6f; }
 };
 
 /// Where a source's points are seen from, in its frame: (0,0,0), or where its filter has the sensor.
@@ -64,9 +66,7 @@ struct uncertain {
   CLEARANCE_HD sample operator[](std::size_t i) const {
     sample s = source[i];
     if (!s.valid()) return s;
-    const radius_shares all = shares(i, s.position);
-    const bool known = all.noise >= 0 && all.sum() < 1e6f;
-    if (!known) s.dropped = drop_reason::too_close;
+    if (!shares(i, s.position).bounded()) s.dropped = drop_reason::too_close;
     return s;
   }
   CLEARANCE_HD capsule around(std::size_t i, vec3 p) const {
