@@ -86,6 +86,23 @@ struct uncertain {
     return {product(noise(i, seen), spread), product(fma(turn, turned, shift), spread), product(drift, spread)};
   }
 
+  /// See `surveyed_source`; false also where some radius is unbounded. No point's radius is above `widest`.
+  bool survey(std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons], real& widest) const
+    requires surveyed_source<S> && (!capsule_source<S>) && requires(const N n, extent e) { n.most(begin, e); }
+  {
+    std::uint32_t its[drop_reasons] = {};
+    if (!source.survey(begin, box, its)) return false;
+    if (!(box.lower.x <= box.upper.x)) {  // no point
+      widest = 0;
+    } else {
+      const vec3 sensor = sensor_of(source);
+      const extent seen{box.lower - sensor, box.upper - sensor};
+      widest = (noise.most(begin, seen) + turn * detail::farthest_in(seen) + shift + drift) * spread * (1 + slack);
+    }
+    if (!(widest < 1e6f)) return false;
+    for (int k = 0; k < drop_reasons; ++k) dropped[k] += its[k];
+    return true;
+  }
   /// Another source of as many points, with the same uncertainty.
   template <point_source Other>
   uncertain<Other, N> around_same(const Other& other) const {

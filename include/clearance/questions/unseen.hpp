@@ -112,7 +112,7 @@ class unseen::engine {
 
  private:
   using asks = min_distance_per_part;
-  using there = std::conditional_t<requires { typename On::own_scan; }, plain<On, near_first>, On>;
+  using there = typename minimum::loop_of<On>::type;
   using search = minimum::engine<there, PartView, asks>;
 
   /// What one camera says about each part.
@@ -181,12 +181,7 @@ class unseen::engine {
   template <class S>
   min_distance_per_part_result ask_of(std::size_t slot, std::span<const Eigen::Isometry3d> poses, const S& room,
                                       const Eigen::Isometry3d& pose) {
-    while (searches_.size() <= slot) {
-      if constexpr (std::is_same_v<there, On>)
-        searches_.emplace_back(on_, model_);
-      else
-        searches_.emplace_back(plain{on_, near_first{}}, model_);
-    }
+    while (searches_.size() <= slot) searches_.emplace_back(minimum::loop_of<On>::on(on_), model_);
     return searches_[slot].run(poses, placed<S>{room, pose}, asks{});
   }
 

@@ -102,11 +102,24 @@ template <class Body>
 void scan_capsules(const Body& body, std::size_t begin, std::size_t end, drop_tally& mine) {
   constexpr vec3 nowhere{not_a_number, not_a_number, not_a_number};
   for (std::size_t i = begin; i < end; i += tile_points) {
+    drop_tally* counted = &mine;
+    [[maybe_unused]] drop_tally uncounted;
+    if constexpr (requires(extent box, real widest) { body.source.survey(i, box, mine.dropped, widest); }) {
+      extent box;
+      real widest;
+      if (i + tile_points <= end && body.source.survey(i, box, mine.dropped, widest)) {
+        box = {box.lower - body.origin, box.upper - body.origin};
+        std::uint32_t k = 0;
+        while (k < body.part_count && !may_reach(body.places[k].around, body.answer.reach(k) + widest, box)) ++k;
+        if (k == body.part_count) continue;
+        counted = &uncounted;
+      }
+    }
     capsule_tile t;
     for (std::size_t j = 0; j < tile_points; ++j) {
       capsule c{nowhere, {0, 0, 0}, 0};
       if (i + j < end)
-        if (const sample s = body.source[i + j]; mine.counts(s))
+        if (const sample s = body.source[i + j]; counted->counts(s))
           c = less(element_of(body.source, i + j, s.position), body.origin);
       t.put(j, c);
     }
