@@ -14,7 +14,7 @@ struct frame_report {
   const std::vector<body>* bodies = nullptr;
   double upload = 0, query = 0;       // seconds
   const plan_report* plan = nullptr;  // for --plan
-  std::optional<clearance::certain_distance_result> certain;
+  std::optional<clearance::certain_distance_result> certain = {};
 };
 
 /// One JSON object on one line.
