@@ -14,10 +14,10 @@ struct frame_report {
   std::uint32_t point = 0;
   const std::vector<body>* bodies = nullptr;
   double upload = 0, query = 0;  // seconds
-  std::optional<clearance::certain_distance_result> certain;
-  std::optional<unseen_report> unseen;  // for --unseen
-  double unseen_query = 0;              // seconds
-  const plan_report* plan = nullptr;    // for --plan
+  std::optional<clearance::certain_distance_result> certain = {};
+  std::optional<unseen_report> unseen = {};  // for --unseen
+  double unseen_query = 0;                   // seconds
+  const plan_report* plan = nullptr;         // for --plan
 };
 
 /// One JSON object on one line.

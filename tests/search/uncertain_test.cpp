@@ -31,6 +31,13 @@ std::vector<clearance::part_minimum> brute(const scene<P>& s, const std::vector<
   return least;
 }
 
+/// The same formula, but it does not say how large it is in a box.
+template <class N>
+struct without_most {
+  N noise;
+  real operator()(std::size_t i, vec3 p) const { return noise(i, p); }
+};
+
 /// A place within `radius` of p.
 oracle::vec moved_within(dice& d, oracle::vec p, wide radius) {
   return p + (radius * wide(d.uniform(0, 1))) * wider(d.direction());
@@ -190,11 +197,13 @@ TEST_CASE("A point without a radius that is one may be anywhere, and nothing is 
   dice d(5);
   scene<inner_sphere> s{"one bad", {random_spheres(d, 20, 0.1)}, {shifted(0, 0, 3)}, d.points(500, 1)};
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  s.points[123] = {0, 0, 1.5f};  // the nearest
   for (const real bad : {-1e-6f, clearance::not_a_number, infinity, 1e7f, -infinity}) {
     std::vector<real> radii(500, 0.01f);
     radii[123] = bad;
     const uncertain source(point_span(s.points), clearance::point_radii(radii.data(), radii.size()));
     const auto r = ask(host{}, model, s.poses, placed{source}, certain_distance{});
+    CHECK((r.nominal.point == 123 && r.upper == infinity && r.anywhere == 1));
     CHECK((r.state == state::possible && r.lower == 0 && r.parts[0].lower == 0 && r.nominal.state == state::free));
     CHECK(ask(host{}, model, s.poses, placed{source}, clearance::in_collision{}).state == state::possible);
     CHECK(ask(host{}, model, s.poses, placed{source}, clearance::zones{{0.1, 0.2}}).innermost() == 0);
@@ -211,6 +220,52 @@ TEST_CASE("A deviation that is larger than the distance leaves nothing certain b
   const uncertain source(point_span(points), clearance::stereo_noise{500, 0.05f, 5});
   const auto r = ask(host{}, model, s.poses, placed{source}, certain_distance{});
   CHECK((r.state == state::possible && r.lower == 0 && r.upper > 2 && r.certain.shares.noise > r.certain.distance));
+}
+
+TEST_CASE("Tiles that are passed over by their largest radius change nothing, and no radius is larger") {
+  verdict v;
+  dice d(13);
+  std::vector<float> pixels(256 * 96);
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    pixels[i] = i % 97 == 0 ? 0 : real(1.5 + 0.5 * std::sin(double(i % 256) / 30) + d.uniform(0, 0.02));
+  const clearance::depth_image<float> image(pixels.data(), 256, 96, {200, 200, 128, 48});
+  std::vector<real> radii(pixels.size());
+  for (std::size_t i = 0; i < radii.size(); ++i) radii[i] = d.below(500) == 0 ? 0.5f : 0.01f;
+  scene<inner_sphere> s{"", {}, {}, {}};
+  for (int k = 0; k < 4; ++k) {
+    s.parts.push_back(random_spheres(d, 20, 0.1, 0.03));
+    s.poses.push_back(shifted(d.uniform(-0.5, 0.5), d.uniform(-0.3, 0.3), d.uniform(0.5, 2)));
+  }
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const auto check = [&](const auto& noise) {
+    const cloud_uncertainty off{0.003, 0.002, 1, 0.03};
+    const uncertain quick(image, noise, off), slow(image, without_most{noise}, off);
+    const auto r = ask(host{}, model, s.poses, placed{quick}, certain_distance{});
+    v.require(same_certain(r, ask(host{}, model, s.poses, placed{slow}, certain_distance{})), "another answer");
+    const auto least = brute(s, std::vector{placed{quick}});
+    for (std::size_t k = 0; k < least.size(); ++k)
+      v.require(r.parts[k].point == least[k].point, "part", k, " has point", r.parts[k].point, " of", least[k].point);
+    for (std::size_t begin = 0; begin + 128 <= pixels.size(); begin += 128) {
+      clearance::extent box, ends;
+      std::uint32_t dropped[clearance::drop_reasons] = {};
+      real widest = 0;
+      if (!quick.survey_capsules(begin, box, ends, widest, dropped)) continue;
+      for (std::size_t i = begin; i < begin + 128; ++i)
+        if (const auto p = quick[i]; p.valid())
+          v.require(quick.around(i, p.position).radius <= widest, "a radius of", quick.around(i, p.position).radius,
+                    " above", widest);
+    }
+  };
+  check(clearance::kinect_noise{}), check(clearance::stereo_noise{200, 0.05f, 0.1f});
+  check(clearance::tof_noise{0.004f, 0.003f}), check(clearance::lidar_noise{0.01f, 0.004f}),
+      check(clearance::no_noise{});
+  check(clearance::point_radii(std::span<const real>(radii)));
+  clearance::any_noise any;
+  for (const auto kind : {clearance::noise_kind::none, clearance::noise_kind::kinect, clearance::noise_kind::stereo,
+                          clearance::noise_kind::tof, clearance::noise_kind::lidar}) {
+    any.kind = kind, any.stereo = {200, 0.05f, 0.1f}, any.tof = {0.004f, 0.003f}, any.lidar = {0.01f, 0.004f};
+    check(any);
+  }
 }
 
 TEST_CASE("A depth image's reading may be wrong along z by k sigma, and its point stays in the ball") {

@@ -33,7 +33,8 @@ consteval bool points_alone() {
   static_assert(
       !capsule_source<S>,
       "the points of this source stand for more (what they hide, where they may be): a host answers questions "
-      "about pairs and the least distance of such sources, and `unseen` any backend; this does not");
+      "about pairs and the least distance of such sources, and `unseen` and `certain_distance` any backend; this does "
+      "not");
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <clearance/backend/plain.hpp>
 #include <clearance/frame/readable.hpp>
 #include <clearance/minimum/host_search.hpp>
+#include <clearance/traversal/near_first.hpp>
 
 namespace clearance::minimum {
 

@@ -46,11 +46,13 @@ struct hidden {
   }
 
   /// See `surveyed_capsules`: if every pixel hides something, and no depth is strange.
-  bool survey_capsules(std::size_t begin, extent& starts, extent& ends, std::uint32_t (&)[drop_reasons]) const
+  bool survey_capsules(std::size_t begin, extent& starts, extent& ends, real& widest,
+                       std::uint32_t (&)[drop_reasons]) const
     requires(surveyed_source<Image> && requires(const Image i) { i.deproject(0, 0u, 0u); })
   {
     std::uint32_t dropped[drop_reasons] = {}, silent = 0;
     if (own || labels != nullptr) return false;
+    widest = 0;
     if (!image.survey(begin, starts, dropped)) return false;
     for (const std::uint32_t n : dropped) silent += n;
     if (starts.upper.z >= room.farthest || dropped[int(drop_reason::too_close)] != 0) return false;

@@ -13,6 +13,8 @@ namespace clearance {
 /// Law: `n(i, p)` is a radius in metres around point i, whose place is p, in the sensor's frame; pure, with the same
 /// bits on every backend (`clearance::fma`, `product`, `divide`). Below 0, NaN and 1e6 m or more: the point may be
 /// anywhere. Optional: `check(points)` throws std::invalid_argument for options that cannot be.
+/// Optional law: no radius of 128 neighbours from number `begin` on is above `n.most(begin, box)`, if all are in the
+/// box.
 template <class N>
 concept sensor_noise = std::is_trivially_copyable_v<N> && requires(const N n, std::size_t i, vec3 p) {
   { n(i, p) } -> std::same_as<real>;
@@ -34,11 +36,23 @@ CLEARANCE_HD inline real along_ray(real deviation, vec3 p) {
   return p.z > 0 ? product(deviation, divide(length(p), p.z)) : not_a_number;
 }
 
+/// The largest length and slant of what is in a box.
+inline real farthest_in(const extent& box) {
+  const auto most = [](real a, real b) { return max(absolute(a), absolute(b)); };
+  return length({most(box.lower.x, box.upper.x), most(box.lower.y, box.upper.y), most(box.lower.z, box.upper.z)});
+}
+/// The largest `along_ray` in a box, for a deviation that is nowhere larger. More than rounding takes.
+inline real most_along_ray(real deviation, const extent& box) {
+  if (!(box.lower.z > 0)) return infinity;
+  return deviation * (farthest_in(box) / box.lower.z) * (1 + slack);
+}
+
 }  // namespace detail
 
 /// The sensor measures without noise.
 struct no_noise {
   CLEARANCE_HD real operator()(std::size_t, vec3) const { return 0; }
+  real most(std::size_t, const extent&) const { return 0; }
 };
 
 /// Microsoft's first Kinect: 1.2 mm + 1.9 mm/m^2 (z - 0.4 m)^2 along z. Nguyen, Izadi, Lovell, "Modeling Kinect sensor
@@ -49,6 +63,10 @@ struct kinect_noise {
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const {
     const real z = p.z - 0.4f;
     return detail::along_ray(product(k, fma(0.0019f, product(z, z), 0.0012f)), p);
+  }
+  real most(std::size_t, const extent& box) const {
+    const real z = max(absolute(box.lower.z - 0.4f), absolute(box.upper.z - 0.4f));
+    return detail::most_along_ray(k * (0.0019f * z * z + 0.0012f) * (1 + slack), box);
   }
   void check(std::size_t) const { detail::check_uncertain(k, "the noise's k"); }
 };
@@ -64,6 +82,10 @@ struct stereo_noise {
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const {
     const real each = divide(product(k, disparity), product(focal_length, baseline));
     return detail::along_ray(product(product(p.z, p.z), each), p);
+  }
+  real most(std::size_t, const extent& box) const {
+    const real z = box.upper.z;
+    return detail::most_along_ray(z * z * (k * disparity / (focal_length * baseline)) * (1 + slack), box);
   }
   void check(std::size_t) const {
     detail::check_uncertain(k, "the noise's k"), detail::check_uncertain(disparity, "a stereo camera's disparity");
@@ -83,6 +105,10 @@ struct tof_noise {
   real k = 3;
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const { return product(k, fma(square, dot(p, p), constant)); }
+  real most(std::size_t, const extent& box) const {
+    const real away = detail::farthest_in(box);
+    return k * (square * away * away + constant) * (1 + slack);
+  }
   void check(std::size_t) const {
     detail::check_uncertain(k, "the noise's k"),
         detail::check_uncertain(constant, "a time of flight camera's constant");
@@ -98,6 +124,9 @@ struct lidar_noise {
   real k = 3;
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const { return product(k, fma(share, length(p), constant)); }
+  real most(std::size_t, const extent& box) const {
+    return k * (share * detail::farthest_in(box) + constant) * (1 + slack);
+  }
   void check(std::size_t) const {
     detail::check_uncertain(k, "the noise's k"), detail::check_uncertain(constant, "a LiDAR's constant");
     detail::check_uncertain(share, "what a LiDAR's noise grows by");
@@ -120,6 +149,16 @@ struct point_radii {
   }
 
   CLEARANCE_HD real operator()(std::size_t i, vec3) const { return radii[i]; }
+  /// Infinite if one is none.
+  real most(std::size_t begin, const extent&) const {
+    real least = 0, most = 0;
+    bool ordered = true;
+    for (std::size_t j = 0; j < surveyed_points; ++j) {
+      const real r = radii[begin + j];
+      least = min(least, r), most = max(most, r), ordered &= r == r;
+    }
+    return ordered && least >= 0 ? most : infinity;
+  }
   void check(std::size_t points) const {
     if (points != count)
       throw std::invalid_argument("clearance: there are " + std::to_string(points) + " points, but " +
@@ -148,6 +187,20 @@ struct any_noise {
         return tof(i, p);
       case noise_kind::lidar:
         return lidar(i, p);
+      default:
+        return 0;
+    }
+  }
+  real most(std::size_t begin, const extent& box) const {
+    switch (kind) {
+      case noise_kind::kinect:
+        return kinect.most(begin, box);
+      case noise_kind::stereo:
+        return stereo.most(begin, box);
+      case noise_kind::tof:
+        return tof.most(begin, box);
+      case noise_kind::lidar:
+        return lidar.most(begin, box);
       default:
         return 0;
     }

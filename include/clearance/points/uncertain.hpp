@@ -19,6 +19,8 @@ struct radius_shares {
   real noise = 0, calibration = 0, time = 0;
 
   CLEARANCE_HD real sum() const { return noise + calibration + time; }
+  /// Or may the point be anywhere?
+  CLEARANCE_HD bool bounded() const { return noise >= 0 && sum() < 1e6f; }
 };
 
 /// Where a source's points are seen from, in its frame: (0,0,0), or where its filter has the sensor.
@@ -64,9 +66,7 @@ struct uncertain {
   CLEARANCE_HD sample operator[](std::size_t i) const {
     sample s = source[i];
     if (!s.valid()) return s;
-    const radius_shares all = shares(i, s.position);
-    const bool known = all.noise >= 0 && all.sum() < 1e6f;
-    if (!known) s.dropped = drop_reason::too_close;
+    if (!shares(i, s.position).bounded()) s.dropped = drop_reason::too_close;
     return s;
   }
   CLEARANCE_HD capsule around(std::size_t i, vec3 p) const {
@@ -86,6 +86,25 @@ struct uncertain {
     return {product(noise(i, seen), spread), product(fma(turn, turned, shift), spread), product(drift, spread)};
   }
 
+  /// See `surveyed_capsules`; false also where some radius is unbounded.
+  bool survey_capsules(std::size_t begin, extent& box, extent& ends, real& widest,
+                       std::uint32_t (&dropped)[drop_reasons]) const
+    requires surveyed_source<S> && (!capsule_source<S>) && requires(const N n, extent e) { n.most(begin, e); }
+  {
+    std::uint32_t its[drop_reasons] = {};
+    if (!source.survey(begin, box, its)) return false;
+    if (!(box.lower.x <= box.upper.x)) {  // no point
+      widest = 0;
+    } else {
+      const vec3 sensor = sensor_of(source);
+      const extent seen{box.lower - sensor, box.upper - sensor};
+      widest = (noise.most(begin, seen) + turn * detail::farthest_in(seen) + shift + drift) * spread * (1 + slack);
+    }
+    if (!(widest < 1e6f)) return false;
+    ends = box;
+    for (int k = 0; k < drop_reasons; ++k) dropped[k] += its[k];
+    return true;
+  }
   /// Another source of as many points, with the same uncertainty.
   template <point_source Other>
   uncertain<Other, N> around_same(const Other& other) const {

@@ -177,7 +177,8 @@ class certain_distance::engine {
     }
     if (r.nominal.part == none) return;  // nothing is known
     r.lower = lower > 0 && r.anywhere == 0 ? rounded_down(lower) : 0;
-    const double uncertain = pairs_.back().shares.sum() + radius(r.nominal.part).sum();
+    const radius_shares& point = pairs_.back().shares;
+    const double uncertain = (point.bounded() ? double(point.sum()) : double(infinity)) + radius(r.nominal.part).sum();
     const double most = double(r.nominal.distance) + model_.facts[r.nominal.part].tolerance +
                         frame_.error.at(r.nominal.distance) + uncertain;
     const bool inside = any_radius ? most < 0 : r.nominal.state == state::collision;

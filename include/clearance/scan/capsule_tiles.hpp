@@ -17,6 +17,7 @@ struct capsule_hull {
   extent starts, ends;
   real wide = 0;
 
+  bool empty() const { return !(starts.lower.x <= starts.upper.x); }
   /// Less an origin.
   void subtract(vec3 origin) {
     if (origin == vec3{0, 0, 0}) return;
@@ -48,12 +49,12 @@ struct capsule_hull {
   }
 };
 
-/// A source that says where the capsules of 128 neighbours are, whose radius is 0, without taking them apart; see
-/// `surveyed_source`.
+/// A source that says where the capsules of 128 neighbours are, without taking them apart; see `surveyed_source`.
+/// Law: if it is true, starts and ends are in those boxes, and no radius is above `widest`.
 template <class S>
-concept surveyed_capsules = capsule_source<S> && requires(const S s, std::size_t begin, extent& starts, extent& ends,
+concept surveyed_capsules = capsule_source<S> && requires(const S s, std::size_t begin, extent& box, real& widest,
                                                           std::uint32_t (&dropped)[drop_reasons]) {
-  { s.survey_capsules(begin, starts, ends, dropped) } -> std::same_as<bool>;
+  { s.survey_capsules(begin, box, box, widest, dropped) } -> std::same_as<bool>;
 };
 
 /// The capsules of a tile, less the search's origin. That of an invalid point is NaN and fails every comparison.
@@ -114,7 +115,8 @@ void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const e
     capsule_hull hull;
     const auto counted = [&] {
       if constexpr (surveyed_capsules<decltype(body.source)>)
-        return i + capsule_tile::points <= end && body.source.survey_capsules(i, hull.starts, hull.ends, mine.dropped);
+        return i + capsule_tile::points <= end &&
+               body.source.survey_capsules(i, hull.starts, hull.ends, hull.wide, mine.dropped);
       return false;
     }();
     const auto may_reach_some = [&] {
@@ -123,7 +125,9 @@ void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const e
       return false;
     };
     hull.subtract(body.origin);
-    if (counted && !(hull.may_touch(near, hull.wide) && may_reach_some())) continue;
+    // The box knows no part whose reach is below minus its size.
+    const bool beside = hull.wide == 0 && !hull.may_touch(near, 0);
+    if (counted && (hull.empty() || beside || !may_reach_some())) continue;
     capsule_tile t;
     with_vectors([&] {
       drop_tally again;
