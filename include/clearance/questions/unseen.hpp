@@ -56,6 +56,11 @@ struct unseen {
 
 namespace detail {
 
+template <class S>
+inline constexpr bool is_masked = false;
+template <class S>
+inline constexpr bool is_masked<masked<S>> = true;
+
 template <class T>
 concept some_variant = requires { typename std::variant_size<T>::type; };
 /// Is it known only when they are asked about which of these clouds are images?
@@ -92,7 +97,7 @@ class unseen::engine {
       if constexpr (seeing_image<S>) {
         look(poses, image, pose, labels, q, number++, r);
         if (labels != nullptr) labels += image.size();
-      } else if constexpr (requires { image.labels; }) {
+      } else if constexpr (detail::is_masked<S>) {
         if (labels != nullptr)
           throw std::invalid_argument("clearance: unseen has labels, and so has cloud " + std::to_string(number));
         look(poses, image.source, pose, image.labels, q, number++, r);
@@ -127,7 +132,7 @@ class unseen::engine {
   void look(std::span<const Eigen::Isometry3d> poses, const S& image, const Eigen::Isometry3d& pose,
             const point_label* labels, const unseen& q, std::uint32_t number, result& r) {
     static_assert(seeing_image<S>, "unseen is asked about depth_image and ray_image, or masked ones");
-    constexpr bool pinhole = requires { image.inverse_fx; };
+    constexpr bool pinhole = requires(const S& s) { s.inverse_fx; };
     double half = q.half_pixel;
     if constexpr (pinhole) half = std::hypot(double(image.inverse_fx), double(image.inverse_fy)) / 2;
     if (image.size() != 0 && !(half > 0 && half < infinity))
