@@ -102,10 +102,7 @@ class unseen::engine {
           throw std::invalid_argument("clearance: unseen has labels, and so has cloud " + std::to_string(number));
         look(poses, image.source, pose, image.labels, q, number++, r);
       } else {
-        static_assert(detail::clouds_of_variants<Clouds>,
-                      "unseen is asked about depth_image and ray_image, or masked ones");
-        throw std::invalid_argument("clearance: unseen is asked about depth images, and cloud " +
-                                    std::to_string(number) + " is none");
+        refuse<Clouds, S>(number);
       }
     });
     conclude(q, r);
@@ -127,11 +124,18 @@ class unseen::engine {
     bool tells_shown;
   };
 
+  template <class Clouds, class S>
+  [[noreturn]] static void refuse(std::uint32_t number) {
+    static_assert(detail::clouds_of_variants<Clouds>,
+                  "unseen is asked about depth_image and ray_image, or masked ones");
+    throw std::invalid_argument("clearance: unseen is asked about depth images, and cloud " + std::to_string(number) +
+                                " is none");
+  }
+
   /// `labels`: of this image, or null.
   template <class S>
   void look(std::span<const Eigen::Isometry3d> poses, const S& image, const Eigen::Isometry3d& pose,
             const point_label* labels, const unseen& q, std::uint32_t number, result& r) {
-    static_assert(seeing_image<S>, "unseen is asked about depth_image and ray_image, or masked ones");
     constexpr bool pinhole = requires(const S& s) { s.inverse_fx; };
     double half = q.half_pixel;
     if constexpr (pinhole) half = std::hypot(double(image.inverse_fx), double(image.inverse_fy)) / 2;
