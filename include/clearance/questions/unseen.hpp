@@ -61,6 +61,11 @@ struct unseen {
 
 namespace detail {
 
+template <class S>
+inline constexpr bool is_masked = false;
+template <class S>
+inline constexpr bool is_masked<masked<S>> = true;
+
 template <class T>
 concept some_variant = requires { typename std::variant_size<T>::type; };
 /// Is it known only when they are asked about which of these clouds are images?
@@ -109,15 +114,12 @@ class unseen::engine {
       if constexpr (seeing_image<decltype(as_measured{}(given))>) {
         look(poses, given, image, pose, labels, q, number++, places, r);
         if (labels != nullptr) labels += image.size();
-      } else if constexpr (requires { image.labels; }) {
+      } else if constexpr (detail::is_masked<std::remove_cvref_t<decltype(as_measured{}(given))>>) {
         if (labels != nullptr)
           throw std::invalid_argument("clearance: unseen has labels, and so has cloud " + std::to_string(number));
         look(poses, given, image.source, pose, image.labels, q, number++, places, r);
       } else {
-        static_assert(detail::clouds_of_variants<Clouds>,
-                      "unseen is asked about depth_image and ray_image, or masked or uncertain ones");
-        throw std::invalid_argument("clearance: unseen is asked about depth images, and cloud " +
-                                    std::to_string(number) + " is none");
+        refuse<Clouds, S>(number);
       }
     });
     conclude(q, r);
@@ -138,11 +140,19 @@ class unseen::engine {
     bool tells_shown, vague;
   };
 
+  template <class Clouds, class S>
+  [[noreturn]] static void refuse(std::uint32_t number) {
+    static_assert(detail::clouds_of_variants<Clouds>,
+                  "unseen is asked about depth_image and ray_image, or masked or uncertain ones");
+    throw std::invalid_argument("clearance: unseen is asked about depth images, and cloud " + std::to_string(number) +
+                                " is none");
+  }
+
   /// `labels`: of this image, or null.
   template <class Given, seeing_image S>
   void look(std::span<const Eigen::Isometry3d> poses, const Given& given, const S& image, const Eigen::Isometry3d& pose,
             const point_label* labels, const unseen& q, std::uint32_t number, bool places, result& r) {
-    constexpr bool pinhole = requires { image.inverse_fx; };
+    constexpr bool pinhole = requires(const S& s) { s.inverse_fx; };
     double half = q.half_pixel;
     if constexpr (pinhole) half = std::hypot(double(image.inverse_fx), double(image.inverse_fy)) / 2;
     if (image.size() != 0 && !(half > 0 && half < infinity))
@@ -186,7 +196,7 @@ class unseen::engine {
         const ball& around = frame.places[k].around;
         const vec3 middle = around.center + frame.origin;
         double& edge = c.from_edge.back() = view.from_edge({middle, around.radius}) - frames::slop(model_.facts[k]);
-        if constexpr (requires { given.turn; })  // the view may be turned and shifted
+        if constexpr (vague_source<Given>)  // the view may be turned and shifted
           edge = (edge - given.shift - given.turn * (double(length(middle)) + around.radius)) / (1 + given.turn);
         c.shown.back() = shown(view, model_.facts[k], pose.inverse() * poses[k]);
       }
