@@ -14,6 +14,7 @@ __global__ void __launch_bounds__(128)
   const std::uint32_t c = (blockIdx.x * 128 + threadIdx.x) / 32, lane = threadIdx.x % 32;
   if (c >= a.configurations) return;
   if (c == 0 && lane == 0) a.left.used[0] = a.left.used[1] = 0;
+  const PartView* const parts = a.its_parts(c);
   frames::placement* const places = a.its_places(c);
   bool rigid = true;
   for (std::uint32_t k = lane; k < a.part_count; k += 32) {
@@ -35,17 +36,17 @@ __global__ void __launch_bounds__(128)
   facts.origin = scan::from_lane(facts.origin, 0);
   for (std::uint32_t k = lane; k < a.part_count; k += 32) {
     const frames::placement here =
-        frames::place(a.parts[k].facts, places[k].world_from_part, a.world_from_cloud, facts.origin, a.off);
+        frames::place(parts[k].facts, places[k].world_from_part, a.world_from_cloud, facts.origin, a.off);
     places[k] = here;
-    a.bounds[std::size_t(c) * a.part_count + k] = ball_bounds(a.parts[k].facts, here.part_from_cloud);
+    a.bounds[std::size_t(c) * a.part_count + k] = ball_bounds(parts[k].facts, here.part_from_cloud);
   }
   __syncwarp();
-  for (std::uint32_t k = 0; k < a.part_count; ++k) facts.add(a.parts[k].facts, places[k].error);
+  for (std::uint32_t k = 0; k < a.part_count; ++k) facts.add(parts[k].facts, places[k].error);
   facts.rigid = rigid;
   if (a.now.cloud != 0 || a.foreseen) facts.error.widen(a.facts[c].error);  // a bracket covers all clouds
   if constexpr (Question::by_margin)
     for (std::uint32_t k = lane; k < a.part_count; k += 32)
-      a.near[std::size_t(c) * a.part_count + k] = a.question.near(k, a.parts[k].facts, facts.error);
+      a.near[std::size_t(c) * a.part_count + k] = a.question.near(k, parts[k].facts, facts.error);
   __syncwarp();
   if (lane != 0) return;
   if (a.now.cloud == 0) a.all[c] = a.question.start(rigid);
