@@ -64,16 +64,16 @@ void check(const Model& model, const configurations& poses, const Clouds& clouds
 }
 
 /// Each part's, prepared, enqueued and in one call; the cloud in host memory, too.
-template <class Model, point_source S>
-void check_parts(const Model& model, const configurations& poses, const placed<S>& clouds, double size, verdict& v,
-                 const std::string& what) {
+template <class Model>
+void check_parts(const Model& model, const configurations& poses, const std::vector<vec3>& points,
+                 const Eigen::Isometry3d& pose, double size, verdict& v, const std::string& what) {
   const device gpu;
   const auto there = model.on(gpu);
   clearance::query query(gpu, there, clearance::min_distances_per_part{});
   clearance::query enqueued(gpu, there, clearance::min_distances_per_part{});
   enqueued.place(poses);
-  const auto points = gpu.copy_in(std::span<const vec3>(clouds.source.data(), clouds.source.size()));
-  const placed<point_span> cloud{point_span(points.data(), points.size()), clouds.pose};
+  const auto copy = gpu.copy_in(std::span<const vec3>(points));
+  const placed clouds{point_span(points), pose}, cloud{point_span(copy.data(), copy.size()), pose};
   for (const double d_max : {0.2, double(infinity)}) {
     const clearance::min_distances_per_part options{real(d_max * size)};
     const auto expected = clearance::ask(host{}, model, poses, clouds, options);
@@ -95,7 +95,7 @@ void all_scenes(std::uint32_t width) {
     const auto poses = configurations_of(s, d);
     const auto model = make_model<V>(s, {.width = width}, clearance::wrapped{});
     check(model, poses, placed{all.span, s.cloud_pose}, s.size, v, s.name);
-    check_parts(model, poses, placed{all.span, s.cloud_pose}, s.size, v, s.name);
+    check_parts(model, poses, s.points, s.cloud_pose, s.size, v, s.name);
     const auto several =
         std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}));
     check(model, poses, several, s.size, v, s.name + ", several clouds");

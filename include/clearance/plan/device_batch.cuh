@@ -26,9 +26,8 @@ class device_batch {
  public:
   using result_type = typename Question::result_type;
 
-  /// With `each_part` each part is a robot of its own. Throws std::invalid_argument if a tree is too deep for a stack.
-  device_batch(const device& on, const model_view<PartView>& model, bool each_part,
-               std::pmr::memory_resource* memory = nullptr)
+  /// With `each_part` each part is a robot of its own. Throws std::invalid_argument if a tree is too deep.
+  device_batch(const device& on, const model_view<PartView>& model, bool each_part, std::pmr::memory_resource* memory)
       : on_(on),
         robots_(each_part ? std::max(std::uint32_t(model.size()), 1u) : 1),
         model_(model),
@@ -185,7 +184,8 @@ class device_batch {
   }
   template <point_source S>
   void place_in(const device& on, const S& source, const arguments& a) const {
-    on.launch(place_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
+    const unsigned blocks = (configurations_ - 1) / (128 / placing_lanes(a.part_count)) + 1;
+    on.launch(place_configurations<PartView, Question, S>, blocks, 128, 0, a, source);
   }
   template <point_source S>
   void ask(const S& source, const tree_type& tree, const arguments& a) {
@@ -218,9 +218,11 @@ class device_batch {
     using by_field = batch_arguments<PartView, Question, field_pair>;
     using shared = field_room<PartView>;
     unsigned threads = robots_ > 1 ? of_part : scan::has_interior<PartView> && !a.question.limited() ? 128 : 256;
-    while (shared::bytes(threads) > of_block_) threads /= 2;
-    const by_field fields{a, {pieces_.data(), left_used_.data(), std::uint32_t(pieces_.size())}};
-    search(field_kernel<by_field, tree_type>, tree, fields, threads, shared::bytes(threads), pieces_, pieces_again_);
+    while (shared::bytes(threads, threads) > of_block_) threads /= 2;
+    by_field fields{a, {pieces_.data(), left_used_.data(), std::uint32_t(pieces_.size())}};
+    fields.aside = threads;
+    search(field_kernel<by_field, tree_type>, tree, fields, threads, shared::bytes(threads, fields.aside), pieces_,
+           pieces_again_);
   }
   unsigned threads_for_all() const {
     return std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 256u);
@@ -268,7 +270,7 @@ class device_batch {
   }
 
   device on_;
-  std::uint32_t robots_;
+  std::uint32_t robots_;  ///< Of a configuration.
   model_view<PartView> model_;
   std::vector<part_facts> facts_;
   std::pmr::memory_resource* memory_;

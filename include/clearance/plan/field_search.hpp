@@ -27,13 +27,12 @@ struct field_search {
   const Tree& tree;
   const ball_bounds* bounds;  ///< One per part.
   const field_view* fields;
+  std::uint32_t levels;  ///< See searched_levels.
 
-  CLEARANCE_HD std::uint32_t starts() const {
-    return tree.levels == 0 ? 0 : tree.size(tree.levels - 1) * body.part_count;
-  }
+  CLEARANCE_HD std::uint32_t starts() const { return levels == 0 ? 0 : tree.size(levels - 1) * body.part_count; }
   CLEARANCE_HD bool start(std::uint32_t i, pair& p) const {
-    const std::uint32_t top = tree.size(tree.levels - 1);
-    p = {-infinity, i % top, i / top, std::uint8_t(tree.levels), solid};
+    const std::uint32_t top = tree.size(levels - 1);
+    p = {-infinity, i % top, i / top, std::uint8_t(levels), solid};
     return look(p);
   }
   CLEARANCE_HD std::uint32_t children(const pair& p) const {
