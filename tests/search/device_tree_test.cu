@@ -4,7 +4,7 @@
 #include "support/laws.hpp"
 #include "support/random.hpp"
 
-#include <clearance/cloud_tree/device_sort.cuh>
+#include <clearance/cloud_tree/device_sums.cuh>
 #include <clearance/points/point_span.hpp>
 
 #include <algorithm>

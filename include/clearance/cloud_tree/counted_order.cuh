@@ -12,9 +12,9 @@
 
 namespace clearance::cloud_tree {
 
-/// What CUB does: device_sort.cuh, which the questions about plans include.
-template <class Key>
-struct device_sort;
+/// Sums of counts, by CUB: device_sums.cuh, which the questions about plans include.
+template <class Count>
+struct device_sums;
 
 namespace detail {
 
@@ -42,8 +42,7 @@ __global__ void __launch_bounds__(grid_threads)
   const std::uint32_t count = std::uint32_t(__syncthreads_count(s.valid())) / 3;
   if (s.valid()) {
     std::uint32_t rank = 0;
-    for (std::uint32_t j = 0; j < samples; ++j)
-      rank += along[axis][j] < mine || (along[axis][j] == mine && j < t);
+    for (std::uint32_t j = 0; j < samples; ++j) rank += along[axis][j] < mine || (along[axis][j] == mine && j < t);
     if (rank == morton_grid::low_rank(count)) (&ends[0].x)[axis] = mine;
     if (rank == morton_grid::high_rank(count)) (&ends[1].x)[axis] = mine;
   }
@@ -95,18 +94,36 @@ struct scatter_body {
 
 }  // namespace detail
 
-/// Points by cells of the curve. A block of the tree puts its own into the curve's order, so cells need not be fine:
-/// one for every few points.
-template <class Sort>
+/// Points by cells of the curve. A block of the tree puts its own into the curve's order, so cells need not be fine.
 struct counted_order {
   static constexpr bool counts = false;  ///< Invalid points were counted before.
   const std::uint64_t* keys;
   std::uint32_t count;
 
-  /// The number of the point at position i, or none, for all threads of a block.
-  template <int Threads>
+  /// The number of the point at position i, or none, for all threads of a block: a bitonic sort, nearly all of it
+  /// within warps.
+  template <unsigned Threads>
   __device__ std::uint32_t of_block(std::uint32_t i) const {
-    return std::uint32_t(Sort::template of_block<Threads>(i < count ? keys[i] : ~std::uint64_t(0)));
+    __shared__ std::uint64_t all[Threads];
+    const unsigned t = threadIdx.x;
+    std::uint64_t mine = i < count ? keys[i] : ~std::uint64_t(0);
+#pragma unroll
+    for (unsigned size = 2; size <= Threads; size *= 2)
+#pragma unroll
+      for (unsigned step = size / 2; step > 0; step /= 2) {
+        std::uint64_t other;
+        if (step < 32) {
+          other = __shfl_xor_sync(scan::all_lanes, mine, int(step));
+        } else {
+          __syncthreads();
+          all[t] = mine;
+          __syncthreads();
+          other = all[t ^ step];
+        }
+        const bool lower = ((t & step) == 0) == ((t & size) == 0);
+        if ((other < mine) == lower) mine = other;
+      }
+    return std::uint32_t(mine);
   }
 };
 
@@ -119,7 +136,7 @@ class device_order {
   /// Enqueues it. Adds invalid points, which come last, to `dropped`.
   template <point_source S>
   auto build(const S& source, scan::drop_counts* dropped) {
-    using sort = device_sort<std::enable_if_t<point_source<S>, std::uint64_t>>;
+    using sums = device_sums<std::enable_if_t<point_source<S>, std::uint32_t>>;
     const std::size_t n = source.size();
     const int bits = std::clamp(int(std::bit_width(n)) - points_of_cell, 12, 24), shift = 3 * morton_grid::bits - bits;
     const std::uint32_t cells = (1u << bits) + 1;
@@ -128,23 +145,23 @@ class device_order {
                grid_.data(), counts_.data(), cells);
     on_.launch(detail::count_kernel<S>, unsigned((n - 1) / detail::count_threads + 1), detail::count_threads, 0, source,
                grid_.data(), shift, counts_.data(), coded_.data(), dropped);
-    sum<sort>(cells);
+    add_up<sums>(cells);
     on_.for_each(n, detail::scatter_body{coded_.data(), counts_.data(), shift, keys_.data()});
-    return counted_order<sort>{keys_.data(), std::uint32_t(n)};
+    return counted_order{keys_.data(), std::uint32_t(n)};
   }
 
  private:
-  static constexpr int points_of_cell = 1;  ///< The logarithm: how many there are on average.
+  static constexpr int points_of_cell = 3;  ///< The logarithm: how many there are on average, or half as many.
 
-  template <class Sort>
-  void sum(std::uint32_t cells) {
+  template <class Sums>
+  void add_up(std::uint32_t cells) {
     const device_guard guard(on_.id);
     std::size_t bytes = room_.size();
     if (cells > cells_) {
-      Sort::sums(nullptr, bytes, counts_.data(), cells, on_.stream);
+      Sums::exclusive(nullptr, bytes, counts_.data(), cells, on_.stream);
       grow(room_, bytes), cells_ = cells, bytes = room_.size();
     }
-    Sort::sums(room_.data(), bytes, counts_.data(), cells, on_.stream);
+    Sums::exclusive(room_.data(), bytes, counts_.data(), cells, on_.stream);
   }
   template <class T>
   void grow(device_buffer<T>& buffer, std::size_t n) const {

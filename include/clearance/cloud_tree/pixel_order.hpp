@@ -32,7 +32,7 @@ struct pixel_order {
     return x < width && y < height ? y * width + x : none;
   }
 
-  template <int>
+  template <unsigned>
   CLEARANCE_HD std::uint32_t of_block(std::uint32_t i) const {
     return (*this)(i);
   }

@@ -102,7 +102,6 @@ struct batch_arguments : asked_batch<PartView, Question> {
   /// What earlier blocks have left. If it is set, blocks take these pieces instead of configurations.
   batch_pieces<pair_type> given = {};
   std::uint32_t depth = 0;      ///< Depth of a block's stack, in pairs.
-  std::uint32_t aside = 0;      ///< So many points a block may set aside.
   std::uint32_t rounds = none;  ///< After so many rounds a block leaves its unfinished pairs.
 };
 

@@ -57,8 +57,7 @@ struct block_search {
   const room_type room;
   words& shared;
   const std::uint32_t depth;        ///< Of the stack.
-  pair* const set_aside = nullptr;  ///< If not null: room for so many points, for another search.
-  const std::uint32_t room_aside = 0;
+  pair* const set_aside = nullptr;  ///< If not null: room for as many points as there are threads, for another search.
   std::uint32_t count = 0, round = 0, next = 0, aside = 0;
   const std::uint32_t t = threadIdx.x, threads = blockDim.x;
 
@@ -84,7 +83,7 @@ struct block_search {
   /// full.
   __device__ bool go_on(std::uint32_t rounds) {
     for (const std::uint32_t starts = search.starts(); next < starts || count > 0;) {
-      if (set_aside != nullptr && 2 * aside >= room_aside) return false;
+      if (set_aside != nullptr && 2 * aside >= threads) return false;
       if (count == 0) {
         pair p;
         if (next + t < starts && search.start(next + t, p)) make(p);
@@ -128,7 +127,7 @@ struct block_search {
  private:
   __device__ void make(const pair& p) {
     if (set_aside != nullptr && p.level == 0)
-      if (const std::uint32_t i = atomicAdd(&shared.aside, 1u); i < room_aside) {
+      if (const std::uint32_t i = atomicAdd(&shared.aside, 1u); i < threads) {
         set_aside[i] = p;
         return;
       }
@@ -163,7 +162,7 @@ struct block_search {
   __device__ void put_back(std::uint32_t taken) {
     __syncthreads();
     const std::uint32_t n = shared.made[round % 2];
-    if (set_aside != nullptr) aside = scan::lower_of(shared.aside, room_aside);
+    if (set_aside != nullptr) aside = scan::lower_of(shared.aside, threads);
     if (t == 0) shared.made[(round + 1) % 2] = 0;
     count -= taken;
     for (std::uint32_t i = t; i < n; i += threads) {

@@ -140,12 +140,11 @@ class device_batch {
   template <class Pair>
   using pieces = device_buffer<typename batch_pieces<Pair>::piece>;
   /// After so many rounds of 128 threads a block leaves its stack to others. Where points may be inside a solid, stacks
-  /// are longer, and leaving earlier would make too many pieces.
-  static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128,
+  /// are longer, and leaving earlier would make too many pieces. With fields a part alone leaves little.
+  static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128, first_of_part = 32,
                             next_rounds = first_rounds > 128 ? 48 : 24;
   static constexpr std::size_t most_shared = 48 * 1024;  ///< Shared memory that every block may have.
   static constexpr unsigned resident_threads = 1024;     ///< Per processor, as the kernel's registers allow.
-  static constexpr unsigned of_part = 64;                ///< Threads of a block that searches for one part.
   struct counts {
     scan::drop_counts dropped;
     std::uint32_t lost = 0;
@@ -201,28 +200,27 @@ class device_batch {
       search_trees(tree, a);
   }
   void search_trees(const tree_type& tree, const arguments& a) {
-    // As many threads as the device has room for: with few configurations each gets more threads, and so do all where
-    // most end at once or a look takes long. Stacks are as deep as the remaining room: a round that may take fewer
-    // pairs needs more rounds.
-    unsigned threads = robots_ > 1                                            ? of_part
+    // As many threads as there is room for: more for each of few configurations, and where most end at once or a look
+    // takes long. Stacks are as deep as the remaining room: a round that may take fewer pairs needs more rounds.
+    unsigned threads = robots_ > 1                                            ? 64
                        : a.question.limited() || scan::has_interior<PartView> ? 256
                                                                               : threads_for_all();
+    if (robots_ > 1 && a.question.limited()) threads = 128;
     static_assert(room::bytes(32, room::least_depth(32)) <= most_shared, "a handle of a node must be smaller");
     while (room::bytes(threads, room::least_depth(threads)) > most_shared) threads /= 2;
     arguments with_stack = a;
     with_stack.depth = room::depth(threads, std::min(of_block_, of_processor_ / (resident_threads / threads) - 2048));
     search(batch_kernel<arguments, tree_type>, tree, with_stack, threads, room::bytes(threads, with_stack.depth), left_,
-           left_again_);
+           left_again_, first_rounds);
   }
   void search_by_field(const tree_type& tree, const arguments& a) {
     using by_field = batch_arguments<PartView, Question, field_pair>;
     using shared = field_room<PartView>;
-    unsigned threads = robots_ > 1 ? of_part : scan::has_interior<PartView> && !a.question.limited() ? 128 : 256;
-    while (shared::bytes(threads, threads) > of_block_) threads /= 2;
-    by_field fields{a, {pieces_.data(), left_used_.data(), std::uint32_t(pieces_.size())}};
-    fields.aside = threads;
-    search(field_kernel<by_field, tree_type>, tree, fields, threads, shared::bytes(threads, fields.aside), pieces_,
-           pieces_again_);
+    unsigned threads = robots_ > 1 || (scan::has_interior<PartView> && !a.question.limited()) ? 128 : 256;
+    while (shared::bytes(threads) > of_block_) threads /= 2;
+    const by_field fields{a, {pieces_.data(), left_used_.data(), std::uint32_t(pieces_.size())}};
+    search(field_kernel<by_field, tree_type>, tree, fields, threads, shared::bytes(threads), pieces_, pieces_again_,
+           robots_ > 1 ? first_of_part : first_rounds);
   }
   unsigned threads_for_all() const {
     return std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 256u);
@@ -230,7 +228,7 @@ class device_batch {
   /// One block per configuration; the slowest leave their rest to other blocks.
   template <class Kernel, class Arguments, class Pieces>
   void search(Kernel* kernel, const tree_type& tree, Arguments a, unsigned threads, std::size_t bytes,
-              const Pieces& left, const Pieces& left_again) {
+              const Pieces& left, const Pieces& left_again, unsigned first) {
     {
       const device_guard guard(on_.id);
       limits_.raise(reinterpret_cast<const void*>(kernel), of_block_);
@@ -244,7 +242,7 @@ class device_batch {
     // The slowest of many configurations takes twenty times as long as most, and most of that may come from one pair.
     // So the rest is dealt out twice.
     a.left = {left.data(), left_used_.data(), std::uint32_t(left.size())};
-    search(configurations_, first_rounds);
+    search(configurations_, first);
     a.given = a.left;
     a.left = {left_again.data(), left_used_.data() + 1, std::uint32_t(left_again.size())};
     search(at_once, next_rounds);

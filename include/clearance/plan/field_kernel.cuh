@@ -17,8 +17,8 @@ struct field_room {
   using stack_type = batch_room<field_pair, pair_order<PartView>>;
 
   static constexpr std::uint32_t depth(std::uint32_t threads) { return 256 + 2 * threads; }
-  static constexpr std::size_t bytes(std::uint32_t threads, std::uint32_t aside) {
-    return stack_type::bytes(threads, depth(threads)) + aside * (sizeof(field_pair) + sizeof(std::uint32_t)) +
+  static constexpr std::size_t bytes(std::uint32_t threads) {
+    return stack_type::bytes(threads, depth(threads)) + threads * (sizeof(field_pair) + sizeof(std::uint32_t)) +
            threads / 32 * walk_type::most * sizeof(node_type) + alignof(node_type);
   }
 
@@ -27,13 +27,13 @@ struct field_room {
   std::uint32_t* order;
   node_type* nodes;
 
-  __device__ field_room(distance_key* memory, std::uint32_t threads, std::uint32_t room_aside)
+  __device__ field_room(distance_key* memory, std::uint32_t threads)
       : stack(memory, threads, depth(threads)),
         aside(stack.made + stack_type::most(threads)),
-        order(reinterpret_cast<std::uint32_t*>(aside + room_aside)),
-        nodes(reinterpret_cast<node_type*>(
-            (reinterpret_cast<std::uintptr_t>(order + room_aside) + alignof(node_type) - 1) / alignof(node_type) *
-            alignof(node_type))) {}
+        order(reinterpret_cast<std::uint32_t*>(aside + threads)),
+        nodes(
+            reinterpret_cast<node_type*>((reinterpret_cast<std::uintptr_t>(order + threads) + alignof(node_type) - 1) /
+                                         alignof(node_type) * alignof(node_type))) {}
 };
 
 /// Looks exactly at the points that a search has set aside: those that may be inside a solid by a thread each, and the
@@ -41,13 +41,13 @@ struct field_room {
 template <class Search, class Room>
 __device__ void look_at(const Search& search, const Room& room, std::uint32_t count) {
   const std::uint32_t t = threadIdx.x;
-  for (std::uint32_t i = t; i < count; i += blockDim.x) {
-    const field_pair its = room.aside[i];
+  if (t < count) {
     std::uint32_t before = 0;
     for (std::uint32_t j = 0; j < count; ++j)
-      before += room.aside[j].bound < its.bound || (room.aside[j].bound == its.bound && j < i);
-    room.order[before] = i;
-    if (Search::solid && its.whole && !search.settled(its)) search.visit(search.tree.points[its.at], its.part);
+      before += room.aside[j].bound < room.aside[t].bound || (room.aside[j].bound == room.aside[t].bound && j < t);
+    room.order[before] = t;
+    if (const field_pair& its = room.aside[t]; Search::solid && its.whole && !search.settled(its))
+      search.visit(search.tree.points[its.at], its.part);
   }
   __syncthreads();
   const typename Room::walk_type walk{room.nodes + t / 32 * Room::walk_type::most};
@@ -81,7 +81,7 @@ __global__ void __launch_bounds__(256, 4)
   __shared__ typename block_type::words words;
   memory_type& best = *reinterpret_cast<memory_type*>(memory_of_best);
   const std::uint32_t t = threadIdx.x;
-  const room_type room(memory, blockDim.x, a.aside);
+  const room_type room(memory, blockDim.x);
   for (std::uint32_t i = blockIdx.x, count = a.given.pieces != nullptr ? a.given.size() : a.configurations; i < count;
        i += gridDim.x) {
     const std::uint32_t c = a.given.pieces != nullptr ? a.given.pieces[i].configuration : i;
@@ -91,7 +91,7 @@ __global__ void __launch_bounds__(256, 4)
     const body_type body = a.body(c, &best);
     const search_type search{body, tree, a.bounds + std::size_t(c) * a.part_count, a.fields + a.first_part(c),
                              searched_levels(tree, a.part_count, blockDim.x)};
-    block_type block{search, room.stack, words, room_type::depth(blockDim.x), room.aside, a.aside};
+    block_type block{search, room.stack, words, room_type::depth(blockDim.x), room.aside};
     if (a.given.pieces != nullptr) {
       block.start(a.given.pieces[i]);
     } else {

@@ -8,7 +8,7 @@
 #include <clearance/questions/min_distance.hpp>
 
 #if defined(__CUDACC__)
-#include <clearance/cloud_tree/device_sort.cuh>  // for a tree over points on a device
+#include <clearance/cloud_tree/device_sums.cuh>  // for a tree over points on a device
 #include <clearance/plan/device_engine.cuh>
 #endif
 
