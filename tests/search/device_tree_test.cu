@@ -38,7 +38,8 @@ void check(clearance::cloud_tree::device_tree& built, const std::vector<vec3>& p
   }
   v.require(off == 0, what, ": points elsewhere");
   std::uint64_t dropped = 0;
-  for (const auto n : gpu.copy_out(counts)[0].dropped) dropped += n;
+  const auto told = gpu.copy_out(counts);
+  for (const auto n : told[0].dropped) dropped += n;
   v.require(dropped + valid == points.size(), what, ": ", dropped, "dropped");
   for (std::uint32_t level = 0; level < tree.levels; ++level)
     for (std::uint32_t n = 0; n < tree.size(level); ++n) {

@@ -197,8 +197,7 @@ __global__ void __launch_bounds__(256, 4)
     if (t == 0) best = a.all[c];
     __syncthreads();
     const typename Arguments::body_type body = a.body(c, &best);
-    const search_type search{body, tree, a.bounds + std::size_t(c) * a.part_count,
-                             searched_levels(tree, a.part_count, blockDim.x)};
+    const search_type search{body, tree, a.bounds + std::size_t(c) * a.part_count};
     block_type block{search, typename block_type::room_type(memory, blockDim.x, a.depth), words, a.depth};
     if (a.given.pieces != nullptr) {
       block.start(a.given.pieces[i]);

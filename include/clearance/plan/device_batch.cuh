@@ -141,7 +141,7 @@ class device_batch {
   using pieces = device_buffer<typename batch_pieces<Pair>::piece>;
   /// After so many rounds of 128 threads a block leaves its stack to others. Where points may be inside a solid, stacks
   /// are longer, and leaving earlier would make too many pieces. With fields a part alone leaves little.
-  static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128, first_of_part = 32,
+  static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128, first_of_part = 16,
                             next_rounds = first_rounds > 128 ? 48 : 24;
   static constexpr std::size_t most_shared = 48 * 1024;  ///< Shared memory that every block may have.
   static constexpr unsigned resident_threads = 1024;     ///< Per processor, as the kernel's registers allow.

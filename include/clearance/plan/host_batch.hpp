@@ -115,7 +115,7 @@ class host_batch {
             walk(field_search<body_type, tree_type>{body, tree, own.bounds.data(), robot.fields, tree.levels},
                  own.by_field);
           else
-            walk(tree_search<body_type, tree_type>{body, tree, own.bounds.data(), tree.levels}, own.pending);
+            walk(tree_search<body_type, tree_type>{body, tree, own.bounds.data()}, own.pending);
           if constexpr (!Question::by_margin)
             resolve_body<PartView, S, any_depth>{
                 robot.parts, places.data(), parts,  source, own.frame.origin, own.frame.world_from_cloud,

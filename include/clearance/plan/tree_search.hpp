@@ -48,15 +48,6 @@ struct node_pair {
   bool whole;          ///< Points may be inside the part's solid: `node` stays the root.
 };
 
-/// How many levels of a tree a search goes through: it begins with the nodes of the last of them. Few nodes and parts
-/// would leave most of `lanes` idle.
-template <class Tree>
-CLEARANCE_HD std::uint32_t searched_levels(const Tree& tree, std::uint32_t parts, std::uint32_t lanes) {
-  std::uint32_t levels = tree.levels;
-  while (levels > 1 && std::uint64_t(tree.size(levels - 2)) * parts <= lanes) --levels;
-  return levels;
-}
-
 /// One configuration's parts in one cloud, and a tree over its points. `Body` is a scan_body, whose answer says how
 /// near a part must be.
 template <class Body, class Tree>
@@ -72,16 +63,17 @@ struct tree_search {
   const Body& body;
   const Tree& tree;
   const ball_bounds* bounds;  ///< One per part.
-  std::uint32_t levels;       ///< See searched_levels.
 
   /// How near part `k` must be.
   CLEARANCE_HD real reach(std::uint32_t k) const { return body.answer.reach(k); }
 
-  /// The number of pairs to begin with: each node of the last level with each part.
-  CLEARANCE_HD std::uint32_t starts() const { return levels == 0 ? 0 : tree.size(levels - 1) * body.part_count; }
+  /// The number of pairs to begin with: each node of the top level with each part.
+  CLEARANCE_HD std::uint32_t starts() const {
+    return tree.levels == 0 ? 0 : tree.size(tree.levels - 1) * body.part_count;
+  }
   CLEARANCE_HD bool start(std::uint32_t i, pair& p) const {
-    const std::uint32_t top = tree.size(levels - 1);
-    p = {-infinity, i % top, i / top, 0, body.parts[i / top].tree.root(), std::uint8_t(levels), 0, true, solid};
+    const std::uint32_t top = tree.size(tree.levels - 1);
+    p = {-infinity, i % top, i / top, 0, body.parts[i / top].tree.root(), std::uint8_t(tree.levels), 0, true, solid};
     return look(p);
   }
   CLEARANCE_HD std::uint32_t children(const pair& p) const {
