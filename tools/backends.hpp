@@ -111,6 +111,9 @@ class backend_robot {
                                                                const clearance::motion_clearance_options& options) = 0;
   virtual std::span<const clearance::part_facts> facts() = 0;
 
+  // After `plan` with fields: for each body that can have none the reason, else empty words. Then none is used.
+  std::vector<std::string> without_field;
+
   // Seconds: for the last question; so far for building trees; and for moving them to where the backend reads them.
   double query = 0, build = 0, upload = 0;
 };
@@ -120,6 +123,7 @@ struct asked_model {
   model_kind model = model_kind::spheres;
   volume_kind volume = volume_kind::sphere;  // of the trees of `least`
   const std::vector<body>* bodies = nullptr;
+  bool fields = false;  // of all bodies, for `plan`
 };
 
 std::unique_ptr<backend_robot> robot_on_host(const asked_model& asked);

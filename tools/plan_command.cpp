@@ -44,7 +44,7 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   report.bodies = &bodies;
   report.pack = clock.lap();
   shown.show("asking about " + std::to_string(rows.size()) + " configurations");
-  const asked_model model{asked.model, asked.volume, &bodies};
+  const asked_model model{asked.model, asked.volume, &bodies, asked.fields};
   auto there = robot_on(asked.on_device, model);
   if (ranks) there = ranks->together(std::move(there), model, questions_of(asked));
   report.upload = there->see(clouds.seen);
@@ -71,6 +71,7 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
       notes.push_back(asked.configurations + ": on the way from row " + std::to_string(*way) +
                       " to the next the margin may be fallen below");
   }
+  note_fields(*there, bodies, notes);
   say_notes(notes);
   std::cout << (asked.csv ? to_csv(report) : to_json(report));
   return report.code();

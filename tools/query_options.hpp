@@ -111,6 +111,7 @@ struct query_options {
   std::string configurations;      // for `clearance plan`
   bool csv = false;                // for `clearance plan` and `clearance run`
   bool between = false;            // for `clearance plan`
+  bool fields = false;             // for `clearance plan` and the plan of `clearance run`
   recording_options recording;     // for `clearance run`
 };
 

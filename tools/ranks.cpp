@@ -203,6 +203,7 @@ class robot_of_ranks final : public backend_robot {
       here.attempt([&] { mine = ask(); });
       here.join(answer, mine);
       query = mine_->query, build = mine_->build, upload = mine_->upload;
+      without_field = mine_->without_field;
       return answer.result();
     });
   }

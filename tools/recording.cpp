@@ -142,6 +142,12 @@ std::vector<Eigen::Isometry3d> placed_rows::placed(std::size_t begin) const {
   return all;
 }
 
+void note_fields(const backend_robot& there, const std::vector<body>& bodies, std::vector<std::string>& notes) {
+  for (std::size_t k = 0; k < there.without_field.size(); ++k)
+    if (const std::string& why_not = there.without_field[k]; !why_not.empty())
+      notes.push_back("--fields: link " + io::quoted(bodies[k].name) + ": " + why_not + "; so no field is used");
+}
+
 min_distances_result ask_plan(backend_robot& there, const placed_rows& rows, double d_max, double& query) {
   min_distances_result all;
   rows.for_each_block([&](poses_of poses) {

@@ -49,6 +49,9 @@ class placed_rows {
   std::vector<Eigen::Isometry3d> first_;
 };
 
+/// Says of which bodies no field could be sampled.
+void note_fields(const backend_robot& there, const std::vector<body>& bodies, std::vector<std::string>& notes);
+
 /// Asks about all rows; adds the seconds to `query`.
 clearance::min_distances_result ask_plan(backend_robot& there, const placed_rows& rows, double d_max, double& query);
 

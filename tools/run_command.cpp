@@ -170,7 +170,7 @@ int run_frames(const query_options& asked) {
   if (!asked.recording.svg.empty()) check_picture(asked.recording.svg, frames, inputs);
   const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
   print(notes, shown);
-  const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies});
+  const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies, asked.fields});
   int code = 0;
   double upload = asked.recording.merge ? there->see({merged.finish(moves.poses(0))}) : 0;
   std::optional<observation> frame;
@@ -197,6 +197,11 @@ int run_frames(const query_options& asked) {
     }
     const std::optional<plan_report> plan = to_come.ask(*there);
     if (plan) report.plan = &*plan;
+    if (k == 0) {
+      notes.clear();
+      note_fields(*there, bodies, notes);
+      print(notes, shown);
+    }
     min_distance_result& r = report.found.result;
     if (r.state != state::no_data)
       std::tie(report.cloud, report.point) =

@@ -30,7 +30,7 @@ auto fielded(Model model) {
 auto spheres_field(const scene& s) { return fielded(sphere_model<clearance::sphere>(s)); }
 auto triangles_field(const scene& s) { return fielded(triangle_model<clearance::aabb>(s)); }
 
-void report(benchmark::State& state, const std::vector<clearance::min_distance_result>& found) {
+void report(benchmark::State& state, std::span<const clearance::min_distance_result> found) {
   double free = 0, near = 0, sum = 0;
   for (const auto& r : found)
     free += r.state == clearance::state::free, near += r.part != clearance::none,
@@ -69,9 +69,10 @@ void report(benchmark::State& state, const std::vector<clearance::state>& found)
 }
 
 /// Asks about `frames` in turn, by `enqueue(query, cloud)`.
-template <class Query, class Enqueue>
-void ask(benchmark::State& state, const device& gpu, Query& query, const std::vector<Eigen::Isometry3d>& poses,
-         const std::vector<std::vector<vec3>>& frames, bool warm, Enqueue ask_of) {
+template <class Q, class View, class Enqueue>
+void ask(benchmark::State& state, const device& gpu, clearance::query<Q, device, View>& query,
+         const std::vector<Eigen::Isometry3d>& poses, const std::vector<std::vector<vec3>>& frames, bool warm,
+         Enqueue ask_of) {
   query.place(poses);
   decltype(ask_of(query, placed{point_span()})) results = nullptr;
   std::vector<clearance::device_buffer<vec3>> there;
@@ -94,7 +95,7 @@ void ask(benchmark::State& state, const device& gpu, Query& query, const std::ve
     const recorded& turn = turns[n++ % turns.size()];
     state.SetIterationTime(clock.seconds([&] { turn(); }));
   }
-  report(state, gpu.copy_out(results, poses.size() / the_scene().poses.size()));
+  report(state, gpu.copy_out(results, Q::each_part ? poses.size() : poses.size() / the_scene().poses.size()));
 }
 
 template <class Model>
@@ -112,6 +113,18 @@ void random(benchmark::State& state, Make make, float d_max) {
   if (no_device(state)) return;
   const scene& s = the_scene();
   ask(state, make(s), random_configurations(std::size_t(state.range(0))), {s.cloud}, d_max, false);
+}
+/// Each part's least distances.
+template <class Make>
+void parts(benchmark::State& state, Make make, float d_max) {
+  if (no_device(state)) return;
+  const scene& s = the_scene();
+  const clearance::own_stream stream(0);
+  const device gpu = stream.on();
+  const auto model = make(s);
+  clearance::query query(gpu, model, clearance::min_distances_per_part{});
+  ask(state, gpu, query, random_configurations(std::size_t(state.range(0))), {s.cloud}, false,
+      [d_max](auto& its, const auto& cloud) { return its.enqueue(cloud, clearance::min_distances_per_part{d_max}); });
 }
 template <class Make>
 void states(benchmark::State& state, Make make, double margin) {
@@ -166,7 +179,7 @@ void waited(benchmark::State& state, Make make, Ask ask) {
   const auto poses = random_configurations(std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const vec3>(s.cloud));
   auto asked = ask(gpu, model);
-  std::vector<clearance::min_distance_result> found;
+  decltype(asked(poses, placed{point_span(), s.world_from_camera})) found;
   for (auto _ : state) found = asked(poses, placed{point_span(there.data(), there.size()), s.world_from_camera});
   report(state, found);
 }
@@ -185,6 +198,18 @@ void each_part(benchmark::State& state, Make make) {
     return [&](const auto& poses, const auto& cloud) {
       return clearance::ask(gpu, model, poses, cloud, clearance::min_distances_per_part{}).all;
     };
+  });
+}
+/// The same by a prepared question.
+template <class Make>
+void each_part_prepared(benchmark::State& state, Make make) {
+  waited(state, make, [](const device& gpu, const auto& model) {
+    return
+        [query = std::make_unique<
+             clearance::query<clearance::min_distances_per_part, device, typename decltype(model.view())::part_type>>(
+             gpu, model, clearance::min_distances_per_part{})](const auto& poses, const auto& cloud) {
+          return std::span((*query)(poses, cloud).all);
+        };
   });
 }
 
@@ -207,6 +232,9 @@ BOTH(random, spheres_within_5cm, spheres, 4096, 0.05f);
 BOTH(random, triangles, triangles, 4096, all);
 BOTH(random, triangles_within_5cm, triangles, 4096, 0.05f);
 BENCHMARK_CAPTURE(random, tree_alone, spheres, -1.0f) TIMES(1);
+BOTH(parts, spheres, spheres, 4096, all);
+BOTH(parts, spheres_within_5cm, spheres, 4096, 0.05f);
+BOTH(parts, triangles, triangles, 4096, all);
 BOTH(states, spheres, spheres, 4096, 0);
 BOTH(states, spheres_5cm, spheres, 4096, 0.05);
 BOTH(states, triangles, triangles, 4096, 0);
@@ -221,6 +249,8 @@ BENCHMARK_CAPTURE(call, spheres, spheres) CALLS(4096);
 BENCHMARK_CAPTURE(call, spheres_by_field, spheres_field) CALLS(4096);
 BENCHMARK_CAPTURE(each_part, spheres, spheres) CALLS(4096);
 BENCHMARK_CAPTURE(each_part, spheres_by_field, spheres_field) CALLS(4096);
+BENCHMARK_CAPTURE(each_part_prepared, spheres, spheres) CALLS(4096);
+BENCHMARK_CAPTURE(each_part_prepared, spheres_by_field, spheres_field) CALLS(4096);
 BENCHMARK_CAPTURE(sample, spheres, sphere_model<clearance::sphere>)->Unit(benchmark::kMillisecond)->Iterations(3);
 BENCHMARK_CAPTURE(sample, triangles, triangle_model<clearance::aabb>)->Unit(benchmark::kMillisecond)->Iterations(3);
 

@@ -63,18 +63,24 @@ void check(const Model& model, const configurations& poses, const Clouds& clouds
   }
 }
 
-/// Each part's, prepared and in one call; the cloud in host memory, too.
-template <class Model, class Clouds>
-void check_parts(const Model& model, const configurations& poses, const Clouds& clouds, double size, verdict& v,
-                 const std::string& what) {
+/// Each part's, prepared, enqueued and in one call; the cloud in host memory, too.
+template <class Model>
+void check_parts(const Model& model, const configurations& poses, const std::vector<vec3>& points,
+                 const Eigen::Isometry3d& pose, double size, verdict& v, const std::string& what) {
   const device gpu;
   const auto there = model.on(gpu);
   clearance::query query(gpu, there, clearance::min_distances_per_part{});
+  clearance::query enqueued(gpu, there, clearance::min_distances_per_part{});
+  enqueued.place(poses);
+  const auto copy = gpu.copy_in(std::span<const vec3>(points));
+  const placed clouds{point_span(points), pose}, cloud{point_span(copy.data(), copy.size()), pose};
   for (const double d_max : {0.2, double(infinity)}) {
     const clearance::min_distances_per_part options{real(d_max * size)};
     const auto expected = clearance::ask(host{}, model, poses, clouds, options);
     require_results(query(poses, clouds, options).all, expected.all, v,
                     what + ", each part, prepared, d_max " + std::to_string(options.d_max));
+    require_results(gpu.copy_out(enqueued.enqueue(cloud, options), poses.size()), expected.all, v,
+                    what + ", each part, enqueued, d_max " + std::to_string(options.d_max));
     require_results(clearance::ask(gpu, there, poses, clouds, options).all, expected.all, v,
                     what + ", each part, d_max " + std::to_string(options.d_max));
   }
@@ -89,7 +95,7 @@ void all_scenes(std::uint32_t width) {
     const auto poses = configurations_of(s, d);
     const auto model = make_model<V>(s, {.width = width}, clearance::wrapped{});
     check(model, poses, placed{all.span, s.cloud_pose}, s.size, v, s.name);
-    check_parts(model, poses, placed{all.span, s.cloud_pose}, s.size, v, s.name);
+    check_parts(model, poses, s.points, s.cloud_pose, s.size, v, s.name);
     const auto several =
         std::tuple(placed{all.raw, all.camera_pose}, std::vector(2, placed{all.doubles, s.cloud_pose}));
     check(model, poses, several, s.size, v, s.name + ", several clouds");
@@ -207,6 +213,10 @@ TEST_CASE("What is no batch is refused on a device, and a pose that is not rigid
   CHECK_THROWS_WITH(
       clearance::ask(gpu, model, poses, cloud, clearance::in_collisions{{0.1}}),
       Catch::Matchers::StartsWith("clearance: the pose of configuration 1's part 1 is not rigid: its axes"));
+  clearance::query parts(gpu, model, clearance::min_distances_per_part{});
+  parts.place(poses);
+  const auto each = gpu.copy_out(parts.enqueue(point_span(points.data(), points.size())), 6);
+  for (int i = 0; i < 6; ++i) CHECK((each[i].state == state::possible && each[i].lower == 0) == (i == 4));
   clearance::query ask(gpu, model, clearance::in_collisions{});
   ask.place(poses);
   CHECK((gpu.copy_out(ask.enqueue(point_span(points.data(), points.size()), clearance::in_collisions{{1e9}}), 2) ==
@@ -219,6 +229,8 @@ TEST_CASE("A robot without parts has no configurations, on a device") {
   using view = clearance::part_view<clearance::bvh_view<clearance::sphere, inner_sphere>>;
   const clearance::model_view<view> nothing{nullptr, {}, 0, 0};
   CHECK(ask(device{}, nothing, configurations{}, std::vector<vec3>{{1, 2, 3}}, min_distances{}).of.empty());
+  CHECK(ask(device{}, nothing, configurations{}, std::vector<vec3>{{1, 2, 3}}, clearance::min_distances_per_part{})
+            .all.empty());
   CHECK_THROWS_AS(ask(device{}, nothing, configurations(2, Eigen::Isometry3d::Identity()), std::vector<vec3>{{1, 2, 3}},
                       min_distances{}),
                   std::invalid_argument);

@@ -25,6 +25,22 @@ struct path {
 const char* const answered[] = {"state",     "distance", "upper",     "cloud",       "point", "pixel",
                                 "point_xyz", "part",     "primitive", "nearest_xyz", "normal"};
 
+/// A table of frames without `latency_us`.
+std::string without_times(const std::string& table) {
+  std::istringstream rows(table);
+  std::string all;
+  std::size_t column = std::string::npos;
+  for (std::string line; std::getline(rows, line); all += '\n') {
+    std::istringstream cells(line);
+    std::size_t k = 0;
+    for (std::string cell; std::getline(cells, cell, ','); ++k) {
+      if (cell == "latency_us") column = k;
+      if (k != column) all += cell + ',';
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 TEST_CASE("clearance plan answers each configuration as clearance query does") {
@@ -291,6 +307,31 @@ TEST_CASE("--between judges the way from each row to the next, and --check is ab
   refuses(ask + " --between --attach tool=" + p.cloud.path, "--between: cannot be mixed with --attach");
   for (const std::string more : {"", " --between"})
     refuses(ask + more + " --check -0.1", "--check: must not be negative (metres)");
+}
+
+TEST_CASE("--fields changes no answer, and names a link that can have none") {
+  const path p;
+  const std::string plain = run_command(p.ask + " --csv").out;
+  CHECK(plain.size() > 100);
+  const outcome o = run_command(p.ask + " --csv --fields");
+  CHECK((o.code == 0 && o.out == plain && o.err.find("--fields") == std::string::npos));
+  const scratch_file still{".csv", "turn,slide\n0,0\n"}, list{".txt", p.cloud.path + "\n"};
+  const std::string run = "run --csv" + p.robot + " --trajectory " + still.path + " --frames " + list.path;
+  refuses(run + " --fields", "--fields: is for --plan");
+  const outcome frames = run_command(run + " --fields --plan " + p.rows.path);
+  CHECK(frames.code == 0);
+  CHECK(without_times(frames.out) == without_times(run_command(run + " --plan " + p.rows.path).out));
+
+  const scratch_file large{".urdf",
+                           "<robot name=\"r\"><link name=\"huge\"><collision><geometry><box size=\"3e6 3e6 "
+                           "3e6\"/></geometry></collision></link></robot>"},
+      far{".xyz", "0 0 2e6\n"}, once{".csv", "\n"};
+  const std::string alone = "plan --csv --backend host --model triangles --robot " + large.path + " --cloud " +
+                            far.path + " --configurations " + once.path;
+  const outcome none = run_command(alone + " --fields");
+  CHECK(none.out == run_command(alone).out);
+  CHECK(none.err.find("--fields: link \"huge\": a part without a finite size has no field; so no field is used") !=
+        std::string::npos);
 }
 
 TEST_CASE("a plan of more poses than are in memory at once has the same answers") {

@@ -4,6 +4,7 @@
 
 #include "robot_on.hpp"
 
+#include <clearance/fields.hpp>
 #include <clearance/io/robot_bodies.hpp>
 #include <clearance/make_model.hpp>
 
@@ -26,9 +27,18 @@ auto trees_of_triangles(const std::vector<body>& bodies) {
 template <class Backend>
 auto robot_on_backend<Backend>::usual_trees() -> const trees& {
   if (trees_.index() != 0) return trees_;
+  const auto maybe_fielded = [this](const auto& make) {
+    return moved([&](const std::vector<body>& bodies) {
+      auto trees = make(bodies);
+      if (!asked_.fields) return trees;
+      auto sampled = clearance::with_fields(on_, std::move(trees));
+      without_field = std::move(sampled.without);
+      return std::move(sampled.model);
+    });
+  };
   if (asked_.model == model_kind::spheres)
-    trees_.template emplace<sphere_trees>(moved(trees_of_spheres<clearance::sphere>));
+    trees_.template emplace<sphere_trees>(maybe_fielded(trees_of_spheres<clearance::sphere>));
   else
-    trees_.template emplace<triangle_trees>(moved(trees_of_triangles<clearance::obb>));
+    trees_.template emplace<triangle_trees>(maybe_fielded(trees_of_triangles<clearance::obb>));
   return trees_;
 }

@@ -3,60 +3,13 @@
 // A tree over a cloud on a device.
 
 #include <clearance/backend/device.cuh>
-#include <clearance/cloud_tree/morton.hpp>
+#include <clearance/cloud_tree/counted_order.cuh>
 #include <clearance/cloud_tree/pixel_order.hpp>
 #include <clearance/cloud_tree/tree_view.hpp>
-#include <clearance/scan/drops.hpp>
-#include <clearance/scan/threads.cuh>
 
 namespace clearance::cloud_tree {
 
 namespace detail {
-
-inline constexpr std::uint32_t grid_threads = 3 * morton_grid::samples;
-
-/// Makes the grid from a sample of the points, by one block. Each thread finds the rank of one point along one axis.
-template <class Source>
-__global__ void __launch_bounds__(grid_threads) grid_kernel(const __grid_constant__ Source source, morton_grid* grid) {
-  __shared__ real along[3][morton_grid::samples];
-  __shared__ vec3 ends[2];
-  const std::uint32_t t = threadIdx.x % morton_grid::samples, axis = threadIdx.x / morton_grid::samples;
-  const std::size_t size = source.size(), stride = size < morton_grid::samples ? 1 : size / morton_grid::samples;
-  sample s{{not_a_number, not_a_number, not_a_number}, drop_reason::missing};
-  if (t * stride < size) s = source[t * stride];
-  const real mine = s.valid() ? (&s.position.x)[axis] : not_a_number;
-  along[axis][t] = mine;
-  const std::uint32_t count = std::uint32_t(__syncthreads_count(s.valid())) / 3;
-  if (s.valid()) {
-    std::uint32_t rank = 0;
-    for (std::uint32_t j = 0; j < morton_grid::samples; ++j)
-      rank += along[axis][j] < mine || (along[axis][j] == mine && j < t);
-    if (rank == morton_grid::low_rank(count)) (&ends[0].x)[axis] = mine;
-    if (rank == morton_grid::high_rank(count)) (&ends[1].x)[axis] = mine;
-  }
-  __syncthreads();
-  if (threadIdx.x == 0) *grid = count == 0 ? morton_grid() : morton_grid(ends[0], ends[1]);
-}
-
-/// Finds where points are on the curve. Invalid points are counted and stay in the array.
-template <point_source Source>
-struct encode_body {
-  Source source;
-  const morton_grid* grid;
-  std::uint32_t *codes, *numbers;
-  scan::drop_counts* dropped;
-
-  CLEARANCE_HD void operator()(indices range) const {
-    scan::drop_tally mine;
-    const morton_grid cells = *grid;
-    for (std::size_t i = range.begin; i < range.end; i += range.step) {
-      const sample s = source[i];
-      codes[i] = mine.counts(s) ? cells(s.position) : ~0u;
-      numbers[i] = std::uint32_t(i);
-    }
-    mine.add_to(*dropped);
-  }
-};
 
 /// The arrays of a tree, to be written.
 struct tree_room {
@@ -64,6 +17,7 @@ struct tree_room {
   ball* balls;
   std::uint32_t* least;
   extent* boxes;
+  std::uint32_t* done;  ///< Blocks that made their tiles.
 };
 
 inline constexpr std::uint32_t siblings = 8;  ///< So many lanes make one node, from one child each.
@@ -111,21 +65,32 @@ __device__ void put_parent(const Tree& tree, std::uint32_t level, std::uint32_t 
            [&](vec3 center) { return (rough_length_up(b.center - center) + b.radius) * (1 + slack); });
 }
 
-inline constexpr std::uint32_t tile_threads =
-    siblings * siblings * siblings;  ///< Points per block, which makes the first three levels.
+/// Makes all levels from `level` on, by one block.
+template <class Tree>
+__device__ void put_top(const Tree& tree, std::uint32_t level, const tree_room& to) {
+  for (; level < tree.levels; ++level, __syncthreads())
+    for (std::uint32_t first = 0, size = tree.size(level - 1); first < size; first += blockDim.x)
+      put_parent(tree, level, first + threadIdx.x, to);
+}
 
-/// `number_of(i)` is the number of the point at position i, or none.
+inline constexpr std::uint32_t tile_threads =
+    siblings * siblings * siblings;                 ///< Points per block, which makes the first three levels.
+inline constexpr std::uint32_t most_below = 16384;  ///< One block makes all that is above so many nodes.
+
+/// `order.of_block(i)` is the number of the point at position i, or none. The last block makes what is above a third
+/// level of few nodes.
 template <class Source, class Tree, class Order>
 __global__ void __launch_bounds__(tile_threads)
     tile_kernel(const __grid_constant__ Source source, const __grid_constant__ Tree tree,
-                const __grid_constant__ Order number_of, const tree_room to, scan::drop_counts* dropped) {
+                const __grid_constant__ Order order, const tree_room to, scan::drop_counts* dropped) {
   static_assert(Tree::tile == siblings);
   const std::uint32_t t = threadIdx.x, i = blockIdx.x * tile_threads + t, tile = i / siblings;
   numbered_point p{{not_a_number, not_a_number, not_a_number}, ~0u};
   extent box;
   scan::drop_tally mine;
+  const std::uint32_t number = order.template of_block<tile_threads>(i);
   if (i < tree.count) {
-    if (const std::uint32_t number = number_of(i); number != none) {
+    if (number != none) {
       const sample s = source[number];
       if (Order::counts ? mine.counts(s) : s.valid()) p = {s.position, number}, box.add(s.position);
     }
@@ -140,6 +105,14 @@ __global__ void __launch_bounds__(tile_threads)
     __syncthreads();
     if (t < children || t < 32) put_parent(tree, level, t < children ? blockIdx.x * children + t : none, to);
   }
+  if (tree.levels <= 3 || tree.size(2) > most_below) return;
+  __shared__ bool last;
+  __syncthreads();
+  if (t == 0) last = scan::count_in(*to.done) == gridDim.x - 1;
+  __syncthreads();
+  if (!last) return;
+  if (t == 0) *to.done = 0;
+  put_top(tree, 3, to);
 }
 
 /// Makes one level.
@@ -148,37 +121,26 @@ __global__ void __launch_bounds__(256)
     node_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
   put_parent(tree, level, blockIdx.x * 256 + threadIdx.x, to);
 }
-/// Makes all levels from `level` on, by one block.
 template <class Tree>
 __global__ void __launch_bounds__(1024)
     top_kernel(const __grid_constant__ Tree tree, std::uint32_t level, const tree_room to) {
-  for (; level < tree.levels; ++level, __syncthreads())
-    for (std::uint32_t first = 0, size = tree.size(level - 1); first < size; first += 1024)
-      put_parent(tree, level, first + threadIdx.x, to);
+  put_top(tree, level, to);
 }
-
-/// The order of sorted points.
-struct sorted_order {
-  static constexpr bool counts = false;  ///< Invalid points were counted when points were encoded.
-  const std::uint32_t* numbers;
-
-  __device__ std::uint32_t operator()(std::uint32_t i) const { return numbers[i]; }
-};
 
 }  // namespace detail
 
-/// Sorts pairs of words: device_sort.cuh, which the questions about plans include.
-template <class Key>
-struct device_sort;
-
 /// Owns a tree that is built anew for every frame, in memory that is kept. Invalid points stay among the others as NaN,
-/// so the shape is known before they are read and nothing waits. Images become pyramids; other points are sorted.
+/// so the shape is known before they are read and nothing waits. Images become pyramids; other points go along a
+/// Z-curve.
 class device_tree {
  public:
   using view_type = tree_view<8, 8>;
 
   explicit device_tree(const device& on, std::pmr::memory_resource* memory = nullptr)
-      : on_(on), memory_(memory), grid_(1, on.id, memory) {}
+      : on_(on), memory_(memory), order_(on, memory), done_(1, on.id, memory) {
+    const device_guard guard(on_.id);
+    check_cuda(cudaMemsetAsync(done_.data(), 0, sizeof(std::uint32_t), on_.stream), "cudaMemsetAsync");
+  }
 
   /// Enqueues it. Adds invalid points to `dropped`. The device must be able to read the source as it is.
   template <point_source S>
@@ -193,18 +155,11 @@ class device_tree {
     }
     const view_type shape(static_cast<std::uint32_t>(n));
     if (n == 0) return void(view_ = shape);
-    grow(codes_, n), grow(sorted_codes_, n), grow(numbers_, n), grow(sorted_, n);
-    on_.launch(detail::grid_kernel<S>, 1, detail::grid_threads, 0, source, grid_.data());
-    on_.for_ranges(n, detail::encode_body<S>{source, grid_.data(), codes_.data(), numbers_.data(), dropped});
-    sort<S>(n);
-    put_up(source, shape, detail::sorted_order{sorted_.data()}, dropped);
+    put_up(source, shape, order_.build(source, dropped), dropped);
   }
   const view_type& view() const { return view_; }
 
  private:
-  /// A pass of the sort takes eight bits. Three passes make cells as fine as tiles.
-  static constexpr int first_bit = 3 * morton_grid::bits - 24, last_bit = 3 * morton_grid::bits;
-
   /// Makes the tiles and nodes of a tree of that shape, over points in that order.
   template <class S, class Order>
   void put_up(const S& source, const view_type& shape, const Order& order, scan::drop_counts* dropped) {
@@ -212,31 +167,15 @@ class device_tree {
     grow(points_, view_.count), grow(balls_, view_.nodes()), grow(least_, view_.nodes()), grow(boxes_, view_.nodes());
     view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(),
     view_.least = least_.data();
-    const detail::tree_room to{points_.data(), balls_.data(), least_.data(), boxes_.data()};
+    const detail::tree_room to{points_.data(), balls_.data(), least_.data(), boxes_.data(), done_.data()};
     const unsigned blocks = (view_.count - 1) / detail::tile_threads + 1;
     on_.launch(detail::tile_kernel<S, view_type, Order>, blocks, detail::tile_threads, 0, source, view_, order, to,
                dropped);
+    if (view_.levels <= 3 || view_.size(2) <= detail::most_below) return;
     std::uint32_t level = 3;
-    for (; level < view_.levels && view_.size(level - 1) > 16384; ++level)
+    for (; level < view_.levels && view_.size(level - 1) > detail::most_below; ++level)
       on_.launch(detail::node_kernel<view_type>, (view_.size(level - 1) - 1) / 256 + 1, 256, 0, view_, level, to);
     if (level < view_.levels) on_.launch(detail::top_kernel<view_type>, 1, 1024, 0, view_, level, to);
-  }
-
-  template <class S>
-  void sort(std::size_t n) {
-    using sorts = device_sort<std::enable_if_t<point_source<S>, std::uint32_t>>;
-    const device_guard guard(on_.id);
-    const auto call = [&](void* room, std::size_t& bytes) {
-      sorts::pairs(room, bytes, codes_.data(), sorted_codes_.data(), numbers_.data(), sorted_.data(), n, first_bit,
-                   last_bit, on_.stream);
-    };
-    if (n > sort_size_) {
-      std::size_t bytes = 0;
-      call(nullptr, bytes);
-      grow(sort_room_, bytes), sort_size_ = n;
-    }
-    std::size_t bytes = sort_room_.size();
-    call(sort_room_.data(), bytes);
   }
 
   template <class T>
@@ -247,13 +186,11 @@ class device_tree {
   device on_;
   std::pmr::memory_resource* memory_;
   view_type view_;
-  device_buffer<morton_grid> grid_;
-  device_buffer<std::uint32_t> codes_, sorted_codes_, numbers_, sorted_, least_;
+  device_order order_;
+  device_buffer<std::uint32_t> done_, least_;
   device_buffer<numbered_point> points_;
   device_buffer<ball> balls_;
   device_buffer<extent> boxes_;
-  device_buffer<std::byte> sort_room_;
-  std::size_t sort_size_ = 0;
 };
 
 }  // namespace clearance::cloud_tree

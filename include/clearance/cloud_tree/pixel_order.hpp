@@ -32,6 +32,11 @@ struct pixel_order {
     return x < width && y < height ? y * width + x : none;
   }
 
+  template <unsigned>
+  CLEARANCE_HD std::uint32_t of_block(std::uint32_t i) const {
+    return (*this)(i);
+  }
+
  private:
   CLEARANCE_HD static std::uint32_t every_other(std::uint32_t i) {
     i &= 0x555, i = (i | i >> 1) & 0x333, i = (i | i >> 2) & 0x70f;

@@ -50,6 +50,7 @@ struct asked_batch {
   const PartView* parts;
   const field_view* fields;
   std::uint32_t part_count, configurations;
+  std::uint32_t robots;  ///< They take turns: configuration c is one of robot c % robots, each of `part_count` parts.
   const world_transform* poses;
   frames::turn now;
   world_transform world_from_cloud;
@@ -68,11 +69,19 @@ struct asked_batch {
   scan::drop_counts* dropped;
   std::uint32_t* lost;  ///< Becomes 1 if a pose is not rigid.
 
+  CLEARANCE_HD std::uint32_t first_part(std::uint32_t c) const { return c % robots * part_count; }
+  CLEARANCE_HD const PartView* its_parts(std::uint32_t c) const { return parts + first_part(c); }
   CLEARANCE_HD frames::placement* its_places(std::uint32_t c) const { return places + std::size_t(c) * part_count; }
+  /// Where to begin with part `j % part_count`: at the last minimum of `c` and of its neighbours, for j below 3 *
+  /// part_count.
+  CLEARANCE_HD cloud_tree::numbered_point seed(std::uint32_t c, std::uint32_t j) const {
+    const std::uint32_t from = c + (j / part_count - 1) * robots;
+    return from < configurations ? seeds[from] : cloud_tree::numbered_point{{0, 0, 0}, none};
+  }
   /// Tests points against the parts of configuration `c`, one point at a time, from any source.
   CLEARANCE_HD body_type body(std::uint32_t c, memory_type* best) const {
     const std::size_t first = std::size_t(c) * part_count;
-    return {parts,
+    return {its_parts(c),
             places + first,
             part_count,
             {},

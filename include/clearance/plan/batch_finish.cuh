@@ -20,11 +20,12 @@ __global__ void __launch_bounds__(128)
   __shared__ typename steps::node_type pending[4][steps::most];
   const std::uint32_t c = (blockIdx.x * 128 + threadIdx.x) / 32, lane = threadIdx.x % 32;
   if (c >= a.configurations) return;
+  const PartView* const parts = a.its_parts(c);
   const configuration_facts& facts = a.facts[c];
   const shared_bounds bounds{a.all + c, nullptr};
   min_distance_result mine;
   const auto of_part = [&](std::uint32_t k) -> resolve_body<PartView, Source, walk_type> {
-    return {a.parts + k,  a.its_places(c) + k,           1,           source,
+    return {parts + k,    a.its_places(c) + k,           1,           source,
             facts.origin, facts.world_from_cloud,        a.now.first, a.now.cloud,
             bounds,       {{pending[threadIdx.x / 32]}}, &mine,       nullptr};
   };
@@ -39,9 +40,10 @@ __global__ void __launch_bounds__(128)
   __syncwarp();
   if (!a.now.last || lane != 0) return;
   min_distance_result r = a.results[c];
-  conclude_body<PartView>{a.parts, a.part_count, a.dropped, bounds, facts.error, facts.slop, a.seen, &r}(0);
+  conclude_body<PartView>{parts, a.part_count, a.dropped, bounds, facts.error, facts.slop, a.seen, &r}(0);
   beyond(r, a.question.d_max, facts.slop, facts.error);
   if (!facts.rigid) r.state = state::possible, r.distance = not_a_number, r.lower = 0, r.upper = infinity;
+  if (r.part != none) r.part += a.first_part(c);
   a.results[c] = r;
   a.last[c] = {r.cloud, r.point};
 }

@@ -203,9 +203,8 @@ __global__ void __launch_bounds__(256, 4)
       block.start(a.given.pieces[i]);
     } else {
       if constexpr (!question::by_margin)
-        for (std::uint32_t j = t; j < 3 * a.part_count; j += blockDim.x)  // its own last minimum and its neighbours'
-          if (const std::uint32_t from = c + j / a.part_count - 1; from < a.configurations)
-            if (const auto seed = a.seeds[from]; seed.number != none) search.visit(seed, j % a.part_count);
+        for (std::uint32_t j = t; j < 3 * a.part_count; j += blockDim.x)
+          if (const auto seed = a.seed(c, j); seed.number != none) search.visit(seed, j % a.part_count);
       block.start();
     }
     if (!block.go_on(a.rounds) && !block.leave_to(a.left, c)) block.go_on(none);

@@ -26,9 +26,10 @@ class device_batch {
  public:
   using result_type = typename Question::result_type;
 
-  /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
-  device_batch(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
+  /// With `each_part` each part is a robot of its own. Throws std::invalid_argument if a tree is too deep.
+  device_batch(const device& on, const model_view<PartView>& model, bool each_part, std::pmr::memory_resource* memory)
       : on_(on),
+        robots_(each_part ? std::max(std::uint32_t(model.size()), 1u) : 1),
         model_(model),
         facts_(model.facts.begin(), model.facts.end()),
         memory_(memory),
@@ -51,7 +52,9 @@ class device_batch {
   device_batch(const device_batch&) = delete;
 
   std::size_t parts() const { return facts_.size(); }
-  std::uint32_t size() const { return configurations_; }
+  /// How many configurations were placed, and how many results each has.
+  std::uint32_t placed() const { return configurations_ / robots_; }
+  std::uint32_t robots() const { return robots_; }
   const result_type* results() const { return results_.data(); }
 
   /// Copies results and point counts, and returns whether all poses were rigid. Waits. Without results it returns true.
@@ -82,17 +85,17 @@ class device_batch {
   }
   /// The same for poses that `fill(there)` enqueues.
   template <class Fill>
-  void place(std::uint32_t count, const Fill& fill) {
-    const std::size_t n = count * facts_.size();
+  void place(std::uint32_t configurations, const Fill& fill) {
+    const std::size_t count = configurations * robots_, n = configurations * facts_.size();
     const std::uint32_t before =
         std::exchange(configurations_, 0);  // so that poses that were not placed are never asked about
     grow(poses_, n), grow(places_, n), grow(bounds_, n);
     grow(of_all_, count), grow(all_, count), grow(results_, count);
     if constexpr (!Question::by_margin) {
       if (model_.fields != nullptr)
-        grow(pieces_, pieces_of(count, 8)), grow(pieces_again_, pieces_of(count, 2));
+        grow(pieces_, pieces_of(configurations, 8)), grow(pieces_again_, pieces_of(configurations, 2));
       else
-        grow(left_, pieces_of(count, 8)), grow(left_again_, pieces_of(count, 2));
+        grow(left_, pieces_of(configurations, 8)), grow(left_again_, pieces_of(configurations, 2));
     }
     if constexpr (Question::by_margin)
       grow(near_, n);
@@ -100,7 +103,7 @@ class device_batch {
       grow(seeds_, count), grow(last_, count);
     if (n == 0) return;
     fill(poses_.data());
-    configurations_ = count;
+    configurations_ = std::uint32_t(count);
     if (count != before) forget();
   }
 
@@ -137,8 +140,8 @@ class device_batch {
   template <class Pair>
   using pieces = device_buffer<typename batch_pieces<Pair>::piece>;
   /// After so many rounds of 128 threads a block leaves its stack to others. Where points may be inside a solid, stacks
-  /// are longer, and leaving earlier would make too many pieces.
-  static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128,
+  /// are longer, and leaving earlier would make too many pieces. With fields a part alone leaves little.
+  static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128, first_of_part = 16,
                             next_rounds = first_rounds > 128 ? 48 : 24;
   static constexpr std::size_t most_shared = 48 * 1024;  ///< Shared memory that every block may have.
   static constexpr unsigned resident_threads = 1024;     ///< Per processor, as the kernel's registers allow.
@@ -156,8 +159,9 @@ class device_batch {
   arguments told(const S& source, const frames::turn& now, const Question& question, bool foreseen) const {
     return {{model_.parts,
              model_.fields,
-             std::uint32_t(facts_.size()),
+             std::uint32_t(facts_.size()) / robots_,
              configurations_,
+             robots_,
              poses_.data(),
              now,
              frame_.world_from_cloud,
@@ -179,7 +183,8 @@ class device_batch {
   }
   template <point_source S>
   void place_in(const device& on, const S& source, const arguments& a) const {
-    on.launch(place_configurations<PartView, Question, S>, (configurations_ + 3) / 4, 128, 0, a, source);
+    const unsigned blocks = (configurations_ - 1) / (128 / placing_lanes(a.part_count)) + 1;
+    on.launch(place_configurations<PartView, Question, S>, blocks, 128, 0, a, source);
   }
   template <point_source S>
   void ask(const S& source, const tree_type& tree, const arguments& a) {
@@ -195,24 +200,27 @@ class device_batch {
       search_trees(tree, a);
   }
   void search_trees(const tree_type& tree, const arguments& a) {
-    // As many threads as the device has room for: with few configurations each gets more threads, and so do all where
-    // most end at once or a look takes long. Stacks are as deep as the remaining room: a round that may take fewer
-    // pairs needs more rounds.
-    unsigned threads = a.question.limited() || scan::has_interior<PartView> ? 256 : threads_for_all();
+    // As many threads as there is room for: more for each of few configurations, and where most end at once or a look
+    // takes long. Stacks are as deep as the remaining room: a round that may take fewer pairs needs more rounds.
+    unsigned threads = robots_ > 1                                            ? 64
+                       : a.question.limited() || scan::has_interior<PartView> ? 256
+                                                                              : threads_for_all();
+    if (robots_ > 1 && a.question.limited()) threads = 128;
     static_assert(room::bytes(32, room::least_depth(32)) <= most_shared, "a handle of a node must be smaller");
     while (room::bytes(threads, room::least_depth(threads)) > most_shared) threads /= 2;
     arguments with_stack = a;
     with_stack.depth = room::depth(threads, std::min(of_block_, of_processor_ / (resident_threads / threads) - 2048));
     search(batch_kernel<arguments, tree_type>, tree, with_stack, threads, room::bytes(threads, with_stack.depth), left_,
-           left_again_);
+           left_again_, first_rounds);
   }
   void search_by_field(const tree_type& tree, const arguments& a) {
     using by_field = batch_arguments<PartView, Question, field_pair>;
     using shared = field_room<PartView>;
-    unsigned threads = scan::has_interior<PartView> && !a.question.limited() ? 128 : 256;
+    unsigned threads = robots_ > 1 || (scan::has_interior<PartView> && !a.question.limited()) ? 128 : 256;
     while (shared::bytes(threads) > of_block_) threads /= 2;
     const by_field fields{a, {pieces_.data(), left_used_.data(), std::uint32_t(pieces_.size())}};
-    search(field_kernel<by_field, tree_type>, tree, fields, threads, shared::bytes(threads), pieces_, pieces_again_);
+    search(field_kernel<by_field, tree_type>, tree, fields, threads, shared::bytes(threads), pieces_, pieces_again_,
+           robots_ > 1 ? first_of_part : first_rounds);
   }
   unsigned threads_for_all() const {
     return std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 256u);
@@ -220,7 +228,7 @@ class device_batch {
   /// One block per configuration; the slowest leave their rest to other blocks.
   template <class Kernel, class Arguments, class Pieces>
   void search(Kernel* kernel, const tree_type& tree, Arguments a, unsigned threads, std::size_t bytes,
-              const Pieces& left, const Pieces& left_again) {
+              const Pieces& left, const Pieces& left_again, unsigned first) {
     {
       const device_guard guard(on_.id);
       limits_.raise(reinterpret_cast<const void*>(kernel), of_block_);
@@ -234,7 +242,7 @@ class device_batch {
     // The slowest of many configurations takes twenty times as long as most, and most of that may come from one pair.
     // So the rest is dealt out twice.
     a.left = {left.data(), left_used_.data(), std::uint32_t(left.size())};
-    search(configurations_, first_rounds);
+    search(configurations_, first);
     a.given = a.left;
     a.left = {left_again.data(), left_used_.data() + 1, std::uint32_t(left_again.size())};
     search(at_once, next_rounds);
@@ -260,6 +268,7 @@ class device_batch {
   }
 
   device on_;
+  std::uint32_t robots_;  ///< Of a configuration.
   model_view<PartView> model_;
   std::vector<part_facts> facts_;
   std::pmr::memory_resource* memory_;
@@ -267,7 +276,7 @@ class device_batch {
   std::size_t of_processor_ = 0, of_block_ = 0;  ///< Bytes of shared memory.
   side_stream beside_;
   raised_limits limits_;
-  std::uint32_t configurations_ = 0;
+  std::uint32_t configurations_ = 0;  ///< Of all robots.
   std::uint64_t seen_ = 0;
   std::vector<world_transform> staged_;
   std::vector<Eigen::Isometry3d> anywhere_;  ///< Poses to place clouds on the host. The part places are not used.

@@ -15,7 +15,7 @@ class engine<device, PartView, Q> : public minimum::placed_batch<PartView, typen
  public:
   /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
   engine(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
-      : placed(on, model, memory), margins_(std::max<std::size_t>(model.size(), 1), on.id, memory) {}
+      : placed(on, model, Q::each_part, memory), margins_(std::max<std::size_t>(model.size(), 1), on.id, memory) {}
 
   /// Points in host memory are copied into buffers that it keeps.
   template <class Clouds>
@@ -36,15 +36,15 @@ class engine<device, PartView, Q> : public minimum::placed_batch<PartView, typen
     placed::named([&] {
       ask(clouds, q, copies_);
       point_counts counts;
-      placed::copy_out(result_.of, &counts);
-      Q::take_counts(result_, counts);
+      placed::copy_out(Q::results(result_), &counts);
+      Q::take_counts(result_, counts, search_.parts());
     });
     return result_;
   }
-  /// Enqueues it, and returns device memory with one result per configuration, for the next work in its stream. Clouds
-  /// must be readable there. A pose that is not rigid makes the state `possible` (and the distance NaN), because a
-  /// device cannot throw. A graph that captures this keeps the current options, and is void after more configurations
-  /// are placed, or a larger cloud is asked about.
+  /// Enqueues it, and returns device memory with one result per configuration, or per part of each, for the next work
+  /// in its stream. Clouds must be readable there. A pose that is not rigid makes the state `possible` (and the
+  /// distance NaN), because a device cannot throw. A graph that captures this keeps the current options, and is void
+  /// after more configurations are placed, or a larger cloud is asked about.
   template <class Clouds>
   auto start_placed(const Clouds& clouds, const Q& q) {
     ask(clouds, q, frames::as_it_is{});

@@ -17,9 +17,11 @@ class engine {
   template <class Clouds>
   typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
     typename Q::result all;
-    all.of.resize(detail::count_configurations(model_.size(), poses.size()));
+    const std::size_t count = detail::count_configurations(model_.size(), poses.size());
+    Q::take_counts(all, {}, model_.size());
+    Q::results(all).resize(count * (Q::each_part ? model_.size() : 1));
     detail::named(model_.size(), poses, [&] {
-      for (std::size_t c = 0; c < all.of.size(); ++c)
+      for (std::size_t c = 0; c < count; ++c)
         q.ask_one(on_, model_, poses.subspan(c * model_.size(), model_.size()), clouds, all, c);
     });
     return all;
@@ -35,14 +37,15 @@ class engine {
 template <class PartView, class Q>
 class engine<host, PartView, Q> {
  public:
-  engine(const host& on, const model_view<PartView>& model) : search_(on, model) {}
+  engine(const host& on, const model_view<PartView>& model) : search_(on, model, Q::each_part) {}
 
   template <class Clouds>
   const typename Q::result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
     const auto question = q.checked(search_.parts());
-    result_.of.resize(detail::count_configurations(search_.parts(), poses.size()));
+    auto& results = Q::results(result_);
+    results.resize(detail::count_configurations(search_.parts(), poses.size()) * (Q::each_part ? search_.parts() : 1));
     detail::named(search_.parts(), poses,
-                  [&] { Q::take_counts(result_, search_(poses, clouds, question, result_.of)); });
+                  [&] { Q::take_counts(result_, search_(poses, clouds, question, results), search_.parts()); });
     return result_;
   }
   /// Throws std::invalid_argument as joint_chain::count, too.

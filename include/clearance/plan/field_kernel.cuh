@@ -89,15 +89,15 @@ __global__ void __launch_bounds__(256, 4)
     if (t == 0) best = a.all[c];
     __syncthreads();
     const body_type body = a.body(c, &best);
-    const search_type search{body, tree, a.bounds + std::size_t(c) * a.part_count, a.fields};
+    const search_type search{body, tree, a.bounds + std::size_t(c) * a.part_count, a.fields + a.first_part(c),
+                             searched_levels(tree, a.part_count, blockDim.x)};
     block_type block{search, room.stack, words, room_type::depth(blockDim.x), room.aside};
     if (a.given.pieces != nullptr) {
       block.start(a.given.pieces[i]);
     } else {
       if constexpr (!question::by_margin)
-        for (std::uint32_t j = t; j < 3 * a.part_count; j += blockDim.x)  // its own last minimum and its neighbours'
-          if (const std::uint32_t from = c + j / a.part_count - 1; from < a.configurations)
-            if (const auto seed = a.seeds[from]; seed.number != none) search.seed(seed, j % a.part_count);
+        for (std::uint32_t j = t; j < 3 * a.part_count; j += blockDim.x)
+          if (const auto seed = a.seed(c, j); seed.number != none) search.seed(seed, j % a.part_count);
       block.start();
     }
     for (std::uint32_t rounds = a.rounds;;) {

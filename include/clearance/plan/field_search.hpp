@@ -15,6 +15,15 @@ struct field_pair {
   bool whole;          ///< Points may be inside the part's solid.
 };
 
+/// How many levels of a tree a search goes through: it begins with the nodes of the last of them. Few nodes and parts
+/// would leave most of `lanes` idle. (Without fields it is no quicker.)
+template <class Tree>
+CLEARANCE_HD std::uint32_t searched_levels(const Tree& tree, std::uint32_t parts, std::uint32_t lanes) {
+  std::uint32_t levels = tree.levels;
+  while (levels > 1 && std::uint64_t(tree.size(levels - 2)) * parts <= lanes) --levels;
+  return levels;
+}
+
 /// As tree_search, for parts that have fields. Points are left for an exact search at its end: by then nearly all of
 /// them are known to be too far.
 template <class Body, class Tree>
@@ -27,13 +36,12 @@ struct field_search {
   const Tree& tree;
   const ball_bounds* bounds;  ///< One per part.
   const field_view* fields;
+  std::uint32_t levels;  ///< See searched_levels.
 
-  CLEARANCE_HD std::uint32_t starts() const {
-    return tree.levels == 0 ? 0 : tree.size(tree.levels - 1) * body.part_count;
-  }
+  CLEARANCE_HD std::uint32_t starts() const { return levels == 0 ? 0 : tree.size(levels - 1) * body.part_count; }
   CLEARANCE_HD bool start(std::uint32_t i, pair& p) const {
-    const std::uint32_t top = tree.size(tree.levels - 1);
-    p = {-infinity, i % top, i / top, std::uint8_t(tree.levels), solid};
+    const std::uint32_t top = tree.size(levels - 1);
+    p = {-infinity, i % top, i / top, std::uint8_t(levels), solid};
     return look(p);
   }
   CLEARANCE_HD std::uint32_t children(const pair& p) const {

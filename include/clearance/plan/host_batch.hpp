@@ -18,13 +18,17 @@ namespace clearance::minimum {
 template <class PartView, class Question>
 class host_batch {
  public:
-  host_batch(const host& on, const model_view<PartView>& model)
-      : workers_(on), model_(model), walk_{stack_need(model.depth, model.width)} {}
+  /// With `each_part` each part of a configuration is a robot of its own.
+  host_batch(const host& on, const model_view<PartView>& model, bool each_part)
+      : workers_(on),
+        model_(model),
+        robots_(each_part ? std::max<std::size_t>(model.size(), 1) : 1),
+        walk_{stack_need(model.depth, model.width)} {}
 
   using result_type = typename Question::result_type;
 
-  /// `poses` are rigid, one configuration after another; there is one result per configuration. Returns the point
-  /// counts.
+  /// `poses` are rigid, one configuration after another; there is one result per configuration and robot. Returns the
+  /// point counts.
   template <class Clouds>
   point_counts operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Question& question,
                           std::span<result_type> results) {
@@ -38,12 +42,17 @@ class host_batch {
                                     trees_[now.cloud].build(workers_, source, dropped_);
                                   });
     if (last_.size() != count) last_.assign(count, {});
-    rooms_.resize((count + neighbours - 1) / neighbours);
-    workers_.for_pieces(count, neighbours, [&](std::size_t begin, std::size_t end) {
+    const std::size_t piece = neighbours * robots_, each = parts / robots_;
+    rooms_.resize((count + piece - 1) / piece);
+    workers_.for_pieces(count, piece, [&](std::size_t begin, std::size_t end) {
       for (std::size_t c = begin; c < end; ++c) {
-        const place starts[] = {last_[c], c > begin ? last_[c - 1] : place{}};
-        ask(poses.subspan(c * parts, parts), clouds, question, starts, rooms_[begin / neighbours], results[c]);
-        if constexpr (!Question::by_margin) last_[c] = {results[c].cloud, results[c].point};
+        const place starts[] = {last_[c], c >= begin + robots_ ? last_[c - robots_] : place{}};
+        ask(robots_ == 1 ? model_ : model_.part(c % robots_), poses.subspan(c * each, each), clouds, question, starts,
+            rooms_[begin / piece], results[c]);
+        if constexpr (!Question::by_margin) {
+          last_[c] = {results[c].cloud, results[c].point};
+          if (results[c].part != none) results[c].part += std::uint32_t(c % robots_);
+        }
       }
     });
     point_counts counts;
@@ -69,29 +78,29 @@ class host_batch {
   };
 
   template <class Clouds>
-  void ask(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Question& question,
-           std::span<const place> starts, room& own, result_type& result) const {
-    const auto parts = std::uint32_t(model_.size());
+  void ask(const model_view<PartView>& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+           const Question& question, std::span<const place> starts, room& own, result_type& result) const {
+    const auto parts = std::uint32_t(robot.size());
     typename Question::memory_type all = question.start();
     result = {};
     frames::float_error before;  // margins need the errors of all clouds
     if (Question::by_margin && trees_.size() > 1) {
-      frames::for_each_turn(own.frame, model_.facts, poses, clouds, [](const auto&, const frames::turn&) {});
+      frames::for_each_turn(own.frame, robot.facts, poses, clouds, [](const auto&, const frames::turn&) {});
       before = own.frame.error;
     }
     frames::for_each_turn(
-        own.frame, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
+        own.frame, robot.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
           const auto& places = own.frame.places;
           if constexpr (Question::by_margin) {
             before.widen(own.frame.error);
             own.near.clear();
-            for (std::uint32_t k = 0; k < parts; ++k) own.near.push_back(question.near(k, model_.facts[k], before));
+            for (std::uint32_t k = 0; k < parts; ++k) own.near.push_back(question.near(k, robot.facts[k], before));
           }
           const auto answer = question.answer(&all, own.near.data());
           const scan::scan_body<PartView, S, any_depth, typename Question::answer_type> body{
-              model_.parts, places.data(), parts, source, own.frame.origin, now.first, nullptr, answer, walk_};
+              robot.parts, places.data(), parts, source, own.frame.origin, now.first, nullptr, answer, walk_};
           own.bounds.clear();
-          for (std::uint32_t k = 0; k < parts; ++k) own.bounds.emplace_back(model_.facts[k], places[k].part_from_cloud);
+          for (std::uint32_t k = 0; k < parts; ++k) own.bounds.emplace_back(robot.facts[k], places[k].part_from_cloud);
           const auto& tree = trees_[now.cloud].view();
           using body_type = std::remove_const_t<decltype(body)>;
           using tree_type = cloud_tree::host_tree::view_type;
@@ -102,21 +111,22 @@ class host_batch {
                   for (std::uint32_t k = 0; k < parts; ++k) search.seed({s.position, p.point}, k);
             with_vectors([&] { walk_trees(search, pending); });
           };
-          if (model_.fields != nullptr)
-            walk(field_search<body_type, tree_type>{body, tree, own.bounds.data(), model_.fields}, own.by_field);
+          if (robot.fields != nullptr)
+            walk(field_search<body_type, tree_type>{body, tree, own.bounds.data(), robot.fields, tree.levels},
+                 own.by_field);
           else
             walk(tree_search<body_type, tree_type>{body, tree, own.bounds.data()}, own.pending);
           if constexpr (!Question::by_margin)
             resolve_body<PartView, S, any_depth>{
-                model_.parts, places.data(), parts,  source, own.frame.origin, own.frame.world_from_cloud,
-                now.first,    now.cloud,     answer, walk_,  &result,          nullptr}(parts);
+                robot.parts, places.data(), parts,  source, own.frame.origin, own.frame.world_from_cloud,
+                now.first,   now.cloud,     answer, walk_,  &result,          nullptr}(parts);
         });
     if constexpr (Question::by_margin) {
       point_counts counts;
       scan::count(counts, dropped_.dropped, seen_);
       result = question.told(all, counts.valid, counts.dropped[int(drop_reason::too_close)] != 0);
     } else {
-      conclude_body<PartView>{model_.parts,    parts,          &dropped_, {&all, nullptr},
+      conclude_body<PartView>{robot.parts,     parts,          &dropped_, {&all, nullptr},
                               own.frame.error, own.frame.slop, seen_,     &result}(0);
       if (parts != 0) beyond(result, question.d_max, own.frame.slop, own.frame.error);
     }
@@ -124,6 +134,7 @@ class host_batch {
 
   host_workers workers_;
   model_view<PartView> model_;
+  std::size_t robots_;
   any_depth walk_;
   scan::drop_counts dropped_;
   std::uint64_t seen_ = 0;

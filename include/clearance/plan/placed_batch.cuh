@@ -44,16 +44,20 @@ class placed_batch {
   }
 
  protected:
-  placed_batch(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory)
-      : on_(on), memory_(memory), search_(on, model, memory), copies_(on, memory), there_(0, on.id, memory) {}
+  placed_batch(const device& on, const model_view<PartView>& model, bool each_part, std::pmr::memory_resource* memory)
+      : on_(on),
+        memory_(memory),
+        search_(on, model, each_part, memory),
+        copies_(on, memory),
+        there_(0, on.id, memory) {}
 
   /// Throws std::logic_error if the last configurations could not be placed.
   void check_placed() const {
-    if (search_.size() != asked_) throw std::logic_error("clearance: the last configurations could not be placed");
+    if (search_.placed() != asked_) throw std::logic_error("clearance: the last configurations could not be placed");
   }
   /// Waits, and copies the results to `to`. Throws std::invalid_argument if a pose is not rigid.
   void copy_out(std::vector<typename Question::result_type>& to, point_counts* counts = nullptr) const {
-    to.resize(search_.size());
+    to.resize(std::size_t(search_.placed()) * search_.robots());
     if (search_.copy_out(to, counts)) return;
     throw std::invalid_argument(
         poses_.empty()

@@ -6,7 +6,7 @@
 #include <clearance/questions/in_collision.hpp>
 
 #if defined(__CUDACC__)
-#include <clearance/cloud_tree/device_sort.cuh>  // for a tree over points on a device
+#include <clearance/cloud_tree/device_sums.cuh>  // for a tree over points on a device
 #include <clearance/plan/device_engine.cuh>
 #endif
 
@@ -44,6 +44,7 @@ struct in_collisions {
 
   using result = in_collisions_result;
   using searched = minimum::margin_question;
+  static constexpr bool each_part = false;
   template <class On, class PartView>
   using engine = plan::engine<On, PartView, in_collisions>;
 
@@ -51,7 +52,8 @@ struct in_collisions {
     frames::check_margins(margins, parts);
     return {margins.data(), std::uint32_t(margins.size())};
   }
-  static void take_counts(result& all, const point_counts& counts) { all.counts = counts; }
+  static std::vector<state>& results(result& all) { return all.of; }
+  static void take_counts(result& all, const point_counts& counts, std::size_t) { all.counts = counts; }
 
   static void merge(result& all, const result& other) {
     all.counts.add(other.counts);

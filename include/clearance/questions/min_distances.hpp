@@ -8,7 +8,7 @@
 #include <clearance/questions/min_distance.hpp>
 
 #if defined(__CUDACC__)
-#include <clearance/cloud_tree/device_sort.cuh>  // for a tree over points on a device
+#include <clearance/cloud_tree/device_sums.cuh>  // for a tree over points on a device
 #include <clearance/plan/device_engine.cuh>
 #endif
 
@@ -92,6 +92,7 @@ struct min_distances {
 
   using result = min_distances_result;
   using searched = minimum::least_question;
+  static constexpr bool each_part = false;  ///< One result per configuration.
   template <class On, class PartView>
   using engine = plan::engine<On, PartView, min_distances>;
   template <class PartView>
@@ -99,7 +100,7 @@ struct min_distances {
 
   searched checked(std::size_t) const { return {frames::largest_within(d_max)}; }
   static std::vector<min_distance_result>& results(result& all) { return all.of; }
-  static void take_counts(result&, const point_counts&) {}
+  static void take_counts(result&, const point_counts&, std::size_t) {}
   static void so_far(result& all, std::uint64_t unseen) {
     for (min_distance_result& r : all.of) minimum::allow_for_unseen(r, unseen);
   }

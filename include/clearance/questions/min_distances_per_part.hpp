@@ -4,8 +4,6 @@
 
 #include <clearance/questions/min_distances.hpp>
 
-#include <deque>
-
 namespace clearance {
 
 /// The result of min_distance for each part alone, as min_distances gives it. of(c) are those of configuration c, one
@@ -18,64 +16,37 @@ struct min_distances_per_part_result {
   std::span<const min_distance_result> of(std::size_t c) const { return std::span(all).subspan(c * parts, parts); }
 };
 
-/// The least distance of each part of each configuration, otherwise as min_distances. Each part is asked about as its
-/// own robot, with its own memory and structure over the clouds: a frame costs as much as min_distances for each part.
+/// The least distance of each part of each configuration, otherwise as min_distances. Each part has its own bound, as a
+/// robot of that part alone; all share one structure over the clouds.
 struct min_distances_per_part {
   double d_max = infinity;  ///< Metres, as for min_distances.
 
   using result = min_distances_per_part_result;
+  using searched = minimum::least_question;
+  static constexpr bool each_part = true;
   template <class On, class PartView>
-  class engine;
+  using engine = plan::engine<On, PartView, min_distances_per_part>;
   template <class PartView>
   using joined = plan::joined_minima<min_distances_per_part, PartView>;
 
+  searched checked(std::size_t parts) const { return min_distances{d_max}.checked(parts); }
   static std::vector<min_distance_result>& results(result& r) { return r.all; }
+  static void take_counts(result& r, const point_counts&, std::size_t parts) { r.parts = parts; }
   static void so_far(result& r, std::uint64_t unseen) {
     for (min_distance_result& its : r.all) minimum::allow_for_unseen(its, unseen);
   }
-};
 
-template <class On, class PartView>
-class min_distances_per_part::engine {
- public:
-  template <class... Memory>
-  engine(const On& on, const model_view<PartView>& model, Memory... from)
-      : readable_(on, from...), parts_(model.size()) {
-    for (std::size_t k = 0; k < parts_; ++k) each_.emplace_back(on, model.part(k), from...);
+  template <class On, class PartView, class Clouds>
+  void ask_one(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
+               const Clouds& clouds, result& all, std::size_t c) const {
+    min_distances::result one;
+    one.of.resize(1);
+    for (std::size_t k = 0; k < model.size(); ++k) {
+      min_distances{d_max}.ask_one(on, model.part(k), poses.subspan(k, 1), clouds, one, 0);
+      min_distance_result& its = all.all[c * model.size() + k] = one.of[0];
+      if (its.part != none) its.part = std::uint32_t(k);
+    }
   }
-
-  /// The result stays valid until the next call. Points that a device cannot read are copied once for all parts.
-  template <class Clouds>
-  const result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const min_distances_per_part& q) {
-    const std::size_t count = detail::count_configurations(parts_, poses.size());
-    result_.parts = parts_;
-    result_.all.resize(count * parts_);
-    own_.resize(count);
-    detail::named(parts_, poses, [&] {
-      const auto& there = readable_(clouds);
-      for (std::size_t k = 0; k < parts_; ++k) {
-        for (std::size_t c = 0; c < count; ++c) own_[c] = poses[c * parts_ + k];
-        const auto& found = each_[k].run(own_, there, {q.d_max}).of;
-        for (std::size_t c = 0; c < count; ++c) {
-          auto& its = result_.all[c * parts_ + k] = found[c];
-          if (its.part != none) its.part = std::uint32_t(k);
-        }
-      }
-    });
-    return result_;
-  }
-
-  /// Forgets the last frame. The next one starts cold; its answer is the same.
-  void forget() {
-    for (auto& its : each_) its.forget();
-  }
-
- private:
-  frames::readable_clouds<On> readable_;
-  std::size_t parts_;
-  std::deque<plan::engine<On, PartView, min_distances>> each_;
-  std::vector<Eigen::Isometry3d> own_;
-  min_distances_per_part_result result_;
 };
 
 }  // namespace clearance
