@@ -4,7 +4,10 @@
 
 #include <clearance/points/depth_image.hpp>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace clearance {
@@ -36,6 +39,26 @@ struct pinhole_view {
     const double least = std::min({inward(x, left, -1), inward(x, right, 1), inward(y, top, -1), inward(y, bottom, 1),
                                    z - nearest, farthest - z});
     return least - b.radius - 1e-6 * (std::fabs(x) + std::fabs(y) + std::fabs(z));
+  }
+
+  /// Which of 64 places in a ball it shows, one bit each. `center` and `radius` in a part's frame, metres.
+  std::uint64_t shows_of_ball(vec3 center, double radius, const Eigen::Isometry3d& camera_from_part) const {
+    static const auto places = [] {  // equal shares of the volume, turned by the golden angle
+      std::array<Eigen::Vector3d, 64> all;
+      for (int i = 0; i < 64; ++i) {
+        const double away = std::cbrt((i * 37 % 64 + 0.5) / 64), up = 1 - (2 * i + 1) / 64.0,
+                     turn = 2.399963229728653 * i, beside = std::sqrt(1 - up * up);
+        all[std::size_t(i)] = away * Eigen::Vector3d(beside * std::cos(turn), beside * std::sin(turn), up);
+      }
+      return all;
+    }();
+    std::uint64_t bits = 0;
+    for (int i = 0; i < 64; ++i) {
+      const Eigen::Vector3d at =
+          camera_from_part * (Eigen::Vector3d(center.x, center.y, center.z) + radius * places[std::size_t(i)]);
+      bits |= std::uint64_t(shows(at.x(), at.y(), at.z())) << i;
+    }
+    return bits;
   }
 };
 

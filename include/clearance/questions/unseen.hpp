@@ -198,7 +198,7 @@ class unseen::engine {
         double& edge = c.from_edge.back() = view.from_edge({middle, around.radius}) - frames::slop(model_.facts[k]);
         if constexpr (vague_source<Given>)  // the view may be turned and shifted
           edge = (edge - given.shift - given.turn * (double(length(middle)) + around.radius)) / (1 + given.turn);
-        c.shown.back() = shown(view, model_.facts[k], pose.inverse() * poses[k]);
+        c.shown.back() = view.shows_of_ball(model_.facts[k].center, model_.facts[k].radius, pose.inverse() * poses[k]);
       }
     }
     if (labels != nullptr) {
@@ -217,27 +217,6 @@ class unseen::engine {
                                       const Eigen::Isometry3d& pose) {
     while (searches_.size() <= slot) searches_.emplace_back(on_, model_);
     return searches_[slot].run(poses, placed<S>{room, pose}, asks{});
-  }
-
-  /// Which of 64 places in the ball around a part a camera shows, one bit each.
-  static std::uint64_t shown(const pinhole_view& view, const part_facts& facts,
-                             const Eigen::Isometry3d& camera_from_part) {
-    static const auto places = [] {  // equal shares of the volume, turned by the golden angle
-      std::array<Eigen::Vector3d, 64> all;
-      for (int i = 0; i < 64; ++i) {
-        const double away = std::cbrt((i * 37 % 64 + 0.5) / 64), up = 1 - (2 * i + 1) / 64.0,
-                     turn = 2.399963229728653 * i, beside = std::sqrt(1 - up * up);
-        all[std::size_t(i)] = away * Eigen::Vector3d(beside * std::cos(turn), beside * std::sin(turn), up);
-      }
-      return all;
-    }();
-    const Eigen::Vector3d center(facts.center.x, facts.center.y, facts.center.z);
-    std::uint64_t bits = 0;
-    for (int i = 0; i < 64; ++i) {
-      const Eigen::Vector3d there = camera_from_part * (center + double(facts.radius) * places[std::size_t(i)]);
-      bits |= std::uint64_t(view.shows(there.x(), there.y(), there.z())) << i;
-    }
-    return bits;
   }
 
   /// A place is unseen only if no camera sees it. So what camera j hides near a part is also hidden by every other
