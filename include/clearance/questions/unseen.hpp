@@ -111,7 +111,8 @@ class unseen::engine {
 
  private:
   using asks = min_distance_per_part;
-  using there = std::conditional_t<requires { typename On::own_scan; }, plain<On, near_first>, On>;
+  static constexpr bool has_kernels = requires { typename On::own_scan; };  // nvcc cannot mangle it in a type
+  using there = std::conditional_t<has_kernels, plain<On, near_first>, On>;
   using search = minimum::engine<there, PartView, asks>;
 
   /// What one camera says about each part.
