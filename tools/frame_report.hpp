@@ -12,10 +12,10 @@ struct frame_report {
   const observation* cloud = nullptr;  // of the witness, whose number follows; null: no valid point
   std::uint32_t point = 0;
   const std::vector<body>* bodies = nullptr;
-  double upload = 0, query = 0;         // seconds
-  std::optional<unseen_report> unseen;  // for --unseen
-  double unseen_query = 0;              // seconds
-  const plan_report* plan = nullptr;    // for --plan
+  double upload = 0, query = 0;              // seconds
+  std::optional<unseen_report> unseen = {};  // for --unseen
+  double unseen_query = 0;                   // seconds
+  const plan_report* plan = nullptr;         // for --plan
 };
 
 /// One JSON object on one line.
