@@ -27,7 +27,8 @@ bool blank(std::string_view text) { return text.find_first_not_of(" \t\r\n\v\f")
 
 /// The words of the command line as CLI11 needs them. CLI11 would drop an empty value, take the next option for the
 /// value of "--cache=", and take "-.5" for an option. So every option with a value becomes one word, "--option=value",
-/// and must have a value. A flag must not: CLI11 would take "--flag=false", or a number, as a count.
+/// and must have a value, unless it may stand alone. A flag must not: CLI11 would take "--flag=false", or a number, as
+/// a count.
 std::vector<std::string> checked_words(int argc, char** argv, const CLI::App& app) {
   std::vector<std::string> words;
   const CLI::App* sub = nullptr;
@@ -43,8 +44,10 @@ std::vector<std::string> checked_words(int argc, char** argv, const CLI::App& ap
     if (option && option->get_expected_max() > 0) {
       if (name.size() == word.size() && i + 1 < argc) {
         const std::string_view next = argv[i + 1];
-        if (next.starts_with("--")) throw usage_error(name, "has no value, but the next word is " + std::string(next));
-        (word += '=') += argv[++i];
+        const bool given = !next.starts_with("--");
+        if (!given && option->get_expected_min() > 0)
+          throw usage_error(name, "has no value, but the next word is " + std::string(next));
+        if (given) (word += '=') += argv[++i];
       }
       if (name.size() < word.size() && blank(std::string_view(word).substr(name.size() + 1)))
         throw usage_error(name, "has an empty value (is a variable of the shell not set?)");

@@ -109,7 +109,7 @@ TEST_CASE("--unseen needs depth images, a range, and no question that it cannot 
   refuses("query" + q.robot + " --unseen --cloud " + cloud.path,
           cloud.path + " is a point cloud, which does not say what was hidden");
   refuses(q.ask(image) + " --unseen --cloud " + cloud.path, "is a point cloud");
-  refuses(q.ask(image) + " --unseen 3", "'3' is not of the form NEAR:FAR, such as 0.1:10");
+  refuses(q.ask(image) + " --unseen 3", "is not of the form NEAR:FAR, such as 0.1:10");
   for (const char* range : {"0:1", "2:1", "1:1", "-1:2", "1:1e7", "1e-60:1"})
     refuses(q.ask(image) + " --unseen=" + range, "needs 0 < NEAR < FAR <= 1e6");
   for (const char* range : {"nan:1", "1:", ":1", "1:2:3", "1:inf"})
