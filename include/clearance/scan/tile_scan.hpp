@@ -97,7 +97,8 @@ bool survey(const S& source, std::size_t begin, extent& box, drop_tally& mine) {
   return false;
 }
 
-/// The same for a source whose points stand for capsules.
+/// The same for a source whose points stand for capsules. One that knows a tile's largest radius (`uncertain`) is first
+/// asked for that.
 template <class Body>
 void scan_capsules(const Body& body, std::size_t begin, std::size_t end, drop_tally& mine) {
   constexpr vec3 nowhere{not_a_number, not_a_number, not_a_number};
