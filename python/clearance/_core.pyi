@@ -874,14 +874,15 @@ class UnseenResult:
 
 class Unseen:
     """
-    How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or masked ones. Refused: depths that are no range, a ray image without half_pixel, and not one label per pixel.
+    How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or masked ones, or uncertain ones of those: then hidden is what may be hidden, so that the state is not unknown but possible. Refused: depths that are no range, a ray image without half_pixel, and not one label per pixel.
     """
 
-    def __init__(self, room: Hiding = Hiding(nearest=0.10000000149011612, farthest=10.0, infinite_is_free=False), half_pixel: float = 0.0, labels: ArrayLike = ()) -> None:
+    def __init__(self, room: Hiding = Hiding(nearest=0.10000000149011612, farthest=10.0, infinite_is_free=False), half_pixel: float = 0.0, labels: ArrayLike = (), places: bool = False) -> None:
         """
         room: Where hidden room begins and ends.
         half_pixel: For ray images: half_pixel_of their table.
         labels: Of all pixels of all clouds, as self_filter gives them, or none.
+        places: Also where every part is nearest: at, nearest and normal, as the robot always has.
         """
 
     @property
@@ -895,6 +896,12 @@ class Unseen:
     @property
     def labels(self) -> NDArray[numpy.uint8]:
         """Of all pixels of all clouds, as self_filter gives them, or none."""
+
+    @property
+    def places(self) -> bool:
+        """
+        Also where every part is nearest: at, nearest and normal, as the robot always has.
+        """
 
     def __repr__(self) -> str: ...
 

@@ -26,7 +26,8 @@ def options():
              "MinDistanceSupported": {"min_points": 4, "radius": 0.5, "most": 100}, "NearestK": {"k": 3, "d_max": 2.0},
              "SelfFilter": {"padding": 0.03}, "MinDistances": {"d_max": 1.5}, "MinDistancesPerPart": {"d_max": 1.5},
              "DistancesPerPart": {"d_max": 0.5},
-             "Unseen": {"room": clearance.Hiding(0.25, 5.0, True), "half_pixel": 0.01, "labels": np.array([0, 1], "u1")}}
+             "Unseen": {"room": clearance.Hiding(0.25, 5.0, True), "half_pixel": 0.01, "labels": np.array([0, 1], "u1"),
+                        "places": True}}
     minima = np.zeros(2, [("distance", "<f4"), ("cloud", "<u4"), ("point", "<u4"), ("primitive", "<u4")])
     given["PartWitnesses"] = {"minima": minima}
     return {name: given.get(name, {}) for name in questions()}
