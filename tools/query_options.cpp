@@ -369,15 +369,13 @@ void read_questions(const raw_options& raw, query_options& o) {
 std::uint64_t bytes_each(const query_options& o) {
   std::uint64_t bytes = 16;
   for (const bool asked : {!o.zones.empty(), o.nearest != 0, o.support.has_value(), o.self_filter.has_value(),
-                           o.certain.has_value(), o.model == model_kind::triangles})
-    o.unseen.has_value(), o.model == model_kind::triangles
-})
+                           o.certain.has_value(), o.unseen.has_value(), o.model == model_kind::triangles})
     if (asked) bytes += 16;
-if (!o.distances.empty()) bytes += 64;                                    // the result, and a record of the file
-if (!o.scene.empty()) bytes += 128;                                       // several copies of position and colour
-if (!o.configurations.empty() || !o.recording.plan.empty()) bytes += 80;  // a tree
-if (o.recording.merge) bytes += 64;
-return bytes;
+  if (!o.distances.empty()) bytes += 64;                                    // the result, and a record of the file
+  if (!o.scene.empty()) bytes += 128;                                       // several copies of position and colour
+  if (!o.configurations.empty() || !o.recording.plan.empty()) bytes += 80;  // a tree
+  if (o.recording.merge) bytes += 64;
+  return bytes;
 }
 
 query_options read(const CLI::App& app, const raw_options& raw) {
