@@ -162,7 +162,8 @@ class unseen::engine {
         const vec3 middle = around.center + frame.origin;
         double& edge = c.from_edge.back() = view.from_edge({middle, around.radius}) - frames::slop(model_.facts[k]);
         if constexpr (requires { image.turn; })  // the view may be turned and shifted
-          edge = (edge - image.shift - image.turn * (double(length(middle)) + around.radius)) / (1 + image.turn);
+          edge = fma(-double(image.turn), double(length(middle)) + around.radius, edge - image.shift) /
+                 (1 + double(image.turn));
         c.shown.back() = shown(view, model_.facts[k], pose.inverse() * poses[k]);
       }
     }
