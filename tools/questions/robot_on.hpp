@@ -51,6 +51,7 @@ class robot_on_backend final : public backend_robot {
     copies_.clear();
     clouds_.clear();
     uncertain_.clear();
+    any_uncertain_ = false;
     const clearance::frames::readable_on<Backend> readable{on_, copies_};
     for (const seen_points& cloud : clouds)
       std::visit(
@@ -58,6 +59,9 @@ class robot_on_backend final : public backend_robot {
             const auto here = readable(source, std::uint32_t(clouds_.size()));
             clouds_.push_back(clearance::placed{here, cloud.pose});
             uncertain_.push_back(clearance::placed{clearance::uncertain(here, cloud.sensor, cloud.off), cloud.pose});
+            const clearance::cloud_uncertainty& off = cloud.off;
+            any_uncertain_ = any_uncertain_ || cloud.sensor.kind != clearance::noise_kind::none || off.shift > 0 ||
+                             off.turn > 0 || off.max_speed * off.age > 0;
           },
           cloud.points);
     on_.wait();
@@ -122,5 +126,6 @@ class robot_on_backend final : public backend_robot {
   std::unique_ptr<prepared_plan> planned_;
   std::vector<placed_points> clouds_;
   std::vector<uncertain_points> uncertain_;  // the same clouds
+  bool any_uncertain_ = false;
   clearance::frames::cloud_copies<Backend> copies_;
 };

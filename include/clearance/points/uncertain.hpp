@@ -55,7 +55,7 @@ struct uncertain {
         shift(rounded_up(of.shift)),
         turn(rounded_up(of.turn)),
         drift(rounded_up(of.max_speed * of.age)),
-        spread(rounded_up(1 + 0x1p-19 + 1.5 * rounding_of(source).relative)) {
+        spread(rounded_up(clearance::fma(1.5, rounding_of(source).relative, 1 + 0x1p-19))) {
     detail::check_uncertain(of.shift, "a sensor's shift"), detail::check_uncertain(of.turn, "a sensor's turn");
     detail::check_uncertain(of.max_speed, "the obstacles' greatest speed");
     detail::check_uncertain(of.age, "a cloud's age"), detail::check_uncertain(drift, "speed times age");

@@ -197,7 +197,8 @@ class unseen::engine {
         const vec3 middle = around.center + frame.origin;
         double& edge = c.from_edge.back() = view.from_edge({middle, around.radius}) - frames::slop(model_.facts[k]);
         if constexpr (vague_source<Given>)  // the view may be turned and shifted
-          edge = (edge - given.shift - given.turn * (double(length(middle)) + around.radius)) / (1 + given.turn);
+          edge = fma(-double(given.turn), double(length(middle)) + around.radius, edge - given.shift) /
+                 (1 + double(given.turn));
         c.shown.back() = view.shows_of_ball(model_.facts[k].center, model_.facts[k].radius, pose.inverse() * poses[k]);
       }
     }
