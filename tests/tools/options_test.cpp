@@ -61,6 +61,8 @@ TEST_CASE(
       ++with_value;
       for (const std::string& without :
            {name + " ''", name + "=", name + "=' '", name + " '\t'", name + " --json", name}) {
+        const bool left_out = without == name || without.ends_with(" --json");
+        if (name == "--unseen" && left_out) continue;  // whose value may be left out
         const std::string line = subcommand + ' ' + rest + ' ' + without;
         const outcome o = run_command(line);
         INFO(line << " said: " << o.err);
