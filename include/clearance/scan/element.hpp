@@ -4,6 +4,9 @@
 
 #include <clearance/concepts/capsule.hpp>
 
+#include <cstddef>
+#include <cstring>
+
 namespace clearance::scan {
 
 /// `p` is s[i].position.
@@ -32,17 +35,27 @@ struct as_points {
   CLEARANCE_HD vec3 operator()(std::uint32_t, vec3 p) const { return p; }
   CLEARANCE_HD vec3 less(std::uint32_t, vec3 x, vec3) const { return x; }
 };
+/// A copy of the source, as bytes: arguments of a kernel are made before they are filled, and a source may have no
+/// empty state.
 template <capsule_source S>
-struct as_capsules {
+class as_capsules {
+ public:
   using element = capsule;
-  S source;
-  CLEARANCE_HD capsule operator()(std::uint32_t i, vec3 p) const { return source.around(i, p); }
-  CLEARANCE_HD capsule less(std::uint32_t i, vec3 x, vec3 origin) const { return element_less(source, i, x, origin); }
+
+  as_capsules() = default;
+  explicit as_capsules(const S& source) { std::memcpy(bytes_, &source, sizeof source); }
+  CLEARANCE_HD capsule operator()(std::uint32_t i, vec3 p) const { return source().around(i, p); }
+  CLEARANCE_HD capsule less(std::uint32_t i, vec3 x, vec3 origin) const { return element_less(source(), i, x, origin); }
+
+ private:
+  CLEARANCE_HD const S& source() const { return *reinterpret_cast<const S*>(bytes_); }
+
+  alignas(S) std::byte bytes_[sizeof(S)];
 };
 template <point_source S>
 auto elements_of(const S& source) {
   if constexpr (capsule_source<S>)
-    return as_capsules<S>{source};
+    return as_capsules<S>(source);
   else
     return as_points{};
 }
