@@ -64,8 +64,10 @@ __device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clust
   for (int j = 0; j < quad; ++j) {
     if constexpr (points)
       square[j] = -dot(p.at[j], p.at[j]);
-    else
+    else if ((p.reasons >> 8 * j & 0xff) == 0)  // there may be no such point
       all[j] = frames::capsule_test(pairs::element_at(first() + j, p.at[j]));
+    else
+      all[j] = frames::capsule_test({{not_a_number, 0, 0}, {0, 0, 0}, 0});
   }
   const auto passes = [&](const frames::root_test& test, int j) {
     if constexpr (points)

@@ -27,6 +27,10 @@ struct pair_elements : tree_steps<Tally> {
                                  const capsule& all) {
     return Tally::settled(s, part, point) || (all.radius == 0 && Tally::touched(s, part, point));
   }
+  /// May a point inside settle its part? Not a capsule's: what has touched before is passed over, in any order.
+  static __device__ bool is_certain(const typename Tally::block& s) {
+    return std::is_same_v<element, vec3> && Tally::wants_certain(s);
+  }
   static __device__ bool near_part(const typename Tally::block& s, std::uint32_t part, vec3 x) {
     return s.near_part[part].passes(x);
   }

@@ -73,7 +73,7 @@ struct pair_search : pair_elements<Tally> {
       const auto& view = frame::view(k);
       if (!view.interior.inside(start_of(e))) return false;
       Tally::take_inside(s, k, point, pair);
-      if (Tally::wants_certain(s) && certainly_inside(view, start_of(e), frame::place(k).error, walk_alone<Tally>{}))
+      if (pair_search::is_certain(s) && certainly_inside(view, start_of(e), frame::place(k).error, walk_alone<Tally>{}))
         Tally::take_certain(s);
       return true;
     }

@@ -57,7 +57,8 @@ struct scan_body {
       if constexpr (capsule_source<Source> && requires { answer.touched(index, k); })
         if (p.radius == 0 && answer.touched(index, k)) return;
       if (const vec3 start = start_of(q); part.interior.inside(start)) {
-        if (answer.take_inside(index, k) && certainly_inside(part, start, place.error, walk)) answer.take_certain();
+        if (answer.take_inside(index, k) && !capsule_source<Source> && certainly_inside(part, start, place.error, walk))
+          answer.take_certain();  // not of a capsule: what touched before is passed over, in any order
         return;
       }
     }
