@@ -66,17 +66,22 @@ struct uncertain {
   CLEARANCE_HD sample operator[](std::size_t i) const {
     sample s = source[i];
     if (!s.valid()) return s;
-    if (!shares(i, s.position).bounded()) s.dropped = drop_reason::too_close;
+    if (!(radius(i, s.position) < 1e6f)) s.dropped = drop_reason::too_close;
     return s;
   }
+  /// Of point i at p; NaN or 1e6 m and more if it may be anywhere. It is no sum of products, which compilers may fuse.
+  CLEARANCE_HD real radius(std::size_t i, vec3 p) const {
+    const vec3 seen = p - sensor_of(source);
+    const real turned = capsule_source<S> ? 0 : length(seen), its = noise(i, seen);
+    return its >= 0 ? fma(its, spread, fma(fma(turn, turned, shift), spread, product(drift, spread))) : not_a_number;
+  }
   CLEARANCE_HD capsule around(std::size_t i, vec3 p) const {
-    const real radius = shares(i, p).sum();
     if constexpr (capsule_source<S>) {
       capsule c = source.around(i, p);
-      c.radius = c.radius + radius;
+      c.radius = c.radius + radius(i, p);
       return c;
     } else {
-      return {p, {0, 0, 0}, radius};
+      return {p, {0, 0, 0}, radius(i, p)};
     }
   }
   /// Point i is at p. What a turn adds along a capsule is in `rounding`.

@@ -7,6 +7,7 @@
 #include <clearance/points/extremes.hpp>
 #include <clearance/scan/drops.hpp>
 #include <clearance/scan/element.hpp>
+#include <clearance/scan/tile.hpp>
 
 #include <algorithm>
 
@@ -110,7 +111,6 @@ class capsule_tile {
 /// reach of some part. `survivors`: those of a tile.
 template <class Survivors, class Body>
 void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const extent& near, drop_tally& mine) {
-  constexpr vec3 nowhere{not_a_number, not_a_number, not_a_number};
   for (std::size_t i = begin; i < end; i += capsule_tile::points) {
     capsule_hull hull;
     const auto counted = [&] {
@@ -128,16 +128,14 @@ void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const e
     // The box knows no part whose reach is below minus its size.
     const bool beside = hull.wide == 0 && !hull.may_touch(near, 0);
     if (counted && (hull.empty() || beside || !may_reach_some())) continue;
+    tile points;  // read apart: in vector code a product in a position may be fused with what follows
+    drop_tally again;
+    points.load(body.source, i, std::min(capsule_tile::points, end - i), 1, counted ? again : mine);
+    points.subtract(body.origin);
     capsule_tile t;
     with_vectors([&] {
-      drop_tally again;
-      for (std::size_t j = 0; j < capsule_tile::points; ++j) {
-        capsule c{nowhere, {0, 0, 0}, 0};
-        if (i + j < end)
-          if (const sample s = body.source[i + j]; (counted ? again : mine).counts(s))
-            c = body.element(s.position - body.origin, i + j);
-        t.put(j, c);
-      }
+      for (std::size_t j = 0; j < capsule_tile::points; ++j)
+        t.put(j, points.x[j] == points.x[j] ? body.element(points[j], i + j) : capsule{points[j], {0, 0, 0}, 0});
       hull = t.hull();
     });
     Survivors those;
