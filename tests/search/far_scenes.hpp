@@ -114,7 +114,8 @@ struct far_scene {
       records.data = reinterpret_cast<const std::byte*>(points.data()), records.count = points.size(),
       records.step = sizeof points[0];
       records.offset[1] = 8, records.offset[2] = 16;
-      records.origin = {real(at.x()), real(at.y()), real(at.z())};
+      // g++ 12 omits the rounding of neighbouring conversions to float and back; see to_float.
+      records.origin = {clearance::to_float(at.x()), clearance::to_float(at.y()), clearance::to_float(at.z())};
       truth t{{}, world_from_cloud};
       t.pose.translation() = world_from_cloud * Eigen::Vector3d(records.origin.x, records.origin.y, records.origin.z);
       std::vector<vec3> floats;
