@@ -239,7 +239,8 @@ TEST_CASE("Tiles that are passed over by their largest radius change nothing, an
   const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
   const auto check = [&](const auto& noise) {
     const cloud_uncertainty off{0.003, 0.002, 1, 0.03};
-    const uncertain quick(image, noise, off), slow(image, without_most{noise}, off);
+    const uncertain quick(image, noise, off);
+    const uncertain slow(image, without_most{noise}, off);
     const auto r = ask(host{}, model, s.poses, placed{quick}, certain_distance{});
     v.require(same_certain(r, ask(host{}, model, s.poses, placed{slow}, certain_distance{})), "another answer");
     const auto least = brute(s, std::vector{placed{quick}});
