@@ -16,6 +16,8 @@ MEMBER = re.compile(r"  (unsigned long long|[\w:]+(?:<.*>)?) (\w[^()]*?(?:\{.*\}
 METHOD = re.compile(r"  (?:const )?([\w:]+(?:<.*?>)?(?:&| )?)\s?(\w+)\((.*?)\) const \{")
 # What has a class of its own in values.hpp, not one made from its members.
 OWN = {"vec3", "position", "distance_certainty"}
+# Questions that Python lacks: its clouds cannot say yet what is uncertain about them.
+NOT_YET = {"certain_distance"}
 
 
 def python_name(name):
@@ -95,7 +97,7 @@ def read_members(lines, at, made):
         if re.match(r" (private|protected):", line):
             seen = False
         elif line.startswith("  using result = "):
-            made.question = True
+            made.question = made.name not in NOT_YET
         elif m := re.match(r"  using (out|searched) = (.*?);", line):
             made.out = m[2] if m[1] == "out" else "of*"
         elif line == "  struct out {":
