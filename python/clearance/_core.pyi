@@ -362,7 +362,7 @@ class CollisionResult:
     @property
     def state(self) -> State:
         """
-        collision: certainly a point is. possible: a point may be. free: certainly none is, and nothing was too close to be measured. no_data: there was no valid point, or no part.
+        collision: certainly a point is, which is never said if a cloud is uncertain. possible: a point may be. free: certainly none is, and nothing was too close to be measured. no_data: there was no valid point, or no part.
         """
 
     @property
@@ -649,7 +649,7 @@ class MinDistancesPerPartResult:
 
 class MinDistancesPerPart:
     """
-    The least distance of each part of each configuration, otherwise as min_distances. Each part is asked about as its own robot, with its own memory and structure over the clouds: a frame costs as much as min_distances for each part.
+    The least distance of each part of each configuration, otherwise as min_distances. Each part has its own bound, as a robot of that part alone; all share one structure over the clouds.
     """
 
     def __init__(self, d_max: float = float('inf')) -> None:
