@@ -18,6 +18,8 @@ METHOD = re.compile(r"  (?:const )?([\w:]+(?:<.*?>)?(?:&| )?)\s?(\w+)\((.*?)\) c
 OWN = {"vec3", "position", "distance_certainty"}
 # Questions that Python lacks: its clouds cannot say yet what is uncertain about them.
 NOT_YET = {"certain_distance"}
+# What Python asks and does not leave on a device yet: it knows no array of one result for each part of each configuration.
+NOT_ENQUEUED = {"min_distances_per_part"}
 
 
 def python_name(name):
@@ -100,6 +102,8 @@ def read_members(lines, at, made):
             made.question = made.name not in NOT_YET
         elif m := re.match(r"  using (out|searched) = (.*?);", line):
             made.out = m[2] if m[1] == "out" else "of*"
+            if made.name in NOT_ENQUEUED:
+                made.out = None
         elif line == "  struct out {":
             made.out = []
             while lines[at := at + 1] != "  };":
