@@ -24,7 +24,8 @@ TEST_CASE("What is certain of a query is what all pairs say, share by share, and
     std::string text;
     std::vector<Eigen::Vector3d> points;
     for (int k = 0; k < 60; ++k) {
-      points.emplace_back(d.uniform(-2, 2), d.uniform(-2, 2), d.uniform(0.9, 3));
+      const double z = d.uniform(0.9, 3), y = d.uniform(-2, 2), x = d.uniform(-2, 2);  // compilers order arguments
+      points.emplace_back(x, y, z);
       char line[128];
       std::snprintf(line, sizeof line, "%.9f %.9f %.9f\n", points.back().x(), points.back().y(), points.back().z());
       text += line;
