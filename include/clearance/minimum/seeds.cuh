@@ -25,7 +25,7 @@ class last_frame {
   /// Reads the points of those minima and their neighbours.
   template <class Source>
   __device__ void look(const scan::scan_arguments<Tally>& a, const Source& source) {
-    const std::uint32_t n = threadIdx.x % each, point = key_index(w_.r.key) - a.first + n - (n == 0 ? 0 : each / 2);
+    const std::uint32_t point = its_point(a);
     const bool live =
         a.parts > w_.r.part && witnesses_ > slot() && w_.r.id != none && (!per_part || w_.r.part == slot());
     if (live && point < a.points) p_ = source[point];
@@ -38,8 +38,7 @@ class last_frame {
     std::uint32_t bound = known_;
     if (p_.valid()) {
       const vec3 origin = a.facts().origin;
-      const std::uint32_t point = key_index(w_.r.key) - a.first + n - (n == 0 ? 0 : each / 2);
-      const auto seen = a.answer.around.less(point, p_.position - origin, origin);
+      const auto seen = a.answer.around.less(its_point(a), p_.position - origin, origin);
       const real d = scan::distance_of(w_.primitive, scan::moved(a.part()[w_.r.part].part_from_cloud, seen), infinity);
       if (d < infinity) bound = lower_of(bound, ordered(d));
     }
@@ -72,6 +71,11 @@ class last_frame {
   static constexpr bool per_part = Tally::bound_per_part;
   static constexpr std::uint32_t each = block_threads / (per_part ? scan::most_parts : 32);
   static __device__ std::uint32_t slot() { return threadIdx.x / each; }
+  /// The number of this thread's point: the minimum's or a neighbour's.
+  __device__ std::uint32_t its_point(const scan::scan_arguments<Tally>& a) const {
+    const std::uint32_t n = threadIdx.x % each;
+    return key_index(w_.r.key) - a.first + n - (n == 0 ? 0 : each / 2);
+  }
   typename Tally::witness_type w_;
   std::uint32_t witnesses_, known_ = no_bound;
   sample p_{{}, drop_reason::not_finite};

@@ -19,8 +19,6 @@ struct radius_shares {
   real noise = 0, calibration = 0, time = 0;
 
   CLEARANCE_HD real sum() const { return noise + calibration + time; }
-  /// Or may the point be anywhere?
-  CLEARANCE_HD bool bounded() const { return noise >= 0 && sum() < 1e6f; }
 };
 
 /// Where a source's points are seen from, in its frame: (0,0,0), or where its filter has the sensor.
@@ -66,10 +64,12 @@ struct uncertain {
   CLEARANCE_HD sample operator[](std::size_t i) const {
     sample s = source[i];
     if (!s.valid()) return s;
-    if (!(radius(i, s.position) < 1e6f)) s.dropped = drop_reason::too_close;
+    if (!bounded(radius(i, s.position))) s.dropped = drop_reason::too_close;
     return s;
   }
-  /// Of point i at p; NaN or 1e6 m and more if it may be anywhere. It is no sum of products, which compilers may fuse.
+  /// Or may the point be anywhere?
+  CLEARANCE_HD static bool bounded(real radius) { return radius < 1e6f; }
+  /// Of point i at p; NaN if its noise says nothing. It is no sum of products, which compilers may fuse.
   CLEARANCE_HD real radius(std::size_t i, vec3 p) const {
     const vec3 seen = p - sensor_of(source);
     const real turned = capsule_source<S> ? 0 : length(seen), its = noise(i, seen);
@@ -105,7 +105,7 @@ struct uncertain {
       const extent seen{box.lower - sensor, box.upper - sensor};
       widest = (noise.most(begin, seen) + turn * detail::farthest_in(seen) + shift + drift) * spread * (1 + slack);
     }
-    if (!(widest < 1e6f)) return false;
+    if (!bounded(widest)) return false;
     ends = box;
     for (int k = 0; k < drop_reasons; ++k) dropped[k] += its[k];
     return true;

@@ -51,14 +51,15 @@ namespace minimum {
 struct uncertain_pair {
   part_witness measured;
   radius_shares shares;
+  bool bounded = true;  ///< False: the point may be anywhere.
 };
 
-/// Reads a part's pair again, as it was measured. The last thread reads that of the nominal answer, of part `nearest`.
+/// Reads a part's pair again, as it was measured. The last thread reads the shares of the nominal answer's point.
 template <class PartView, point_source Source>
 struct read_pair {
   const PartView* parts;
   const frames::placement* places;
-  std::uint32_t part_count, nearest;
+  std::uint32_t part_count;
   Source source;
   vec3 origin;
   world_transform world_from_cloud;
@@ -71,14 +72,19 @@ struct read_pair {
     if (cloud == 0) pairs[i] = {};
     const part_minimum least = minima[i];
     if (least.cloud != cloud || least.point >= source.size()) return;
-    const std::uint32_t k = i < part_count ? std::uint32_t(i) : nearest;
-    const vec3 p = source[least.point].position, q = places[k].part_from_cloud(p - origin);
-    const real radius = i < part_count ? shares_of(source, least.point, p).sum() : 0,
+    const sample s = source[least.point];
+    const vec3 p = s.position;
+    const radius_shares shares = shares_of(source, least.point, p);
+    pairs[i].shares = shares, pairs[i].bounded = s.valid();
+    if (i >= part_count) return;
+    const auto k = std::uint32_t(i);
+    const vec3 q = places[k].part_from_cloud(p - origin);
+    const real radius = shares.sum(),
                within = least.distance + radius + 4 * slack * (absolute(least.distance) + radius + length(q));
     const auto f = evaluate(parts[k], q, within, walk);  // not far beyond the nearest
     const contact here = f.at(q, places[k].world_from_part);
-    pairs[i] = {{f.distance, k, cloud, least.point, f.nearest.id, world_from_cloud(p), here.nearest, here.normal},
-                shares_of(source, least.point, p)};
+    pairs[i].measured = {f.distance,   k,          cloud, least.point, f.nearest.id, world_from_cloud(p),
+                         here.nearest, here.normal};
   }
 };
 
@@ -147,7 +153,7 @@ class certain_distance::engine {
           for (std::uint32_t k = 0; k < parts; ++k) errors_[k] = std::max(errors_[k], double(frame_.places[k].error));
           const auto* const places = std::get<0>(memory_.put(frame_.places));
           on_.for_each(parts + (nominal.part != none),
-                       minimum::read_pair<PartView, S>{model_.parts, places, parts, nominal.part, source, frame_.origin,
+                       minimum::read_pair<PartView, S>{model_.parts, places, parts, source, frame_.origin,
                                                        frame_.world_from_cloud, now.cloud, wanted,
                                                        any_depth{stack_need(model_.depth, model_.width)}, pairs});
         });
@@ -177,8 +183,9 @@ class certain_distance::engine {
     }
     if (r.nominal.part == none) return;  // nothing is known
     r.lower = lower > 0 && r.anywhere == 0 ? rounded_down(lower) : 0;
-    const radius_shares& point = pairs_.back().shares;
-    const double uncertain = (point.bounded() ? double(point.sum()) : double(infinity)) + radius(r.nominal.part).sum();
+    const minimum::uncertain_pair& nearest = pairs_.back();
+    const double uncertain =
+        (nearest.bounded ? double(nearest.shares.sum()) : double(infinity)) + radius(r.nominal.part).sum();
     const double most = double(r.nominal.distance) + model_.facts[r.nominal.part].tolerance +
                         frame_.error.at(r.nominal.distance) + uncertain;
     const bool inside = any_radius ? most < 0 : r.nominal.state == state::collision;

@@ -14,6 +14,7 @@
 #include <array>
 #include <bit>
 #include <deque>
+#include <functional>
 #include <span>
 #include <variant>
 
@@ -90,7 +91,10 @@ class unseen::engine {
  public:
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
-      : on_(on), model_(model), memory_(on, from...), witnesses_(on, model, from...) {}
+      : model_(model),
+        memory_(on, from...),
+        witnesses_(on, model, from...),
+        make_([on, model, from...] { return search(on, model, from...); }) {}
 
   template <class Clouds>
   result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const unseen& q) {
@@ -216,7 +220,7 @@ class unseen::engine {
   template <class S>
   min_distance_per_part_result ask_of(std::size_t slot, std::span<const Eigen::Isometry3d> poses, const S& room,
                                       const Eigen::Isometry3d& pose) {
-    while (searches_.size() <= slot) searches_.emplace_back(on_, model_);
+    while (searches_.size() <= slot) searches_.push_back(make_());
     return searches_[slot].run(poses, placed<S>{room, pose}, asks{});
   }
 
@@ -272,10 +276,10 @@ class unseen::engine {
     all.state = all.lower > 0 ? state::free : reaches && !vague ? state::unknown : state::possible;
   }
 
-  On on_;
   model_view<PartView> model_;
   backends::kept_memory<On> memory_;
   part_witnesses::engine<On, PartView> witnesses_;
+  std::function<search()> make_;
   std::deque<search> searches_;  // one for each camera, and one for its own shadow
   std::vector<camera> cameras_;
 };
