@@ -4,11 +4,6 @@
 // in spite of a stereo camera's noise.
 #include "unseen.hpp"
 
-#include <clearance/volume/aabb.hpp>
-#include <clearance/volume/sphere.hpp>
-
-#include <benchmark/benchmark.h>
-
 namespace unseen_bench {
 namespace {
 
@@ -24,25 +19,10 @@ void ask(benchmark::State& state, const Model& model, const Question& q, bool si
   }
 }
 
-template <class Question>
-void spheres(benchmark::State& state, const Question& q, bool silent) {
-  static const auto model = bench::sphere_model<clearance::sphere>(bench::the_scene());
-  ask(state, model, q, silent);
-}
-template <class Question>
-void triangles(benchmark::State& state, const Question& q, bool silent) {
-  static const auto model = bench::triangle_model<clearance::aabb>(bench::the_scene());
-  ask(state, model, q, silent);
-}
-
-#define TIMES ->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond)
-#define BOTH(name, ...)                                \
-  BENCHMARK_CAPTURE(spheres, name, __VA_ARGS__) TIMES; \
-  BENCHMARK_CAPTURE(triangles, name, __VA_ARGS__) TIMES
-BOTH(parts, clearance::min_distance_per_part{}, false);
-BOTH(unseen, bench::hidden_to_5m, false);
-BOTH(unseen_silent, bench::hidden_to_5m, true);
-BOTH(certain, clearance::certain_distance{}, false);
+const int rows = bench::add_rows([](auto&... all) { ask(all...); },
+                                 [](benchmark::internal::Benchmark* row) {
+                                   row->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+                                 });
 
 }  // namespace
 }  // namespace unseen_bench

@@ -5,6 +5,10 @@
 
 #include <clearance/questions/certain_distance.hpp>
 #include <clearance/questions/unseen.hpp>
+#include <clearance/volume/aabb.hpp>
+#include <clearance/volume/sphere.hpp>
+
+#include <benchmark/benchmark.h>
 
 namespace bench {
 
@@ -42,6 +46,26 @@ inline std::vector<std::uint16_t> set_back(std::vector<std::uint16_t> pixels) {
   std::uint16_t last = 4000;
   for (auto& d : pixels) d = last = std::uint16_t(d == 0 ? last : d + 2000);
   return pixels;
+}
+
+/// Registers a row for both models and each question. `ask(state, model, question, silent)` measures one; `silent`: the
+/// frame as it was recorded, and not set back.
+template <class Ask, class Finish>
+int add_rows(const Ask& ask, const Finish& finish) {
+  const auto both = [&](const std::string& name, const auto& q, bool silent = false) {
+    finish(benchmark::RegisterBenchmark(("spheres/" + name).c_str(), [=](benchmark::State& state) {
+      static const auto model = sphere_model<clearance::sphere>(the_scene());
+      ask(state, model, q, silent);
+    }));
+    finish(benchmark::RegisterBenchmark(("triangles/" + name).c_str(), [=](benchmark::State& state) {
+      static const auto model = triangle_model<clearance::aabb>(the_scene());
+      ask(state, model, q, silent);
+    }));
+  };
+  both("parts", clearance::min_distance_per_part{});
+  both("unseen", hidden_to_5m), both("unseen_silent", hidden_to_5m, true);
+  both("certain", clearance::certain_distance{});
+  return 0;
 }
 
 }  // namespace bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// expected-error: the points of this source stand for more (what they hide, where they may be): a host answers questions about pairs and the least distance of such sources
+// expected-error: the points of this source stand for more (what they hide, where they may be): a host answers
 #include <clearance/make_model.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/hidden.hpp>

@@ -62,13 +62,20 @@ std::string dae(const polygons& mesh) {
   const std::string n = std::to_string(mesh.vertices.size());
   for (const auto& v : mesh.vertices) values += words(v) + ' ';
   for (const auto& f : mesh.faces) counts += std::to_string(f.size()) + ' ', indices += words(f) + ' ';
-  return R"(<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><unit meter="1"/><up_axis>Z_UP</up_axis></asset><library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a" count=")" +
+  return R"(<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><unit meter="1"/>
+<up_axis>Z_UP</up_axis></asset><library_geometries><geometry id="g"><mesh><source id="p">
+<float_array id="a" count=")" +
          std::to_string(3 * mesh.vertices.size()) + "\">" + values +
          R"(</float_array><technique_common><accessor source="#a" count=")" + n +
-         R"(" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices><polylist count=")" +
-         std::to_string(mesh.faces.size()) + R"("><input semantic="VERTEX" source="#v" offset="0"/><vcount>)" + counts +
-         "</vcount><p>" + indices +
-         R"(</p></polylist></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+         R"(" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+</accessor></technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<polylist count=")" +
+         std::to_string(mesh.faces.size()) + R"("><input semantic="VERTEX" source="#v" offset="0"/>
+<vcount>)" +
+         counts + "</vcount><p>" + indices +
+         R"(</p></polylist></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s"><node>
+<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/>
+</scene></COLLADA>)";
 }
 
 std::string stl(const polygons& mesh, bool text) {
@@ -92,7 +99,9 @@ std::string glb(const polygons& mesh) {
     for (const auto v : f) indices += fuzz::raw(v);
   const auto s = [](std::size_t value) { return std::to_string(value); };
   std::string json =
-      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":)" +
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":)" +
       s(mesh.vertices.size()) + R"(,"type":"VEC3"},{"bufferView":1,"componentType":5125,"count":)" +
       s(3 * mesh.faces.size()) + R"(,"type":"SCALAR"}],"bufferViews":[{"buffer":0,"byteLength":)" + s(places.size()) +
       R"(},{"buffer":0,"byteOffset":)" + s(places.size()) + R"(,"byteLength":)" + s(indices.size()) +

@@ -38,10 +38,14 @@ std::string soon(const std::string& name, const std::string& bytes, Read read) {
 
 std::string collada(const std::string& attributes, const std::string& nodes) {
   return R"(<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1")" + attributes +
-         R"(><library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a" count="9">0 0 0 1 0 0 0 1 0</float_array>
-<technique_common><accessor source="#a" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
-<param name="Z" type="float"/></accessor></technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry></library_geometries>
+         R"(><library_geometries><geometry id="g"><mesh><source id="p">
+<float_array id="a" count="9">0 0 0 1 0 0 0 1 0</float_array>
+<technique_common><accessor source="#a" count="3" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source><vertices id="v">
+<input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>
+</library_geometries>
 )" + nodes +
          R"(</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
 }
@@ -66,8 +70,11 @@ TEST_CASE("an element of very many attributes is read in time") {
 TEST_CASE("what a COLLADA node holds counts each time that the node is placed") {
   const std::string moves = repeated(100'000, [](const std::string&) { return "<translate>0 0 0</translate>"; });
   const std::string places = repeated(40'000, [](const std::string&) { return "<instance_node url=\"#n\"/>"; });
-  const std::string text = collada("", "<library_nodes><node id=\"n\">" + moves + "</node></library_nodes>" + one_node +
-                                           "<node>" + places + "</node>");
+  const std::string text = collada("", "<library_nodes><node id=\"n\">" + moves + "</node>
+                                           < / library_nodes >
+                                           " + one_node +
+                                           "<node>" +
+                                               places + "</node>");
   CHECK(
       says(soon("m.dae", text, load_mesh), "elements in its nodes, instances counted each time (mesh_limits::values)"));
 }
@@ -79,10 +86,12 @@ TEST_CASE("primitives of a glTF mesh that share their vertices count each") {
   const std::string size = std::to_string(12 * vertices);
   const std::string primitive = R"({"attributes":{"POSITION":0},"indices":1})";
   std::string json =
-      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[)" +
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[)" +
       primitive + repeated(100'000, [&](const std::string&) { return "," + primitive; }) +
       R"(]}],"accessors":[{"bufferView":0,"componentType":5126,"count":)" + std::to_string(vertices) +
-      R"(,"type":"VEC3"},{"bufferView":1,"componentType":5125,"count":3,"type":"SCALAR"}],"bufferViews":[{"buffer":0,"byteLength":)" +
+      R"(,"type":"VEC3"},{"bufferView":1,"componentType":5125,"count":3,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteLength":)" +
       size + R"(},{"buffer":0,"byteOffset":)" + size + R"(,"byteLength":12}],"buffers":[{"byteLength":)" +
       std::to_string(data.size()) + "}]}";
   json.resize((json.size() + 3) / 4 * 4, ' ');
