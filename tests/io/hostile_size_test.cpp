@@ -70,11 +70,8 @@ TEST_CASE("an element of very many attributes is read in time") {
 TEST_CASE("what a COLLADA node holds counts each time that the node is placed") {
   const std::string moves = repeated(100'000, [](const std::string&) { return "<translate>0 0 0</translate>"; });
   const std::string places = repeated(40'000, [](const std::string&) { return "<instance_node url=\"#n\"/>"; });
-  const std::string text = collada("", "<library_nodes><node id=\"n\">" + moves + "</node>
-                                           < / library_nodes >
-                                           " + one_node +
-                                           "<node>" +
-                                               places + "</node>");
+  const std::string text = collada("", "<library_nodes><node id=\"n\">" + moves + "</node></library_nodes>" + one_node +
+                                           "<node>" + places + "</node>");
   CHECK(
       says(soon("m.dae", text, load_mesh), "elements in its nodes, instances counted each time (mesh_limits::values)"));
 }
