@@ -289,6 +289,8 @@ void read_uncertainty(const raw_options& raw, query_options& o) {
     if (!raw.zones.empty())
       throw usage_error(option, "cannot be mixed with --zones, which count points where they were measured");
     if (raw.shard) throw usage_error(option, "cannot be mixed with --shard");
+    if (!raw.plan.empty())
+      throw usage_error(option, "cannot be mixed with --plan, which takes points where they were measured");
     if (raw.unseen && std::string_view(option).starts_with("--joint"))
       throw usage_error(option, "cannot be mixed with --unseen, which takes links where they are said to be");
     o.certain = off;

@@ -2,6 +2,8 @@
 // On a device, `unseen` says what it says on the host, bit for bit: pictures of all kinds, masked ones, several
 // cameras.
 #include "search/unseen_scenes.hpp"
+
+#include "support/counted_memory.cuh"
 #include "support/held_stream.cuh"
 #include "support/laws.hpp"
 
@@ -96,6 +98,26 @@ TEST_CASE("A prepared question says in every frame what the host says, and a pic
     v.require(same_unseen(prepared(robot.poses, placed{on_device, image.pose}), expected), "frame ", n, ", there");
     v.require(same_unseen(prepared(robot.poses, placed{image.image(), image.pose}), expected), "frame ", n, ", here");
   }
+}
+
+TEST_CASE("A prepared question takes device memory from the resource that it is given, once, and gives it back") {
+  dice d(3227);
+  const device gpu;
+  const picture<std::uint16_t> image(d, 0.2, 1.5);
+  const seen_robot<inner_sphere> robot(d, image.pose, 1.5);
+  const auto model = robot.model<clearance::sphere>(8);
+  const auto there = model.on(gpu);
+  counted_memory memory;
+  {
+    clearance::query prepared(gpu, there, unseen{some_room(d, 1.5)}, &memory);
+    const placed seen{image.image(), image.pose};
+    const auto first = prepared(robot.poses, seen);
+    CHECK(memory.held > image.image().bytes().size());  // the picture's copy, too
+    const std::size_t asked = memory.asked;
+    CHECK(same_unseen(prepared(robot.poses, seen), first));
+    CHECK(memory.asked == asked);
+  }
+  CHECK(memory.held == 0);
 }
 
 }  // namespace unseen_test

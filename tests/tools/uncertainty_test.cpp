@@ -134,6 +134,9 @@ TEST_CASE("What is wrong about uncertainty is one sentence that names the option
   refuses(m.ask + " --joint-error 1,2,3", "--joint-error: needs one number, or one for each of the robot's 2");
   refuses(m.ask + " --joint-error -1", "--joint-error: needs 0 or more");
   refuses(m.ask + " --joint-speed 1", "--joint-speed: needs --delay");
+  const scratch_file frames(".txt", ""), rows(".csv", "0\n");
+  refuses("run --robot " + m.urdf.path + " --frames " + frames.path + " --plan " + rows.path + " --sensor kinect",
+          "--sensor: cannot be mixed with --plan");
   refuses("plan --robot x --configurations y --cloud z --sensor kinect", "--sensor");
 }
 

@@ -116,6 +116,24 @@ TEST_CASE("--unseen needs depth images, a range, and no question that it cannot 
     refuses(q.ask(image) + " --unseen=" + range, "--unseen");
   refuses(q.ask(image) + " --unseen --deadline 5", "cannot be mixed with --unseen");
   refuses(q.ask(image) + " --unseen --unseen", "--unseen");
+  for (const char* joints : {" --joint-error 0.1", " --joint-speed 1 --delay 0.1"})
+    refuses(q.ask(image) + " --unseen" + joints,
+            "cannot be mixed with --unseen, which takes links where they are said");
+}
+
+TEST_CASE("What is uncertain about a camera is in --unseen, too") {
+  const watched_boxes q;
+  const scratch_file image(".png", png(1000, 1200));
+  const auto ask = [&](const std::string& more) {
+    return parsed(run_command(q.ask(image) + " --json --unseen 0.1:1.5" + more)).at("unseen");
+  };
+  const double sure = ask("").at("lower");
+  for (const char* more : {" --sensor lidar:0.01,0", " --calibration 0.03,0", " --max-speed 0.3 --delay 0.1"}) {
+    const auto vague = ask(more);
+    CHECK(vague.at("lower").get<double>() == Approx(sure - 0.03).margin(1e-3));
+    CHECK(vague.at("upper").is_null());
+  }
+  CHECK(ask(" --calibration 0.5,0").at("state") == "possible");
 }
 
 TEST_CASE("--scene has the hidden room, and the way behind the pixel") {
