@@ -18,8 +18,6 @@ METHOD = re.compile(r"  (?:const )?([\w:]+(?:<.*?>)?(?:&| )?)\s?(\w+)\((.*?)\) c
 OWN = {"vec3", "position", "distance_certainty"}
 # Questions that Python lacks: its clouds cannot say yet what is uncertain about them.
 NOT_YET = {"certain_distance"}
-# What Python asks and does not leave on a device yet: it knows no array of one result for each part of each configuration.
-NOT_ENQUEUED = {"min_distances_per_part"}
 
 
 def python_name(name):
@@ -102,8 +100,8 @@ def read_members(lines, at, made):
             made.question = made.name not in NOT_YET
         elif m := re.match(r"  using (out|searched) = (.*?);", line):
             made.out = m[2] if m[1] == "out" else "of*"
-            if made.name in NOT_ENQUEUED:
-                made.out = None
+        elif line == "  static constexpr bool each_part = true;":
+            made.out = "all*"  # of each part of each configuration, where a configuration has `of`
         elif line == "  struct out {":
             made.out = []
             while lines[at := at + 1] != "  };":
@@ -132,7 +130,7 @@ def out_arrays(out, all_of, to="to"):
     """The (name, expression) of each array where a device writes: the pointers of `out`, and of what it is made of."""
     if isinstance(out, str):
         if out.endswith("*"):
-            return [("of" if out == "of*" else "result", to)]
+            return [(out[:-1] if out in ("of*", "all*") else "result", to)]
         return out_arrays(all_of[out.split("::")[0]].out, all_of, to)
     arrays = []
     for line in out:

@@ -26,7 +26,7 @@ template <class B = clearance::host>
 using robot_trees = std::variant<clearance::sphere_model<B>, clearance::triangle_model<B>>;
 
 /// Where a device writes the answer to a question that can be enqueued: the question's own `out`, or, about many
-/// configurations, one result of each.
+/// configurations, one result of each, or of each part of each.
 struct no_out {};
 template <class Q>
 struct out_of {
@@ -44,6 +44,12 @@ struct out_of<Q> {
 };
 template <class Q>
 inline constexpr bool can_be_enqueued = !std::is_same_v<typename out_of<Q>::type, no_out>;
+
+/// How many results a question about many configurations writes.
+template <class Q>
+std::size_t results_of(std::size_t configurations, std::size_t parts) {
+  return Q::each_part ? configurations * parts : configurations;
+}
 
 /// A prepared question. One thread at a time asks it. Throws as `clearance::query`.
 template <class Q>

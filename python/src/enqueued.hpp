@@ -48,7 +48,7 @@ template <class Q>
 typename out_of<Q>::type rooms_of(const Q& question, const room_sizes& a, std::size_t capacity) {
   using out = typename out_of<Q>::type;
   if constexpr (requires { typename Q::searched; }) {
-    return a.template room<std::remove_pointer_t<out>>(a.configurations);
+    return a.template room<std::remove_pointer_t<out>>(results_of<Q>(a.configurations, a.parts()));
   } else if constexpr (requires(out to) { to.capacity; }) {
     return {a.template room<clearance::pair_distance>(capacity), capacity, a.template room<unsigned long long>(1),
             a.template room<clearance::point_counts>(1)};

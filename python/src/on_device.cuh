@@ -62,7 +62,7 @@ class prepared_on_device final : public prepared<Q, Backend, Model> {
       check_rigid(poses);
       query.place(poses);
       const auto* const results = query.enqueue(clouds, question);
-      const std::size_t count = parts_ == 0 ? 0 : poses.size() / parts_;
+      const std::size_t count = results_of<Q>(parts_ == 0 ? 0 : poses.size() / parts_, parts_);
       const clearance::device_guard guard(on_.id);
       clearance::check_cuda(cudaMemcpyAsync(to, results, count * sizeof *results, cudaMemcpyDeviceToDevice, on_.stream),
                             "cudaMemcpyAsync");

@@ -37,7 +37,7 @@ if WHY:
 # ---- what is asked -----------------------------------------------------------------------------------------------------
 
 PLANS = ("MinDistances", "MinDistancesPerPart", "InCollisions")
-WAITS = ("MinDistanceSupported", "MinDistancesPerPart", "Unseen")
+WAITS = ("MinDistanceSupported", "Unseen")
 OPTIONS = {
     "Distances": [{}, {"d_max": 0.5, "which": True}], "SignedDistances": [{}, {"d_max": 0.5, "which": True}],
     "DistancesPerPart": [{"d_max": 0.5}], "InCollision": [{"margins": 0.0}, {"margins": 0.2}],
