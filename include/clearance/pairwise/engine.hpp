@@ -78,11 +78,11 @@ class passes {
     return {on, model.facts, ahead_.frame, ahead_.first, ahead_.clouds, ahead_.points, ahead_.reaches, memory};
   }
 
-  /// Enqueues a pass; clouds must be readable where it runs.
-  template <class Clouds, answer Answer>
+  /// Enqueues a pass; clouds must be readable where it runs. `here(source, cloud)` is what is asked of a source.
+  template <class Clouds, answer Answer, class Here = frames::as_it_is>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
-               point_counts* counts) {
-    pairs_.enqueue(poses, clouds, answer, counts, frames::as_it_is{});
+               point_counts* counts, const Here& here = {}) {
+    pairs_.enqueue(poses, clouds, answer, counts, here);
   }
   /// The same; waits.
   template <class Clouds, answer Answer>

@@ -115,6 +115,21 @@ struct open_windows {
     windows[p] = {.wanted = wanted, .bound = bound}, bounds[p] = bound;
   }
 };
+/// After a pass over some of the points: the wanted one of those is a bound for the wanted one of all, and nothing is
+/// counted yet.
+struct keep_bound {
+  const std::uint32_t* counts;
+  nearest_window* windows;
+  std::uint32_t *bounds, wanted;
+  CLEARANCE_HD void operator()(std::size_t p) const {
+    const wanted_bin found = find_wanted(counts + p * nearest_bins::bins, wanted);
+    if (found.bin < nearest_bins::bins) {
+      const std::uint32_t end = nearest_bins::end_of(0, found.bin, nearest_bins::first_shift);
+      if (end < bounds[p]) bounds[p] = end;
+    }
+    windows[p] = {.wanted = wanted, .bound = bounds[p]};
+  }
+};
 struct bounds_as_reaches {
   const std::uint32_t* bounds;
   real* reaches;

@@ -6,6 +6,8 @@
 #include <clearance/backend/host.hpp>
 #include <clearance/frame/clouds.hpp>
 #include <clearance/ground/vectors.hpp>
+#include <clearance/pairwise/nearest_bins.hpp>
+#include <clearance/points/thinned.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/tile_scan.hpp>
@@ -13,6 +15,7 @@
 #include <clearance/visitor/nearest.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace clearance::pairwise {
 
@@ -35,22 +38,57 @@ class least_distances {
   std::vector<real> heap_;
 };
 
-/// This pays on a host: with a bound nearly all walks end at a root. A device asks all points in the time that this
-/// would take.
+/// Takes every `stride`-th point of a source.
+struct every {
+  std::size_t stride;
+  template <point_source S>
+  thinned<S> operator()(const S& source, std::uint32_t) const {
+    return {source, stride};
+  }
+};
+
+/// Opens the windows of a frame, and lowers their bounds by a pass over some of the points. A device has all points in
+/// flight at once, so that a bound found on the way comes too late. Enqueued. `to` may be written.
+template <class Passes, class Clouds>
+void sample_bounds(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t points,
+                   const nearest_bins& to, std::uint32_t* bounds, std::uint32_t k, real d_max, point_counts* counts) {
+  const auto& on = passes.on;
+  const std::size_t parts = passes.model.size();
+  on.for_each(parts, open_windows{to.windows, bounds, k, ordered(d_max)});
+  // With n / s points first, and some k s then, the root of n / k is best. Odd, so that it meets all columns.
+  const auto stride = std::size_t(std::sqrt(double(points) / double(k))) | 1;
+  if (stride < 5) return;
+  on.for_each(parts * nearest_bins::bins, zero_words{to.counts});
+  passes.enqueue(poses, clouds, to, counts, every{stride});
+  on.for_each(parts, keep_bound{to.counts, to.windows, bounds, k});
+}
+
+/// On a host walks are what takes time, and nearly all of them end at a root once there is a bound.
 template <class On>
 struct nearest_sample {
-  template <class PartView, class Clouds>
-  static void lower(const On&, const model_view<PartView>&, std::span<const Eigen::Isometry3d>, const Clouds&,
-                    std::size_t, std::vector<real>&) {}
+  template <class Passes, class Clouds>
+  static void lower(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
+                    std::vector<real>& bounds) {
+    if (bounds.empty()) return;
+    const auto a = passes.look(poses, clouds);
+    auto* const words = a.template room<std::uint32_t>(bounds.size());
+    const nearest_bins to{a.template room<std::uint32_t>(bounds.size() * nearest_bins::bins),
+                          a.template room<nearest_window>(bounds.size()), nearest_bins::first_shift};
+    sample_bounds(passes, poses, clouds, a.points, to, words, std::uint32_t(k), bounds[0],
+                  a.template room<point_counts>(1));
+    const std::vector<std::uint32_t> found = a.copy_out(words, bounds.size());
+    for (std::size_t part = 0; part < bounds.size(); ++part) bounds[part] = from_ordered(found[part]);
+  }
 };
 
 template <>
 struct nearest_sample<host> {
   /// Lowers `bounds`, one per part, to a distance within which k points certainly are, if k are found.
-  template <class PartView, class Clouds>
-  static void lower(const host& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
-                    const Clouds& clouds, std::size_t k, std::vector<real>& bounds) {
-    host_workers workers(on);
+  template <class Passes, class Clouds>
+  static void lower(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
+                    std::vector<real>& bounds) {
+    const auto& model = passes.model;
+    host_workers workers(passes.on);
     std::vector<least_distances> found;
     for (const real bound : bounds) found.emplace_back(k, bound);
     frames::cloud_frame frame;

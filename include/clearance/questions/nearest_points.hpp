@@ -82,7 +82,7 @@ template <class Passes, class Clouds>
 std::vector<real> bounds_of_nearest(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                     std::size_t k, real d_max) {
   std::vector<real> bounds(passes.model.size(), d_max);
-  nearest_sample<std::remove_cvref_t<decltype(passes.on)>>::lower(passes.on, passes.model, poses, clouds, k, bounds);
+  nearest_sample<std::remove_cvref_t<decltype(passes.on)>>::lower(passes, poses, clouds, k, bounds);
   return bounds;
 }
 
