@@ -20,8 +20,11 @@ struct memory_now {
   double allocated = 0, resident = 0;
 
   static memory_now look() {
+    memory_now m;
+#if __GLIBC_PREREQ(2, 33)
     const auto heap = mallinfo2();
-    memory_now m{double(heap.uordblks + heap.hblkhd), 0};
+    m.allocated = double(heap.uordblks + heap.hblkhd);
+#endif
     unsigned long long all = 0, resident = 0;
     if (std::FILE* const file = std::fopen("/proc/self/statm", "r")) {
       if (std::fscanf(file, "%llu %llu", &all, &resident) == 2) m.resident = 4096.0 * double(resident);
@@ -128,10 +131,19 @@ soak_counts soak(const On& on, double seconds, unsigned seed, verdict& v, const 
   return count;
 }
 
+/// A sanitizer keeps what is freed.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool keeps_freed_memory = true;
+#elif defined(__has_feature)
+inline constexpr bool keeps_freed_memory = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+#else
+inline constexpr bool keeps_freed_memory = false;
+#endif
+
 /// From the environment, or a few.
 inline double soak_seconds() {
   const char* const said = std::getenv("CLEARANCE_SOAK_SECONDS");
-  return said == nullptr ? 2 : std::atof(said);
+  return said == nullptr ? 7 : std::atof(said);
 }
 
 inline void print(const soak_counts& n, double seconds) {
