@@ -120,12 +120,13 @@ class chunked_query {
   /// As `query`; `pose` is world-from-cloud. Throws what `load` throws; afterwards you can ask the same object again.
   template <class Poses, loaded_cloud C>
   typename Q::result operator()(const Poses& poses, chunked<C>& cloud, const Eigen::Isometry3d& pose, const Q& q) {
+    const detail::in_use::call only(used_);
     return engine_.run(detail::as_poses(poses), cloud, pose, q);
   }
   template <class Poses, loaded_cloud C>
   typename Q::result operator()(const Poses& poses, chunked<C>& cloud,
                                 const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
-    return engine_.run(detail::as_poses(poses), cloud, pose, asked_);
+    return (*this)(poses, cloud, pose, asked_);
   }
 
   /// How many points the last answer loaded.
@@ -134,6 +135,7 @@ class chunked_query {
  private:
   typename detail::chunk_engine_of<Q, On, PartView>::type engine_;
   Q asked_;
+  detail::in_use used_;
 };
 template <class On, class Robot, class Q>
 chunked_query(const On&, const Robot&, const Q&) -> chunked_query<Q, On, typename detail::part_view_of<Robot>::type>;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // On a device and on several, every question has every form that its declarations allow, with the bits of the host.
-#include "forms/forms.hpp"
+#include "forms/digest.hpp"
+#include "forms/soak.hpp"
 #include "support/catch.hpp"
+#include "support/counted_memory.cuh"
 
 #include <clearance/device.cuh>
 
@@ -40,6 +42,56 @@ TEST_CASE("One call, prepared questions and two devices give the bits of the hos
     ++asked;
   });
   CHECK(asked == 6 * 18);
+}
+
+TEST_CASE("On a device, on any stream, on two and in chunks every answer has the bits that are kept") {
+  const digests kept = kept_digests("frames"), kept_of_chunks = kept_digests("chunks");
+  cudaStream_t streams[3] = {};  // the first is the device's own
+  for (int k : {1, 2}) REQUIRE(cudaStreamCreateWithFlags(&streams[k], cudaStreamNonBlocking) == cudaSuccess);
+  for (int run = 0; run < digest_runs(); ++run) {
+    const device gpu{.id = 0, .stream = streams[run % 3]};
+    const digests all = digests_of([&]<class Q>(const Q& q, const auto& model, const moving_frames& f) {
+      const auto there = model.on(gpu);
+      clearance::query its(gpu, there, q);
+      if (run % 2 == 1) its(f.s.poses, f.here());
+      return typename Q::result(its(f.s.poses, f.here()));
+    });
+    INFO("run " << run << ": the digests are\n" << text_of(all));
+    REQUIRE(all == kept);
+    const digests by_chunks = digests_of([&]<class Q>(const Q& q, const auto& model, const moving_frames& f) {
+      if constexpr (forms_of<Q>::in_pieces) {
+        const auto there = model.on(gpu);
+        clearance::chunked chunks(clearance::point_span(f.points[0]), 1000 + run % 500);
+        clearance::chunked_query its(gpu, there, q);
+        return its(f.s.poses, chunks, f.here()[0].pose);
+      }
+    });
+    INFO("in chunks: the digests are\n" << text_of(by_chunks));
+    REQUIRE(by_chunks == kept_of_chunks);
+  }
+  for (int k : {1, 2}) cudaStreamDestroy(streams[k]);
+}
+
+TEST_CASE("Frame after frame a device's prepared questions are right, and take no more memory") {
+  verdict v;
+  counted_memory own;
+  std::size_t room = 0, all = 0, first_room = 0, first_held = 0, frames = 0;
+  const auto look = [&](const soak_frame&) {
+    if (++frames % 50 != 0) return;
+    REQUIRE(cudaMemGetInfo(&room, &all) == cudaSuccess);
+    if (frames == 150) first_room = room, first_held = own.held;
+  };
+  std::pmr::memory_resource* const memory = &own;
+  const soak_counts n = soak(device{}, soak_seconds(), 19, v, look, memory);
+  print(n, soak_seconds());
+  std::printf("device memory after 150 frames and later: held %.2f and at most %.2f MB, free %.1f and %.1f MB\n",
+              double(first_held) / 1e6, double(own.most) / 1e6, double(first_room) / 1e6, double(room) / 1e6);
+  CHECK(n.refused > 0);
+  CHECK(n.by_brute_force > 0);
+  CHECK(own.held == 0);
+  CHECK(double(own.most) - double(first_held) < 64e6);
+  CHECK(double(first_room) - double(room) < 64e6);
+  CHECK(n.end.resident - n.begin.resident < 48e6);
 }
 
 }  // namespace forms_device_test

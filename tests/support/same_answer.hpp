@@ -8,11 +8,26 @@
 
 namespace testing {
 
+/// Calls `f` with all members of a result. Those of more than eight, and of derived ones, are named here.
+template <class T, class F>
+void with_members(const T& a, const F& f) {
+  if constexpr (std::is_same_v<T, clearance::min_distance_result>)
+    f(a.state, a.distance, a.lower, a.upper, a.cloud, a.point, a.part, a.primitive, a.at, a.nearest, a.normal, a.seen,
+      a.valid, a.dropped);
+  else if constexpr (std::is_same_v<T, clearance::supported_distance>)
+    f(a.state, a.distance, a.lower, a.cloud, a.point, a.part, a.primitive, a.isolated, a.nearest_isolated, a.counts);
+  else if constexpr (std::is_same_v<T, clearance::certain_pair>)
+    f(static_cast<const clearance::part_witness&>(a), a.lower, a.shares);
+  else if constexpr (std::is_same_v<T, clearance::point_counts>)
+    f(a.seen, a.valid, a.dropped);
+  else
+    std::apply(f, clearance::detail::members_of(a));
+}
+
 /// Calls `f` with every number, flag and state in a result, in order; a list is its length, then what it holds. So
 /// padding is left out.
 template <class T, class F>
 void for_each_number(const T& a, const F& f) {
-  const auto all = [&f](const auto&... members) { (for_each_number(members, f), ...); };
   if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
     f(a);
   } else if constexpr (std::is_array_v<T>) {
@@ -20,17 +35,8 @@ void for_each_number(const T& a, const F& f) {
   } else if constexpr (requires { a.begin(), a.size(); }) {
     f(a.size());
     for (const auto& x : a) for_each_number(x, f);
-  } else if constexpr (std::is_same_v<T, clearance::min_distance_result>) {
-    all(a.state, a.distance, a.lower, a.upper, a.cloud, a.point, a.part, a.primitive, a.at, a.nearest, a.normal, a.seen,
-        a.valid, a.dropped);
-  } else if constexpr (std::is_same_v<T, clearance::supported_distance>) {
-    all(a.state, a.distance, a.lower, a.cloud, a.point, a.part, a.primitive, a.isolated, a.nearest_isolated, a.counts);
-  } else if constexpr (std::is_same_v<T, clearance::certain_pair>) {
-    all(static_cast<const clearance::part_witness&>(a), a.lower, a.shares);
-  } else if constexpr (std::is_same_v<T, clearance::point_counts>) {
-    all(a.seen, a.valid, a.dropped);
   } else {
-    std::apply(all, clearance::detail::members_of(a));
+    with_members(a, [&f](const auto&... members) { (for_each_number(members, f), ...); });
   }
 }
 

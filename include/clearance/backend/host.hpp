@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <map>
 
 namespace clearance {
 
@@ -37,8 +38,7 @@ struct host {
           tbb::simple_partitioner{});
     };
     if (threads == 0) return all();
-    tbb::task_arena arena(int(threads), 1);
-    arena.execute(all);
+    arena_of(int(threads)).execute(all);
   }
 
   template <class F>
@@ -74,16 +74,24 @@ struct host {
     std::copy(data.begin(), data.end(), to);
   }
   bool reads(const void*) const { return true; }
+
+ private:
+  friend class host_workers;
+
+  /// This thread's arena of so many threads. It is kept, because TBB 2021.8 never frees one that a worker entered: 7 kB
+  /// a call (uxlfoundation/oneTBB#967).
+  static tbb::task_arena& arena_of(int threads) {
+    thread_local std::map<int, tbb::task_arena> kept;
+    return kept.try_emplace(threads, threads, 1).first->second;
+  }
 };
 
 static_assert(backend<host>);
 
-/// The threads of a `host`, kept from call to call. Each takes the next piece of work as soon as it has finished one.
+/// The threads of a `host`. Each takes the next piece of work as soon as it has finished one.
 class host_workers {
  public:
-  explicit host_workers(const host& on) : threads_(on.threads) {
-    if (threads_ > 1) arena_.initialize(int(threads_), 1);
-  }
+  explicit host_workers(const host& on) : threads_(on.threads) {}
 
   /// Calls `body(begin, end)` for pieces of `grain` that together cover 0 .. n-1 once.
   template <class F>
@@ -101,12 +109,11 @@ class host_workers {
     else if (threads_ == 0)
       all();
     else
-      arena_.execute(all);
+      host::arena_of(int(threads_)).execute(all);
   }
 
  private:
   unsigned threads_;
-  tbb::task_arena arena_;
 };
 
 }  // namespace clearance

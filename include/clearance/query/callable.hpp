@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/query/in_use.hpp>
 #include <clearance/query/one_robot.hpp>
 
 namespace clearance::detail {
@@ -15,6 +16,7 @@ class callable {
   template <class Poses, class Clouds>
   decltype(auto) operator()(const Poses& poses, const Clouds& clouds, const Q& q) {
     static_assert(explain_given<Clouds>());
+    const in_use::call only(used_);
     return self().run(as_poses(poses), clouds, q);
   }
   template <class Poses, class Clouds>
@@ -35,31 +37,35 @@ class callable {
   template <class Chain, class Clouds>
     requires requires(const Chain& chain) { chain.parts(); }
   decltype(auto) operator()(const Chain& chain, std::span<const double> joints, const Clouds& clouds, const Q& q) {
+    const in_use::call only(used_);
     return self().run_chain(chain, joints, clouds, q);
   }
   template <class Chain, class Clouds>
     requires requires(const Chain& chain) { chain.parts(); }
   decltype(auto) operator()(const Chain& chain, std::span<const double> joints, const Clouds& clouds) {
-    return self().run_chain(chain, joints, clouds, asked_);
+    return (*this)(chain, joints, clouds, asked_);
   }
   /// On a device: about the configurations that were placed.
   template <class Clouds>
   decltype(auto) operator()(const Clouds& clouds, const Q& q) {
+    const in_use::call only(used_);
     return self().run_placed(clouds, q);
   }
   template <class Clouds>
   decltype(auto) operator()(const Clouds& clouds) {
-    return self().run_placed(clouds, asked_);
+    return (*this)(clouds, asked_);
   }
 
  protected:
   explicit callable(const Q& q) : asked_(q) {}
   const Q& asked() const { return asked_; }
+  in_use& used() { return used_; }
 
  private:
   Query& self() { return static_cast<Query&>(*this); }
 
   Q asked_;
+  in_use used_;
 };
 
 }  // namespace clearance::detail

@@ -52,8 +52,8 @@ consteval bool explain_asked() {
 
 /// A prepared question: make it once for a robot, and ask it in every frame with new poses and points, or with other
 /// options. It keeps its memory. What it remembers of the last frame only makes it faster. Use one object from one
-/// thread and one stream; the robot must outlive it. On a device, `memory` may be a std::pmr::memory_resource* that
-/// hands out device memory.
+/// stream and one thread (two at once: a debug build throws std::logic_error); the robot must outlive it. On a device,
+/// `memory` may be a std::pmr::memory_resource* that hands out device memory.
 template <question Q, class On, class PartView>
 class query : detail::one_robot<On, PartView>,
               public detail::engine_of<Q, On, PartView>::type,
@@ -75,6 +75,7 @@ class query : detail::one_robot<On, PartView>,
   template <class Poses, class Clouds>
   auto enqueue(const Poses& poses, const Clouds& clouds, const Q& q, const out& to) {
     static_assert(explain_given<Clouds>());
+    const detail::in_use::call only(callable::used());
     return engine::start(detail::as_poses(poses), clouds, q, to);
   }
   template <class Poses, class Clouds>
@@ -85,16 +86,18 @@ class query : detail::one_robot<On, PartView>,
   /// captures this sees the memory of each launch.
   template <point_source S>
   void enqueue(const world_transform* poses, const S& source, const world_transform* cloud_pose, const out& to) {
+    const detail::in_use::call only(callable::used());
     engine::start_with(poses, source, cloud_pose, to);
   }
   /// About placed configurations: returns device memory with one result per configuration.
   template <class Clouds>
   auto enqueue(const Clouds& clouds, const Q& q) {
+    const detail::in_use::call only(callable::used());
     return engine::start_placed(clouds, q);
   }
   template <class Clouds>
   auto enqueue(const Clouds& clouds) {
-    return engine::start_placed(clouds, callable::asked());
+    return enqueue(clouds, callable::asked());
   }
 
   std::span<const part_facts> facts() const { return robot_type::view().facts; }
