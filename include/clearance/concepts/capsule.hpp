@@ -99,7 +99,8 @@ CLEARANCE_HD real bound_along(const V& v, const capsule& c, real reach) {
 template <bounding_volume V>
 CLEARANCE_HD real lower_bound(const V& v, const capsule& c, real reach) {
   using traits = bounding_volume_traits<V>;
-  if (c.along == vec3{0, 0, 0}) return traits::lower_bound(v, c.from) - c.radius;
+  // distance_to() calls 0 what is within rounding, so a bound on it is lower by that, without a way too.
+  if (c.along == vec3{0, 0, 0}) return traits::lower_bound(v, c.from) - detail::noise_along(c) - c.radius;
   if constexpr (round_volume<V>)
     return detail::bound_along(traits::as_ball(v), c) - c.radius;
   else if constexpr (tangent_volume<V>)

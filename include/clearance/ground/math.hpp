@@ -50,10 +50,16 @@ CLEARANCE_HD inline double fma(double a, double b, double c) {
 #endif
 }
 
-/// a * b, for products that a sum elsewhere may meet: rounded, and never contracted with it.
+/// a * b, for products that a sum elsewhere may meet: rounded, and never contracted with it. On x86-64 the compiler
+/// does not see what it is: a function may be compiled for a processor that fuses though no macro says so
+/// (`with_vectors`), and clang makes a product of fma(a, b, -0).
 CLEARANCE_HD inline real product(real a, real b) {
 #if defined(__CUDA_ARCH__)
   return __fmul_rn(a, b);
+#elif defined(__x86_64__) && defined(__GNUC__)
+  real rounded = a * b;
+  asm("" : "+x"(rounded));
+  return rounded;
 #elif defined(__FMA__) || defined(__FP_FAST_FMAF)
   return std::fma(a, b, -0.0f);
 #else
