@@ -23,7 +23,7 @@ namespace clearance {
 /// How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or `masked` ones, or
 /// `uncertain` ones of those: then hidden is what may be hidden, so that the state is not `unknown` but `possible`.
 /// Refused: depths that are no range, a ray image without `half_pixel`, not one label per pixel, and radii as
-/// in_collision. The result of a prepared question stays valid until the next call.
+/// in_collision.
 struct unseen {
   hiding room = {};                          ///< Where hidden room begins and ends.
   double half_pixel = 0;                     ///< For ray images: `half_pixel_of` their table.
@@ -82,6 +82,7 @@ class unseen::engine {
         witnesses_(on, model, from...),
         make_([on, model, from...] { return search(on, model, from...); }) {}
 
+  /// The result stays valid until the next call.
   template <class Clouds>
   const result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const unseen& q) {
     q.check(), check_radii(q.radii, model_.size());
