@@ -218,8 +218,8 @@ struct tree_search {
     if (solid && p.whole) return visit(here, p.part), false;
     const auto& its = body.parts[p.part].tree;
     const auto q = scan::moved(body.places[p.part].part_from_cloud, element_less(here, body.origin));
-    const real bound = scan::bound_of(its.volume(p.node), q, reach(p.part));
-    if (!(bound <= reach(p.part))) return false;
+    const real near = reach(p.part), bound = scan::bound_of(its.volume(p.node), q, near);
+    if (!(bound <= near)) return false;
     if (!its.is_leaf(p.node)) return p.bound = max(p.bound, bound), p.by_points = false, true;
     auto ask = body.answer.visitor(body.first + here.number, p.part);
     scan::offer_leaf_for(its, p.node, q, ask);
