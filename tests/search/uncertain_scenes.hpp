@@ -41,11 +41,7 @@ struct uncertain_scene {
     all = {0.01 * scale * s.size, 1e-3 * scale, 0.1 * scale * s.size, 0.2};
   }
 
-  std::vector<double> radii_of_parts() const {
-    std::vector<double> all;
-    for (const auto& r : parts) all.push_back(r.sum());
-    return all;
-  }
+  std::vector<double> radii_of_parts() const { return clearance::sums(parts); }
   auto source(const real* at, const clearance::vec3* points) const {
     return clearance::uncertain(clearance::point_span(points, s.points.size()),
                                 clearance::point_radii(at, radii.size()), all);
