@@ -5,6 +5,7 @@
 #include <clearance/frame/margins.hpp>
 #include <clearance/motion.hpp>
 #include <clearance/questions/min_distance.hpp>
+#include <clearance/robot/widened.hpp>
 
 #include <queue>
 
@@ -15,12 +16,14 @@ struct motion_clearance_options {
                             ///< Infinite: only the state has to be decided.
   double margin = 0;        ///< Metres: `state` compares with it.
   std::size_t most_queries = 1000;  ///< After so many questions the rest stays open, on the safe side.
+  std::vector<double> radii = {};   ///< By how much parts may be elsewhere, in metres: all alike, or each.
 };
 
 /// The clearance over a motion. `lower` also covers the times between those that were asked. Times go from 0 to 1.
 struct motion_clearance_result {
   /// free: lower > margin. collision: at `time` some point is certainly not farther than margin. possible: neither.
-  /// no_data: no valid point.
+  /// no_data: no valid point. Of `uncertain` clouds `lower` is about all places where points may be, and `upper` is not
+  /// known (infinite).
   clearance::state state = clearance::state::no_data;
   real lower = 0;               ///< Metres: at no time is a point nearer. 0 if that is not certain.
   real upper = infinity;        ///< Metres: at `time` some point certainly is this near.
@@ -93,7 +96,8 @@ inline void check(const moment& m, std::size_t parts) {
 template <class Ask, motion Motion, class Clouds>
 motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> facts, const Motion& motion,
                                     const Clouds& clouds, const motion_clearance_options& options) {
-  check(options);
+  check(options), check_radii(options.radii, facts.size());
+  const bool vague = any_vague(clouds);
   motion_clearance_result all;
   std::vector<asked_time> asked;
   frames::frame_ahead ahead;
@@ -103,13 +107,16 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
     check(now, facts.size());
     const min_distance_per_part_result& found = ask(now.poses);
     const min_distance_result& r = found.all;
-    if (++all.queries == 1 || r.upper < all.upper || (r.upper == all.upper && time < all.time))
-      all.upper = r.upper, all.time = time, all.nearest = r;
+    const double radius = r.part == none ? 0 : radius_of(options.radii, r.part);
+    const real upper = radius == 0 ? r.upper : rounded_up(double(r.upper) + radius);
+    if (++all.queries == 1 || upper < all.upper || (upper == all.upper && time < all.time))
+      all.upper = upper, all.time = time, all.nearest = r;
     if (r.part == none) return false;
     const frames::float_error error = ahead.look(facts, now.poses, clouds).error;
     asked_time a{time, {}, std::move(now.travels)};
     for (std::size_t k = 0; k < facts.size(); ++k) {
-      const double its = minimum::certain_distance(found.parts[k].distance, frames::slop(facts[k]), error);
+      const part_facts its_facts = widened(facts[k], radius_of(options.radii, k));
+      const double its = minimum::certain_distance(found.parts[k].distance, frames::slop(its_facts), error);
       a.lower.push_back(its > 0 ? its : 0);
     }
     certain = std::min(certain, piece_around(a, 0, 0).lower);
@@ -138,6 +145,7 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
     }
   }
   if (all.nearest.dropped[int(drop_reason::too_close)] != 0) all.lower = 0;  // nothing is free then
+  if (vague) all.upper = infinity;
   all.state = all.upper <= options.margin  ? state::collision
               : all.lower > options.margin ? state::free
                                            : state::possible;

@@ -388,15 +388,22 @@ class CollisionResult:
 
 class InCollision:
     """
-    Is any point closer than the margins? Refused: neither one nor as many margins as parts, and one that is NaN.
+    Is any point closer than the margins? Refused: neither one nor as many margins as parts, one that is NaN, and radii that are negative or not one for all parts, one per part or none.
     """
 
-    def __init__(self, margins: float | ArrayLike = (0.0,)) -> None:
-        """margins: Metres: one for all parts, or one per part."""
+    def __init__(self, margins: float | ArrayLike = (0.0,), radii: float | ArrayLike = ()) -> None:
+        """
+        margins: Metres: one for all parts, or one per part.
+        radii: By how much parts may be elsewhere, in metres: all alike, or each.
+        """
 
     @property
     def margins(self) -> tuple[float, ...]:
         """Metres: one for all parts, or one per part."""
+
+    @property
+    def radii(self) -> tuple[float, ...]:
+        """By how much parts may be elsewhere, in metres: all alike, or each."""
 
     def __repr__(self) -> str: ...
 
@@ -436,15 +443,22 @@ class InCollisionsResult:
 
 class InCollisions:
     """
-    Is any point closer to a configuration than the margins? poses as for min_distances. Refused: poses that are no whole configurations, neither one nor as many margins as parts, and one that is NaN.
+    Is any point closer to a configuration than the margins? poses as for min_distances. Refused: poses that are no whole configurations, neither one nor as many margins as parts, one that is NaN, and radii as in_collision.
     """
 
-    def __init__(self, margins: float | ArrayLike = (0.0,)) -> None:
-        """margins: Metres: one for all parts, or one per part."""
+    def __init__(self, margins: float | ArrayLike = (0.0,), radii: float | ArrayLike = ()) -> None:
+        """
+        margins: Metres: one for all parts, or one per part.
+        radii: By how much parts may be elsewhere, in metres: all alike, or each.
+        """
 
     @property
     def margins(self) -> tuple[float, ...]:
         """Metres: one for all parts, or one per part."""
+
+    @property
+    def radii(self) -> tuple[float, ...]:
+        """By how much parts may be elsewhere, in metres: all alike, or each."""
 
     def __repr__(self) -> str: ...
 
@@ -608,18 +622,25 @@ class MinDistancesResult:
 
 class MinDistances:
     """
-    The least distance of each configuration. poses are world-from-part: one per part of the first configuration, then those of the next; or a prepared question takes joint vectors of a joint_chain. It remembers where each configuration's last minimum was. Refused: poses that are no whole configurations, and d_max that is NaN.
+    The least distance of each configuration. poses are world-from-part: one per part of the first configuration, then those of the next; or a prepared question takes joint vectors of a joint_chain. It remembers where each configuration's last minimum was. Refused: poses that are no whole configurations, d_max that is NaN, and radii as in_collision.
     """
 
-    def __init__(self, d_max: float = float('inf')) -> None:
+    def __init__(self, d_max: float = float('inf'), radii: float | ArrayLike = ()) -> None:
         """
         d_max: Metres. For a configuration farther away only that fact is reported, much faster.
+        radii: By how much parts may be elsewhere, in metres: all alike, or each. The bracket has the greatest.
         """
 
     @property
     def d_max(self) -> float:
         """
         Metres. For a configuration farther away only that fact is reported, much faster.
+        """
+
+    @property
+    def radii(self) -> tuple[float, ...]:
+        """
+        By how much parts may be elsewhere, in metres: all alike, or each. The bracket has the greatest.
         """
 
     def __repr__(self) -> str: ...
@@ -652,12 +673,19 @@ class MinDistancesPerPart:
     The least distance of each part of each configuration, otherwise as min_distances. Each part has its own bound, as a robot of that part alone; all share one structure over the clouds.
     """
 
-    def __init__(self, d_max: float = float('inf')) -> None:
-        """d_max: Metres, as for min_distances."""
+    def __init__(self, d_max: float = float('inf'), radii: float | ArrayLike = ()) -> None:
+        """
+        d_max: Metres, as for min_distances.
+        radii: By how much parts may be elsewhere, in metres: all alike, or each.
+        """
 
     @property
     def d_max(self) -> float:
         """Metres, as for min_distances."""
+
+    @property
+    def radii(self) -> tuple[float, ...]:
+        """By how much parts may be elsewhere, in metres: all alike, or each."""
 
     def __repr__(self) -> str: ...
 
@@ -851,6 +879,12 @@ class UnseenPart:
     def link(self) -> str | None:
         """The name of that part, or None."""
 
+    @property
+    def to_edge(self) -> float:
+        """
+        If edges are asked for: the ball around the part is at least so far from all that no image shows; 0 if some of it is there, NaN of ray images alone. Metres.
+        """
+
     def __repr__(self) -> str: ...
 
 class UnseenResult:
@@ -874,15 +908,17 @@ class UnseenResult:
 
 class Unseen:
     """
-    How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or masked ones, or uncertain ones of those: then hidden is what may be hidden, so that the state is not unknown but possible. Refused: depths that are no range, a ray image without half_pixel, and not one label per pixel.
+    How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or masked ones, or uncertain ones of those: then hidden is what may be hidden, so that the state is not unknown but possible. Refused: depths that are no range, a ray image without half_pixel, not one label per pixel, and radii as in_collision.
     """
 
-    def __init__(self, room: Hiding = Hiding(nearest=0.10000000149011612, farthest=10.0, infinite_is_free=False), half_pixel: float = 0.0, labels: ArrayLike = (), places: bool = False) -> None:
+    def __init__(self, room: Hiding = Hiding(nearest=0.10000000149011612, farthest=10.0, infinite_is_free=False), half_pixel: float = 0.0, labels: ArrayLike = (), places: bool = False, edges: bool = False, radii: float | ArrayLike = ()) -> None:
         """
         room: Where hidden room begins and ends.
         half_pixel: For ray images: half_pixel_of their table.
         labels: Of all pixels of all clouds, as self_filter gives them, or none.
         places: Also where every part is nearest: at, nearest and normal, as the robot always has.
+        edges: Also how far every part is from the edge of the view: to_edge.
+        radii: By how much parts may be elsewhere, in metres: all alike, or each.
         """
 
     @property
@@ -902,6 +938,14 @@ class Unseen:
         """
         Also where every part is nearest: at, nearest and normal, as the robot always has.
         """
+
+    @property
+    def edges(self) -> bool:
+        """Also how far every part is from the edge of the view: to_edge."""
+
+    @property
+    def radii(self) -> tuple[float, ...]:
+        """By how much parts may be elsewhere, in metres: all alike, or each."""
 
     def __repr__(self) -> str: ...
 
@@ -954,7 +998,7 @@ class Within:
 
 class Zone:
     """
-    One zone of one part. A point counts if it may be nearer than the zone's threshold: arithmetic, gaps and tolerances are on the safe side.
+    One zone of one part. A point counts if it may be nearer than the zone's threshold: arithmetic, gaps, tolerances and all radii are on the safe side.
     """
 
     @property
@@ -962,7 +1006,7 @@ class Zone:
 
     @property
     def nearest(self) -> float:
-        """The least distance of its points, as computed. Metres."""
+        """The least distance of its points, less their radii, as computed. Metres."""
 
     @property
     def nearest_cloud(self) -> int | None:
@@ -1011,14 +1055,15 @@ class ZonesResult:
 
 class Zones:
     """
-    Counts the points in zones around every part, in one pass. Refused: thresholds that are negative, not in order, none or not the same number for each part, and min_points of 0.
+    Counts the points in zones around every part, in one pass. Refused: thresholds that are negative, not in order, none or not the same number for each part, min_points of 0, and radii as in_collision.
     """
 
-    def __init__(self, thresholds: float | ArrayLike, each_part: bool = False, min_points: int = 1) -> None:
+    def __init__(self, thresholds: float | ArrayLike, each_part: bool = False, min_points: int = 1, radii: float | ArrayLike = ()) -> None:
         """
         thresholds: Metres, in ascending order: the same for every part,
         each_part: or, if this is set, those of each part in turn, equally many.
         min_points: A zone with fewer counts as empty (innermost); its points are still reported.
+        radii: By how much parts may be elsewhere, in metres: all alike, or each.
         """
 
     @property
@@ -1034,6 +1079,10 @@ class Zones:
         """
         A zone with fewer counts as empty (innermost); its points are still reported.
         """
+
+    @property
+    def radii(self) -> tuple[float, ...]:
+        """By how much parts may be elsewhere, in metres: all alike, or each."""
 
     def __repr__(self) -> str: ...
 

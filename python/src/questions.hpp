@@ -88,7 +88,8 @@ std::string signature_of() {
       std::string shown = nb::cast<std::string>(nb::repr(standing.attr(m.name)));
       text += " = " + (shown == "inf" ? std::string("float('inf')") : shown);
     } else if constexpr (std::is_same_v<T, std::vector<double>>) {
-      if (!(Q{}.*m.at).empty()) text += " = " + nb::cast<std::string>(nb::repr(standing.attr(m.name)));
+      if (!(Q{}.*m.at).empty() || text.find(" = ") != text.npos)
+        text += " = " + nb::cast<std::string>(nb::repr(standing.attr(m.name)));
     }
   });
   return text + ") -> None";

@@ -42,12 +42,12 @@ void for_each_question(const F& f) {
   f("min_distance_supported", clearance::min_distance_supported{.min_points = 2, .radius = 0.05});
   f("distances", clearance::distances{.d_max = 0.6, .which = true});
   f("distances_per_part", clearance::distances_per_part{.d_max = 0.5});
-  f("in_collision", clearance::in_collision{{0.02}});
+  f("in_collision", clearance::in_collision{{0.05}, {0.03}});
   f("within", clearance::within{{0.1}});
   f("nearest_k", clearance::nearest_k{.k = 7});
-  f("zones", clearance::zones{.thresholds = {0.05, 0.2, 0.6}});
+  f("zones", clearance::zones{.thresholds = {0.05, 0.2, 0.6}, .radii = {0.02}});
   f("self_filter", clearance::self_filter{.padding = {0.05}});
-  f("min_distances", clearance::min_distances{.d_max = 0.3});
+  f("min_distances", clearance::min_distances{.d_max = 0.3, .radii = {0.02}});
   f("min_distances_per_part", clearance::min_distances_per_part{.d_max = 0.3});
   f("in_collisions", clearance::in_collisions{{0.02}});
 }

@@ -4,7 +4,8 @@
 #include "support/frame_after_frame.hpp"
 #include "support/product.hpp"
 
-#include <clearance/questions/min_distance.hpp>
+#include <clearance/points/depth_image.hpp>
+#include <clearance/questions/unseen.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -187,6 +188,31 @@ TEST_CASE("After its first frames a prepared query asks for no memory") {
     by_parts(poses, points);
   }
   CHECK(before > 0);
+  CHECK(allocations == before);
+}
+
+TEST_CASE("So does one about what a camera hides, with its own shadow, radii and edges") {
+  dice d(13);
+  const scene<inner_sphere> s = robot(d);
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  std::vector<float> pixels(160 * 120);
+  std::vector<clearance::point_label> labels(pixels.size(), clearance::point_label::rest);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    pixels[i] = d.number(2, 3);
+    if (d.below(9) == 0) labels[i] = clearance::point_label::own;
+  }
+  const clearance::depth_image<float> image(pixels.data(), 160, 120, {150, 150, 80, 60});
+  const clearance::unseen asked{.labels = labels, .edges = true, .radii = {0.01, 0.02}};
+  clearance::query query(host{1}, model, asked);
+  auto poses = s.poses;
+  std::size_t before = 0;
+  double own = 0;
+  for (int frame = 0; frame < 8; ++frame) {
+    if (frame == 2) before = allocations;
+    poses[0].translation().x() += 0.01;
+    own += query(poses, image).own_shadow.lower;
+  }
+  CHECK(own >= 0);
   CHECK(allocations == before);
 }
 

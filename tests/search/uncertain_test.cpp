@@ -18,57 +18,12 @@ using clearance::host, clearance::placed, clearance::point_span, clearance::stat
 
 namespace {
 
-/// The least of (distance - radius) for every part, and the point.
-template <class P, class S>
-std::vector<clearance::part_minimum> brute(const scene<P>& s, const std::vector<placed<S>>& all) {
-  std::vector<clearance::part_minimum> least(s.parts.size());
-  for (std::uint32_t c = 0; c < all.size(); ++c)
-    for_each_pair(s, all[c].source, all[c].pose, c, nothing_inside, [&](const clearance::pair_distance& pair) {
-      const S& source = all[c].source;
-      const real d = pair.distance - source.around(pair.point, source[pair.point].position).radius;
-      if (d < least[pair.part].distance) least[pair.part] = {d, c, pair.point, pair.primitive};
-    });
-  return least;
-}
-
 /// The same formula, but it does not say how large it is in a box.
 template <class N>
 struct without_most {
   N noise;
   real operator()(std::size_t i, vec3 p) const { return noise(i, p); }
 };
-
-/// A place within `radius` of p.
-oracle::vec moved_within(dice& d, oracle::vec p, wide radius) {
-  return p + (radius * wide(d.uniform(0, 1))) * wider(d.direction());
-}
-
-/// The distance in long double with every point and every part somewhere within its radius.
-template <class P, class S>
-wide truth(const scene<P>& s, const std::vector<placed<S>>& all, const std::vector<clearance::part_radius>& radii,
-           dice& d) {
-  std::vector<oracle::vec> by;
-  for (std::size_t k = 0; k < s.parts.size(); ++k)
-    by.push_back(moved_within(d, {0, 0, 0}, radii.empty() ? 0 : radii[k].sum()));
-  wide least = infinity;
-  for (const auto& cloud : all)
-    for (std::size_t i = 0; i < cloud.source.size(); ++i) {
-      const clearance::sample p = cloud.source[i];
-      if (!p.valid()) continue;
-      const auto at =
-          moved_within(d, wider(p.position), cloud.source.shares(i, p.position).sum() / cloud.source.spread);
-      const auto world = oracle::moved(cloud.pose.matrix(), at);
-      for (std::size_t k = 0; k < s.parts.size(); ++k) {
-        const auto q = oracle::moved_back(s.poses[k].matrix(), world - by[k]);
-        for (const P& primitive : s.parts[k])
-          if constexpr (std::is_same_v<P, inner_sphere>)
-            least = std::min(least, oracle::to_sphere(q, wider(primitive.center), primitive.radius));
-          else
-            least = std::min(least, oracle::to_triangle(q, wider(primitive.a), wider(primitive.b), wider(primitive.c)));
-      }
-    }
-  return std::max(least, wide(0));
-}
 
 template <class V, class P>
 void all_scenes(std::size_t most_points) {
@@ -89,7 +44,7 @@ void all_scenes(std::size_t most_points) {
       const std::vector<placed<point_span>> bare{{source.source, all[0].pose}, {source.source, all[1].pose}};
       v.require(same_result(r.nominal, ask(host{}, model, s.poses, bare, clearance::min_distance{})), what,
                 ": nominal");
-      const auto least = brute(s, all);
+      const auto least = least_certain(s, all);
       wide lower = infinity;
       for (std::uint32_t k = 0; k < least.size(); ++k) {
         const auto& got = r.parts[k];
@@ -119,7 +74,7 @@ void all_scenes(std::size_t most_points) {
           r.certain.point != r.nominal.point || r.certain.cloud != r.nominal.cloud || r.certain.part != r.nominal.part;
       dice d(seed);
       for (int k = 0; k < 3 && s.points.size() <= most_points; ++k) {
-        const wide is = truth(s, all, u.parts, d);
+        const wide is = std::ranges::min(truths(s, all, u.radii_of_parts(), d));
         v.require(r.lower <= is && is <= r.upper, what, ": the bracket", r.lower, " to", r.upper, " misses", is);
       }
     }
@@ -243,7 +198,7 @@ TEST_CASE("Tiles that are passed over by their largest radius change nothing, an
     const uncertain slow(image, without_most{noise}, off);
     const auto r = ask(host{}, model, s.poses, placed{quick}, certain_distance{});
     v.require(same_certain(r, ask(host{}, model, s.poses, placed{slow}, certain_distance{})), "another answer");
-    const auto least = brute(s, std::vector{placed{quick}});
+    const auto least = least_certain(s, std::vector{placed{quick}});
     for (std::size_t k = 0; k < least.size(); ++k)
       v.require(r.parts[k].point == least[k].point, "part", k, " has point", r.parts[k].point, " of", least[k].point);
     for (std::size_t begin = 0; begin + 128 <= pixels.size(); begin += 128) {

@@ -456,6 +456,91 @@ TEST_CASE("The share of a part that no camera shows is counted, and said to be u
   CHECK(look(ball_at(0, 0, 1), mixed, {{}, half_pixel}).parts[0].out_of_view == 0);
 }
 
+TEST_CASE("Wherever parts are within their radii, the bracket contains the distance to the true pyramids") {
+  dice d(909);
+  verdict v;
+  std::size_t free = 0, unknown = 0;
+  for (int n = 0; n < rounds(200); ++n) {
+    const picture<float> image(d, d.uniform(0, 0.5), 1.5);
+    const seen_robot<inner_sphere> robot(d, image.pose, 1.5);
+    unseen q{some_room(d, 1.5)};
+    for (std::size_t k = 0; k < robot.parts.size(); ++k) q.radii.push_back(d.below(3) == 0 ? 0 : d.uniform(0, 0.05));
+    const auto model = robot.template model<clearance::sphere>(4);
+    const auto r = clearance::ask(host{}, model, robot.poses, placed{image.masked_image(), image.pose}, q);
+    const auto rooms = image.hidden(q.room, true), own = image.hidden(q.room, true, true);
+    double least = infinity, least_own = infinity;
+    for (std::size_t k = 0; k < robot.parts.size(); ++k) {
+      const place by = q.radii[k] * d.uniform(0, 1) * doubles(d.direction()).normalized();
+      const Eigen::Isometry3d there = Eigen::Translation3d(by) * robot.poses[k];
+      const double truth = to_rooms(robot.parts[k], there, rooms, image.pose);
+      v.require(r.parts[k].lower <= std::max(truth, 0.0), "frame", n, ": part", k, " at least", r.parts[k].lower,
+                ", but is", truth);
+      least = std::min(least, truth);
+      least_own = std::min(least_own, to_rooms(robot.parts[k], there, own, image.pose));
+    }
+    v.require(rooms.empty() || (r.all.lower <= std::max(least, 0.0) && std::max(least, 0.0) <= r.all.upper), "frame", n,
+              ": bracket", r.all.lower, " to", r.all.upper, " misses", least);
+    v.require(own.empty() || (r.own_shadow.lower <= std::max(least_own, 0.0) && least_own <= r.own_shadow.upper),
+              "frame", n, ": its own shadow");
+    v.require(r.all.state != state::unknown || least <= 0, "frame", n, ": unknown, but", least);
+    v.require(r.own_shadow.state != state::unknown || least_own <= 0, "frame", n, ": its own shadow is unknown");
+    free += r.all.state == state::free, unknown += r.all.state == state::unknown;
+  }
+  INFO(free << " free, " << unknown << " unknown");
+  CHECK((free > 5 && unknown > 1));
+}
+
+TEST_CASE("No place that no image shows is nearer to a part than the edge of the view") {
+  const wall_camera wall;
+  const auto edge = [&](double x, double z) { return look(ball_at(x, 0, z), wall.image(), {.edges = true}).parts[0]; };
+  CHECK(look(ball_at(0, 0, 1), wall.image()).parts[0].to_edge != 0);  // NaN: not asked
+  const double beside = 0.48 / std::hypot(1, 0.48);                   // rows end at y = 0.48 z
+  CHECK(edge(0, 1).to_edge == Approx(beside - 0.1).epsilon(1e-3));
+  CHECK((edge(0.64, 1).to_edge == 0 && edge(0, -1).to_edge == 0));
+  dice d(910);
+  verdict v;
+  std::size_t some = 0;
+  for (int n = 0; n < rounds(60); ++n) {
+    picture<float> first(d, 0, 1.5), second(d, 0, 1.5);
+    for (picture<float>* its : {&first, &second})
+      its->camera = {0.4 * its->width, 0.4 * its->height, 0.5 * its->width - 0.5, 0.4 * its->height};
+    const std::vector cameras{placed{first.image(), first.pose}, placed{second.image(), second.pose}};
+    const seen_robot<inner_sphere> robot(d, d.below(2) == 0 ? first.pose : second.pose, 1.5);
+    unseen q{{.nearest = 0.05f, .farthest = 3}};
+    q.edges = true, q.radii = {d.below(2) == 0 ? 0 : d.uniform(0, 0.05)};
+    const auto r = clearance::ask(host{}, robot.template model<clearance::sphere>(4), robot.poses, cameras, q);
+    const auto shows = [&](const picture<float>& image, const place& at) {
+      const place p = image.pose.inverse() * at;
+      const double u = p.x() / p.z() * image.camera.fx + image.camera.cx + 0.5,
+                   v = p.y() / p.z() * image.camera.fy + image.camera.cy + 0.5;
+      return p.z() >= q.room.nearest && p.z() <= q.room.farthest && u >= 0 && u <= image.width && v >= 0 &&
+             v <= image.height;
+    };
+    for (std::size_t k = 0; k < robot.parts.size(); ++k) {
+      const double edge = r.parts[k].to_edge;
+      v.require(edge >= 0 && edge < 3, "frame", n, ": part", k, " is", edge, " from the edge");
+      some += edge > 0;
+      for (int i = 0; edge > 0 && i < 500; ++i) {
+        const inner_sphere& ball = robot.parts[k][d.below(unsigned(robot.parts[k].size()))];
+        const double away = d.uniform(-double(ball.radius), edge + 0.1);
+        const place by = (ball.radius + away) * doubles(d.direction()).normalized();
+        const place at = robot.poses[k] * (doubles(ball.center) + by);
+        v.require(away >= edge + q.radii[0] || shows(first, at) || shows(second, at), "frame", n, ": part", k, " is",
+                  edge, " from the edge, and a place at", away, " is not shown");
+      }
+    }
+  }
+  CHECK(some > 5);
+  std::vector<clearance::ray> rays(wall.pixels.size());
+  for (std::uint32_t i = 0; i < rays.size(); ++i) rays[i] = {real((i % 64 - 31.5) / 50), real((i / 64 - 23.5) / 50)};
+  const clearance::ray_image lens(wall.pixels.data(), rays.data(), 64, 48);
+  unseen q{.half_pixel = clearance::half_pixel_of(rays.data(), 64, 48), .edges = true};
+  const real none = look(ball_at(0, 0, 1), lens, q).parts[0].to_edge;
+  CHECK(none != none);
+  const auto mixed = std::tuple(placed{lens, here}, placed{wall.image(), here});
+  CHECK(look(ball_at(0, 0, 1), mixed, q).parts[0].to_edge == Approx(beside - 0.1).epsilon(1e-3));
+}
+
 TEST_CASE("A bracket allows for what is between a part's spheres, also where other cameras see") {
   const wall_camera wall;
   Eigen::Isometry3d back = here;

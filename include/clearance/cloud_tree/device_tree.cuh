@@ -17,7 +17,8 @@ struct tree_room {
   ball* balls;
   std::uint32_t* least;
   extent* boxes;
-  std::uint32_t* done;  ///< Blocks that made their tiles.
+  std::uint32_t* done;   ///< Blocks that made their tiles.
+  real *radii, *widest;  ///< Only over balls.
 };
 
 inline constexpr std::uint32_t siblings = 8;  ///< So many lanes make one node, from one child each.
@@ -48,6 +49,12 @@ __device__ void put_node(const tree_room& to, std::uint32_t node, const extent& 
   to.least[node] = least;
 }
 
+/// Writes the greatest radius of what the sibling lanes have, as put_node.
+__device__ inline void put_widest(const tree_room& to, std::uint32_t node, real mine) {
+  const real most = of_siblings(mine, [](real a, real b) { return max(a, b); });
+  if (threadIdx.x % siblings == 0 && node != none) to.widest[node] = most;
+}
+
 /// Writes a node above the tiles around its children. `child`: a node of the level below, or none. A whole warp calls
 /// it.
 template <class Tree>
@@ -60,8 +67,11 @@ __device__ void put_parent(const Tree& tree, std::uint32_t level, std::uint32_t 
     const std::uint32_t at = tree.begin[level - 1] + child;
     box = to.boxes[at], b = to.balls[at], least = to.least[at];
   }
-  const std::uint32_t node = child == none ? none : child / siblings;
-  put_node(to, node < tree.size(level) ? tree.begin[level] + node : none, box, least,
+  const std::uint32_t number = child == none ? none : child / siblings,
+                      node = number < tree.size(level) ? tree.begin[level] + number : none;
+  if constexpr (Tree::of_balls)
+    put_widest(to, node, child < tree.size(level - 1) ? to.widest[tree.begin[level - 1] + child] : 0);
+  put_node(to, node, box, least,
            [&](vec3 center) { return (rough_length_up(b.center - center) + b.radius) * (1 + slack); });
 }
 
@@ -89,15 +99,21 @@ __global__ void __launch_bounds__(tile_threads)
   extent box;
   scan::drop_tally mine;
   const std::uint32_t number = order.template of_block<tile_threads>(i);
+  [[maybe_unused]] real radius = 0;
   if (i < tree.count) {
     if (number != none) {
       const sample s = source[number];
-      if (Order::counts ? mine.counts(s) : s.valid()) p = {s.position, number}, box.add(s.position);
+      if (Order::counts ? mine.counts(s) : s.valid()) {
+        p = {s.position, number}, box.add(s.position);
+        if constexpr (Tree::of_balls) radius = source.around(number, s.position).radius;
+      }
     }
     to.points[i] = p;
+    if constexpr (Tree::of_balls) to.radii[i] = radius;
   }
   if constexpr (Order::counts) mine.add_to(*dropped);
   __syncwarp();
+  if constexpr (Tree::of_balls) put_widest(to, tile < tree.size(0) ? tile : none, radius);
   put_node(to, tile < tree.size(0) ? tile : none, box, p.number,
            [&](vec3 center) { return rough_length_up(p.at - center); });
   for (std::uint32_t level = 1, children = tile_threads / siblings; level < 3 && level < tree.levels;
@@ -135,6 +151,7 @@ __global__ void __launch_bounds__(1024)
 class device_tree {
  public:
   using view_type = tree_view<8, 8>;
+  using ball_view_type = ball_tree_view<8, 8>;
 
   explicit device_tree(const device& on, std::pmr::memory_resource* memory = nullptr)
       : on_(on), memory_(memory), order_(on, memory), done_(1, on.id, memory) {
@@ -145,7 +162,7 @@ class device_tree {
   /// Enqueues it. Adds invalid points to `dropped`. The device must be able to read the source as it is.
   template <point_source S>
   void build(const S& source, scan::drop_counts* dropped) {
-    static_assert(points_alone<S>());
+    static_assert(points_or_balls<S>());
     const std::size_t n = source.size();
     if constexpr (image_source<S>) {
       const pixel_order pixels(std::uint32_t(n), n == 0 ? 0 : source.columns());
@@ -158,6 +175,14 @@ class device_tree {
     put_up(source, shape, order_.build(source, dropped), dropped);
   }
   const view_type& view() const { return view_; }
+  /// If it was built over such a source: over its points, or over its balls.
+  template <point_source S>
+  auto view_of() const {
+    if constexpr (ball_source<S>)
+      return ball_view_type{view_, radii_.data(), widest_.data()};
+    else
+      return view_;
+  }
 
  private:
   /// Makes the tiles and nodes of a tree of that shape, over points in that order.
@@ -167,15 +192,19 @@ class device_tree {
     grow(points_, view_.count), grow(balls_, view_.nodes()), grow(least_, view_.nodes()), grow(boxes_, view_.nodes());
     view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(),
     view_.least = least_.data();
-    const detail::tree_room to{points_.data(), balls_.data(), least_.data(), boxes_.data(), done_.data()};
-    const unsigned blocks = (view_.count - 1) / detail::tile_threads + 1;
-    on_.launch(detail::tile_kernel<S, view_type, Order>, blocks, detail::tile_threads, 0, source, view_, order, to,
+    if constexpr (ball_source<S>) grow(radii_, view_.count), grow(widest_, view_.nodes());
+    const auto tree = view_of<S>();
+    using tree_type = std::remove_const_t<decltype(tree)>;
+    const detail::tree_room to{points_.data(), balls_.data(), least_.data(), boxes_.data(),
+                               done_.data(),   radii_.data(), widest_.data()};
+    const unsigned blocks = (tree.count - 1) / detail::tile_threads + 1;
+    on_.launch(detail::tile_kernel<S, tree_type, Order>, blocks, detail::tile_threads, 0, source, tree, order, to,
                dropped);
-    if (view_.levels <= 3 || view_.size(2) <= detail::most_below) return;
+    if (tree.levels <= 3 || tree.size(2) <= detail::most_below) return;
     std::uint32_t level = 3;
-    for (; level < view_.levels && view_.size(level - 1) > detail::most_below; ++level)
-      on_.launch(detail::node_kernel<view_type>, (view_.size(level - 1) - 1) / 256 + 1, 256, 0, view_, level, to);
-    if (level < view_.levels) on_.launch(detail::top_kernel<view_type>, 1, 1024, 0, view_, level, to);
+    for (; level < tree.levels && tree.size(level - 1) > detail::most_below; ++level)
+      on_.launch(detail::node_kernel<tree_type>, (tree.size(level - 1) - 1) / 256 + 1, 256, 0, tree, level, to);
+    if (level < tree.levels) on_.launch(detail::top_kernel<tree_type>, 1, 1024, 0, tree, level, to);
   }
 
   template <class T>
@@ -190,6 +219,7 @@ class device_tree {
   device_buffer<std::uint32_t> done_, least_;
   device_buffer<numbered_point> points_;
   device_buffer<ball> balls_;
+  device_buffer<real> radii_, widest_;  // of balls
   device_buffer<extent> boxes_;
 };
 

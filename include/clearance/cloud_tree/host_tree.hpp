@@ -17,11 +17,13 @@ namespace clearance::cloud_tree {
 class host_tree {
  public:
   using view_type = tree_view<8, 8>;
+  using ball_view_type = ball_tree_view<8, 8>;
 
   /// Builds it. Adds invalid points to `dropped`.
   template <point_source S>
   void build(host_workers& workers, const S& source, scan::drop_counts& dropped) {
-    static_assert(points_alone<S>());
+    static_assert(points_or_balls<S>());
+    with_radii_ = ball_source<S>;
     read(workers, source, dropped);
     encode(workers);
     for (int shift = 0; shift < 3 * morton_grid::bits; shift += morton_grid::bits) sort_by(workers, shift);
@@ -29,6 +31,14 @@ class host_tree {
     put_up(workers);
   }
   const view_type& view() const { return view_; }
+  /// If it was built over such a source: over its points, or over its balls.
+  template <point_source S>
+  auto view_of() const {
+    if constexpr (ball_source<S>)
+      return ball_view_type{view_, radii_.data(), widest_.data()};
+    else
+      return view_;
+  }
 
  private:
   static constexpr std::size_t piece = 16384;
@@ -47,12 +57,16 @@ class host_tree {
   template <point_source S>
   void read(host_workers& workers, const S& source, scan::drop_counts& dropped) {
     const std::size_t n = source.size();
+    if constexpr (ball_source<S>) read_radii_.resize(n);
     read_.resize(n), kept_.assign(pieces(n) + 1, 0);
     workers.for_pieces(n, piece, [&](std::size_t begin, std::size_t end) {
       scan::drop_tally mine;
       std::size_t to = begin;
       for (std::size_t i = begin; i < end; ++i)
-        if (const sample s = source[i]; mine.counts(s)) read_[to++] = {s.position, std::uint32_t(i)};
+        if (const sample s = source[i]; mine.counts(s)) {
+          if constexpr (ball_source<S>) read_radii_[to] = source.around(i, s.position).radius;
+          read_[to++] = {s.position, std::uint32_t(i)};
+        }
       kept_[begin / piece + 1] = std::uint32_t(to - begin);
       mine.add_to(dropped);
     });
@@ -138,6 +152,7 @@ class host_tree {
   void put_up(host_workers& workers) {
     points_.resize(view_.count), boxes_.resize(view_.nodes()), balls_.resize(view_.nodes()),
         least_.resize(view_.nodes());
+    if (with_radii_) radii_.resize(view_.count), widest_.resize(view_.nodes());
     view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(),
     view_.least = least_.data();
     for (std::uint32_t level = 0; level < view_.levels; ++level)
@@ -159,6 +174,10 @@ class host_tree {
     real radius = 0;
     for (std::uint32_t i = begin; i < end; ++i) radius = max(radius, rough_length_up(points_[i].at - center));
     boxes_[n] = box, balls_[n] = {center, radius}, least_[n] = least;
+    if (!with_radii_) return;
+    widest_[n] = 0;
+    for (std::uint32_t i = begin; i < end; ++i)
+      radii_[i] = read_radii_[codes_[i].at], widest_[n] = max(widest_[n], radii_[i]);
   }
   void put_node(std::uint32_t level, std::uint32_t n) {
     const std::uint32_t below = view_.begin[level - 1], begin = below + view_.first_below(level, n),
@@ -173,6 +192,9 @@ class host_tree {
       radius = max(radius, (rough_length_up(balls_[i].center - center) + balls_[i].radius) * (1 + slack));
     const std::uint32_t me = view_.begin[level] + n;
     boxes_[me] = box, balls_[me] = {center, min(radius, farthest(box, center))}, least_[me] = least;
+    if (!with_radii_) return;
+    widest_[me] = 0;
+    for (std::uint32_t i = begin; i < end; ++i) widest_[me] = max(widest_[me], widest_[i]);
   }
 
   view_type view_;
@@ -182,6 +204,8 @@ class host_tree {
   std::vector<cell> cells_;
   std::vector<extent> boxes_;
   std::vector<ball> balls_;
+  std::vector<real> read_radii_, radii_, widest_;  // of balls
+  bool with_radii_ = false;
 };
 
 }  // namespace clearance::cloud_tree

@@ -2,6 +2,7 @@
 #pragma once
 // A tree over the points of a cloud, for questions with so many poses that building it pays.
 
+#include <clearance/concepts/capsule.hpp>
 #include <clearance/ground/math.hpp>
 #include <clearance/point_source.hpp>
 
@@ -13,11 +14,23 @@ struct alignas(16) numbered_point {
   std::uint32_t number;
 };
 
+/// A point that is somewhere in a ball around its place.
+struct numbered_ball : numbered_point {
+  real radius;
+};
+
+/// A tree's point less an origin, or its ball.
+CLEARANCE_HD inline vec3 element_less(const numbered_point& p, vec3 origin) { return p.at - origin; }
+CLEARANCE_HD inline capsule element_less(const numbered_ball& p, vec3 origin) {
+  return {p.at - origin, {0, 0, 0}, p.radius};
+}
+
 /// Balls around `Tile` neighbours each, above them balls around `Fan` balls each, until at most `Fan` are left. A
 /// node's number tells where its children are, so nothing is stored about that.
 template <std::uint32_t Tile, std::uint32_t Fan>
 struct tree_view {
   static constexpr std::uint32_t tile = Tile, fan = Fan, most_levels = 16;
+  static constexpr bool of_balls = false;
 
   const numbered_point* points = nullptr;  ///< Neighbours in space are neighbours here.
   const ball* balls = nullptr;             ///< Balls of all nodes, level by level, tiles first.
@@ -37,6 +50,7 @@ struct tree_view {
     }
   }
 
+  CLEARANCE_HD const numbered_point& point(std::uint32_t i) const { return points[i]; }
   CLEARANCE_HD std::uint32_t nodes() const { return begin[levels]; }
   CLEARANCE_HD std::uint32_t size(std::uint32_t level) const { return begin[level + 1] - begin[level]; }
   /// What is below node `n` of a level: nodes of the level below it, or points, from the first to one past the last.
@@ -47,6 +61,17 @@ struct tree_view {
     const std::uint32_t all = level == 0 ? count : size(level - 1), group = level == 0 ? Tile : Fan;
     return all - n * group < group ? all : (n + 1) * group;
   }
+};
+
+/// The same over balls: nodes are still around their middles, and each knows its greatest radius.
+template <std::uint32_t Tile, std::uint32_t Fan>
+struct ball_tree_view : tree_view<Tile, Fan> {
+  static constexpr bool of_balls = true;
+
+  const real* radii = nullptr;   ///< Of the points.
+  const real* widest = nullptr;  ///< Of each node's points.
+
+  CLEARANCE_HD numbered_ball point(std::uint32_t i) const { return {this->points[i], radii[i]}; }
 };
 
 /// The middle of a box, and the distance of its farthest corner. A radius may be too large by a rounding, never too

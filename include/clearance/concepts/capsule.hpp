@@ -27,15 +27,26 @@ concept capsule_source = point_source<S> && requires(const S s, std::size_t i, v
 template <class S>
 concept vague_source = capsule_source<S> && S::vague;
 
+/// Such a source whose capsules have no length: balls around its points.
+template <class S>
+concept ball_source = vague_source<S> && S::balls;
+
 /// For whatever looks at points alone.
 template <point_source S>
 consteval bool points_alone() {
   static_assert(
       !capsule_source<S>,
-      "the points of this source stand for more (what they hide, where they may be): a host answers questions "
-      "about pairs and the least distance of such sources, and `unseen` and `certain_distance` any backend; this does "
-      "not");
+      "the points of this source stand for more (what they hide, where they may be): questions about pairs, about the "
+      "least distance and about many configurations take such sources; this does not");
   return true;
+}
+/// For whatever takes points and balls.
+template <point_source S>
+consteval bool points_or_balls() {
+  if constexpr (ball_source<S>)
+    return true;
+  else
+    return points_alone<S>();
 }
 
 /// A primitive that can be compared with a straight way.

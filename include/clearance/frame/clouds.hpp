@@ -2,6 +2,7 @@
 #pragma once
 // Clouds with their poses, of one kind or of many, and how their points are numbered.
 
+#include <clearance/concepts/capsule.hpp>
 #include <clearance/frame/frame.hpp>
 #include <clearance/points/point_span.hpp>
 
@@ -86,6 +87,14 @@ std::size_t count_points(const Clouds& clouds) {
   std::size_t points = 0;
   for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
   return points;
+}
+
+/// May the points of some cloud be elsewhere? Then no point is certainly anywhere.
+template <class Clouds>
+bool any_vague(const Clouds& clouds) {
+  bool some = false;
+  for_each_cloud(clouds, [&]<class S>(const S&, const Eigen::Isometry3d&) { some = some || vague_source<S>; });
+  return some;
 }
 
 /// `clouds_of_any_kind<T>` with reasons.

@@ -10,9 +10,11 @@
 
 namespace clearance::pairwise {
 
-template <class PartView, answer Answer>
+/// `Around` makes of a position what is measured.
+template <class PartView, answer Answer, class Around = scan::as_points>
 struct pairs_of {
   using part_type = PartView;
+  using element = typename Around::element;
   using hierarchy_type = typename PartView::hierarchy_type;
   using primitive_type = typename hierarchy_type::primitive_type;
   using record = scan::record<typename scan::node_of<hierarchy_type>::place>;
@@ -21,7 +23,8 @@ struct pairs_of {
   static constexpr bool bound_per_part = true;
   /// So few pairs walk at once without going down to a leaf first. Few pairs of an answer that ends are that near.
   static constexpr std::uint32_t few = ending_answer<Answer> ? 8 * scan::warps : 0;
-  static constexpr bool coarse = coarse_answer<Answer>, labels = labelling_answer<Answer>, goes_ahead = true;
+  static constexpr bool points = std::is_same_v<element, vec3>;
+  static constexpr bool coarse = coarse_answer<Answer>, labels = labelling_answer<Answer>, goes_ahead = points;
   /// Leaves room for two blocks on a processor of an H200 and, up to 20 parts, for the cache that reading points ahead
   /// needs there.
   static constexpr std::size_t top_bytes = 6400;
@@ -32,6 +35,7 @@ struct pairs_of {
     point_counts* counts;      ///< Or null.
     label_counts* labelled;    ///< Room for one per block, if there are labels.
     bool last_group;           ///< Of parts.
+    Around around;
   };
   struct memory {
     distance_key best[scan::pair_capacity];  ///< Distance and primitive of each pair that is being looked at.
@@ -64,13 +68,14 @@ struct pairs_of {
   static __device__ std::uint32_t common_bound(const block&) { return 0; }
 
   static __device__ bool settled(const block&, std::uint32_t, std::uint32_t) { return false; }
+  static __device__ bool touched(const block&, std::uint32_t, std::uint32_t) { return false; }
   /// True if nothing more of the part matters to the pair. `x` is its point in the cloud's frame. Inside a solid the
   /// distance is 0.
   static __device__ bool skips(const block& s, std::uint32_t part, std::uint32_t point, std::uint32_t pair, vec3 x) {
     if constexpr (settling_answer<Answer>)
       if (s.head.answer.answer.settled(s.head.cloud, point - s.head.first, s.head.answer.first_part + part))
         return true;
-    if (!coarse || scan::fresh(s.answer.best[pair]) == no_key) return false;
+    if (!coarse || !points || scan::fresh(s.answer.best[pair]) == no_key) return false;
     const real reach = reach_of_pair(s, part, pair);
     return !frames::may_reach(scan::frame_parts<pairs_of>::place(part).root.around,
                               scan::has_interior<PartView> ? max(reach, 0) : reach, x);
@@ -169,12 +174,15 @@ class device_pairs {
   template <class Clouds, answer Answer, class Here>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
                point_counts* counts, const Here& here) {
-    launch_.template pass<pairs_of<PartView, Answer>>(
+    launch_.pass(
         facts_, poses, clouds,
-        [&](std::uint32_t group) {
-          return typename pairs_of<PartView, Answer>::arguments{answer, group * scan::most_parts,
-                                                                group == 0 ? counts : nullptr, labelled_.data(),
-                                                                group + 1 == launch_.groups()};
+        [&]<point_source S>(const S& source, std::uint32_t group, const frames::turn& now) {
+          if constexpr (labelling_answer<Answer>) static_assert(points_alone<S>());
+          const auto around = scan::elements_of(source);
+          return launch_.template begin<pairs_of<PartView, Answer, std::remove_const_t<decltype(around)>>>(
+              group, now,
+              {answer, group * scan::most_parts, group == 0 ? counts : nullptr, labelled_.data(),
+               group + 1 == launch_.groups(), around});
         },
         here);
   }

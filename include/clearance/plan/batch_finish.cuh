@@ -15,7 +15,8 @@ template <class PartView, class Question, class Source>
 __global__ void __launch_bounds__(128)
     finish_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
                           const __grid_constant__ Source source) {
-  using walk_type = walk_by_warp<typename PartView::hierarchy_type>;
+  constexpr bool balls = ball_source<Source>;  // each lane walks for the ball, and all find the same
+  using walk_type = std::conditional_t<balls, any_depth, walk_by_warp<typename PartView::hierarchy_type>>;
   using steps = warp_walk<typename PartView::hierarchy_type>;
   __shared__ typename steps::node_type pending[4][steps::most];
   const std::uint32_t c = (blockIdx.x * 128 + threadIdx.x) / 32, lane = threadIdx.x % 32;
@@ -24,17 +25,19 @@ __global__ void __launch_bounds__(128)
   const configuration_facts& facts = a.facts[c];
   const shared_bounds bounds{a.all + c, nullptr};
   min_distance_result mine;
+  walk_type walk{};
+  if constexpr (!balls) walk = {{pending[threadIdx.x / 32]}};
   const auto of_part = [&](std::uint32_t k) -> resolve_body<PartView, Source, walk_type> {
-    return {parts + k,    a.its_places(c) + k,           1,           source,
-            facts.origin, facts.world_from_cloud,        a.now.first, a.now.cloud,
-            bounds,       {{pending[threadIdx.x / 32]}}, &mine,       nullptr};
+    return {parts + k,   a.its_places(c) + k, 1,      source, facts.origin, facts.world_from_cloud,
+            a.now.first, a.now.cloud,         bounds, walk,   &mine,        nullptr};
   };
   for (std::uint32_t first = 0; first < a.part_count && __all_sync(scan::all_lanes, mine.part == none); first += 32) {
     unsigned those = __ballot_sync(scan::all_lanes, first + lane < a.part_count && of_part(first + lane).may_be_of(0));
     for (; those != 0 && __all_sync(scan::all_lanes, mine.part == none); those &= those - 1) {
       const std::uint32_t k = first + std::uint32_t(__ffs(int(those))) - 1;
       of_part(k)(1);
-      if (mine.part != none) mine.part = k, a.results[c] = mine;
+      if (mine.part != none) mine.part = k;
+      if (mine.part != none && (!balls || lane == 0)) a.results[c] = mine;
     }
   }
   __syncwarp();

@@ -153,9 +153,8 @@ struct block_search {
     std::uint64_t begin = p.at, end = p.at + 1;
     for (std::uint32_t l = 0; l < p.level; ++l)
       begin *= l == 0 ? tree_type::tile : tree_type::fan, end *= l == 0 ? tree_type::tile : tree_type::fan;
-    const cloud_tree::numbered_point* const points = search.tree.points;
     for (begin += t, end = end < search.tree.count ? end : search.tree.count; begin < end; begin += threads)
-      search.visit(points[begin], p.part);
+      search.visit(search.tree.point(std::uint32_t(begin)), p.part);
   }
 
   /// Replaces the stack's last `taken` pairs by the pairs that were made of them, the nearest on top.
@@ -202,7 +201,7 @@ __global__ void __launch_bounds__(256, 4)
     if (a.given.pieces != nullptr) {
       block.start(a.given.pieces[i]);
     } else {
-      if constexpr (!question::by_margin)
+      if constexpr (!question::by_margin && !Tree::of_balls)
         for (std::uint32_t j = t; j < 3 * a.part_count; j += blockDim.x)
           if (const auto seed = a.seed(c, j); seed.number != none) search.visit(seed, j % a.part_count);
       block.start();

@@ -38,6 +38,7 @@ struct margin_question {
 
   const double* margins;
   std::uint32_t count;
+  bool vague = false;  ///< No point is certainly anywhere.
 
   bool limited() const { return true; }
   CLEARANCE_HD margin_word start(bool = true) const { return {}; }
@@ -45,7 +46,7 @@ struct margin_question {
   CLEARANCE_HD static void add(margin_word* word, const margin_word& found) { lower_word(&word->found, found.found); }
   CLEARANCE_HD margin_reach near(std::uint32_t k, const part_facts& facts, const frames::float_error& error) const {
     const double margin = margins[count == 1 ? 0 : k];
-    return {frames::may_be_within(margin, facts, error), frames::is_within(margin, facts, error)};
+    return {frames::may_be_within(margin, facts, error), vague ? -infinity : frames::is_within(margin, facts, error)};
   }
   /// The state that in_collision reports for `word`.
   CLEARANCE_HD static state told(const margin_word& word, std::uint64_t valid, bool too_close) {

@@ -21,12 +21,11 @@ struct warp_walk {
 
   /// Shows the lanes' visitors together each primitive that is no farther than `reach`, or any visitor's.
   CLEARANCE_CALLS_ANYTHING
-  template <visitor Q>
-  CLEARANCE_HD void operator()(const H& tree, vec3 q, real reach, Q& ask) const {
+  template <class Element, visitor Q>
+  CLEARANCE_HD void operator()(const H& tree, const Element& q, real reach, Q& ask) const {
 #if defined(__CUDA_ARCH__)
-    using traits = bounding_volume_traits<typename H::volume_type>;
     const std::uint32_t lane = threadIdx.x % 32, at_once = tree.width() <= lanes ? nodes : 1;
-    if (!(traits::lower_bound(tree.volume(tree.root()), q) <= reach)) return;
+    if (!(scan::bound_of(tree.volume(tree.root()), q, reach) <= reach)) return;
     if (lane == 0) pending[0] = tree.root();
     __syncwarp();
     for (std::uint32_t count = 1; count > 0; __syncwarp()) {
@@ -41,14 +40,10 @@ struct warp_walk {
         bool near = false;
         node_type child{};
         if (j < size && leaf) {
-          const auto& its = tree.primitive(top, j);
-          if constexpr (requires { ask.offer(0u, real(0), its); })
-            ask.offer(tree.id(top, j), its.distance(q), its);
-          else
-            ask.offer(tree.id(top, j), its.distance(q));
+          scan::offer_for(tree.id(top, j), tree.primitive(top, j), q, ask);
         } else if (j < size) {
           child = tree.child(top, j);
-          near = traits::lower_bound(tree.volume(child), q) <= reach;
+          near = scan::bound_of(tree.volume(child), q, reach) <= reach;
         }
         const unsigned those = __ballot_sync(scan::all_lanes, near);
         if (near) pending[count + __popc(those & ((1u << lane) - 1))] = child;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/backend/processors.cuh>
 #include <clearance/backend/raised_limits.cuh>
 #include <clearance/backend/side_stream.cuh>
 #include <clearance/cloud_tree/device_tree.cuh>
@@ -33,21 +34,14 @@ class device_batch {
         model_(model),
         facts_(model.facts.begin(), model.facts.end()),
         memory_(memory),
+        processors_(on),
         beside_(on),
         counts_(1, on.id, memory),
         left_used_(2, on.id, memory) {
     check_stack<near_first>(model.depth, model.width);
     model_.facts = facts_;
     anywhere_.assign(facts_.size(), Eigen::Isometry3d::Identity());
-    const auto ask_device = [&on](cudaDeviceAttr what) {
-      int value = 0;
-      check_cuda(cudaDeviceGetAttribute(&value, what, on.id), "cudaDeviceGetAttribute");
-      return value;
-    };
-    processors_ = ask_device(cudaDevAttrMultiProcessorCount);
-    of_processor_ = std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerMultiprocessor));
-    of_block_ =
-        std::size_t(ask_device(cudaDevAttrMaxSharedMemoryPerBlockOptin)) - 1024;  // less the kernel's static memory
+    processors_.of_block -= 1024;  // less the kernel's static memory
   }
   device_batch(const device_batch&) = delete;
 
@@ -56,6 +50,11 @@ class device_batch {
   std::uint32_t placed() const { return configurations_ / robots_; }
   std::uint32_t robots() const { return robots_; }
   const result_type* results() const { return results_.data(); }
+  /// The same robot, whose parts may be elsewhere.
+  void take(const model_view<PartView>& robot) {
+    model_.parts = robot.parts;
+    std::ranges::copy(robot.facts, facts_.begin());
+  }
 
   /// Copies results and point counts, and returns whether all poses were rigid. Waits. Without results it returns true.
   bool copy_out(std::span<result_type> to, point_counts* points = nullptr) const {
@@ -123,7 +122,7 @@ class device_batch {
       beside_.fork();
       trees_[now.cloud]->build(source, &counts_.data()->dropped);
       const arguments a = told(source, now, question, foreseen);
-      ask(source, trees_[now.cloud]->view(), a);
+      ask(source, trees_[now.cloud]->template view_of<std::remove_const_t<decltype(source)>>(), a);
       finish(source, a);
     });
   }
@@ -135,7 +134,6 @@ class device_batch {
 
  private:
   using arguments = batch_arguments<PartView, Question>;
-  using tree_type = cloud_tree::device_tree::view_type;
   using room = batch_room<typename arguments::pair_type, pair_order<PartView>>;
   template <class Pair>
   using pieces = device_buffer<typename batch_pieces<Pair>::piece>;
@@ -186,8 +184,8 @@ class device_batch {
     const unsigned blocks = (configurations_ - 1) / (128 / placing_lanes(a.part_count)) + 1;
     on.launch(place_configurations<PartView, Question, S>, blocks, 128, 0, a, source);
   }
-  template <point_source S>
-  void ask(const S& source, const tree_type& tree, const arguments& a) {
+  template <point_source S, class Tree>
+  void ask(const S& source, const Tree& tree, const arguments& a) {
     beside_.join([&](const device& beside) {  // the tree does not need it
       if constexpr (Question::by_margin)
         place_in(beside, point_span{}, a);
@@ -199,7 +197,8 @@ class device_batch {
     else
       search_trees(tree, a);
   }
-  void search_trees(const tree_type& tree, const arguments& a) {
+  template <class Tree>
+  void search_trees(const Tree& tree, const arguments& a) {
     // As many threads as there is room for: more for each of few configurations, and where most end at once or a look
     // takes long. Stacks are as deep as the remaining room: a round that may take fewer pairs needs more rounds.
     unsigned threads = robots_ > 1                                            ? 64
@@ -209,31 +208,33 @@ class device_batch {
     static_assert(room::bytes(32, room::least_depth(32)) <= most_shared, "a handle of a node must be smaller");
     while (room::bytes(threads, room::least_depth(threads)) > most_shared) threads /= 2;
     arguments with_stack = a;
-    with_stack.depth = room::depth(threads, std::min(of_block_, of_processor_ / (resident_threads / threads) - 2048));
-    search(batch_kernel<arguments, tree_type>, tree, with_stack, threads, room::bytes(threads, with_stack.depth), left_,
+    with_stack.depth =
+        room::depth(threads, std::min(processors_.of_block, processors_.shared / (resident_threads / threads) - 2048));
+    search(batch_kernel<arguments, Tree>, tree, with_stack, threads, room::bytes(threads, with_stack.depth), left_,
            left_again_, first_rounds);
   }
-  void search_by_field(const tree_type& tree, const arguments& a) {
+  template <class Tree>
+  void search_by_field(const Tree& tree, const arguments& a) {
     using by_field = batch_arguments<PartView, Question, field_pair>;
     using shared = field_room<PartView>;
     unsigned threads = robots_ > 1 || (scan::has_interior<PartView> && !a.question.limited()) ? 128 : 256;
-    while (shared::bytes(threads) > of_block_) threads /= 2;
+    while (shared::bytes(threads) > processors_.of_block) threads /= 2;
     const by_field fields{a, {pieces_.data(), left_used_.data(), std::uint32_t(pieces_.size())}};
-    search(field_kernel<by_field, tree_type>, tree, fields, threads, shared::bytes(threads), pieces_, pieces_again_,
+    search(field_kernel<by_field, Tree>, tree, fields, threads, shared::bytes(threads), pieces_, pieces_again_,
            robots_ > 1 ? first_of_part : first_rounds);
   }
   unsigned threads_for_all() const {
-    return std::clamp(std::bit_floor(2048 * unsigned(processors_) / configurations_), 128u, 256u);
+    return std::clamp(std::bit_floor(2048 * processors_.count / configurations_), 128u, 256u);
   }
   /// One block per configuration; the slowest leave their rest to other blocks.
-  template <class Kernel, class Arguments, class Pieces>
-  void search(Kernel* kernel, const tree_type& tree, Arguments a, unsigned threads, std::size_t bytes,
-              const Pieces& left, const Pieces& left_again, unsigned first) {
+  template <class Kernel, class Tree, class Arguments, class Pieces>
+  void search(Kernel* kernel, const Tree& tree, Arguments a, unsigned threads, std::size_t bytes, const Pieces& left,
+              const Pieces& left_again, unsigned first) {
     {
       const device_guard guard(on_.id);
-      limits_.raise(reinterpret_cast<const void*>(kernel), of_block_);
+      limits_.raise(reinterpret_cast<const void*>(kernel), processors_.of_block);
     }
-    const unsigned at_once = processors_ * (resident_threads / threads);
+    const unsigned at_once = processors_.count * (resident_threads / threads);
     const auto search = [&](unsigned blocks, unsigned rounds) {
       a.rounds = rounds == none ? none : rounds * 128 / threads;
       on_.launch(kernel, blocks, threads, bytes, a, tree);
@@ -272,8 +273,7 @@ class device_batch {
   model_view<PartView> model_;
   std::vector<part_facts> facts_;
   std::pmr::memory_resource* memory_;
-  int processors_ = 0;
-  std::size_t of_processor_ = 0, of_block_ = 0;  ///< Bytes of shared memory.
+  processors_of processors_;
   side_stream beside_;
   raised_limits limits_;
   std::uint32_t configurations_ = 0;  ///< Of all robots.

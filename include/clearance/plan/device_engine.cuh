@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/backend/kept_memory.cuh>
 #include <clearance/plan/engine.hpp>
 #include <clearance/plan/placed_batch.cuh>
 
@@ -15,7 +16,9 @@ class engine<device, PartView, Q> : public minimum::placed_batch<PartView, typen
  public:
   /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
   engine(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
-      : placed(on, model, Q::each_part, memory), margins_(std::max<std::size_t>(model.size(), 1), on.id, memory) {}
+      : placed(on, model, Q::each_part, memory),
+        widened_(on, model, memory),
+        margins_(std::max<std::size_t>(model.size(), 1), on.id, memory) {}
 
   /// Points in host memory are copied into buffers that it keeps.
   template <class Clouds>
@@ -60,6 +63,8 @@ class engine<device, PartView, Q> : public minimum::placed_batch<PartView, typen
     static_assert(explain_clouds<Clouds>());
     placed::check_placed();
     auto question = q.checked(search_.parts());
+    if constexpr (requires { question.vague; }) question.vague = any_vague(clouds);
+    search_.take(widened_(q.radii));
     if constexpr (requires { question.margins; }) {
       on_.stage(std::span(question.margins, question.count), margins_.data());
       question.margins = margins_.data();
@@ -68,6 +73,7 @@ class engine<device, PartView, Q> : public minimum::placed_batch<PartView, typen
   }
 
   using placed::on_, placed::search_, placed::copies_;
+  widened_model<device, PartView> widened_;
   device_buffer<double> margins_;
   typename Q::result result_;
 };

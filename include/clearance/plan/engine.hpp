@@ -5,6 +5,7 @@
 #include <clearance/frame/readable.hpp>
 #include <clearance/plan/configurations.hpp>
 #include <clearance/plan/host_batch.hpp>
+#include <clearance/robot/widened.hpp>
 
 namespace clearance::plan {
 
@@ -12,7 +13,8 @@ namespace clearance::plan {
 template <class On, class PartView, class Q>
 class engine {
  public:
-  engine(const On& on, const model_view<PartView>& model) : on_(on), model_(model) {}
+  engine(const On& on, const model_view<PartView>& model)
+      : on_(on), model_(model), widened_(detail::backend_of(on), model) {}
 
   template <class Clouds>
   typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
@@ -20,9 +22,10 @@ class engine {
     const std::size_t count = detail::count_configurations(model_.size(), poses.size());
     Q::take_counts(all, {}, model_.size());
     Q::results(all).resize(count * (Q::each_part ? model_.size() : 1));
+    const auto robot = widened_(q.radii);
     detail::named(model_.size(), poses, [&] {
       for (std::size_t c = 0; c < count; ++c)
-        q.ask_one(on_, model_, poses.subspan(c * model_.size(), model_.size()), clouds, all, c);
+        q.ask_one(on_, robot, poses.subspan(c * model_.size(), model_.size()), clouds, all, c);
     });
     return all;
   }
@@ -31,17 +34,20 @@ class engine {
  private:
   On on_;
   model_view<PartView> model_;
+  widened_model<detail::backend_of_t<On>, PartView> widened_;
 };
 
 /// On the CPU. The result stays valid until the next call.
 template <class PartView, class Q>
 class engine<host, PartView, Q> {
  public:
-  engine(const host& on, const model_view<PartView>& model) : search_(on, model, Q::each_part) {}
+  engine(const host& on, const model_view<PartView>& model) : widened_(on, model), search_(on, model, Q::each_part) {}
 
   template <class Clouds>
   const typename Q::result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    const auto question = q.checked(search_.parts());
+    auto question = q.checked(search_.parts());
+    if constexpr (requires { question.vague; }) question.vague = any_vague(clouds);
+    search_.take(widened_(q.radii));
     auto& results = Q::results(result_);
     results.resize(detail::count_configurations(search_.parts(), poses.size()) * (Q::each_part ? search_.parts() : 1));
     detail::named(search_.parts(), poses,
@@ -59,6 +65,7 @@ class engine<host, PartView, Q> {
   void forget() { search_.forget(); }
 
  private:
+  widened_model<host, PartView> widened_;
   minimum::host_batch<PartView, typename Q::searched> search_;
   typename Q::result result_;
 };

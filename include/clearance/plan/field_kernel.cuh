@@ -47,7 +47,7 @@ __device__ void look_at(const Search& search, const Room& room, std::uint32_t co
       before += room.aside[j].bound < room.aside[t].bound || (room.aside[j].bound == room.aside[t].bound && j < t);
     room.order[before] = t;
     if (const field_pair& its = room.aside[t]; Search::solid && its.whole && !search.settled(its))
-      search.visit(search.tree.points[its.at], its.part);
+      search.visit(search.tree.point(its.at), its.part);
   }
   __syncthreads();
   const typename Room::walk_type walk{room.nodes + t / 32 * Room::walk_type::most};
@@ -55,12 +55,13 @@ __device__ void look_at(const Search& search, const Room& room, std::uint32_t co
     const field_pair p = room.aside[room.order[i]];
     if (Search::solid && p.whole) continue;
     if (__any_sync(scan::all_lanes, search.settled(p))) continue;
-    const cloud_tree::numbered_point here = search.tree.points[p.at];
+    const auto here = search.tree.point(p.at);
     const auto& body = search.body;
     const std::uint32_t index = body.first + here.number;
     auto ask = body.answer.visitor(index, p.part);
     const real reach = scan::from_lane(body.answer.reach(p.part), 0);
-    walk(body.parts[p.part].tree, body.places[p.part].part_from_cloud(here.at - body.origin), reach, ask);
+    walk(body.parts[p.part].tree, scan::moved(body.places[p.part].part_from_cloud, element_less(here, body.origin)),
+         reach, ask);
     body.answer.take(index, p.part, ask);
   }
 }

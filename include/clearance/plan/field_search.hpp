@@ -54,9 +54,10 @@ struct field_search {
     return look(c);
   }
   bool is_small(const pair& p) const { return p.level == 0; }
-  void look_at_points(const pair& p) const { visit(tree.points[p.at], p.part); }
-  CLEARANCE_HD void visit(const cloud_tree::numbered_point& p, std::uint32_t k) const {
-    body.visit(p.at - body.origin, body.first + p.number, k);
+  void look_at_points(const pair& p) const { visit(tree.point(p.at), p.part); }
+  template <class Point>
+  CLEARANCE_HD void visit(const Point& p, std::uint32_t k) const {
+    body.visit(element_less(p, body.origin), body.first + p.number, k);
   }
 
   /// Is there nothing left to learn from the pair?
@@ -90,27 +91,31 @@ struct field_search {
       body.answer.lower(none, k, most);
     return {bounds[k].lower(its.low, radius), its.high, its.side};
   }
-  /// A lower bound on the distance of a box from a part's ball, below 0 inside.
-  CLEARANCE_HD real beyond_ball(const extent& box, std::uint32_t k) const {
+  /// A lower bound on the distance of a box of points, which may be `wide`, from a part's ball, below 0 inside.
+  CLEARANCE_HD real beyond_ball(const extent& box, real wide, std::uint32_t k) const {
     const ball& around = body.places[k].around;
     const vec3 low = box.lower - body.origin - around.center, high = around.center - (box.upper - body.origin);
     const vec3 beyond{rough_max(rough_max(low.x, high.x), 0), rough_max(rough_max(low.y, high.y), 0),
                       rough_max(rough_max(low.z, high.z), 0)};
-    const real away = rough_length(beyond);
+    const real away = rough_length(beyond) - wide;
     return bounds[k].lower(away, around.radius);
   }
   /// Finds a pair's bound. Returns false if nothing in it matters.
   CLEARANCE_HD bool look(pair& p) const {
     ball b;
     extent box;
+    real wide = 0;
     if (p.level == 0) {
-      const cloud_tree::numbered_point here = tree.points[p.at];
+      const auto here = tree.point(p.at);
+      if constexpr (Tree::of_balls) wide = here.radius;
       b = {here.at, here.number == none ? -1.0f : 0.0f}, box = {here.at, here.at};
     } else {
       b = tree.balls[node_of(p)], box = tree.boxes[node_of(p)];
+      if constexpr (Tree::of_balls) wide = tree.widest[node_of(p)];
     }
     if (!(b.radius >= 0)) return false;  // no point of it counts
-    p.bound = max(p.bound, beyond_ball(box, p.part));
+    if constexpr (Tree::of_balls) wide = wide * (1 + 4 * slack), b.radius = (b.radius + wide) * (1 + slack);
+    p.bound = max(p.bound, beyond_ball(box, wide, p.part));
     if (settled(p)) return false;
     const field_range its = look_from(b.center - body.origin, b.radius, p.part);
     // A solid's inside changes only near its surface, within its tolerance.

@@ -60,6 +60,8 @@ class host_batch {
     return counts;
   }
 
+  /// The same robot, whose parts may be elsewhere.
+  void take(const model_view<PartView>& robot) { model_ = robot; }
   void forget() { last_.clear(); }
   std::size_t parts() const { return model_.size(); }
 
@@ -76,6 +78,14 @@ class host_batch {
     std::vector<pending_pair<node_pair<typename PartView::hierarchy_type::node_type>, pair_order<PartView>>> pending;
     std::vector<pending_pair<field_pair, pair_order<PartView>>> by_field;
   };
+
+  template <point_source S>
+  static auto numbered(const S& source, std::uint32_t i, vec3 at) {
+    if constexpr (ball_source<S>)
+      return cloud_tree::numbered_ball{{at, i}, source.around(i, at).radius};
+    else
+      return cloud_tree::numbered_point{at, i};
+  }
 
   template <class Clouds>
   void ask(const model_view<PartView>& robot, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
@@ -101,14 +111,14 @@ class host_batch {
               robot.parts, places.data(), parts, source, own.frame.origin, now.first, nullptr, answer, walk_};
           own.bounds.clear();
           for (std::uint32_t k = 0; k < parts; ++k) own.bounds.emplace_back(robot.facts[k], places[k].part_from_cloud);
-          const auto& tree = trees_[now.cloud].view();
+          const auto tree = trees_[now.cloud].template view_of<S>();
           using body_type = std::remove_const_t<decltype(body)>;
-          using tree_type = cloud_tree::host_tree::view_type;
+          using tree_type = std::remove_const_t<decltype(tree)>;
           const auto walk = [&](const auto& search, auto& pending) {
             for (const place& p : starts)
               if (p.cloud == now.cloud && p.point < source.size())
                 if (const sample s = source[p.point]; s.valid())
-                  for (std::uint32_t k = 0; k < parts; ++k) search.seed({s.position, p.point}, k);
+                  for (std::uint32_t k = 0; k < parts; ++k) search.seed(numbered(source, p.point, s.position), k);
             with_vectors([&] { walk_trees(search, pending); });
           };
           if (robot.fields != nullptr)

@@ -104,7 +104,7 @@ struct tree_search {
       const std::uint32_t last = end - 1;
       end = tree.end_below(level, last), begin = tree.first_below(level, begin);
     }
-    for (its.at = begin; its.at < end; ++its.at) look_at_point(its, tree.points[its.at]);
+    for (its.at = begin; its.at < end; ++its.at) look_at_point(its, tree.point(its.at));
   }
 
   /// Is there nothing left to learn from the pair?
@@ -123,11 +123,15 @@ struct tree_search {
       return ordered(p.bound);
   }
 
-  CLEARANCE_HD void visit(const cloud_tree::numbered_point& p, std::uint32_t k) const {
-    body.visit(p.at - body.origin, body.first + p.number, k);
+  template <class Point>
+  CLEARANCE_HD void visit(const Point& p, std::uint32_t k) const {
+    body.visit(element_less(p, body.origin), body.first + p.number, k);
   }
   /// A point that is known to be near: where to begin.
-  CLEARANCE_HD void seed(const cloud_tree::numbered_point& p, std::uint32_t k) const { visit(p, k); }
+  template <class Point>
+  CLEARANCE_HD void seed(const Point& p, std::uint32_t k) const {
+    visit(p, k);
+  }
 
  private:
   CLEARANCE_HD std::uint32_t node_of(const pair& p) const { return tree.begin[p.level - 1] + p.at; }
@@ -142,11 +146,13 @@ struct tree_search {
   /// Finds a pair's bound, and which of its two nodes is to be opened. Returns false if nothing in it matters or all of
   /// it has been looked at.
   CLEARANCE_HD bool look(pair& p) const {
-    if (p.level == 0) return look_at_point(p, tree.points[p.at]);
-    const ball b = tree.balls[node_of(p)];
+    if (p.level == 0) return look_at_point(p, tree.point(p.at));
+    ball b = tree.balls[node_of(p)];
     if (!(b.radius >= 0)) return false;  // no point of it counts
-    if (b.radius <= bounds[p.part].most && in_one_place(p))
-      return look_at_point(p, {tree.boxes[node_of(p)].lower, least(p)});
+    if constexpr (Tree::of_balls)
+      b.radius = (b.radius + tree.widest[node_of(p)]) * (1 + slack);  // around all balls
+    else if (b.radius <= bounds[p.part].most && in_one_place(p))
+      return look_at_point(p, cloud_tree::numbered_point{tree.boxes[node_of(p)].lower, least(p)});
     const vec3 x = b.center - body.origin;
     if (solid && p.whole && !look_inside(p, b, x)) return false;
     p.by_points = true;
@@ -157,7 +163,7 @@ struct tree_search {
       if constexpr (round_volume<volume_type>) {
         const ball around = traits::as_ball(volume);
         size = around.radius;
-        bound = bounds[p.part].lower(away(tree.boxes[node_of(p)], b, x, around.center, p.part), size);
+        bound = bounds[p.part].lower(away(node_of(p), b, x, around.center, p.part), size);
       } else {
         bound = bounds[p.part].lower(traits::lower_bound(volume, body.places[p.part].part_from_cloud(x)), b.radius);
         size =
@@ -173,7 +179,8 @@ struct tree_search {
   /// A lower bound on the distance from a position in a part to a node's points: from their box and from their ball.
   /// Its error is no larger than that of a point transformed into the part's frame: this is the same transform
   /// backwards.
-  CLEARANCE_HD real away(const extent& box, const ball& b, vec3 x, vec3 center, std::uint32_t k) const {
+  CLEARANCE_HD real away(std::uint32_t node, const ball& b, vec3 x, vec3 center, std::uint32_t k) const {
+    const extent& box = tree.boxes[node];
     const rigid_transform& to = body.places[k].part_from_cloud;
     const vec3 d = center - to.translation;
     const vec3 w{to.row[0].x * d.x + to.row[1].x * d.y + to.row[2].x * d.z,
@@ -182,7 +189,9 @@ struct tree_search {
     const vec3 low = box.lower - body.origin - w, high = w - (box.upper - body.origin);
     const vec3 beyond{rough_max(rough_max(low.x, high.x), 0), rough_max(rough_max(low.y, high.y), 0),
                       rough_max(rough_max(low.z, high.z), 0)};
-    return rough_max(rough_length(beyond), rough_length(x - w) - b.radius * (1 + slack));
+    real least = rough_length(beyond);
+    if constexpr (Tree::of_balls) least = least - tree.widest[node] * (1 + 4 * slack);
+    return rough_max(least, rough_length(x - w) - b.radius * (1 + slack));
   }
 
   /// Do all of a node's points get the same computed position in the part's frame? Then the point with the lowest
@@ -203,16 +212,17 @@ struct tree_search {
   }
 
   /// `here`: the pair's point, or the point that stands for a node.
-  CLEARANCE_HD bool look_at_point(pair& p, const cloud_tree::numbered_point& here) const {
+  template <class Point>
+  CLEARANCE_HD bool look_at_point(pair& p, const Point& here) const {
     if (here.number == none) return false;  // no point; a volume may return anything for NaN
     if (solid && p.whole) return visit(here, p.part), false;
     const auto& its = body.parts[p.part].tree;
-    const vec3 q = body.places[p.part].part_from_cloud(here.at - body.origin);
-    const real bound = traits::lower_bound(its.volume(p.node), q);
-    if (!(bound <= reach(p.part))) return false;
+    const auto q = scan::moved(body.places[p.part].part_from_cloud, element_less(here, body.origin));
+    const real near = reach(p.part), bound = scan::bound_of(its.volume(p.node), q, near);
+    if (!(bound <= near)) return false;
     if (!its.is_leaf(p.node)) return p.bound = max(p.bound, bound), p.by_points = false, true;
     auto ask = body.answer.visitor(body.first + here.number, p.part);
-    offer_leaf(its, p.node, q, ask);
+    scan::offer_leaf_for(its, p.node, q, ask);
     body.answer.take(body.first + here.number, p.part, ask);
     return false;
   }
@@ -223,7 +233,7 @@ struct tree_search {
     const frames::placement& place = body.places[p.part];
     const part_view& part = body.parts[p.part];
     if (!frames::may_reach({place.around.center, place.around.radius + b.radius}, 0, x)) return p.whole = false, true;
-    if (!(reach(p.part) >= 0)) return false;
+    if (!Tree::of_balls && !(reach(p.part) >= 0)) return false;
     p.bound = max(p.bound, lowered(length(x - place.around.center) - place.around.radius - b.radius,
                                    place.around.radius + b.radius));
     if (!(b.radius < part.facts.radius)) return true;

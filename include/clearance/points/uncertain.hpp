@@ -39,7 +39,7 @@ CLEARANCE_HD vec3 sensor_of(const S& s) {
 /// `min_distance` and other questions about an uncertain source are about all places where its points may be.
 template <point_source S, sensor_noise N = no_noise>
 struct uncertain {
-  static constexpr bool vague = true;
+  static constexpr bool vague = true, balls = !capsule_source<S>;
 
   S source;
   N noise;

@@ -167,11 +167,11 @@ class device_points {
   distance_certainty pass(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
                           real d_max, point_counts* counts, const Here& here) {
     using tally = points_of<PartView, Tangents>;
-    return certainty_of(launch_.template pass<tally>(
+    return certainty_of(launch_.pass(
         facts_, poses, clouds,
-        [&](std::uint32_t group) {
-          return typename tally::arguments{out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr,
-                                           last_.data()};
+        [&](const auto&, std::uint32_t group, const frames::turn& now) {
+          return launch_.template begin<tally>(
+              group, now, {out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr, last_.data()});
         },
         here));
   }

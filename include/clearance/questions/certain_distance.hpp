@@ -16,6 +16,13 @@ struct part_radius {
   double sum() const { return joints + delay; }
 };
 
+/// The same for the `radii` of other questions.
+inline std::vector<double> sums(std::span<const part_radius> radii) {
+  std::vector<double> all;
+  for (const part_radius& r : radii) all.push_back(r.sum());
+  return all;
+}
+
 /// What lies between the distance of a pair and what is certain of it, one by one. Metres.
 struct uncertainty_shares {
   double noise = 0, calibration = 0, time = 0;  ///< Of the point.

@@ -3,6 +3,7 @@
 // Is any point closer than a margin?
 
 #include <clearance/query/query.hpp>
+#include <clearance/robot/widened.hpp>
 
 #include <algorithm>
 #include <array>
@@ -73,9 +74,11 @@ struct tell_collision {
 
 }  // namespace pairwise
 
-/// Is any point closer than the margins? Refused: neither one nor as many margins as parts, and one that is NaN.
+/// Is any point closer than the margins? Refused: neither one nor as many margins as parts, one that is NaN, and radii
+/// that are negative or not one for all parts, one per part or none.
 struct in_collision {
   std::vector<double> margins = {0.0};  ///< Metres: one for all parts, or one per part.
+  std::vector<double> radii = {};       ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = collision_result;
   using out = collision_result*;  ///< In memory that the backend writes.
@@ -88,16 +91,15 @@ struct in_collision {
   template <class Asked, class Clouds>
   pairwise::first_within prepare(const Asked& a, const out&, const Clouds& clouds) const {
     const std::size_t parts = a.parts();
-    frames::check_margins(margins, parts);
+    frames::check_margins(margins, parts), check_radii(radii, parts);
     a.reaches.resize(2 * parts);
     for (std::size_t k = 0; k < parts; ++k) {
       const double margin = margins[margins.size() == 1 ? 0 : k];
-      a.reaches[k] = frames::may_be_within(margin, a.facts[k], a.frame.error);
-      a.reaches[parts + k] = frames::is_within(margin, a.facts[k], a.frame.error);
+      const part_facts facts = widened(a.facts[k], radius_of(radii, k));
+      a.reaches[k] = frames::may_be_within(margin, facts, a.frame.error);
+      a.reaches[parts + k] = frames::is_within(margin, facts, a.frame.error);
     }
-    for_each_cloud(clouds, [&]<class S>(const S&, const Eigen::Isometry3d&) {
-      if (vague_source<S>) std::fill_n(a.reaches.begin() + std::ptrdiff_t(parts), parts, -infinity);
-    });
+    if (any_vague(clouds)) std::fill_n(a.reaches.begin() + std::ptrdiff_t(parts), parts, -infinity);
     const auto [word, near, start] = a.put(std::array{pairwise::first_within::nothing}, a.reaches, a.first);
     return {word, near, near + parts, start};
   }
@@ -113,7 +115,8 @@ struct in_collision {
 
   /// No farther point of a part matters.
   real reach(std::size_t part, std::size_t, const part_facts& facts, const frames::float_error& error) const {
-    return frames::may_be_within(margins[margins.size() == 1 ? 0 : part], facts, error);
+    return frames::may_be_within(margins[margins.size() == 1 ? 0 : part], widened(facts, radius_of(radii, part)),
+                                 error);
   }
   /// Also the state, if there is no pair.
   static void set_counts(result& r, const point_counts& counts) {

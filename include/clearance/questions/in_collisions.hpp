@@ -38,9 +38,10 @@ struct in_collisions_result {
 };
 
 /// Is any point closer to a configuration than the margins? `poses` as for min_distances. Refused: poses that are no
-/// whole configurations, neither one nor as many margins as parts, and one that is NaN.
+/// whole configurations, neither one nor as many margins as parts, one that is NaN, and radii as in_collision.
 struct in_collisions {
   std::vector<double> margins = {0.0};  ///< Metres: one for all parts, or one per part.
+  std::vector<double> radii = {};       ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = in_collisions_result;
   using searched = minimum::margin_question;

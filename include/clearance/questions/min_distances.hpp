@@ -86,9 +86,12 @@ class joined_minima {
 
 /// The least distance of each configuration. `poses` are world-from-part: one per part of the first configuration, then
 /// those of the next; or a prepared question takes joint vectors of a `joint_chain`. It remembers where each
-/// configuration's last minimum was. Refused: poses that are no whole configurations, and d_max that is NaN.
+/// configuration's last minimum was. Refused: poses that are no whole configurations, d_max that is NaN, and radii as
+/// in_collision.
 struct min_distances {
   double d_max = infinity;  ///< Metres. For a configuration farther away only that fact is reported, much faster.
+  std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each. The bracket
+                                   ///< has the greatest.
 
   using result = min_distances_result;
   using searched = minimum::least_question;

@@ -19,7 +19,8 @@ struct min_distances_per_part_result {
 /// The least distance of each part of each configuration, otherwise as min_distances. Each part has its own bound, as a
 /// robot of that part alone; all share one structure over the clouds.
 struct min_distances_per_part {
-  double d_max = infinity;  ///< Metres, as for min_distances.
+  double d_max = infinity;         ///< Metres, as for min_distances.
+  std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = min_distances_per_part_result;
   using searched = minimum::least_question;

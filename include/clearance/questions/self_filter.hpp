@@ -100,6 +100,9 @@ struct self_filter {
   template <class Asked, class Clouds>
   pairwise::own_points prepare(const Asked& a, const out& to, const Clouds& clouds) const {
     using answer = pairwise::own_points;
+    for_each_cloud(clouds, []<point_source S>(const S&, const Eigen::Isometry3d&) {
+      static_assert(points_alone<S>());  // what may be elsewhere is not certainly the robot's
+    });
     const bool all_uncertain = pairwise::set_paddings(padding, a.facts, a.frame.error, a.reaches);
     const auto near = backends::few_or_kept<2 * pairwise::paddings::few>(a.reaches, a.memory);
     const auto start = backends::few_or_kept<answer::few_clouds>(a.first, a.memory);

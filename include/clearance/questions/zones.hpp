@@ -3,14 +3,15 @@
 // Which parts have points in zones around them: stop, slow down, warn.
 
 #include <clearance/query/query.hpp>
+#include <clearance/robot/widened.hpp>
 
 namespace clearance {
 
-/// One zone of one part. A point counts if it may be nearer than the zone's threshold: arithmetic, gaps and tolerances
-/// are on the safe side.
+/// One zone of one part. A point counts if it may be nearer than the zone's threshold: arithmetic, gaps, tolerances and
+/// all radii are on the safe side.
 struct zone {
   std::uint64_t points = 0;
-  real nearest = infinity;  ///< The least distance of its points, as computed. Metres.
+  real nearest = infinity;  ///< The least distance of its points, less their radii, as computed. Metres.
   std::uint32_t nearest_cloud = none,
                 nearest_point = none;  ///< The point at that distance; of equally near ones the lowest.
   std::uint32_t first_cloud = none, first_point = none;  ///< The lowest of its points.
@@ -153,11 +154,12 @@ inline void add_reaches(std::span<const double> thresholds, const part_facts& fa
 }  // namespace pairwise
 
 /// Counts the points in zones around every part, in one pass. Refused: thresholds that are negative, not in order, none
-/// or not the same number for each part, and `min_points` of 0.
+/// or not the same number for each part, `min_points` of 0, and radii as in_collision.
 struct zones {
   std::vector<double> thresholds;  ///< Metres, in ascending order: the same for every part,
   bool each_part = false;          ///< or, if this is set, those of each part in turn, equally many.
   std::size_t min_points = 1;      ///< A zone with fewer counts as empty (`innermost`); its points are still reported.
+  std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = zones_result;
   /// Zones ordered as in the result, in memory that the backend writes.
@@ -186,10 +188,11 @@ struct zones {
   template <class Asked>
   pairwise::count_in_zones prepare(const Asked& a, const out&) const {
     const std::size_t each = per_part(a.parts());
+    check_radii(radii, a.parts());
     a.reaches.clear();
     for (std::size_t k = 0; k < a.parts(); ++k)
-      pairwise::add_reaches(std::span(thresholds).subspan(each_part ? k * each : 0, each), a.facts[k], a.frame.error,
-                            a.reaches);
+      pairwise::add_reaches(std::span(thresholds).subspan(each_part ? k * each : 0, each),
+                            widened(a.facts[k], radius_of(radii, k)), a.frame.error, a.reaches);
     using answer = pairwise::count_in_zones;
     const std::size_t words = answer::copies * a.reaches.size();
     auto* const empty = a.template room<pairwise::zone_words>(words);
@@ -210,7 +213,8 @@ struct zones {
   /// No farther point of a part matters.
   real reach(std::size_t part, std::size_t parts, const part_facts& facts, const frames::float_error& error) const {
     const std::size_t each = per_part(parts);
-    return frames::may_be_within(thresholds[(each_part ? part * each : 0) + each - 1], facts, error);
+    return frames::may_be_within(thresholds[(each_part ? part * each : 0) + each - 1],
+                                 widened(facts, radius_of(radii, part)), error);
   }
   static void set_counts(result& r, const point_counts& counts) { r.counts = counts; }
   static void place_in_whole(result& r, const piece_place& place) {

@@ -22,7 +22,10 @@ CLEARANCE_HD auto element_of(const S& s, std::size_t i, vec3 p) {
 template <point_source S>
 CLEARANCE_HD auto element_less(const S& s, std::size_t i, vec3 x, vec3 origin) {
   if constexpr (capsule_source<S>) {
-    const capsule c = s.around(i, x + origin);
+    vec3 p = x + origin;
+    if constexpr (vague_source<S>)  // the radius of the place that was read
+      if (!(origin == vec3{0, 0, 0})) p = s[i].position;
+    const capsule c = s.around(i, p);
     return capsule{c.from - origin, c.along, c.radius};
   } else {
     return x;
@@ -118,6 +121,29 @@ template <class Walk, hierarchy H, visitor Q>
 CLEARANCE_HD void walk_for(const Walk& walk, const H& tree, const capsule& q, Q& ask) {
   of_capsule<Q> about{ask, q};
   walk(tree, q.from, about);
+}
+
+/// Shows a visitor a primitive,
+template <primitive P, visitor Q>
+CLEARANCE_HD void offer_for(std::uint32_t id, const P& primitive, vec3 q, Q& ask) {
+  if constexpr (requires { ask.offer(id, real(0), primitive); })
+    ask.offer(id, primitive.distance(q), primitive);
+  else
+    ask.offer(id, primitive.distance(q));
+}
+template <primitive P, visitor Q>
+CLEARANCE_HD void offer_for(std::uint32_t id, const P& primitive, const capsule& q, Q& ask) {
+  of_capsule<Q>{ask, q}.offer(id, 0, primitive);
+}
+/// or those of a leaf.
+template <hierarchy H, visitor Q>
+CLEARANCE_HD void offer_leaf_for(const H& tree, const typename H::node_type leaf, vec3 q, Q& ask) {
+  offer_leaf(tree, leaf, q, ask);
+}
+template <hierarchy H, visitor Q>
+CLEARANCE_HD void offer_leaf_for(const H& tree, const typename H::node_type leaf, const capsule& q, Q& ask) {
+  of_capsule<Q> about{ask, q};
+  offer_leaf(tree, leaf, q.from, about);
 }
 
 }  // namespace clearance::scan

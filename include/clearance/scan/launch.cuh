@@ -99,16 +99,16 @@ class launcher {
     on_.launch(place_kernel<PartView>, 1, most_parts, 0, poses, cloud, views_.data(), parts_, off, placed_.data());
   }
 
-  /// All clouds of a frame against all groups. `answer(group)` gives the answer's arguments, `here(source, cloud)` a
-  /// source that the device can read. Returns the facts of all clouds together.
-  template <class Tally, class Clouds, class Arguments, class Here>
+  /// All clouds of a frame against all groups. `arguments(source, group, turn)` are a kernel's, as `begin` makes them,
+  /// `here(source, cloud)` is a source that the device can read. Returns the facts of all clouds together.
+  template <class Clouds, class Arguments, class Here>
   const frames::frame_facts& pass(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> poses,
-                                  const Clouds& clouds, const Arguments& answer, const Here& here) {
+                                  const Clouds& clouds, const Arguments& arguments, const Here& here) {
     try {
       frames::for_each_turn(frame_, facts, poses, clouds, [&](const auto& anywhere, const frames::turn& now) {
         const auto source = here(anywhere, now.cloud);
         for (std::uint32_t group = 0; group < groups(); ++group) {
-          auto a = begin<Tally>(group, now, answer(group));
+          auto a = arguments(source, group, now);
           put(frame_, group, a);
           (*this)(source, a);
         }

@@ -54,10 +54,11 @@ struct scan_body {
     const auto q = moved(place.part_from_cloud, p);
     if constexpr (has_interior<PartView>) {
       if (answer.settled(index, k)) return;
-      if constexpr (capsule_source<Source> && requires { answer.touched(index, k); })
+      constexpr bool point = std::is_same_v<Element, vec3>;
+      if constexpr (!point && requires { answer.touched(index, k); })
         if (p.radius == 0 && answer.touched(index, k)) return;
       if (const vec3 start = start_of(q); part.interior.inside(start)) {
-        if (answer.take_inside(index, k) && !capsule_source<Source> && certainly_inside(part, start, place.error, walk))
+        if (answer.take_inside(index, k) && point && certainly_inside(part, start, place.error, walk))
           answer.take_certain();  // not of a capsule: what touched before is passed over, in any order
         return;
       }
