@@ -35,14 +35,6 @@ auto tolerant(const scene<P>& s, const std::vector<double>& radii) {
   return clearance::model(std::move(parts));
 }
 
-bool same_zones(const clearance::zones_result& a, const clearance::zones_result& b) {
-  return same_bytes(a.counts, b.counts) && std::ranges::equal(a.zones, b.zones, [](const auto& x, const auto& y) {
-           return x.points == y.points && same_bits(x.nearest, y.nearest) && x.nearest_cloud == y.nearest_cloud &&
-                  x.nearest_point == y.nearest_point && x.first_cloud == y.first_cloud &&
-                  x.first_point == y.first_point;
-         });
-}
-
 /// in_collision and zones against all pairs, and against samples of what may be there.
 template <class V, class P>
 void thresholds_hold(std::size_t most_points) {
@@ -74,8 +66,8 @@ void thresholds_hold(std::size_t most_points) {
         const std::string what = s.name + ", scale " + std::to_string(scale) + ", within " + std::to_string(margin);
         const in_collision asked{{margin}, radii};
         const auto r = ask(host{}, model, s.poses, all, asked);
-        v.require(same_bytes(r, ask(host{2}, model, s.poses, all, asked)), what, ": two threads");
-        v.require(same_bytes(r, ask(host{}, by_tolerance, s.poses, all, in_collision{{margin}})), what,
+        v.require(same_collision(r, ask(host{2}, model, s.poses, all, asked)), what, ": two threads");
+        v.require(same_collision(r, ask(host{}, by_tolerance, s.poses, all, in_collision{{margin}})), what,
                   ": a radius is no tolerance");
         ++states[int(r.state)];
         if (r.state == state::no_data) continue;
@@ -268,6 +260,25 @@ TEST_CASE("At no time of a motion is anything nearer, wherever points and parts 
   }
   INFO(free << " free, " << collides << " in collision");
   CHECK((free > 4 && collides > 1));
+}
+
+TEST_CASE("If a point may be anywhere, no configuration and no motion is free") {
+  dice d(15);
+  const scene<inner_sphere> s{"", {random_spheres(d, 20, 0.1, 0.02)}, {shifted(0, 0, 3)}, d.points(500, 1)};
+  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const configurations poses{shifted(0, 0, 3), shifted(0, 0, 4)};
+  const clearance::straight_motion motion({&poses[0], 1}, {&poses[1], 1});
+  std::vector<real> radii(500, 0.01f);
+  for (const real bad : {0.01f, -1.0f, clearance::not_a_number, infinity}) {
+    radii[123] = bad;
+    const placed cloud{uncertain{point_span(s.points), clearance::point_radii(radii.data(), radii.size())}};
+    const state expected = bad == 0.01f ? state::free : state::possible;
+    for (const double d_max : {0.1, double(infinity)})
+      for (const auto& r : ask(host{}, model, poses, cloud, min_distances{d_max}).of)
+        CHECK((r.state == expected && (r.lower > 0) == (expected == state::free)));
+    for (const state its : ask(host{}, model, poses, cloud, in_collisions{{0.1}}).of) CHECK(its == expected);
+    CHECK(motion_clearance(host{}, model, motion, cloud).state == expected);
+  }
 }
 
 TEST_CASE("Radii that cannot be are refused with a sentence") {

@@ -24,14 +24,6 @@ using clearance::device, clearance::host, clearance::in_collision, clearance::in
 
 namespace {
 
-bool same_zones(const clearance::zones_result& a, const clearance::zones_result& b) {
-  return same_bytes(a.counts, b.counts) && std::ranges::equal(a.zones, b.zones, [](const auto& x, const auto& y) {
-           return x.points == y.points && same_bits(x.nearest, y.nearest) && x.nearest_cloud == y.nearest_cloud &&
-                  x.nearest_point == y.nearest_point && x.first_cloud == y.first_cloud &&
-                  x.first_point == y.first_point;
-         });
-}
-
 /// `here` and `there` are the same robot, `clouds` and `on_device` the same points.
 template <class Here, class There, class Clouds, class OnDevice>
 void check_all(const device& gpu, const Here& here, const There& there, const std::vector<Eigen::Isometry3d>& poses,
@@ -50,9 +42,7 @@ void check_all(const device& gpu, const Here& here, const There& there, const st
   };
   for (const auto& its : {std::vector<double>{}, radii})
     for (const double margin : {0.0, 0.1 * size, size}) {
-      both(
-          in_collision{{margin}, its}, [](const auto& a, const auto& b) { return same_bytes(a, b); }, "in_collision",
-          poses);
+      both(in_collision{{margin}, its}, same_collision, "in_collision", poses);
       both(zones{.thresholds = {margin, 2 * margin}, .radii = its}, same_zones, "zones", poses);
       both(in_collisions{{margin}, its}, same_states, "in_collisions", many);
       both(min_distances{margin, its}, same_results, "min_distances", many);
