@@ -12,6 +12,7 @@
 #include <clearance/questions/in_collision.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/min_distance_filtered.hpp>
+#include <clearance/questions/min_distances.hpp>
 #include <clearance/questions/nearest_k.hpp>
 #include <clearance/questions/within.hpp>
 #include <clearance/questions/zones.hpp>
@@ -83,7 +84,7 @@ class judge {
   judge(const scene<Model>& s, std::span<const clearance::vec3> points, const Eigen::Isometry3d& cloud, tally& t)
       : s_(s), points_(points), cloud_(cloud), t_(t), parts_(s.bodies.size()) {
     look();
-    each_point(), least(), lists(), labels();
+    each_point(), least(), many(), lists(), labels();
   }
 
  private:
@@ -213,6 +214,22 @@ class judge {
         error = std::max(error, at(k, i).error);
       t_.require(m.point < points_.size() && is_distance(k, m.point, m.distance) && wide(m.distance) <= its + error,
                  "part's minimum", "part %zu: %.9g, not %.9Lg", k, double(m.distance), its);
+    }
+  }
+  /// Many configurations, which are searched by a tree over the points; all are the same one.
+  void many() {
+    constexpr std::size_t configurations = 12;
+    std::vector<Eigen::Isometry3d> poses;
+    for (std::size_t c = 0; c < configurations; ++c) poses.insert(poses.end(), s_.poses.begin(), s_.poses.end());
+    const clearance::placed<clearance::point_span> cloud{clearance::point_span(points_), cloud_};
+    const auto all = clearance::ask(clearance::host{.threads = 1}, s_.model, poses, cloud, clearance::min_distances{});
+    for (const auto& one : all.of) {
+      const bool there = one.part < parts_ && one.point < points_.size();
+      t_.require(there && is_distance(one.part, one.point, one.distance) &&
+                     wide(one.distance) <= nearest_high() + most_error_ && wide(one.lower) <= solid_low_ &&
+                     solid_high_ <= wide(one.upper),
+                 "many configurations", "%.9g in %.9g to %.9g, not %.9Lg", double(one.distance), double(one.lower),
+                 double(one.upper), nearest_);
     }
   }
   wide nearest_high() const {
