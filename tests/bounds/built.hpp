@@ -41,7 +41,7 @@ struct field_law {
     real computed = clearance::infinity;
     for (const P& p : all) computed = clearance::min(computed, p.distance(q));
     const clearance::field_range range = its.view()(q);
-    const double scale = unit * (std::abs(double(computed)) + size) + underflow;
+    const double scale = unit * (std::abs(double(computed)) + its.shape.around.radius) + underflow;
     r.add((double(computed) - double(range.low)) / scale, 0);
     r.add((double(range.high) - double(computed)) / scale, 1);
     return r;
