@@ -6,7 +6,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <map>
 
 namespace testing {
@@ -36,19 +35,20 @@ inline std::string text_of(const digests& all) {
   std::string text;
   for (const auto& [name, its] : all) {
     char line[200];
-    std::snprintf(line, sizeof line, "%016llx %s\n", static_cast<unsigned long long>(its), name.c_str());
+    std::snprintf(line, sizeof line, "{\"%s\", 0x%016llx},\n", name.c_str(), static_cast<unsigned long long>(its));
     text += line;
   }
   return text;
 }
 
 /// Those that the repository keeps: the bits that every compiler, processor and GPU must give.
-inline digests kept_digests(const char* part) {
-  std::ifstream file(std::string(CLEARANCE_TEST_ROOT "/tests/forms/digests-") + part + ".txt");
-  digests all;
-  for (std::string number, name; file >> number >> name;) all[name] = std::stoull(number, nullptr, 16);
-  return all;
-}
+inline const digests kept_digests = {
+#include "forms/digests_frames.inc"
+};
+/// Of the first cloud alone, in chunks of any size.
+inline const digests kept_digests_of_chunks = {
+#include "forms/digests_chunks.inc"
+};
 
 /// How often each way is asked: once, or as often as the environment says.
 inline int digest_runs() {

@@ -45,7 +45,6 @@ TEST_CASE("One call, prepared questions and two devices give the bits of the hos
 }
 
 TEST_CASE("On a device, on any stream, on two and in chunks every answer has the bits that are kept") {
-  const digests kept = kept_digests("frames"), kept_of_chunks = kept_digests("chunks");
   cudaStream_t streams[3] = {};  // the first is the device's own
   for (int k : {1, 2}) REQUIRE(cudaStreamCreateWithFlags(&streams[k], cudaStreamNonBlocking) == cudaSuccess);
   for (int run = 0; run < digest_runs(); ++run) {
@@ -57,7 +56,7 @@ TEST_CASE("On a device, on any stream, on two and in chunks every answer has the
       return typename Q::result(its(f.s.poses, f.here()));
     });
     INFO("run " << run << ": the digests are\n" << text_of(all));
-    REQUIRE(all == kept);
+    REQUIRE(all == kept_digests);
     const digests by_chunks = digests_of([&]<class Q>(const Q& q, const auto& model, const moving_frames& f) {
       if constexpr (forms_of<Q>::in_pieces) {
         const auto there = model.on(gpu);
@@ -67,7 +66,7 @@ TEST_CASE("On a device, on any stream, on two and in chunks every answer has the
       }
     });
     INFO("in chunks: the digests are\n" << text_of(by_chunks));
-    REQUIRE(by_chunks == kept_of_chunks);
+    REQUIRE(by_chunks == kept_digests_of_chunks);
   }
   for (int k : {1, 2}) cudaStreamDestroy(streams[k]);
 }

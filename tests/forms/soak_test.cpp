@@ -25,7 +25,7 @@ static_assert(clearance::point_source<broken_points>);
 
 }  // namespace
 
-TEST_CASE("Frame after frame prepared questions are right, refuse what they must, and take no more memory") {
+TEST_CASE("Frame after frame answers are right and memory stays") {
   verdict v;
   dice d(41);
   moving_frames robot(4, 17);

@@ -218,7 +218,7 @@ void double_numbers(Q& q) {
 
 }  // namespace
 
-TEST_CASE("Related scenes have related answers: moved, reordered, split, with far points, with one inside") {
+TEST_CASE("Related scenes have related answers") {
   verdict v;
   dice d(5);
   std::size_t asked = 0;
@@ -239,7 +239,7 @@ TEST_CASE("Related scenes have related answers: moved, reordered, split, with fa
   CHECK(asked > 0);
 }
 
-TEST_CASE("If every point is there twice, and twice as many points are asked for, twice as many are found") {
+TEST_CASE("Doubled points are found twice") {
   verdict v;
   ask_some([&](const char* name, auto q, const auto& model, const auto&, const moving_frames& f) {
     const setting before(f);
@@ -253,7 +253,7 @@ TEST_CASE("If every point is there twice, and twice as many points are asked for
   });
 }
 
-TEST_CASE("What is within a length is within a longer one, as near, and nothing is less bad") {
+TEST_CASE("A longer length loses nothing") {
   verdict v;
   std::size_t asked = 0;
   ask_some([&](const char* name, auto q, const auto& model, const auto&, const moving_frames& f) {
@@ -269,7 +269,7 @@ TEST_CASE("What is within a length is within a longer one, as near, and nothing 
   CHECK(asked > 0);
 }
 
-TEST_CASE("Without a link nothing is nearer, and what is left is as far as before") {
+TEST_CASE("Without a link nothing is nearer") {
   verdict v;
   ask_some([&](const char* name, const auto& q, const auto& model, const auto& fewer, const moving_frames& f) {
     const setting before(f);
@@ -281,7 +281,7 @@ TEST_CASE("Without a link nothing is nearer, and what is left is as far as befor
   });
 }
 
-TEST_CASE("What questions say of the same pairs is the same, to the bit") {
+TEST_CASE("Questions agree about the same pairs") {
   verdict v;
   const auto agree = [&](const char* robot, const auto& model, const moving_frames& f) {
     const auto asked = [&](const auto& q) { return ask(host{2}, model, f.s.poses, f.here(), q); };

@@ -76,7 +76,7 @@ void ask_twice(const Q& q) {
 
 }  // namespace
 
-TEST_CASE("A debug build refuses a prepared question that is asked while it is being asked") {
+TEST_CASE("A debug build refuses a question asked twice at once") {
 #if defined(NDEBUG)
   WARN("SKIPPED: a release build does not look");
   return;
@@ -85,7 +85,7 @@ TEST_CASE("A debug build refuses a prepared question that is asked while it is b
   ask_twice(clearance::zones{.thresholds = {0.5}});
 }
 
-TEST_CASE("A debug build refuses a prepared question about chunks that is asked while it is being asked") {
+TEST_CASE("A debug build refuses chunks asked twice at once") {
 #if defined(NDEBUG)
   WARN("SKIPPED: a release build does not look");
   return;
