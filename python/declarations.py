@@ -16,8 +16,8 @@ MEMBER = re.compile(r"  (unsigned long long|[\w:]+(?:<.*>)?) (\w[^()]*?(?:\{.*\}
 METHOD = re.compile(r"  (?:const )?([\w:]+(?:<.*?>)?(?:&| )?)\s?(\w+)\((.*?)\) const \{")
 # What has a class of its own in values.hpp, not one made from its members.
 OWN = {"vec3", "position", "distance_certainty"}
-# Questions that Python lacks: its clouds cannot say yet what is uncertain about them.
-NOT_YET = {"certain_distance"}
+# Options that no question has: `uncertain` takes them.
+OF_CLOUDS = {"kinect_noise", "stereo_noise", "tof_noise", "lidar_noise"}
 
 
 def python_name(name):
@@ -97,7 +97,7 @@ def read_members(lines, at, made):
         if re.match(r" (private|protected):", line):
             seen = False
         elif line.startswith("  using result = "):
-            made.question = made.name not in NOT_YET
+            made.question = True
         elif m := re.match(r"  using (out|searched) = (.*?);", line):
             made.out = m[2] if m[1] == "out" else "of*"
         elif line == "  static constexpr bool each_part = true;":
@@ -144,8 +144,10 @@ def out_arrays(out, all_of, to="to"):
 
 
 def reachable(all_of):
-    wanted = [d for d in all_of.values() if d.question]
+    wanted = [d for d in all_of.values() if d.question or d.name in OF_CLOUDS]
     chosen = {}
+    for name in OF_CLOUDS:
+        all_of[name].option = True
     while wanted:
         d = wanted.pop()
         if d.name in chosen or d.name in OWN:

@@ -17,7 +17,7 @@ dot, cross, sub, unit = pictures.dot, pictures.cross, pictures.sub, pictures.uni
 columns, rows, focal = 320, 240, 285.0
 joints = "2.1,0.75,0.1,-1.2,0.2,0.9,0"
 camera, aim = (-0.75, -1.45, 1.25), (0.35, 0.25, 0.35)
-frames, shown, margin = 60, 27, 0.1
+frames, shown, margin, room = 60, 27, 0.1, "0.3:2.1"
 
 
 def ball(frame):
@@ -48,7 +48,7 @@ def seen(origin, way, frame):
     return nearest
 
 
-def depth_png(file, frame):
+def depth_png(file, frame, sky=0):
     forward = unit(sub(aim, camera))
     right = unit(cross(forward, (0, 0, 1)))
     down = cross(forward, right)
@@ -60,7 +60,7 @@ def depth_png(file, frame):
             way = tuple(forward[k] + x * right[k] + y * down[k] for k in range(3))
             length = math.sqrt(dot(way, way))
             far = seen(camera, tuple(c / length for c in way), frame) / length  # along the axis
-            lines += struct.pack(">H", round(1000 * far) if far < 60 else 0)
+            lines += struct.pack(">H", round(1000 * far) if far < 60 else sky)
 
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -113,6 +113,41 @@ def draw(scene, ply, file):
     canvas.save(file, samples)
 
 
+def draw_hidden(scene, file):
+    """The robot and its points; what the camera does not see is a veil over what is behind it."""
+    samples, width, height = 2, 780, 520
+    view = (width * samples, height * samples, (1.15, -1.35, 1.75), (0.48, -0.06, 0.1), 42)
+    canvas, veil = pictures.Canvas(*view), pictures.Canvas(*view)
+    light, violet = unit((0.4, -0.8, 1.0)), (0.55, 0.25, 0.75)
+    for mode, points, indices, paint, name, _ in pictures.glb(scene):
+        if mode == 0:
+            for p in points:  # as large as the gaps between them
+                darker = max(0.4, 1 - 0.6 * max(0.0, p[2] + 0.12))  # by height above the table
+                canvas.dot(p, pictures.shade((0.62, 0.72, 0.78), darker), round(27 / math.dist(p, view[2])))
+            continue
+        if name in ("hidden way", "witness of what is hidden"):
+            ends = points[0], max(points, key=lambda p: dot(sub(p, points[0]), sub(p, points[0])))
+            for k in range(600):
+                canvas.dot(tuple(a + k / 599 * (b - a) for a, b in zip(*ends)), pictures.shade(paint, 1.0), 6, 0.5)
+            continue
+        if name == "witness":
+            continue
+        for i in range(0, len(indices) - 2, 3):
+            corners = [points[j] for j in indices[i : i + 3]]
+            normal = unit(cross(sub(corners[1], corners[0]), sub(corners[2], corners[0])))
+            lit = 0.35 + 0.6 * abs(dot(normal, light))
+            if name.endswith(" hides"):
+                veil.triangle(corners, pictures.shade(violet, 0.6 + 0.4 * lit))
+            else:
+                link = (0.95, 0.6, 0.2) if paint[0] > 0.9 else (0.62, 0.62, 0.64)
+                canvas.triangle(corners, pictures.shade(link, lit))
+    for i, depth in enumerate(veil.depth):
+        if depth < canvas.depth[i] - 0.08:  # its walls are of blocks of pixels, so a little before the points
+            for k in range(3 * i, 3 * i + 3):
+                canvas.paint[k] = (11 * canvas.paint[k] + 9 * veil.paint[k]) // 20
+    canvas.save(file, samples)
+
+
 def main(arguments):
     if len(arguments) != 2:
         return None
@@ -126,9 +161,14 @@ def main(arguments):
         lens = f"{focal},{focal},{(columns - 1) / 2},{(rows - 1) / 2}"
         asked = ["--robot", robot, "--geometry", "visual", "--exclude-link", "calib_kuka_arm_base_link", "--camera-pose", camera_pose(),
                  "--intrinsics", lens, "--spheres", "1000", "--cache", str(folder / "cache")]
-        subprocess.run([program, "query", *asked, "--joints", joints, "--cloud", folder / f"frames/{shown:03}.png", "--distances", folder / "d.ply",
-                        "--d-max", "1.2", "--scene", folder / "scene.glb"], stdout=subprocess.DEVNULL, check=True)
+        one = [*asked, "--joints", joints, "--cloud", folder / f"frames/{shown:03}.png"]
+        subprocess.run([program, "query", *one, "--distances", folder / "d.ply", "--d-max", "1.2", "--scene", folder / "scene.glb"],
+                       stdout=subprocess.DEVNULL, check=True)
         draw(folder / "scene.glb", folder / "d.ply", root / "docs/figures/distances.png")
+        depth_png(folder / "sky.png", shown, 60000)  # far away, so that it hides nothing
+        subprocess.run([program, "query", *one[:-1], folder / "sky.png", "--unseen", room, "--scene", folder / "hidden.glb"],
+                       stdout=subprocess.DEVNULL, check=True)
+        draw_hidden(folder / "hidden.glb", root / "docs/figures/hidden.png")
         described = xml.etree.ElementTree.parse(robot).getroot().iter("joint")
         moving = [j.get("name") for j in described if j.get("type", "fixed") != "fixed" and j.find("mimic") is None]
         (folder / "joints.csv").write_text(",".join(moving) + "\n" + joints + "\n")

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "asked_clouds.hpp"
 
+#include "certain_report.hpp"
+
 using namespace clearance;
 
 void asked_clouds::load(const query_options& asked, progress& shown, std::vector<std::string>& notes) {
@@ -12,19 +14,20 @@ void asked_clouds::load(const query_options& asked, progress& shown, std::vector
   }
 }
 
-void asked_clouds::place(const query_options& asked, const io::robot& robot, const std::vector<double>& joints,
-                         poses_of poses) {
+void asked_clouds::place(const query_options& asked, const asked_robot& robot, const std::vector<double>& joints,
+                         poses_of poses, double off) {
   for (observation& cloud : files) {
     Eigen::Isometry3d carrier = Eigen::Isometry3d::Identity();
     if (const auto& link = cloud.from.link; !link.empty())
       carrier = about_file(asked.robot, [&] {
-        return io::carried(asked.base, robot.link_pose(link, joints, {asked.ignore_limits}),
+        return io::carried(asked.base, robot.description.link_pose(link, joints, {asked.ignore_limits}),
                            "link " + io::quoted(link));
       });
     carriers.push_back(carrier);
     seen.push_back(about_file(cloud.from.file, [&] {
-      const seen_points made = cloud.seen(carrier, poses);
+      seen_points made = cloud.seen(carrier, poses);
       rigid(made.pose, "cloud");
+      made.off = carried_off(asked, robot, joints, cloud.from.link, carrier, made, off);
       return made;
     }));
   }

@@ -14,10 +14,10 @@ struct asked_clouds {
   /// Reads the files.
   void load(const query_options& asked, progress& shown, std::vector<std::string>& notes);
 
-  /// Call this once they are loaded. `joints`: the configuration in which they were seen; `poses`: where the parts will
-  /// be.
-  void place(const query_options& asked, const clearance::io::robot& robot, const std::vector<double>& joints,
-             poses_of poses);
+  /// Call this once they are loaded. `joints`: the configuration in which they were seen, as it was `off` seconds
+  /// before or after; `poses`: where the parts will be.
+  void place(const query_options& asked, const asked_robot& robot, const std::vector<double>& joints, poses_of poses,
+             double off = 0);
 
   /// Removes the robot's own points, so that other questions do not see them; show `seen` to a backend again. (Masked
   /// clouds would spare that, but as one more type all questions would be compiled once more.)

@@ -35,11 +35,12 @@ part_facts in_link(const part_facts& facts, const Eigen::Isometry3d& link_from_p
 }  // namespace
 
 std::vector<part_radius> radii_of(const query_options& asked, const asked_robot& robot,
-                                  const std::vector<double>& joints, std::span<const part_facts> facts) {
-  const joints_off& off = *asked.certain;
-  if (off.errors.empty() && off.speeds.empty()) return {};
+                                  const std::vector<double>& joints, std::span<const part_facts> facts, double off) {
+  const joints_off& wrong = *asked.certain;
+  if (wrong.errors.empty() && wrong.speeds.empty()) return {};
   const io::kinematic_tree& tree = robot.description.kinematics();
-  const auto errors = each_of("--joint-error", off.errors, tree), speeds = each_of("--joint-speed", off.speeds, tree);
+  const auto errors = each_of("--joint-error", wrong.errors, tree),
+             speeds = each_of("--joint-speed", wrong.speeds, tree);
   std::vector<std::size_t> links;
   std::vector<part_facts> placed;
   for (std::size_t k = 0; k < facts.size(); ++k) {
@@ -47,7 +48,30 @@ std::vector<part_radius> radii_of(const query_options& asked, const asked_robot&
     const attached_thing* held = robot.held_as(k);
     placed.push_back(held ? in_link(facts[k], held->from.pose) : facts[k]);
   }
-  return io::part_radii(tree, links, placed, joints, {errors, speeds, off.delay}, {asked.ignore_limits});
+  return io::part_radii(tree, links, placed, joints, {errors, speeds, wrong.delay + off}, {asked.ignore_limits});
+}
+
+cloud_uncertainty carried_off(const query_options& asked, const asked_robot& robot, const std::vector<double>& joints,
+                              const std::string& link, const Eigen::Isometry3d& carrier, const seen_points& seen,
+                              double off) {
+  cloud_uncertainty all = seen.off;
+  if (!asked.certain || link.empty()) return all;
+  const io::kinematic_tree& tree = robot.description.kinematics();
+  const auto errors = each_of("--joint-error", asked.certain->errors, tree),
+             speeds = each_of("--joint-speed", asked.certain->speeds, tree);
+  const vec3 sensor = std::visit([](const auto& source) { return sensor_of(source); }, seen.points);
+  part_facts camera{.radius = 0};  // a ball around the sensor, which moves by at most the ball's radius
+  camera = in_link(camera, carrier.inverse() * seen.pose * Eigen::Translation3d(sensor.x, sensor.y, sensor.z));
+  const std::size_t links[] = {tree.link(link)};
+  all.shift +=
+      io::part_radii(tree, links, std::span(&camera, 1), joints, {errors, speeds, off}, {asked.ignore_limits})[0].sum();
+  for (std::size_t at = links[0], j; (j = tree.joint_above(at)) != tree.none; at = tree.link(tree.joints()[j].parent)) {
+    const io::joint& above = tree.joints()[j];
+    if (above.kind == io::joint_kind::fixed || above.kind == io::joint_kind::prismatic) continue;
+    const auto [value, factor] = std::pair(tree.drive(j).value, std::abs(tree.drive(j).factor));
+    all.turn += factor * ((errors.empty() ? 0 : errors[value]) + (speeds.empty() ? 0 : std::abs(speeds[value]) * off));
+  }
+  return all;
 }
 
 json certain_of(const certain_pair& pair, const std::vector<const observation*>& clouds) {

@@ -7,10 +7,16 @@
 
 #include <clearance/questions/certain_distance.hpp>
 
-/// One radius per part, by --joint-error, --joint-speed and --delay. Empty: none was given.
+/// One radius per part, by --joint-error, --joint-speed and --delay. Empty: none was given. `off`: so many seconds are
+/// between the joints and the frame.
 std::vector<clearance::part_radius> radii_of(const query_options& asked, const asked_robot& robot,
                                              const std::vector<double>& joints,
-                                             std::span<const clearance::part_facts> facts);
+                                             std::span<const clearance::part_facts> facts, double off = 0);
+
+/// A cloud's own uncertainty, and what joints that are wrong do to the camera, which this link carries.
+clearance::cloud_uncertainty carried_off(const query_options& asked, const asked_robot& robot,
+                                         const std::vector<double>& joints, const std::string& link,
+                                         const Eigen::Isometry3d& carrier, const seen_points& seen, double off);
 
 /// State and bracket, the pair that decides its lower end, and what it loses to what.
 json certain_of(const clearance::certain_distance_result& r, const std::vector<const observation*>& clouds,

@@ -52,15 +52,14 @@ double top_of(const min_distance_result& r) {
 
 /// The axis shows 0, the margin and what is below. It leaves out outliers, which would flatten the rest: frames above
 /// three times the value that nine of ten stay below.
-axes around(std::span<const min_distance_result> frames, std::span<const min_distance_result> unseen,
-            std::optional<double> margin) {
-  axes made{0, 0, 0, frames.size()};
+axes around(const svg_frames& drawn, std::optional<double> margin) {
+  axes made{0, 0, 0, drawn.seen.size()};
   const auto hold = [&](double metres) {
     if (std::isfinite(metres)) made.low = std::min(made.low, metres), made.high = std::max(made.high, metres);
   };
   std::vector<double> tops;
-  for (const auto& some : {frames, unseen})
-    for (const min_distance_result& r : some) {
+  for (const auto* some : {&drawn.seen, &drawn.certain, &drawn.unseen})
+    for (const min_distance_result& r : *some) {
       if (r.state == state::no_data) continue;
       hold(std::min(0.0, double(r.distance))), hold(std::min(0.0, double(r.lower)));
       if (const double above = top_of(r); above > 0) tops.push_back(above);
@@ -126,13 +125,18 @@ struct curve {
       if (end - begin == 1) alone += "M " + to.at(begin, frames[begin].distance) + " h 0\n";  // a round end is a dot
     }
   }
-  /// The colours are the band's and the line's; `of` begins the names of the paths.
+  /// `of` begins the names of the paths.
+  std::string shaded(const char* of, const char* light) const {
+    if (line.empty()) return {};
+    return text("<path id=\"%sbracket\" fill=\"%s\" fill-opacity=\"0.35\" stroke=\"%s\" stroke-opacity=\"0.6\" ", of,
+                light, light) +
+           "stroke-width=\"0.5\" d=\"" + band + "\"/>\n";
+  }
+  /// The colours are the band's and the line's.
   std::string drawn(const char* of, const char* light, const char* dark) const {
-    std::string out;
+    std::string out = shaded(of, light);
     if (!line.empty())
-      out += text("<path id=\"%sbracket\" fill=\"%s\" fill-opacity=\"0.35\" stroke=\"%s\" stroke-opacity=\"0.6\" ", of,
-                  light, light) +
-             "stroke-width=\"0.5\" d=\"" + band + text("\"/>\n<path id=\"%sdistance\" stroke=\"%s\" ", of, dark) +
+      out += text("<path id=\"%sdistance\" stroke=\"%s\" ", of, dark) +
              "stroke-width=\"1.5\" stroke-linecap=\"round\" stroke-linejoin=\"round\" d=\"" + line + "\"/>\n";
     if (!alone.empty())
       out += text("<path id=\"%salone\" stroke=\"%s\" stroke-width=\"5\" stroke-linecap=\"round\" d=\"", of, dark) +
@@ -157,13 +161,13 @@ std::string bars(const axes& to, std::span<const min_distance_result> frames) {
 
 }  // namespace
 
-std::string clearance_svg(std::span<const min_distance_result> frames, std::span<const min_distance_result> unseen,
-                          const std::string& name, std::optional<double> margin) {
-  const axes to = around(frames, unseen, margin);
+std::string clearance_svg(const svg_frames& drawn, const std::string& name, std::optional<double> margin) {
+  const auto& [frames, certain, unseen] = drawn;
+  const axes to = around(drawn, margin);
   const std::string above = marks(to, frames) + marks(to, unseen), blind = bars(to, frames);
-  const std::string legend = std::string("distance, in its bracket") +
-                             (unseen.empty() ? "" : "; orange: to what is not seen") +
-                             (blind.empty() ? "" : "; red: no data");
+  const std::string legend =
+      std::string("distance, in its bracket") + (certain.empty() ? "" : "; grey: with what is uncertain") +
+      (unseen.empty() ? "" : "; orange: to what is not seen") + (blind.empty() ? "" : "; red: no data");
   std::string out =
       text(
           "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" "
@@ -177,7 +181,8 @@ std::string clearance_svg(std::span<const min_distance_result> frames, std::span
                      : words(right, top - 12, "end", text("triangles: above the picture, up to %.3g m", to.highest))) +
       "</g>\n";
   if (!blind.empty()) out += "<g fill=\"#d33\" fill-opacity=\"0.35\">\n" + blind + "</g>\n";
-  out += curve(to, unseen).drawn("unseen-", "#e80", "#a50") + curve(to, frames).drawn("", "#48c", "#136");
+  out += curve(to, certain).shaded("certain-", "#777") + curve(to, unseen).drawn("unseen-", "#e80", "#a50") +
+         curve(to, frames).drawn("", "#48c", "#136");
   if (!above.empty()) out += "<path id=\"above\" fill=\"#136\" d=\"" + above + "\"/>\n";
   if (margin)
     out += text("<path id=\"margin\" stroke=\"#d33\" stroke-dasharray=\"6 4\" d=\"M %.2f %.2f H %.2f\"/>\n", left,

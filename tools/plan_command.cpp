@@ -36,7 +36,7 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   const placed_rows placed(asked, robot, rows, asked.configurations);
   asked_clouds clouds;
   clouds.load(asked, shown, notes);
-  clouds.place(asked, robot.description, rows[0], placed.first());  // a plan begins where the robot is when it looks
+  clouds.place(asked, robot, rows[0], placed.first());  // a plan begins where the robot is when it looks
   plan_report report{.asked = &asked, .clouds = &clouds.files};
   report.load = clock.lap();
 

@@ -2,6 +2,7 @@
 #include "asked_clouds.hpp"
 #include "command_line.hpp"
 #include "distances_file.hpp"
+#include "filter_report.hpp"
 #include "messages.hpp"
 #include "query_print.hpp"
 #include "ranks.hpp"
@@ -112,19 +113,6 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
   io::save_scene(scene, report.asked->scene);
 }
 
-/// Adds a note if a threshold is within --self-filter, which hides the points that it is about.
-void note_hidden(const query_options& asked, std::vector<std::string>& notes) {
-  const auto note = [&](const char* option, double metres) {
-    if (metres <= *asked.self_filter)
-      notes.push_back(
-          text("%s %g: points that are certainly so near, an obstacle's too, are hidden by --self-filter %g; "
-               "only uncertain ones lead to exit code 2",
-               option, metres, *asked.self_filter));
-  };
-  if (asked.margin) note("--check", *asked.margin);
-  if (!asked.zones.empty()) note("--zones", asked.zones[0]);
-}
-
 /// Refuses to write an input, or two outputs to one file.
 void check_outputs(const query_options& asked, const io::files_read& inputs) {
   if (!asked.scene.empty()) io::check_output(asked.scene, inputs);
@@ -132,15 +120,6 @@ void check_outputs(const query_options& asked, const io::files_read& inputs) {
   const auto where = [](const std::string& file) { return std::filesystem::weakly_canonical(file); };
   if (!asked.scene.empty() && !asked.distances.empty() && where(asked.scene) == where(asked.distances))
     throw usage_error("--distances", "is the same file as --scene: " + asked.distances);
-}
-
-/// Hides the points that are the robot's own from the questions that follow.
-void hide_own_points(query_report& report, backend_robot& there, poses_of poses, asked_clouds& clouds) {
-  report.filter = there.own_points(poses, *report.asked->self_filter);
-  if (report.asked->unseen) report.unseen = there.unseen(poses, {*report.asked->unseen, 0, report.filter->labels});
-  note_hidden(*report.asked, report.notes);
-  clouds.hide(report.filter->labels);
-  report.upload += there.see(clouds.seen);
 }
 
 /// Asks for the least distance and for all that the options name, but for the distances of all points.
@@ -189,7 +168,7 @@ int run(const query_options& asked, all_ranks* ranks) {
   const std::vector<Eigen::Isometry3d> poses = placed_links(asked, robot, joints);
   asked_clouds clouds;
   clouds.load(asked, shown, report.notes);
-  clouds.place(asked, robot.description, joints, poses);
+  clouds.place(asked, robot, joints, poses);
   if (speaks) check_outputs(asked, inputs);  // fail before the robot is packed
   report.load = clock.lap();
 
@@ -202,7 +181,11 @@ int run(const query_options& asked, all_ranks* ranks) {
   auto there = robot_on(asked.on_device, model);
   if (ranks) there = ranks->together(std::move(there), model, questions_of(asked));
   report.upload = there->see(clouds.seen);
-  if (asked.self_filter) hide_own_points(report, *there, poses, clouds);
+  if (asked.self_filter) {
+    own_points own = hide_own_points(asked, *there, poses, clouds);
+    report.filter = std::move(own.filter), report.unseen = std::move(own.unseen), report.upload += own.upload;
+    note_hidden(asked, report.notes);
+  }
   ask_questions(report, *there, poses, joints);
   std::optional<point_distances> distances;
   if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max, asked.is_signed);

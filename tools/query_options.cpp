@@ -54,7 +54,7 @@ struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames,
       trajectory, unfolded;
   std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, support_limit, svg,
-      report, deadline, nearest, delay, max_speed, joint_error, joint_speed;
+      report, deadline, nearest, delay, max_speed, joint_error, joint_speed, stamps, max_age;
   std::optional<std::string> unseen;  // without a value: empty
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges,
       sensors, calibrations;
@@ -273,8 +273,10 @@ void read_uncertainty(const raw_options& raw, query_options& o) {
   off.errors = each("--joint-error", raw.joint_error), off.speeds = each("--joint-speed", raw.joint_speed);
   for (const double x : off.errors)
     if (!(x >= 0)) throw usage_error("--joint-error", "needs 0 or more (rad, m)");
-  for (const auto& [option, text] : {std::pair("--max-speed", &raw.max_speed), {"--joint-speed", &raw.joint_speed}})
-    if (!text->empty() && raw.delay.empty()) throw usage_error(option, "needs --delay, the time in which things move");
+  if (!raw.max_speed.empty() && raw.delay.empty())
+    throw usage_error("--max-speed", "needs --delay, the time in which things move");
+  if (!raw.joint_speed.empty() && raw.delay.empty() && raw.stamps.empty())
+    throw usage_error("--joint-speed", "needs --delay, the time in which things move");
   if (!raw.delay.empty() && raw.max_speed.empty() && raw.joint_speed.empty())
     throw usage_error("--delay", "needs --max-speed or --joint-speed: what moves in that time?");
   const std::pair<const char*, bool> given[] = {{"--sensor", !raw.sensors.empty()},
@@ -330,6 +332,9 @@ void read_questions(const raw_options& raw, query_options& o) {
     throw usage_error("--signed", "is for --model triangles: distances to spheres are signed already");
   if (!raw.nearest.empty()) o.nearest = whole_number("--nearest", raw.nearest, most_listed);
   if (!raw.self_filter.empty()) o.self_filter = length("--self-filter", raw.self_filter);
+  if (o.self_filter && o.recording.merge)
+    throw usage_error("--self-filter",
+                      "cannot be mixed with --merge: the robot was elsewhere when the other frames were seen");
   if (!raw.min_support.empty()) o.support = support_of("--min-support", raw.min_support);
   if (raw.unseen) {
     o.unseen = room_of("--unseen", *raw.unseen);
@@ -405,6 +410,11 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.attached = attached_of(app);
   o.recording.frames = raw.frames;
   o.recording.trajectory = raw.trajectory;
+  o.recording.stamps = raw.stamps;
+  if (!raw.max_age.empty()) {
+    if (raw.stamps.empty()) throw usage_error("--max-age", "is for --stamps");
+    o.recording.max_age = amount("--max-age", raw.max_age, "seconds");
+  }
   o.recording.merge = raw.merge;
   o.model = model_kind(choice("--model", raw.model, {"spheres", "triangles"}));
   o.volume = usual_volume(o.model);
@@ -451,6 +461,12 @@ void add_joint_options(CLI::App& app, raw_options& raw, asking how) {
         "--trajectory", raw.trajectory,
         "CSV: a line with the names of the joints, then one row per frame, or one row for all (rad, m); not needed if "
         "no joint is free");
+    app.add_option("--stamps", raw.stamps,
+                   "A text file with one number per frame and line, when the frame was seen (s): the trajectory's rows "
+                   "are then samples, with their times in a column named time, and joints are interpolated between the "
+                   "two around a frame; beside a single one --joint-speed widens what is certain");
+    app.add_option("--max-age", raw.max_age,
+                   "Seconds: refuse frames without a sample of the joints that is so near (default 0.1)");
     app.add_flag("--merge", raw.merge,
                  "Ask every frame about the clouds of all frames, merged in the world: each frame's cloud is put there "
                  "by --camera-pose, with "
@@ -561,23 +577,32 @@ void add_plan_questions(CLI::App& app, raw_options& raw) {
   app.footer(std::string(of_clouds) + "\nThe exit code is 3 without a valid point, also with --check.");
 }
 
-void add_unseen(CLI::App& app, raw_options& raw, const char* more) {
+void add_self_filter(CLI::App& app, raw_options& raw) {
+  app.add_option(
+      "--self-filter", raw.self_filter,
+      "Metres: hide the points that certainly are within that of the robot, or of what it holds, from all questions, "
+      "--check among them; says how many "
+      "they are; exit code 3 if none is left");
+}
+
+void add_unseen(CLI::App& app, raw_options& raw) {
   app.add_option_function<std::vector<std::string>>(
          "--unseen",
          [&raw](const std::vector<std::string>& given) { raw.unseen = given.empty() ? std::string() : given[0]; },
          std::string("NEAR:FAR (m along z; default 0.1:10): how far each link is from what no depth image shows: from "
-                     "a pixel's depth, or without one from NEAR on, up to FAR; --check is about that, too") +
-             more)
+                     "a pixel's depth, or without one from NEAR on, up to FAR; --check is about that, too; what the "
+                     "points of --self-filter hide is told apart"))
       ->expected(0, 1);
 }
 
 void add_run_questions(CLI::App& app, raw_options& raw) {
-  add_unseen(app, raw, "");
+  add_self_filter(app, raw);
+  add_unseen(app, raw);
   app.add_flag("--csv", raw.csv, "Print CSV, one row per frame; without it, one JSON object per frame");
   app.add_option(
       "--svg", raw.svg,
       "Write a picture to this .svg file once all frames are answered: the distance in every frame, in the band of "
-      "its bracket");
+      "its bracket; with bands of what is certain and of what is unseen, if they are asked for");
   app.add_option("--report", raw.report,
                  "Write one HTML page about all frames; of the Python package: python3 -m clearance run --report ...");
   app.footer(
@@ -607,16 +632,12 @@ void add_query_questions(CLI::App& app, raw_options& raw) {
       "--d-max", raw.d_max,
       "Metres: points farther than that are written as inf by --distances, and not listed by --nearest (default: "
       "none)");
-  app.add_option(
-      "--self-filter", raw.self_filter,
-      "Metres: hide the points that certainly are within that of the robot, or of what it holds, from all questions, "
-      "--check among them; says how many "
-      "they are; exit code 3 if none is left");
+  add_self_filter(app, raw);
   app.add_option(
       "--min-support", raw.min_support,
       "N@RADIUS, such as 3@0.02: say also how far the nearest point is that has N points, itself among them, within "
       "RADIUS m; --check stays about all points");
-  add_unseen(app, raw, "; what the points of --self-filter hide is told apart");
+  add_unseen(app, raw);
   app.add_option(
       "--support-limit", raw.support_limit,
       "How many of the nearest points --min-support asks before it gives up (default 4096, at most 1048576)");

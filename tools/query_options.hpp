@@ -68,6 +68,8 @@ struct joints_off {
 struct recording_options {
   std::string frames, trajectory;
   cloud_options camera;  // holds for every frame; .file is empty
+  std::string stamps;    // --stamps: a file of the frames' times; empty: the trajectory has a row for each frame
+  double max_age = 0.1;  // --max-age: seconds; no joints that are farther in time from a frame are used
   bool merge = false;
   std::string plan;  // future configurations, asked about in every frame; empty: none
   std::string svg;   // a picture of all frames; empty: none

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "questions_report.hpp"
 
+#include "filter_report.hpp"
 #include "report_text.hpp"
 
 #include <cmath>
@@ -68,28 +69,6 @@ json pose_of(const Eigen::Isometry3d& pose) {
 }
 
 namespace {
-
-bool nearest_is_uncertain(const query_report& report) {
-  const min_distance_result& r = report.found.result;
-  return r.point != none && report.filter->labels[report.filter->offsets[r.cloud] + r.point] == point_label::uncertain;
-}
-
-json filter_of(const query_report& report) {
-  const bool any = report.found.result.point != none;
-  return {{"padding", *report.asked->self_filter},
-          {"own", report.filter->counts.own},
-          {"uncertain", report.filter->counts.uncertain},
-          {"nearest_is", any ? json(nearest_is_uncertain(report) ? "uncertain" : "rest") : json(nullptr)}};
-}
-
-std::string filter_text(const query_report& report) {
-  const auto own = (unsigned long long)report.filter->counts.own;
-  const std::string hidden =
-      text("filter    %llu points are the robot's own (within %g m), and hidden; ", own, *report.asked->self_filter);
-  if (own != 0 && report.found.result.state == state::no_data) return hidden + "no valid point is left\n";
-  return hidden + text("%llu may be, and are not hidden%s\n", (unsigned long long)report.filter->counts.uncertain,
-                       nearest_is_uncertain(report) ? ", the nearest among them" : "");
-}
 
 /// For --check: is the nearest confirmed point certainly farther away than the margin?
 bool passes(const query_report& report) {
@@ -231,7 +210,7 @@ void add_questions(const query_report& report, json& out) {
     out["deadline"] = {{"milliseconds", *report.asked->deadline},
                        {"unseen", report.found.unseen},
                        {"complete", report.found.unseen == 0}};
-  if (report.filter) out["filter"] = filter_of(report);
+  if (report.filter) out["filter"] = filter_of(*report.asked, *report.filter, report.found.result);
   if (report.zones) {
     const std::size_t z = report.zones->innermost();
     out["zones"] = {{"thresholds", report.asked->zones},
@@ -250,7 +229,7 @@ void add_questions(const query_report& report, json& out) {
 std::string questions_text(const query_report& report) {
   std::string out;
   if (report.asked->deadline) out += deadline_text(report);
-  if (report.filter) out += filter_text(report);
+  if (report.filter) out += filter_text(*report.asked, *report.filter, report.found.result);
   if (report.certain) out += certain_text(*report.certain, *report.bodies);
   if (report.zones) out += "zones     " + innermost_text(report) + '\n';
   if (report.support) out += support_text(report);

@@ -23,9 +23,12 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// The names in the first line. Each must be a joint that takes a value, named only once and not in `fixed`.
+constexpr const char* time_column = "time";
+
+/// The names in the first line. Each must be a joint that takes a value, named only once and not in `fixed`; and
+/// "time", if `timed`.
 std::vector<std::string> columns(const std::string& file, std::string_view line, const io::kinematic_tree& tree,
-                                 const std::map<std::string, double>& fixed) {
+                                 const std::map<std::string, double>& fixed, bool timed) {
   std::vector<std::string> names;
   std::map<std::string, double> values = fixed;
   for (bool more = !trimmed(line).empty(); more;) {
@@ -33,11 +36,18 @@ std::vector<std::string> columns(const std::string& file, std::string_view line,
     const std::string name(trimmed(line.substr(0, comma)));
     more = comma != line.npos;
     line.remove_prefix(more ? comma + 1 : line.size());
+    if (timed && name == time_column) {
+      if (std::ranges::count(names, name)) io::refuse(file, "has two columns named time", 1);
+      names.push_back(name);
+      continue;
+    }
     if (fixed.contains(name))
       io::refuse(file, "has a column for joint " + io::quoted(name) + ", which --joint gives too", 1);
     if (!values.emplace(name, 0).second) io::refuse(file, "has two columns for joint " + io::quoted(name), 1);
     names.push_back(name);
   }
+  if (timed && !std::ranges::count(names, time_column))
+    io::refuse(file, "has no column named time, which --stamps needs: when the joints were so, in seconds", 1);
   try {
     tree.configuration(values, {.ignore_limits = true});  // throws for an unknown name
   } catch (const std::invalid_argument& error) {
@@ -86,7 +96,8 @@ std::vector<std::string> list_frames(const std::string& where) {
 }
 
 std::vector<std::vector<double>> read_trajectory(const std::string& file, const io::kinematic_tree& tree,
-                                                 const std::map<std::string, double>& fixed, io::joint_options limits) {
+                                                 const std::map<std::string, double>& fixed, io::joint_options limits,
+                                                 std::vector<double>* times) {
   if (file.empty()) {
     for (std::size_t i = 0; i < tree.size(); ++i)
       if (const std::string& name = tree.movable(i).name; !fixed.contains(name))
@@ -96,7 +107,7 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
   }
   const std::string bytes = io::read_bytes(file);
   std::string_view rest = io::without_mark(bytes);
-  const std::vector<std::string> names = columns(file, io::take_line(rest), tree, fixed);
+  const std::vector<std::string> names = columns(file, io::take_line(rest), tree, fixed, times != nullptr);
   rest = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);  // without blank lines at the end
   std::vector<std::vector<double>> rows;
   if (names.empty()) {
@@ -108,7 +119,8 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
     const std::string where = file + ':' + std::to_string(line);
     const auto row = numbers(where, text, names.size(), "one a column");
     std::map<std::string, double> values = fixed;
-    for (std::size_t i = 0; i < names.size(); ++i) values[names[i]] = row[i];
+    for (std::size_t i = 0; i < names.size(); ++i)
+      times&& names[i] == time_column ? times->push_back(row[i]) : void(values[names[i]] = row[i]);
     try {
       rows.push_back(tree.configuration(values, limits));
     } catch (const std::invalid_argument& error) {
@@ -122,6 +134,40 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
 std::vector<std::vector<double>> read_rows(const query_options& asked, const io::robot& robot,
                                            const std::string& file) {
   return read_trajectory(file, robot.kinematics(), {asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits});
+}
+
+std::vector<stamped_row> read_stamped_rows(const query_options& asked, const io::robot& robot) {
+  const recording_options& from = asked.recording;
+  const io::kinematic_tree& tree = robot.kinematics();
+  if (from.trajectory.empty()) throw usage_error("--stamps", "needs --trajectory, the joints and their times");
+  std::vector<double> times;
+  auto rows =
+      read_trajectory(from.trajectory, tree, {asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits}, &times);
+  io::stamped_joints samples(tree, from.max_age);
+  for (std::size_t k = 0; k < rows.size(); ++k) try {
+      samples.add(times[k], std::move(rows[k]));
+    } catch (const std::invalid_argument& error) {
+      io::refuse(from.trajectory, error.what(), k + 2);
+    }
+  const std::string bytes = io::read_bytes(from.stamps);
+  std::string_view rest = io::without_mark(bytes);
+  rest = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);  // without blank lines at the end
+  std::vector<stamped_row> found;
+  for (std::size_t line = 1; !rest.empty(); ++line) {
+    const double stamp = number(from.stamps + ':' + std::to_string(line), std::string(trimmed(io::take_line(rest))));
+    try {
+      found.push_back({stamp, samples.at_stamp(stamp)});
+    } catch (const std::invalid_argument& error) {
+      io::refuse(from.stamps, error.what(), line);
+    }
+    if (found.back().joints.off > 0 && (!asked.certain || asked.certain->speeds.empty()))
+      io::refuse(from.stamps,
+                 "the joints' only sample near the stamp " + std::to_string(stamp) + " s is " +
+                     std::to_string(found.back().joints.off) + " s off: --joint-speed says how far they move in it",
+                 line);
+  }
+  if (found.empty()) io::refuse(from.stamps, "has no line");
+  return found;
 }
 
 placed_rows::placed_rows(const query_options& asked, const asked_robot& robot,

@@ -5,6 +5,8 @@
 #include "asked_robot.hpp"
 #include "observations.hpp"
 
+#include <clearance/io/stamped_joints.hpp>
+
 #include <map>
 #include <string>
 #include <vector>
@@ -13,14 +15,24 @@
 std::vector<std::string> list_frames(const std::string& where);
 
 /// One configuration per row. Every movable joint has a column or a value in `fixed`. If all are fixed, there is one
-/// row, and the file has no columns or no name (empty).
+/// row, and the file has no columns or no name (empty). `times`: one for each row, of a column named time.
 std::vector<std::vector<double>> read_trajectory(const std::string& file, const clearance::io::kinematic_tree& tree,
                                                  const std::map<std::string, double>& fixed,
-                                                 clearance::io::joint_options limits);
+                                                 clearance::io::joint_options limits,
+                                                 std::vector<double>* times = nullptr);
 
 /// The same for the given options, including --joint.
 std::vector<std::vector<double>> read_rows(const query_options& asked, const clearance::io::robot& robot,
                                            const std::string& file);
+
+/// When a frame was seen, and the configuration at that time.
+struct stamped_row {
+  double stamp;  // seconds
+  clearance::io::stamped_joints::moment joints;
+};
+
+/// For --stamps: one row for each frame. Refuses frames about whose time the trajectory says too little.
+std::vector<stamped_row> read_stamped_rows(const query_options& asked, const clearance::io::robot& robot);
 
 /// The parts' poses in each row of a file, in blocks that fit into memory. All arguments must outlive it.
 class placed_rows {

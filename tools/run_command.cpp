@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "asked_clouds.hpp"
 #include "asked_robot.hpp"
 #include "clearance_svg.hpp"
 #include "command_line.hpp"
+#include "filter_report.hpp"
 #include "frame_report.hpp"
 #include "messages.hpp"
 #include "recording.hpp"
@@ -34,14 +36,37 @@ void print(const std::vector<std::string>& notes, progress& shown) {
 /// The robot along its trajectory, with the camera.
 class motion {
  public:
-  motion(const query_options& asked, const asked_robot& robot)
-      : asked_(asked), robot_(robot), rows_(read_rows(asked, robot.description, asked.recording.trajectory)) {}
+  motion(const query_options& asked, const asked_robot& robot) : asked_(asked), robot_(robot) {
+    if (asked.recording.stamps.empty())
+      rows_ = read_rows(asked, robot.description, asked.recording.trajectory);
+    else
+      stamped_ = read_stamped_rows(asked, robot.description);
+  }
 
-  std::size_t size() const { return rows_.size(); }
+  /// Refuses rows that are not as many as frames, unless there is one for all.
+  void check(std::size_t frames) const {
+    const recording_options& from = asked_.recording;
+    if (!from.stamps.empty() && stamped_.size() != frames)
+      throw usage_error("--stamps", from.stamps + " has " + std::to_string(stamped_.size()) + " lines, but there are " +
+                                        std::to_string(frames) + " frames");
+    if (from.stamps.empty() && rows_.size() != 1 && rows_.size() != frames)
+      throw usage_error("--trajectory", from.trajectory + " has " + std::to_string(rows_.size()) +
+                                            " rows, but there are " + std::to_string(frames) +
+                                            " frames (one row would hold for all)");
+  }
+
+  const std::vector<double>& row(std::size_t frame) const {
+    if (!stamped_.empty()) return stamped_[frame].joints.values;
+    return rows_.size() == 1 ? rows_[0] : rows_[frame];
+  }
+  /// For --stamps.
+  const stamped_row* stamped(std::size_t frame) const { return stamped_.empty() ? nullptr : &stamped_[frame]; }
+  /// So many seconds are between the joints and the frame.
+  double off(std::size_t frame) const { return stamped_.empty() ? 0 : stamped_[frame].joints.off; }
 
   /// One radius per part, by what is uncertain about the joints.
   std::vector<part_radius> radii(std::size_t frame, std::span<const part_facts> facts) const {
-    return radii_of(asked_, robot_, row(frame), facts);
+    return radii_of(asked_, robot_, row(frame), facts, off(frame));
   }
   std::vector<Eigen::Isometry3d> poses(std::size_t frame) const {
     return placed_links(asked_, robot_, row(frame), " in frame " + std::to_string(frame));
@@ -56,11 +81,10 @@ class motion {
   }
 
  private:
-  const std::vector<double>& row(std::size_t frame) const { return rows_.size() == 1 ? rows_[0] : rows_[frame]; }
-
   const query_options& asked_;
   const asked_robot& robot_;
   std::vector<std::vector<double>> rows_;
+  std::vector<stamped_row> stamped_;
 };
 
 /// The frames' files, which are read one at a time.
@@ -94,14 +118,6 @@ class frame_files {
   std::set<std::string> names_;
 };
 
-/// Refuses a trajectory that does not have a row for each frame, nor one for all.
-void check_rows(const query_options& asked, const motion& moves, const frame_files& frames) {
-  if (moves.size() == 1 || moves.size() == frames.size()) return;
-  throw usage_error("--trajectory", asked.recording.trajectory + " has " + std::to_string(moves.size()) +
-                                        " rows, but there are " + std::to_string(frames.size()) +
-                                        " frames (one row would hold for all)");
-}
-
 /// Checks that the picture can be written, before any frame is read or answered.
 void check_picture(const std::string& file, const frame_files& frames, const io::files_read& inputs) {
   for (std::size_t k = 0; k < frames.size(); ++k) note_file(frames[k]);
@@ -134,13 +150,11 @@ class waypoints {
   std::optional<placed_rows> placed_;
 };
 
-/// Shows a frame, which must outlive the question, to the robot. Returns the seconds.
-double show(backend_robot& there, observation& frame, const std::string& file, const motion& moves, std::size_t k) {
-  return there.see({about_file(file, [&] {
-    const seen_points seen = frame.seen(moves.carrier(k), moves.poses(k));
-    rigid(seen.pose, "cloud");
-    return seen;
-  })});
+/// What is certain, as the picture draws it.
+min_distance_result bracket_of(const certain_distance_result& certain) {
+  min_distance_result r = certain.nominal;
+  r.lower = certain.lower, r.upper = certain.upper;
+  return r;
 }
 
 int exit_code(const frame_report& report, const std::optional<double>& margin) {
@@ -159,7 +173,7 @@ int run_frames(const query_options& asked) {
   const asked_robot robot = load_robot(asked, notes);
   frame_files frames(asked, shown);
   const motion moves(asked, robot);
-  check_rows(asked, moves, frames);
+  moves.check(frames.size());
   const waypoints to_come(asked, robot);
   merged_cloud merged;
   if (asked.recording.merge)
@@ -167,33 +181,44 @@ int run_frames(const query_options& asked) {
   else
     moves.carrier(0);  // refuse a wrong --camera-link before packing the robot
 
+  note_hidden(asked, notes);
   if (!asked.recording.svg.empty()) check_picture(asked.recording.svg, frames, inputs);
   const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
   print(notes, shown);
   const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies, asked.fields});
   int code = 0;
   double upload = asked.recording.merge ? there->see({merged.finish(moves.poses(0))}) : 0;
-  std::optional<observation> frame;
-  std::vector<min_distance_result> seen, hidden;  // for the picture
+  asked_clouds clouds;  // the frame's
+  svg_frames drawn;
   for (std::size_t k = 0; k < frames.size(); ++k) {
+    const std::vector<Eigen::Isometry3d> poses = moves.poses(k);
+    const observation* frame = nullptr;
     if (!asked.recording.merge) {
       observation next = frames.load(k);
-      frame.emplace(std::move(next));
-      upload = show(*there, *frame, frames[k], moves, k);
+      clouds = {};
+      clouds.files.push_back(std::move(next));
+      clouds.place(asked, robot, moves.row(k), poses, moves.off(k));
+      upload = there->see(clouds.seen);
+      frame = &clouds.files[0];
     }
-    const std::vector<Eigen::Isometry3d> poses = moves.poses(k);
-    frame_report report{.frame = k,
-                        .file = frames[k],
-                        .found = asked.unseen ? there->least_per_part(poses, 1) : there->least(poses),
-                        .bodies = &bodies};
+    std::optional<own_points> own;
+    if (asked.self_filter) {
+      own = hide_own_points(asked, *there, poses, clouds);
+      upload += own->upload;
+    }
+    frame_report report{
+        .asked = &asked, .frame = k, .file = frames[k], .stamped = moves.stamped(k), .found = {}, .bodies = &bodies};
+    report.found = report.each_part() ? there->least_per_part(poses, 1) : there->least(poses);
     report.upload = std::exchange(upload, 0);
     report.query = there->query;
+    if (own) report.filter = &own->filter;
     if (asked.certain) report.certain = there->certain(poses, moves.radii(k, there->facts()));
     std::optional<unseen_result> unseen;
     if (asked.unseen) {
-      unseen = there->unseen(poses, {*asked.unseen});
-      report.unseen = {.asked = &asked, .found = &*unseen, .clouds = {&*frame}, .bodies = &bodies};
-      report.unseen_query = there->query;
+      unseen = own ? std::move(own->unseen) : there->unseen(poses, {*asked.unseen});
+      report.unseen_query = own ? own->unseen_query : there->query;
+      report.unseen = {
+          .asked = &asked, .found = &*unseen, .clouds = {frame}, .bodies = &bodies, .filtered = own.has_value()};
     }
     const std::optional<plan_report> plan = to_come.ask(*there);
     if (plan) report.plan = &*plan;
@@ -205,17 +230,20 @@ int run_frames(const query_options& asked) {
     min_distance_result& r = report.found.result;
     if (r.state != state::no_data)
       std::tie(report.cloud, report.point) =
-          frame ? std::pair<const observation*, std::uint32_t>(&*frame, r.point) : merged.origin(r.point);
+          frame ? std::pair<const observation*, std::uint32_t>(frame, r.point) : merged.origin(r.point);
     frame ? frame->recount(r) : merged.recount(r);
     std::cout << (asked.csv ? to_csv(report) : to_json(report));
     if (!std::cout) return code;  // main reports it
-    if (!asked.recording.svg.empty()) seen.push_back(r);
-    if (!asked.recording.svg.empty() && unseen) hidden.push_back(unseen->all);
+    if (!asked.recording.svg.empty()) {
+      drawn.seen.push_back(r);
+      if (report.certain) drawn.certain.push_back(bracket_of(*report.certain));
+      if (unseen) drawn.unseen.push_back(unseen->all);
+    }
     code = std::max(code, exit_code(report, asked.margin));
   }
   if (!asked.recording.svg.empty()) {
     io::check_output(asked.recording.svg, inputs);
-    io::write_bytes(asked.recording.svg, clearance_svg(seen, hidden, asked.recording.frames, asked.margin));
+    io::write_bytes(asked.recording.svg, clearance_svg(drawn, asked.recording.frames, asked.margin));
   }
   return code;
 }

@@ -93,32 +93,13 @@ std::string unseen_parts_text(const unseen_report& report) {
   return out;
 }
 
-std::string unseen_columns(const unseen_report& report) {
-  std::string out = ",unseen_state,unseen_distance,unseen_lower,unseen_part,unseen_pixel_x,unseen_pixel_y";
-  for (const body& each : *report.bodies)
-    for (const char* what : {" distance", " unseen", " unseen_lower", " out_of_view"})
-      out += ',' + csv_word(each.name + what);
-  return out;
-}
-
-std::string unseen_cells(const unseen_report& report, std::span<const part_minimum> nearest) {
+std::string unseen_cells(const unseen_report& report) {
   const min_distance_result& r = report.found->all;
   const auto cell = [](double value) { return ',' + csv_word(or_null(value), value); };
   const bool any = r.part != none;
   const json at = any ? pixel_of(report.clouds[r.cloud], r.point) : json(nullptr);
-  const bool known = r.state != state::no_data;
-  std::string out = std::string(",") + to_string(r.state) + (known ? cell(r.distance) + cell(r.lower) : ",,") + ',' +
+  std::string out = to_string(r.state) + (r.state == state::no_data ? ",," : cell(r.distance) + cell(r.lower)) + ',' +
                     (any ? csv_word((*report.bodies)[r.part].name) : "");
   for (std::size_t i = 0; i < 2; ++i) out += ',' + (at.is_null() ? std::string() : at[i].dump());
-  for (std::size_t k = 0; k < report.bodies->size(); ++k) {
-    out += k < nearest.size() && nearest[k].point != none ? cell(nearest[k].distance) : ",";
-    if (k >= report.found->parts.size()) {
-      out += ",,,";
-      continue;
-    }
-    const unseen_part& its = report.found->parts[k];
-    out += known ? cell(its.distance) + cell(its.lower) : ",,";
-    out += cell(its.out_of_view);
-  }
   return out;
 }

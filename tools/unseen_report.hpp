@@ -28,6 +28,7 @@ json unseen_of(const unseen_report& report, std::size_t part);
 std::string unseen_text(const unseen_report& report);
 std::string unseen_parts_text(const unseen_report& report);
 
-/// The columns of a table after a comma, about the robot and each part, and their cells.
-std::string unseen_columns(const unseen_report& report);
-std::string unseen_cells(const unseen_report& report, std::span<const clearance::part_minimum> nearest);
+/// The columns of a table about the robot, and their cells.
+inline constexpr const char* unseen_columns =
+    "unseen_state,unseen_distance,unseen_lower,unseen_part,unseen_pixel_x,unseen_pixel_y";
+std::string unseen_cells(const unseen_report& report);

@@ -84,6 +84,11 @@ class Robot:
         What each joint does to a part, (6, joints): the velocity of its point at `at` (world, metres), then its angular velocity, per radian or metre.
         """
 
+    def part_radii(self, joints: object | None, errors: object | None = None, speeds: object | None = None, delay: float = 0.0, ignore_limits: bool = False) -> NDArray[numpy.void]:
+        """
+        How far each part may be from where joints have it, for CertainDistance(parts=...): records of joints and delay, metres. errors (rad, m): by how much joints may be wrong; speeds, per second, in the seconds of delay; one number, or one a joint. Raises ValueError for what is negative or not finite.
+        """
+
     def spheres(self, part: int) -> NDArray[numpy.float32]:
         """
         The inner spheres of a part, (n, 4): x, y, z, radius in the part's frame. Metres.
@@ -116,6 +121,11 @@ def points(points: object, pose: object | None = None, *, nearest: float = 0.0, 
 def depth_image(depth: object, intrinsics: object | None = None, pose: object | None = None, *, scale: object | None = None, nearest: float = 0.0, farthest: float = float('inf'), minus_infinity_is_near: bool = True, rays: object | None = None) -> Cloud:
     """
     A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): x / z and y / z of each pixel. pose: world-from-camera, z forward.
+    """
+
+def uncertain(cloud: object, noise: object | None = None, *, shift: float = 0.0, turn: float = 0.0, max_speed: float = 0.0, age: float = 0.0) -> Cloud:
+    """
+    The same cloud, whose points may be elsewhere: for CertainDistance. noise: KinectNoise(), StereoNoise(...), TofNoise(...), LidarNoise(...), or an array of radii (m), one a point, float32, where the query asks. shift, turn: of the sensor's pose (m, rad). max_speed, age: of obstacles (m/s), of the cloud (s).
     """
 
 def half_pixel_of(rays: object) -> float:
@@ -256,6 +266,264 @@ class PointLabel(enum.Enum):
     uncertain = 2
 
     no_point = 3
+
+class KinectNoise:
+    """
+    Microsoft's first Kinect: 1.2 mm + 1.9 mm/m^2 (z - 0.4 m)^2 along z. Nguyen, Izadi, Lovell, "Modeling Kinect sensor noise for improved 3D reconstruction and tracking", 3DIMPVT 2012. They measured walls at up to 60 degrees.
+    """
+
+    def __init__(self, k: float = 3.0) -> None:
+        """k: So many standard deviations."""
+
+    @property
+    def k(self) -> float:
+        """So many standard deviations."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class StereoNoise:
+    """
+    Stereo, active or passive, and structured light: z^2 s / (f B) along z. Gallup et al., "Variable baseline/resolution stereo", CVPR 2008; for structured light Khoshelham and Elberink, Sensors 12(2), 2012.
+    """
+
+    def __init__(self, focal_length: float = 0.0, baseline: float = 0.0, disparity: float = 0.0, k: float = 3.0) -> None:
+        """
+        focal_length: f, in pixels.
+        baseline: B, in metres.
+        disparity: s, the standard deviation of a disparity, in pixels.
+        k: So many standard deviations.
+        """
+
+    @property
+    def focal_length(self) -> float:
+        """f, in pixels."""
+
+    @property
+    def baseline(self) -> float:
+        """B, in metres."""
+
+    @property
+    def disparity(self) -> float:
+        """s, the standard deviation of a disparity, in pixels."""
+
+    @property
+    def k(self) -> float:
+        """So many standard deviations."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class TofNoise:
+    """
+    Time of flight: constant + square |p|^2, because light that returns falls with the square of the way. Lange and Seitz, "Solid-state time-of-flight range camera", IEEE Journal of Quantum Electronics 37(3), 2001.
+    """
+
+    def __init__(self, constant: float = 0.0, square: float = 0.0, k: float = 3.0) -> None:
+        """
+        constant: Metres.
+        square: Metres for each square metre.
+        k: So many standard deviations.
+        """
+
+    @property
+    def constant(self) -> float:
+        """Metres."""
+
+    @property
+    def square(self) -> float:
+        """Metres for each square metre."""
+
+    @property
+    def k(self) -> float:
+        """So many standard deviations."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class LidarNoise:
+    """
+    LiDAR: constant + share |p|, as data sheets say it. Glennie and Lichti, "Static calibration and analysis of the Velodyne HDL-64E S2", Remote Sensing 2(6), 2010.
+    """
+
+    def __init__(self, constant: float = 0.0, share: float = 0.0, k: float = 3.0) -> None:
+        """
+        constant: Metres.
+        share: Metres for each metre.
+        k: So many standard deviations.
+        """
+
+    @property
+    def constant(self) -> float:
+        """Metres."""
+
+    @property
+    def share(self) -> float:
+        """Metres for each metre."""
+
+    @property
+    def k(self) -> float:
+        """So many standard deviations."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+class PartRadius:
+    """By how much a part may be elsewhere. Metres."""
+
+    @property
+    def joints(self) -> float:
+        """Because joints are not where they say,"""
+
+    @property
+    def delay(self) -> float:
+        """and because it moves while the answer is made."""
+
+    def sum(self) -> float: ...
+
+    def __repr__(self) -> str: ...
+
+class UncertaintyShares:
+    """
+    What lies between the distance of a pair and what is certain of it, one by one. Metres.
+    """
+
+    @property
+    def noise(self) -> float:
+        """Of the point."""
+
+    @property
+    def calibration(self) -> float: ...
+
+    @property
+    def time(self) -> float: ...
+
+    @property
+    def joints(self) -> float:
+        """Of the part."""
+
+    @property
+    def delay(self) -> float: ...
+
+    @property
+    def gap(self) -> float:
+        """The part's gap and tolerance."""
+
+    @property
+    def rounding(self) -> float: ...
+
+    def sum(self) -> float: ...
+
+    def __repr__(self) -> str: ...
+
+class CertainPair:
+    """
+    The pair of a part that is least far apart for certain. distance is what was measured, lower the rest, at least 0. The pair need not be the nearest. Without a valid point the distance is infinite.
+    """
+
+    @property
+    def distance(self) -> float: ...
+
+    @property
+    def part(self) -> int | None: ...
+
+    @property
+    def cloud(self) -> int | None: ...
+
+    @property
+    def point(self) -> int | None: ...
+
+    @property
+    def primitive(self) -> int | None: ...
+
+    @property
+    def at(self) -> tuple[float, float, float]: ...
+
+    @property
+    def nearest(self) -> tuple[float, float, float]: ...
+
+    @property
+    def normal(self) -> tuple[float, float, float]: ...
+
+    @property
+    def lower(self) -> float: ...
+
+    @property
+    def shares(self) -> UncertaintyShares: ...
+
+    @property
+    def link(self) -> str | None:
+        """The name of that part, or None."""
+
+    def __repr__(self) -> str: ...
+
+class CertainDistanceResult:
+    """
+    lower <= distance to the solid <= upper if no radius is too small. certain is the pair that decides lower. collision: a point is inside by more than all radii, which of a part that is a mesh is not known: possible. nominal is what min_distance says about the same points.
+    """
+
+    @property
+    def state(self) -> State: ...
+
+    @property
+    def lower(self) -> float: ...
+
+    @property
+    def upper(self) -> float: ...
+
+    @property
+    def nominal(self) -> MinDistanceResult: ...
+
+    @property
+    def certain(self) -> CertainPair: ...
+
+    @property
+    def parts(self) -> NDArray[numpy.void]: ...
+
+    @property
+    def anywhere(self) -> int:
+        """So many points may be anywhere: if it is not 0, nothing is free."""
+
+    def __repr__(self) -> str: ...
+
+class CertainDistance:
+    """
+    The least distance as measured, and what is certain of it: the least of (distance - the point's radius - the part's) over all pairs, less gap, tolerance and rounding. Clouds are uncertain; a bare one has radii 0. Throws std::invalid_argument if there is neither no radius nor one per part, or if one is negative or not finite.
+    """
+
+    def __init__(self, parts: ArrayLike = ()) -> None:
+        """parts:"""
+
+    @property
+    def parts(self) -> NDArray[numpy.void]: ...
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
 
 class PointDistances:
     """Distances of points, in the order of the clouds and their points."""
@@ -1246,8 +1514,11 @@ class Query(Generic[Answer]):
     """
 
     @overload
-    def __init__(self: Query[PointDistances], robot: Robot, question: Distances | type[Distances], device: str = 'cpu') -> None:
+    def __init__(self: Query[CertainDistanceResult], robot: Robot, question: CertainDistance | type[CertainDistance], device: str = 'cpu') -> None:
         """question: such as MinDistance(). device: "cpu", or "cuda:0" and so on."""
+
+    @overload
+    def __init__(self: Query[PointDistances], robot: Robot, question: Distances | type[Distances], device: str = 'cpu') -> None: ...
 
     @overload
     def __init__(self: Query[PartDistances], robot: Robot, question: DistancesPerPart | type[DistancesPerPart], device: str = 'cpu') -> None: ...

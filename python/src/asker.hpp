@@ -8,6 +8,7 @@
 #include <clearance/points/point_span.hpp>
 #include <clearance/points/ray_image.hpp>
 #include <clearance/points/strided_points.hpp>
+#include <clearance/points/uncertain.hpp>
 #include <clearance/usual_models.hpp>
 
 #include <memory>
@@ -20,6 +21,28 @@ using placed_any = std::variant<clearance::placed<Sources>...>;
 using any_cloud = placed_any<clearance::point_span, clearance::strided_points<float>, clearance::strided_points<double>,
                              clearance::depth_image<std::uint16_t>, clearance::depth_image<float>,
                              clearance::ray_image<std::uint16_t>, clearance::ray_image<float>>;
+
+namespace clearance {
+struct certain_distance;
+}
+
+/// What a question's clouds may be: uncertain, too, if the question is about that. Each kind is compiled.
+template <class Q>
+struct cloud_about {
+  using type = any_cloud;
+};
+template <class S>
+using placed_uncertain = clearance::placed<clearance::uncertain<S, clearance::any_noise>>;
+template <class Clouds>
+struct or_uncertain;
+template <class... S>
+struct or_uncertain<std::variant<clearance::placed<S>...>> {
+  using type = std::variant<clearance::placed<S>..., placed_uncertain<S>...>;
+};
+template <>
+struct cloud_about<clearance::certain_distance> : or_uncertain<any_cloud> {};
+template <class Q>
+using clouds_about = std::vector<typename cloud_about<Q>::type>;
 
 /// A robot's trees, in memory of the backend `B`.
 template <class B = clearance::host>
@@ -55,14 +78,14 @@ std::size_t results_of(std::size_t configurations, std::size_t parts) {
 template <class Q>
 struct asker {
   virtual ~asker() = default;
-  virtual typename Q::result ask(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds,
+  virtual typename Q::result ask(std::span<const Eigen::Isometry3d> poses, const clouds_about<Q>& clouds,
                                  const Q& question) = 0;
   /// On a device: what follows waits for the work in this stream.
   virtual void after(void*) {}
   /// On a device: enqueues a frame between what is in the caller's stream now and what comes there later. Clouds and
   /// `to` are in its memory. How certain distances are, where the question says it.
   virtual std::optional<clearance::distance_certainty> enqueue(std::span<const Eigen::Isometry3d>,
-                                                               const std::vector<any_cloud>&, const Q&,
+                                                               const clouds_about<Q>&, const Q&,
                                                                const typename out_of<Q>::type&, void* /*caller*/) {
     throw std::logic_error("clearance: only a device has a stream to enqueue in");
   }

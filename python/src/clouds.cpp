@@ -3,6 +3,7 @@
 
 #include "arrays.hpp"
 #include "device_array.hpp"
+#include "questions.hpp"
 #include "robot.hpp"
 #include "seen_array.hpp"
 
@@ -236,6 +237,53 @@ cloud_object depth_of(nb::handle depth, nb::handle intrinsics, nb::handle pose, 
   return made;
 }
 
+namespace {
+
+/// A radius for each point, where they lie.
+point_radii radii_of(nb::handle given, cloud_doubts& doubts) {
+  constexpr const char* wanted =
+      "None, KinectNoise(...), StereoNoise(...), TofNoise(...), LidarNoise(...), or an array of radii, one a point, of "
+      "dtype float32";
+  seen_array seen = array_seen(given, "noise", wanted);
+  std::size_t count = 1;
+  bool dense = true;
+  for (std::size_t k = seen.shape.size(); k-- > 0; count *= seen.shape[k])
+    dense &= seen.shape[k] < 2 || seen.strides[k] == std::int64_t(count * sizeof(real));
+  if (seen.shape.empty() || seen.kind != 'f' || seen.item != sizeof(real))
+    throw std::invalid_argument(std::string("clearance: noise is ") + wanted + ", not " + shape_and_type(given));
+  if (!dense) throw std::invalid_argument("clearance: noise has gaps between its radii; copy it first");
+  doubts.device = seen.device;
+  doubts.kept = nb::make_tuple(std::move(seen.kept), nb::borrow(given));
+  const auto* const radii = reinterpret_cast<const real*>(seen.data);
+  return seen.device == on_the_host ? point_radii(std::span(radii, count)) : point_radii(radii, count);
+}
+
+}  // namespace
+
+cloud_object uncertain_of(nb::handle cloud, nb::handle noise, double shift, double turn, double max_speed, double age) {
+  cloud_object* bare = nullptr;
+  if (!nb::try_cast(cloud, bare) || !bare)
+    throw nb::type_error("uncertain: cloud is what points(...) or depth_image(...) returns");
+  if (bare->doubts) throw std::invalid_argument("clearance: cloud is uncertain already");
+  cloud_object made = *bare;
+  cloud_doubts& doubts = made.doubts.emplace();
+  doubts.of = {shift, turn, max_speed, age};
+  any_noise& its = doubts.noise;
+  const auto is = [&]<class N>(noise_kind kind, N& of_kind) {
+    if (!nb::isinstance<asked<N>>(noise)) return false;
+    its.kind = kind, of_kind = nb::cast<const asked<N>&>(noise).question;
+    return true;
+  };
+  if (!noise.is_none() && !is(noise_kind::kinect, its.kinect) && !is(noise_kind::stereo, its.stereo) &&
+      !is(noise_kind::tof, its.tof) && !is(noise_kind::lidar, its.lidar))
+    its.kind = noise_kind::radii, its.radii = radii_of(noise, doubts);
+  std::visit([&](const auto& placed) { uncertain(placed.source, its, doubts.of); }, made.cloud);  // throws
+  if (its.kind != noise_kind::none && its.kind != noise_kind::radii && its(0, {0, 0, 1}) == 0)
+    throw std::invalid_argument("clearance: noise is " + nb::cast<std::string>(nb::repr(noise)) +
+                                ", which is 0 a metre away; None says that there is none");
+  return made;
+}
+
 /// Of (rows, columns, 2) float32 in host memory.
 double half_pixel(nb::handle rays) {
   const seen_array table = array_seen(rays, "rays", "an array of shape (rows, columns, 2) and dtype float32");
@@ -269,6 +317,11 @@ void bind_clouds(nb::module_& m) {
       "A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or "
       "float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): "
       "x / z and y / z of each pixel. pose: world-from-camera, z forward.");
+  m.def("uncertain", &uncertain_of, nb::arg("cloud"), nb::arg("noise").none() = nb::none(), nb::kw_only(),
+        nb::arg("shift") = 0.0, nb::arg("turn") = 0.0, nb::arg("max_speed") = 0.0, nb::arg("age") = 0.0,
+        "The same cloud, whose points may be elsewhere: for CertainDistance. noise: KinectNoise(), StereoNoise(...), "
+        "TofNoise(...), LidarNoise(...), or an array of radii (m), one a point, float32, where the query asks. shift, "
+        "turn: of the sensor's pose (m, rad). max_speed, age: of obstacles (m/s), of the cloud (s).");
   m.def("half_pixel_of", &half_pixel, nb::arg("rays"),
         "Half the diagonal of the widest pixel at z = 1, of a table of rays (rows, columns, 2), float32: for Unseen.");
 }

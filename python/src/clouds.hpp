@@ -11,9 +11,18 @@
 
 namespace nb = nanobind;
 
+/// What is uncertain about a cloud.
+struct cloud_doubts {
+  clearance::any_noise noise;
+  clearance::cloud_uncertainty of;
+  int device = on_the_host;  ///< Where the radii of `noise` lie, if it has those.
+  nb::object kept;
+};
+
 /// A cloud with its pose, and what keeps its memory alive.
 struct cloud_object {
   any_cloud cloud;
+  std::optional<cloud_doubts> doubts;
   int device = on_the_host;  ///< The CUDA device where the array lies.
   bool far = false;          ///< Doubles, of which a place near the robot is subtracted before they become floats.
   Eigen::Vector3d sensor = Eigen::Vector3d::Zero();  ///< Of their filter, before it became floats.
@@ -27,5 +36,8 @@ cloud_object points_of(nb::handle points, nb::handle pose, double nearest, doubl
                        bool zero_is_missing);
 cloud_object depth_of(nb::handle depth, nb::handle intrinsics, nb::handle pose, nb::handle scale, double nearest,
                       double farthest, bool minus_infinity_is_near, nb::handle rays);
+
+/// The same cloud, whose points may be elsewhere. `noise`: None, one of the library's, or an array of radii.
+cloud_object uncertain_of(nb::handle cloud, nb::handle noise, double shift, double turn, double max_speed, double age);
 
 void bind_clouds(nb::module_& m);

@@ -55,7 +55,7 @@ class prepared_on_device final : public prepared<Q, Backend, Model> {
       : in_memory(on, std::move(trees), model, question), on_(on), parts_(model.view().size()) {}
 
   std::optional<clearance::distance_certainty> enqueue(std::span<const Eigen::Isometry3d> poses,
-                                                       const std::vector<any_cloud>& clouds, const Q& question,
+                                                       const clouds_about<Q>& clouds, const Q& question,
                                                        const typename out_of<Q>::type& to, void*) override {
     [[maybe_unused]] auto& query = in_memory::query_;
     if constexpr (requires { typename Q::searched; }) {
@@ -100,7 +100,7 @@ class asker_on_device final : public asker<Q> {
     clearance::on_device(stream_.on().id, [this] { return cudaStreamSynchronize(stream_.on().stream); });
   }
 
-  typename Q::result ask(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds,
+  typename Q::result ask(std::span<const Eigen::Isometry3d> poses, const clouds_about<Q>& clouds,
                          const Q& question) override {
     return inner_->ask(poses, clouds, question);
   }
@@ -108,7 +108,7 @@ class asker_on_device final : public asker<Q> {
     if (is_ordered(caller)) event_.put(static_cast<cudaStream_t>(caller), stream_.on().stream);
   }
   std::optional<clearance::distance_certainty> enqueue(std::span<const Eigen::Isometry3d> poses,
-                                                       const std::vector<any_cloud>& clouds, const Q& question,
+                                                       const clouds_about<Q>& clouds, const Q& question,
                                                        const typename out_of<Q>::type& to, void* caller) override {
     after(caller);
     const auto certain = inner_->enqueue(poses, clouds, question, to, caller);

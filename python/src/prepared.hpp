@@ -12,7 +12,7 @@ class prepared : public asker<Q> {
   prepared(const Backend& on, std::shared_ptr<const robot_trees<Backend>> trees, const Model& model, const Q& question)
       : trees_(std::move(trees)), query_(on, model, question) {}
 
-  typename Q::result ask(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds,
+  typename Q::result ask(std::span<const Eigen::Isometry3d> poses, const clouds_about<Q>& clouds,
                          const Q& question) override {
     return query_(poses, clouds, question);
   }

@@ -17,19 +17,45 @@
 using namespace clearance;
 
 void refuse_option(const char* question, const char* option, const char* wanted, nb::handle given) {
+  const nb::object one_line = nb::str(" ").attr("join")(nb::repr(given).attr("split")());  // arrays have several
   throw nb::type_error(
-      (std::string(question) + ": " + option + " is " + wanted + ", not " + nb::cast<std::string>(nb::repr(given)))
-          .c_str());
+      (std::string(question) + ": " + option + " is " + wanted + ", not " + nb::cast<std::string>(one_line)).c_str());
 }
 
 namespace {
 
+/// A cloud as it is asked about: relative to a place near the robot.
+struct seen_cloud {
+  any_cloud cloud;
+  const std::optional<cloud_doubts> doubts;
+};
+
+/// Throws std::invalid_argument if a cloud is uncertain, and Q is not about that.
+template <class Q>
+clouds_about<Q> clouds_for(const std::vector<seen_cloud>& seen) {
+  clouds_about<Q> made;
+  for (const seen_cloud& each : seen)
+    std::visit(
+        [&]<class S>(const placed<S>& bare) {
+          if (!each.doubts)
+            made.push_back(bare);
+          else if constexpr (std::is_constructible_v<typename cloud_about<Q>::type, placed_uncertain<S>>)
+            made.push_back(placed{uncertain(bare.source, each.doubts->noise, each.doubts->of), bare.pose});
+          else
+            throw std::invalid_argument(std::string("clearance: a cloud is uncertain, and in Python ") +
+                                        declared<Q>::name +
+                                        " takes points where they were measured; CertainDistance is about that");
+        },
+        each.cloud);
+  return made;
+}
+
 /// A query in Python, whatever its question.
 struct any_query {
   virtual ~any_query() = default;
-  virtual nb::object ask(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds,
+  virtual nb::object ask(std::span<const Eigen::Isometry3d> poses, const std::vector<seen_cloud>& clouds,
                          nb::handle question, std::optional<void*> stream) = 0;
-  virtual nb::object enqueue(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds,
+  virtual nb::object enqueue(std::span<const Eigen::Isometry3d> poses, const std::vector<seen_cloud>& clouds,
                              nb::handle question, void* stream, nb::handle out, std::optional<std::size_t> capacity,
                              nb::object kept) = 0;
 };
@@ -43,15 +69,16 @@ class query_of final : public any_query {
     idle_.push_back(make());
   }
 
-  nb::object ask(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds, nb::handle question,
+  nb::object ask(std::span<const Eigen::Isometry3d> poses, const std::vector<seen_cloud>& clouds, nb::handle question,
                  std::optional<void*> stream) override {
     const Q asked = question.is_none() ? standing_ : other(question);
+    const clouds_about<Q> seen = clouds_for<Q>(clouds);
     typename Q::result result;
     {
       const nb::gil_scoped_release others;
       const auto mine = take();
       if (stream) mine->after(*stream);
-      result = mine->ask(poses, clouds, asked);
+      result = mine->ask(poses, seen, asked);
       give_back(mine);
     }
     if constexpr (declared_struct<typename Q::result>) {
@@ -64,13 +91,14 @@ class query_of final : public any_query {
     }
   }
 
-  nb::object enqueue(std::span<const Eigen::Isometry3d> poses, const std::vector<any_cloud>& clouds,
+  nb::object enqueue(std::span<const Eigen::Isometry3d> poses, const std::vector<seen_cloud>& clouds,
                      nb::handle question, void* stream, nb::handle out, std::optional<std::size_t> capacity,
                      nb::object kept) override {
     if constexpr (can_be_enqueued<Q>) {
       const Q asked = question.is_none() ? standing_ : other(question);
       const std::size_t parts = robot_->parts();
-      const room_sizes sizes{count_points(clouds), parts, parts == 0 ? 0 : poses.size() / parts, {}};
+      const clouds_about<Q> seen = clouds_for<Q>(clouds);
+      const room_sizes sizes{count_points(seen), parts, parts == 0 ? 0 : poses.size() / parts, {}};
       const auto mine = [this] {
         const nb::gil_scoped_release others;
         return take();
@@ -79,7 +107,7 @@ class query_of final : public any_query {
       const auto to = arrays_for(asked, sizes, capacity, out, *mine, answer);
       {
         const nb::gil_scoped_release others;
-        answer.certain = mine->enqueue(poses, clouds, asked, to, stream);
+        answer.certain = mine->enqueue(poses, seen, asked, to, stream);
       }
       for (const auto& memory : answer.rewritten) memory->stream = answer.stream, memory->writer = mine;
       give_back(mine);
@@ -128,7 +156,7 @@ class query_of final : public any_query {
 /// What is asked about: where the robot is, and what is seen.
 struct asked_frame {
   std::vector<Eigen::Isometry3d> places;
-  std::vector<any_cloud> seen;
+  std::vector<seen_cloud> seen;
   nb::list kept;
   bool on_device = false;
   bool many = false;  ///< Joints gave more than one configuration.
@@ -185,8 +213,13 @@ struct query_object {
                                     " lies on the cpu, and what is enqueued reads the device's memory: give "
                                     "DeviceArray(array, \"" +
                                     device_name(device) + "\") or the like; a call copies by itself");
-      made.on_device |= cloud.device != on_the_host;
-      made.seen.push_back(near_robot(cloud, places));
+      const bool radii = cloud.doubts && cloud.doubts->noise.kind == noise_kind::radii;
+      if (radii && cloud.doubts->device != device)
+        throw std::invalid_argument("clearance: the radii of " + std::string(argument) + " lie on " +
+                                    device_name(cloud.doubts->device) + ", and this query asks on " +
+                                    device_name(device) + ", which reads them in place");
+      made.on_device |= cloud.device != on_the_host || (radii && device != on_the_host);
+      made.seen.push_back({near_robot(cloud, places), cloud.doubts});
       for (const nb::object& memory : {cloud.kept, cloud.also_kept})
         if (memory) made.kept.append(memory);
     };

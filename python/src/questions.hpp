@@ -25,6 +25,9 @@ const char* wanted_as() {
     static const std::string text = std::string("a ") + declared<T>::name;
     return text.c_str();
   }
+  if constexpr (is_array<T>) {
+    if constexpr (declared_struct<typename T::value_type>) return "a structured array, or a sequence of tuples";
+  }
   return "an array of them";
 }
 template <class T>
@@ -51,12 +54,19 @@ void set_option(asked<Q>& to, T& option, const char* name, nb::handle given) {
       if (PySequence_Check(given.ptr()))
         for (const nb::handle one : given) option.push_back(nb::cast<double>(nb::float_(one)));
     } else if constexpr (is_array<T>) {
-      using element = std::remove_const_t<typename T::element_type>;
-      const nb::object plain =
-          nb::module_::import_("numpy").attr("ascontiguousarray")(given, dtype_of<element>()).attr("view")("u1");
+      using element = std::remove_const_t<typename T::value_type>;
+      const nb::module_ numpy = nb::module_::import_("numpy");
+      if constexpr (declared_struct<element>)  // of a plain number NumPy would fill all members
+        if (nb::cast<std::string>(numpy.attr("asarray")(given).attr("dtype").attr("kind")) != "V" && nb::len(given) &&
+            !PyTuple_Check(nb::object(given[0]).ptr()))
+          throw nb::cast_error();
+      const nb::object plain = numpy.attr("ascontiguousarray")(given, dtype_of<element>()).attr("view")("u1");
       const auto bytes = nb::cast<nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig>>(plain);
-      option = {reinterpret_cast<const element*>(bytes.data()), bytes.size() / sizeof(element)};
-      to.kept = plain;
+      const std::span all(reinterpret_cast<const element*>(bytes.data()), bytes.size() / sizeof(element));
+      if constexpr (std::is_constructible_v<T, std::span<const element>>)
+        option = all, to.kept = plain;
+      else
+        option.assign(all.begin(), all.end());
     } else if constexpr (declared_struct<T>) {
       option = nb::cast<const asked<T>&>(given).question;
     } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
@@ -79,7 +89,8 @@ std::string signature_of() {
   for_each_member<Q>([&]<class T>(const member_as<Q, T>& m) {
     text += std::string(", ") + m.name + ": ";
     if constexpr (is_array<T> && !std::is_same_v<T, std::vector<double>>) {
-      const bool after_defaults = text.find(" = ") != text.npos;
+      constexpr bool owned = !std::is_trivially_copyable_v<T>;  // and may be left out
+      const bool after_defaults = owned || text.find(" = ") != text.npos;
       text += after_defaults ? "numpy.typing.ArrayLike = ()" : type_name<T>();
     } else {
       text += type_name<T>();

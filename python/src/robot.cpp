@@ -2,9 +2,11 @@
 #include "robot.hpp"
 
 #include "arrays.hpp"
+#include "values.hpp"
 
 #include <clearance/io/jacobian.hpp>
 #include <clearance/io/mesh.hpp>
+#include <clearance/io/part_radii.hpp>
 #include <clearance/io/spheres_file.hpp>
 
 #include <nanobind/stl/array.h>
@@ -198,6 +200,32 @@ nb::object rows_of(const std::vector<Eigen::Isometry3d>& poses, std::vector<std:
   return own_array(std::move(values), shape);
 }
 
+/// A number for each of the robot's joint values, or one for all.
+std::vector<double> each_joint(const robot_model& robot, nb::handle given, const char* argument) {
+  if (given.is_none()) return {};
+  std::vector<double> all;
+  if (double one = 0; nb::try_cast(given, one)) return std::vector<double>(joints_of(robot).size(), one);
+  if (!nb::try_cast(nb::module_::import_("numpy").attr("asarray")(given).attr("tolist")(), all))
+    throw std::invalid_argument(std::string("clearance: ") + argument + " is a number, or one for each of the " +
+                                std::to_string(joints_of(robot).size()) + " joints, not " + shape_and_type(given));
+  return all;
+}
+
+nb::object radii_of_parts(const robot_model& robot, nb::handle joints, nb::handle errors, nb::handle speeds,
+                          double delay, bool ignore_limits) {
+  const joint_rows q = joints_given(robot, joints, ignore_limits);
+  if (!q.shape.empty())
+    throw std::invalid_argument("clearance: joints is of one configuration here, not " + shape_and_type(joints));
+  const std::vector<double> wrong = each_joint(robot, errors, "errors"), fast = each_joint(robot, speeds, "speeds");
+  auto* const radii = new std::vector<part_radius>(std::visit(
+      [&](const auto& trees) {
+        return io::part_radii(robot.described(), trees.view().facts, q.values, {wrong, fast, delay}, {ignore_limits});
+      },
+      *robot.trees));
+  return array_of(radii->data(), radii->size(),
+                  nb::capsule(radii, [](void* p) noexcept { delete static_cast<std::vector<part_radius>*>(p); }));
+}
+
 }  // namespace
 
 const io::robot& robot_model::described() const {
@@ -386,6 +414,11 @@ void bind_robot(nb::module_& m) {
           nb::arg("joints").none(), nb::arg("part").none(), nb::arg("at").none(), nb::arg("base").none() = nb::none(),
           "What each joint does to a part, (6, joints): the velocity of its point at `at` (world, metres), then its "
           "angular velocity, per radian or metre.")
+      .def("part_radii", &radii_of_parts, nb::arg("joints").none(), nb::arg("errors").none() = nb::none(),
+           nb::arg("speeds").none() = nb::none(), nb::arg("delay") = 0.0, nb::arg("ignore_limits") = false,
+           "How far each part may be from where joints have it, for CertainDistance(parts=...): records of joints and "
+           "delay, metres. errors (rad, m): by how much joints may be wrong; speeds, per second, in the seconds of "
+           "delay; one number, or one a joint. Raises ValueError for what is negative or not finite.")
       .def(
           "spheres",
           [](const robot_model& r, std::size_t k) {

@@ -274,6 +274,12 @@ def test_clouds_are_a_sequence_of_clouds(ask, clouds):
     (lambda: clearance.PartWitnesses("all"), ["minima"]),
     (lambda: clearance.Unseen(0.1), ["Unseen", "room is a Hiding", "0.1"]),
     (lambda: clearance.Hiding("near"), ["Hiding", "nearest", "number"]),
+    (lambda: clearance.CertainDistance(0.1), ["CertainDistance", "parts", "sequence of tuples", "0.1"]),
+    (lambda: clearance.CertainDistance([0.1, 0.2]), ["parts", "sequence of tuples"]),
+    (lambda: clearance.CertainDistance(np.ones((3, 2))), ["parts", "sequence of tuples"]),
+    (lambda: clearance.CertainDistance([(0.1, 0, 0)]), ["parts", "sequence of tuples"]),
+    (lambda: clearance.uncertain(good), ["cloud", "points(...)"]),
+    (lambda: clearance.StereoNoise(424, 0.05, "s"), ["StereoNoise", "disparity", "number"]),
 ])
 def test_options_that_are_none(make, said, recwarn, capfd):
     refused(make, *said, kind=TypeError)
@@ -295,9 +301,54 @@ def test_options_that_are_none(make, said, recwarn, capfd):
     (clearance.Unseen(labels=[0, 1, 0]), "3 labels"),
     (clearance.Unseen(), "asked about depth images"),
     (clearance.MinDistanceSupported(min_points=0), "0 points"),
+    (clearance.CertainDistance([(0.1, 0), (0, 0)]), "1 parts, but 2 radii"),
+    (clearance.CertainDistance([(-0.1, 0)]), "radius by its joints"),
+    (clearance.CertainDistance([(0, np.nan)]), "radius by a delay"),
 ])
 def test_options_that_the_question_refuses(ball, question, said):
     refused(lambda: clearance.Query(ball, question)(good, poses=one), said)
+
+
+@pytest.mark.parametrize("options, said", [
+    ({"noise": 0.1}, ["noise", "KinectNoise", "radii"]),
+    ({"noise": clearance.MinDistance()}, ["noise", "KinectNoise"]),
+    ({"noise": clearance.StereoNoise()}, ["focal length and baseline", "above 0"]),
+    ({"noise": clearance.StereoNoise(424, 0.05, -1)}, ["disparity", "0 or more"]),
+    ({"noise": clearance.TofNoise()}, ["TofNoise(", "0 a metre away", "None"]),
+    ({"noise": clearance.LidarNoise(0.01, k=0)}, ["LidarNoise(", "0 a metre away"]),
+    ({"noise": clearance.KinectNoise(np.nan)}, ["k", "0 or more"]),
+    ({"noise": clearance.LidarNoise(0.01, np.inf)}, ["LiDAR", "0 or more"]),
+    ({"noise": np.zeros(2, "f4")}, ["3 points", "2 radii"]),
+    ({"noise": np.zeros(3)}, ["radii", "float32", "float64"]),
+    ({"noise": np.zeros(6, "f4")[::2]}, ["gaps"]),
+    ({"noise": np.array([0, -1, 0], "f4")}, ["radius of point 1", "0 or more"]),
+    ({"noise": np.array([0, 0, np.nan], "f4")}, ["radius of point 2", "0 or more"]),
+    ({"shift": -1}, ["shift", "0 or more"]),
+    ({"turn": np.nan}, ["turn", "0 or more"]),
+    ({"max_speed": np.inf}, ["speed", "0 or more"]),
+    ({"max_speed": 1, "age": -1}, ["age", "0 or more"]),
+])
+def test_what_cannot_be_uncertain(options, said):
+    cloud = clearance.points(np.ones((3, 3), "f4"))
+    refused(lambda: clearance.uncertain(cloud, **options), *said)
+
+
+def test_an_uncertain_cloud_is_for_its_question(ball):
+    cloud = clearance.uncertain(clearance.points(good), shift=0.01)
+    zones, certain = (clearance.Query(ball, q) for q in (clearance.Zones([0.1]), clearance.CertainDistance()))
+    refused(lambda: zones(cloud, poses=one), "uncertain", "Zones", "CertainDistance")
+    refused(lambda: clearance.uncertain(cloud), "uncertain already")
+    refused(lambda: certain(cloud, poses=one, cloud_pose=np.eye(4)), "cloud_pose")
+
+
+def test_part_radii_that_cannot_be(arm, ball):
+    refused(lambda: arm.part_radii([0, 0, 0], [0.1, 0.2]), "3 values", "2 errors")
+    refused(lambda: arm.part_radii([0, 0, 0], -0.1), "error of joint", "0 or more")
+    refused(lambda: arm.part_radii([0, 0, 0], speeds=np.nan, delay=1), "speed of joint", "finite")
+    refused(lambda: arm.part_radii([0, 0, 0], delay=-1), "delay", "0 or more")
+    refused(lambda: arm.part_radii([0, 0, 0], "much"), "errors", "number")
+    refused(lambda: arm.part_radii([[0, 0, 0]], 0.1), "joints", "one configuration")
+    refused(lambda: ball.part_radii([], 0.1), "no joints")
 
 
 def test_numbers_of_numpy_are_options():

@@ -37,7 +37,7 @@ if WHY:
 # ---- what is asked -----------------------------------------------------------------------------------------------------
 
 PLANS = ("MinDistances", "MinDistancesPerPart", "InCollisions")
-WAITS = ("MinDistanceSupported", "Unseen")
+WAITS = ("CertainDistance", "MinDistanceSupported", "Unseen")
 OPTIONS = {
     "Distances": [{}, {"d_max": 0.5, "which": True}], "SignedDistances": [{}, {"d_max": 0.5, "which": True}],
     "DistancesPerPart": [{"d_max": 0.5}], "InCollision": [{"margins": 0.0}, {"margins": 0.2}],
@@ -182,7 +182,8 @@ def test_an_enqueued_answer_has_the_bits_of_the_host(scene, name):
 
 @pytest.mark.parametrize("name", WAITS)
 def test_what_needs_the_host_is_not_enqueued(scene, name):
-    ask = clearance.Query(scene.robot, asked(scene, name)[0], device=GPU)
+    question = clearance.Unseen() if name == "Unseen" else asked(scene, name)[0]
+    ask = clearance.Query(scene.robot, question, device=GPU)
     with pytest.raises(ValueError, match=f"{name} cannot be enqueued"):
         ask.enqueue(clearance.DeviceArray(scene.points), **scene.where(name))
 
@@ -649,6 +650,24 @@ def test_cupy_reads_and_writes_the_same_arrays(small):
     answer = ask.enqueue(there, poses=poses)
     for made in (cupy.from_dlpack(answer["distance"]), cupy.asarray(answer["distance"])):
         assert (cupy.asnumpy(made) == expected).all()
+
+
+def test_what_is_certain_is_the_same_on_a_device(scene):
+    off, size = {"shift": 0.004, "turn": 0.002, "max_speed": 1.6, "age": 0.01}, len(scene.points)
+    radii = np.random.default_rng(8).uniform(0, 0.04, size).astype("f4")
+    question = clearance.CertainDistance([(0.01 * k, 0.002) for k in range(len(scene.robot))])
+    there, noise = clearance.DeviceArray(radii, GPU), clearance.StereoNoise(424, 0.05, 0.08)
+    expected = None
+    for put, its in ((np.asarray, radii), (np.asarray, there), (lambda a: clearance.DeviceArray(a, GPU), there)):
+        points, image = scene.seen(put)["clouds"]
+        seen = [clearance.uncertain(points, its, **off), clearance.uncertain(image, noise, **off), points]
+        ask = clearance.Query(scene.robot, question, device="cpu" if expected is None else GPU)
+        found = ask(clouds=seen, poses=scene.poses)
+        expected = expected or bits(found)
+        assert bits(found) == expected
+    ask = clearance.Query(scene.robot, question, device=GPU)
+    with pytest.raises(ValueError, match="radii of one of the clouds lie on cpu"):
+        ask(clouds=[clearance.uncertain(clearance.points(scene.points), radii)], poses=scene.poses)
 
 
 def test_what_is_unseen_is_the_same_on_a_device(scene):

@@ -825,6 +825,141 @@ def _(s):
             assert np.isnan(r.parts["out_of_view"]).all()
 
 
+def clouds_of(asked):
+    """What a scene gives to the query, as clouds."""
+    made = [clearance.points(c) if not isinstance(c, clearance.Cloud) else c for c in asked.get("clouds", [])]
+    if "depth" in asked:
+        made.insert(0, clearance.depth_image(asked["depth"], asked.get("intrinsics"), asked.get("camera_pose"),
+                                             rays=asked.get("rays")))
+    if isinstance(asked.get("points"), clearance.Cloud):
+        made.insert(0, asked["points"])
+    elif "points" in asked:
+        made.insert(0, clearance.points(asked["points"], asked.get("cloud_pose")))
+    return made
+
+
+def check_certain(s, r, radii, parts):
+    """That places may be elsewhere by their radii (points,), and parts by theirs (parts,)."""
+    assert repr(r.nominal) == repr(s.ask(clearance.MinDistance()))
+    anywhere = (s.why == "too_close").sum()
+    assert r.anywhere == anywhere
+    if not s.valid.any():
+        assert r.state == State.no_data and r.lower == 0 and r.upper == np.inf and r.certain.part is None
+        return
+    off = s.of_parts - radii - np.asarray(parts)[:, None]
+    least = np.nanmin(off, axis=1)
+    for pair, its, k in [*zip(r.parts, least, range(len(least))), (None, least.min(), None)]:
+        if pair is None:
+            c = r.certain
+            pair = {"part": c.part, "cloud": c.cloud, "point": c.point, "distance": c.distance, "lower": r.lower}
+            noise, of_part, sums = c.shares.noise, c.shares.joints + c.shares.delay, c.shares.sum()
+        else:
+            assert pair["part"] == k
+            shares = pair["shares"]
+            noise, of_part, sums = shares["noise"], shares["joints"] + shares["delay"], sum(shares.tolist())
+        number = s.number(pair["cloud"], pair["point"])
+        assert off[pair["part"], number] == pytest.approx(its, abs=near_enough)
+        assert s.of_parts[pair["part"], number] == pytest.approx(pair["distance"], abs=near_enough)
+        assert of_part == parts[pair["part"]]
+        assert noise <= radii[number] * (1 + 1e-5)
+        assert pair["lower"] <= max(its, 0)
+        assert pair["lower"] == pytest.approx(0 if anywhere else max(its, 0), abs=3 * near_enough)
+        if pair["lower"] > 0:
+            assert pair["distance"] - sums == pytest.approx(pair["lower"], abs=3 * near_enough)
+    n = r.nominal
+    most = n.distance + radii[s.number(n.cloud, n.point)] + parts[n.part]
+    assert r.upper >= max(most, 0) and r.upper == pytest.approx(max(most, 0), abs=3 * near_enough)
+    if abs(most) > near_enough and (anywhere or abs(least.min()) > near_enough):
+        expected = State.collision if most < 0 else State.free if r.lower > 0 else State.possible
+        assert r.state == expected
+
+
+@check("CertainDistance")
+def _(s):
+    clouds, odd = clouds_of(s.asked), np.random.default_rng(5)
+    r = s.ask(clearance.CertainDistance())  # nothing is uncertain
+    check_certain(s, r, np.zeros(len(s.world)), np.zeros(len(s.spheres)))
+    radii = [odd.uniform(0, 0.05, n).astype("f4") for n in s.sizes]
+    parts = [tuple(odd.uniform(0, 0.02, 2)) for _ in s.spheres]
+    seen = [clearance.uncertain(c, r) for c, r in zip(clouds, radii)]
+    of_parts = [sum(part) for part in parts]
+    ask = clearance.Query(s.robot, clearance.CertainDistance(parts))
+    check_certain(s, ask(clouds=seen, poses=s.poses), np.concatenate(radii or [[]]), of_parts)
+    # Some are uncertain, and some are not.
+    mixed = [c if k % 2 else clearance.uncertain(c, max_speed=1.5, age=0.02) for k, c in enumerate(clouds)]
+    by_time = np.concatenate([np.full(n, 0 if k % 2 else 0.03) for k, n in enumerate(s.sizes)] or [[]])
+    r = ask(clouds=mixed, poses=s.poses, question=clearance.CertainDistance())
+    if s.valid.any():
+        off = s.of_parts - by_time
+        assert r.lower == pytest.approx(0 if r.anywhere else max(np.nanmin(off), 0), abs=3 * near_enough)
+        assert r.certain.shares.time == pytest.approx(0 if r.certain.cloud % 2 else 0.03, rel=1e-4)
+
+
+@pytest.mark.parametrize("noise, sigma", [
+    (clearance.KinectNoise(2), lambda p, away: 2 * (0.0012 + 0.0019 * (p[:, 2] - 0.4) ** 2) * away / p[:, 2]),
+    (clearance.StereoNoise(424, 0.05, 0.08), lambda p, away: 3 * 0.08 / (424 * 0.05) * p[:, 2] * away),
+    (clearance.TofNoise(0.004, 0.003), lambda p, away: 3 * (0.004 + 0.003 * away**2)),
+    (clearance.LidarNoise(constant=0.01, share=0.002, k=1), lambda p, away: 0.01 + 0.002 * away),
+    (None, lambda p, away: 0 * away),
+])
+@pytest.mark.parametrize("kind", ["uint16", "float32", "rays", "points", "far points"])
+def test_noise_calibration_and_age_are_radii(noise, sigma, kind, rng):
+    robot, pose = random_robot(rng), rigid(rng)
+    pose[:3, 3] += 5000.25 * (kind == "far points")
+    robot[2][:, :3, 3] += 5000.25 * (kind == "far points")
+    image = rng.uniform(0.3, 0.9, (12, 16))
+    image = np.round(image * 1000).astype("u2") if kind == "uint16" else image.astype("f4")
+    view, why = pixels(image, camera, 0.001 if kind == "uint16" else 1)
+    if kind in ("points", "far points"):
+        local = view.astype("f4") if kind == "points" else view
+        sensor = (0, 0, 0)
+        where = pose
+        if kind == "far points":  # doubles of the world, where the sensor is
+            local, sensor, where = view + pose[:3, 3], pose[:3, 3], np.eye(4)
+        cloud = clearance.points(local, where, sensor=sensor)
+        s = scene_of(rng, {"points": cloud}, local, where, robot=robot)
+        seen = np.asarray(local, "f8") - sensor
+    else:
+        rays = (pixels(np.ones((12, 16), "f4"), camera, 1)[0][:, :2]).astype("f4").reshape(12, 16, 2)
+        given = {"rays": rays} if kind == "rays" else {"intrinsics": camera}
+        s = scene_of(rng, {"depth": image, "camera_pose": pose, **given}, view, pose, why, robot=robot)
+        cloud, seen = clouds_of(s.asked)[0], view
+    away = np.linalg.norm(seen, axis=1)
+    made = clearance.uncertain(cloud, noise, shift=0.004, turn=0.01, max_speed=1.6, age=0.0125)
+    r = clearance.Query(robot[0], clearance.CertainDistance())(clouds=[made], poses=s.poses)
+    radii = sigma(seen, away) + 0.004 + 0.01 * away + 0.02
+    off = s.of_parts - radii
+    allowed = near_enough * (100 if kind == "far points" else 1)
+    assert r.lower == pytest.approx(max(np.nanmin(off), 0), abs=allowed)
+    shares = r.certain.shares
+    assert shares.noise == pytest.approx(sigma(seen, away)[r.certain.point], abs=allowed)
+    assert shares.calibration == pytest.approx(0.004 + 0.01 * away[r.certain.point], abs=allowed)
+    assert shares.time == pytest.approx(0.02, rel=1e-4)
+    assert off[r.certain.part, r.certain.point] == pytest.approx(np.nanmin(off), abs=allowed)
+
+
+def test_part_radii_hold_for_joints_that_are_wrong(arm, rng):
+    """No vertex of a part is farther from where joints have it than its radius says."""
+    q, errors, speeds = np.array([0.3, -0.5, 1.0]), [0.01, 0.02, 0.3], [1.0, 0.5, 0.0]
+    radii = arm.part_radii(q, errors, speeds=speeds, delay=0.05)
+    assert radii.dtype.names == ("joints", "delay") and len(radii) == len(arm)
+    assert radii[0].tolist() == (0, 0)  # the base does not move
+    meshes = [arm.mesh(k)[0] for k in range(len(arm))]
+    stand = [moved(p, v) for p, v in zip(arm.poses(q), meshes)]
+    most = np.zeros(len(arm))
+    for _ in range(300):
+        wrong = rng.choice([-1, 1], 3) * (np.array(errors) + 0.05 * np.array(speeds))
+        for k, pose in enumerate(arm.poses(q + wrong)):
+            most[k] = max(most[k], np.linalg.norm(moved(pose, meshes[k]) - stand[k], axis=1).max())
+    whole = radii["joints"] + radii["delay"]
+    assert (most <= whole).all() and (whole[1:] <= 3 * most[1:]).all()
+    assert (arm.part_radii(q, 0.01)["joints"] == arm.part_radii(q, [0.01] * 3)["joints"]).all()
+    cloud = rng.uniform(-1, 1, (200, 3)).astype("f4") + np.float32(1)
+    ask = clearance.Query(arm, clearance.CertainDistance(radii))
+    for record, pair in zip(radii, ask(cloud, joints=q).parts):
+        assert pair["shares"]["joints"] == record["joints"] and pair["shares"]["delay"] == record["delay"]
+
+
 def test_half_a_pixel_of_a_table_of_rays():
     v, u = np.mgrid[:6, :8].astype("f4")
     rays = np.ascontiguousarray(np.stack([(u - 3) / 50, (v - 2) / 40], axis=-1))

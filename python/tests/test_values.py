@@ -30,6 +30,8 @@ def options():
                         "places": True}}
     minima = np.zeros(2, [("distance", "<f4"), ("cloud", "<u4"), ("point", "<u4"), ("primitive", "<u4")])
     given["PartWitnesses"] = {"minima": minima}
+    radii = [("joints", "<f8"), ("delay", "<f8")]
+    given["CertainDistance"] = {"parts": np.array([(0.25, 0.0), (0.0, 0.125), (0.5, 0.5)], radii)}
     return {name: given.get(name, {}) for name in questions()}
 
 

@@ -218,8 +218,9 @@ TEST_CASE("Tiles that are passed over by their largest radius change nothing, an
   check(clearance::point_radii(std::span<const real>(radii)));
   clearance::any_noise any;
   for (const auto kind : {clearance::noise_kind::none, clearance::noise_kind::kinect, clearance::noise_kind::stereo,
-                          clearance::noise_kind::tof, clearance::noise_kind::lidar}) {
+                          clearance::noise_kind::tof, clearance::noise_kind::lidar, clearance::noise_kind::radii}) {
     any.kind = kind, any.stereo = {200, 0.05f, 0.1f}, any.tof = {0.004f, 0.003f}, any.lidar = {0.01f, 0.004f};
+    any.radii = clearance::point_radii(std::span<const real>(radii));
     check(any);
   }
 }

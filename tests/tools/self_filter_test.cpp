@@ -77,4 +77,38 @@ TEST_CASE("--self-filter hides what is the robot's own from every question, and 
             .out.find("and hidden; no valid point is left\n") != std::string::npos);
 }
 
+TEST_CASE("run --self-filter says in every frame what query says, and --check is about the points that are left") {
+  const scratch_file urdf(".urdf", moving_boxes_text), rows(".csv", "slide,turn\n0,0\n0.2,0\n0.2,0\n"),
+      first(".xyz", "5 5 5\n0 0 0.605\n0 0 0.7\nnan 0 0\n"), second(".xyz", "0 0 0.805\n0 0 0.95\n"),
+      own(".xyz", "0 0 0.805\n"), list(".txt", first.path + '\n' + second.path + '\n' + own.path + '\n'),
+      two(".txt", first.path + '\n' + second.path + '\n'), few(".csv", "slide,turn\n0,0\n0.2,0\n");
+  const std::string robot = " --backend host --model triangles --self-filter 0.01 --robot " + urdf.path;
+  const outcome o = run_command("run --frames " + list.path + " --trajectory " + rows.path + robot);
+  CHECK(o.code == 3);
+  const auto all = lines(o);
+  REQUIRE(all.size() == 3);
+  const std::string frames[] = {"--joint slide=0 --cloud " + first.path, "--joint slide=0.2 --cloud " + second.path,
+                                "--joint slide=0.2 --cloud " + own.path};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto alone = parsed(run_command("query --json " + frames[k] + robot));
+    for (const char* key : {"filter", "state", "distance", "lower", "upper", "point", "part", "points"})
+      CHECK(all[k].at(key) == alone.at(key));
+  }
+  CHECK(all[0].at("filter").at("own") == 1);
+  CHECK(all[2].at("state") == "no_data");
+  const std::string both = "run --frames " + two.path + " --trajectory " + few.path + robot;
+  CHECK(run_command(both + " --check 0.05").code == 0);
+  CHECK(run_command(both + " --check 0.12").code == 2);
+  CHECK(run_command(both + " --check 0.01").err.find("note: --check 0.01: points that are certainly so near") !=
+        std::string::npos);
+  std::istringstream table(run_command(both + " --csv").out);
+  std::string names, row;
+  std::getline(table, names), std::getline(table, row);
+  CHECK(names.ends_with(",latency_us,own,own_uncertain"));
+  CHECK(row.ends_with(",1,0"));
+  CHECK(lines(run_command(both + " --plan " + few.path))[0].at("plan").at("lower").at(0) ==
+        lines(run_command(both))[0].at("lower"));
+  refuses(both + " --merge", "--self-filter: cannot be mixed with --merge");
+}
+
 }  // namespace self_filter_test

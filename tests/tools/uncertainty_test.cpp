@@ -110,8 +110,55 @@ TEST_CASE("clearance run says in every frame what query says is certain") {
       std::min(all[0].at("certain").at("lower").get<double>(), all[1].at("certain").at("lower").get<double>());
   CHECK(run_command(run + " --check " + std::to_string(lower - 0.001)).code == 0);
   CHECK(run_command(run + " --check " + std::to_string(lower + 0.001)).code == 2);
-  CHECK(run_command(run + " --csv").out.find(",latency_us,certain_state,certain_lower,certain_upper\n") !=
-        std::string::npos);
+  const scratch_file svg(".svg");
+  std::istringstream table(run_command(run + " --csv --svg " + svg.path).out);
+  std::string names, row;
+  std::getline(table, names), std::getline(table, row);
+  CHECK(
+      names.ends_with(",latency_us,certain_state,certain_lower,certain_upper,base distance,base certain_lower,tool "
+                      "distance,tool certain_lower"));
+  CHECK(row.ends_with(',' + all[0].at("parts").at(1).at("distance").dump() + ',' +
+                      all[0].at("parts").at(1).at("certain").at("lower").dump()));
+  std::ifstream drawn(svg.path);
+  const std::string picture(std::istreambuf_iterator<char>(drawn), {});
+  CHECK(picture.find("id=\"certain-bracket\"") != picture.npos);
+  CHECK(picture.find("grey: with what is uncertain") != picture.npos);
+}
+
+TEST_CASE("Joints that are wrong move the camera that a link carries, and so its points") {
+  // The eye is 0.6 m above the base's middle, on the slide; a point 0.5 m before it is 0.4 m beside the base, say.
+  const scratch_file slides(".urdf", boxes_with_eye_text), cloud(".xyz", "0.5 0 -0.6\n");
+  const std::string seen = " --camera-link eye --cloud " + cloud.path;
+  const std::string ask = "query --json --backend host --model triangles --robot " + slides.path + seen;
+  const auto exact = parsed(run_command(ask + " --calibration 0,0"));
+  const auto r = parsed(run_command(ask + " --joint-error 0.05,0"));
+  CHECK(r.at("part") == "base");
+  CHECK(r.at("certain").at("lower").get<double>() ==
+        Approx(exact.at("certain").at("lower").get<double>() - 0.05).margin(1e-6));
+  const auto& shares = r.at("parts").at(0).at("certain").at("shares");
+  CHECK(shares.at("calibration").get<double>() == Approx(0.05).margin(1e-6));
+  CHECK(shares.at("joints") == 0);
+  CHECK(r.at("parts").at(1).at("certain").at("shares").at("joints").get<double>() == Approx(0.05).margin(1e-6));
+  // With a delay the robot moves on, and what was seen stays.
+  const auto late = parsed(run_command(ask + " --joint-speed 1,0 --delay 0.02"));
+  CHECK(late.at("parts").at(0).at("certain").at("shares").at("calibration") == 0);
+  CHECK(late.at("parts").at(1).at("certain").at("shares").at("delay").get<double>() == Approx(0.02).margin(1e-6));
+
+  // A joint that turns the camera by 0.02 moves what is 2 m before it by the chord, and no more than it says.
+  const scratch_file turns(".urdf", R"(<robot name="pan">
+    <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link><link name="eye"/>
+    <joint name="pan" type="continuous"><parent link="base"/><child link="eye"/><origin xyz="0.3 0 0"/>
+      <axis xyz="0 0 1"/></joint></robot>)");
+  const std::string pan = "query --json --backend host --model triangles --robot " + turns.path;
+  const scratch_file far(".xyz", "0 2 0\n");
+  const std::string there = " --camera-link eye --camera-pose 0.1,0,0,0,0,0,1 --cloud " + far.path;
+  const auto wide = parsed(run_command(pan + there + " --joint-error 0.02"));
+  for (const char* angle : {"0.02", "-0.02", "0.01"}) {
+    const auto truly = parsed(run_command(pan + " --joint pan=" + angle + there));
+    CHECK(wide.at("certain").at("lower") <= truly.at("distance"));
+  }
+  const auto& by_turn = wide.at("certain").at("pair").at("shares").at("calibration");
+  CHECK(by_turn.get<double>() == Approx(0.02 * (0.1 + 2)).margin(1e-4));
 }
 
 TEST_CASE("What is wrong about uncertainty is one sentence that names the option") {

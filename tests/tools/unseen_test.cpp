@@ -177,6 +177,12 @@ TEST_CASE("run --unseen has both distances of every frame and part, in JSON, in 
   CHECK(std::count(names.begin(), names.end(), ',') == std::count(row.begin(), row.end(), ','));
   CHECK(row.find(",free,0.4") != row.npos);
   refuses(ask + " --merge", "cannot be mixed with --unseen");
+  const scratch_file own(".png", png(1900, 1000)), owns(".txt", own.path + "\n");  // the box's face is in it
+  const std::string filtered = " --self-filter 0.05 --unseen 0.1:3";
+  auto told = lines(run_command("run" + q.robot + q.camera + " --frames " + owns.path + filtered))[0].at("unseen");
+  CHECK(told.at("own_shadow").at("pixels") == 1);
+  told.erase("latency_us");
+  CHECK(told == parsed(run_command(q.ask(own) + " --json" + filtered)).at("unseen"));
   const scratch_file cloud(".xyz", "0 0 1\n"), clouds(".txt", cloud.path + "\n");
   refuses("run" + q.robot + " --frames " + clouds.path + " --unseen", "is a point cloud");
 }

@@ -58,7 +58,7 @@ struct no_noise {
 /// Microsoft's first Kinect: 1.2 mm + 1.9 mm/m^2 (z - 0.4 m)^2 along z. Nguyen, Izadi, Lovell, "Modeling Kinect sensor
 /// noise for improved 3D reconstruction and tracking", 3DIMPVT 2012. They measured walls at up to 60 degrees.
 struct kinect_noise {
-  real k = 3;
+  real k = 3;  ///< So many standard deviations.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const {
     const real z = p.z - 0.4f;
@@ -77,7 +77,7 @@ struct stereo_noise {
   real focal_length;  ///< f, in pixels.
   real baseline;      ///< B, in metres.
   real disparity;     ///< s, the standard deviation of a disparity, in pixels.
-  real k = 3;
+  real k = 3;         ///< So many standard deviations.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const {
     const real each = divide(product(k, disparity), product(focal_length, baseline));
@@ -102,7 +102,7 @@ struct stereo_noise {
 struct tof_noise {
   real constant;  ///< Metres.
   real square;    ///< Metres for each square metre.
-  real k = 3;
+  real k = 3;     ///< So many standard deviations.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const { return product(k, fma(square, dot(p, p), constant)); }
   real most(std::size_t, const extent& box) const {
@@ -121,7 +121,7 @@ struct tof_noise {
 struct lidar_noise {
   real constant;   ///< Metres.
   real share = 0;  ///< Metres for each metre.
-  real k = 3;
+  real k = 3;      ///< So many standard deviations.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const { return product(k, fma(share, length(p), constant)); }
   real most(std::size_t, const extent& box) const {
@@ -167,7 +167,7 @@ struct point_radii {
 };
 
 /// The kind of a sensor that a program learns while it runs.
-enum class noise_kind : std::uint8_t { none, kinect, stereo, tof, lidar };
+enum class noise_kind : std::uint8_t { none, kinect, stereo, tof, lidar, radii };
 
 /// The noise of one of these kinds.
 struct any_noise {
@@ -176,6 +176,7 @@ struct any_noise {
   stereo_noise stereo = {1, 1, 0};
   tof_noise tof = {0, 0};
   lidar_noise lidar = {0};
+  point_radii radii = {nullptr, 0};
 
   CLEARANCE_HD real operator()(std::size_t i, vec3 p) const {
     switch (kind) {
@@ -187,6 +188,8 @@ struct any_noise {
         return tof(i, p);
       case noise_kind::lidar:
         return lidar(i, p);
+      case noise_kind::radii:
+        return radii(i, p);
       default:
         return 0;
     }
@@ -201,12 +204,15 @@ struct any_noise {
         return tof.most(begin, box);
       case noise_kind::lidar:
         return lidar.most(begin, box);
+      case noise_kind::radii:
+        return radii.most(begin, box);
       default:
         return 0;
     }
   }
   void check(std::size_t points) const {
     kinect.check(points), stereo.check(points), tof.check(points), lidar.check(points);
+    if (kind == noise_kind::radii) radii.check(points);
   }
 };
 
