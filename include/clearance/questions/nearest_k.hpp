@@ -43,8 +43,9 @@ struct nearest_k {
       auto* const windows = a.template room<pairwise::nearest_window>(parts);
       auto* const bounds = a.template room<std::uint32_t>(parts);
       auto* const reaches = a.template room<real>(parts);
-      pairwise::sample_bounds(passes_, poses, clouds, a.points, nearest_bins{counts, windows, nearest_bins::shift_of(0)},
-                              bounds, std::uint32_t(q.k), d_max, to.counts);
+      pairwise::sample_bounds(passes_, poses, clouds, a.points,
+                              nearest_bins{counts, windows, nearest_bins::shift_of(0)}, bounds, std::uint32_t(q.k),
+                              d_max, to.counts);
       for (int pass = 0; pass < nearest_bins::passes; ++pass) {
         const int shift = nearest_bins::shift_of(pass);
         a.on.for_each(bins, pairwise::zero_words{counts});
