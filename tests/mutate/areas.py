@@ -82,7 +82,7 @@ TESTS = {
     "io/digest.hpp": ["io/ist", "io/packing_cache"],
     "io/distance_colour.hpp": ["io/ply_writer"],
     "io/error.hpp": ["io/cloud", "io/read_limits", "io/mapped"],
-    "io/glb_data.hpp": ["io/mesh", "io/mesh_damage"],
+    "io/glb_data.hpp": ["io/mesh", "io/mesh_damage", "io/scene"],
     "io/glb_writer.hpp": ["io/scene"],
     "io/gltf_json.hpp": ["io/mesh_damage", "io/mesh"],
     "io/hidden_mesh.hpp": ["io/scene"],
