@@ -29,6 +29,10 @@ TEST_CASE("Sine and cosine are within a unit of rounding, of small and of large 
       const double x = k * quarter + by;
       v.require(std::abs(sine_cosine_of(x).sine - std::sin((long double)x)) < 2e-16, "about", k, " quarter turns");
     }
+  for (const double x : {-0x1p30, 0x1p30}) {  // the ends of its range belong to it
+    v.require(std::abs(sine_cosine_of(x).sine - std::sin((long double)x)) < 3e-16, "at", x);
+    v.require(std::isnan(sine_cosine_of(2 * x - x * (1 - 0x1p-52)).sine), "just beyond", x);
+  }
   v.require(sine_cosine_of(0).sine == 0 && sine_cosine_of(0).cosine == 1, "at 0");
   for (const double none : {std::nan(""), 1e300, -1.1e9, double(clearance::infinity)})
     v.require(std::isnan(sine_cosine_of(none).sine), "of", none);

@@ -7,6 +7,9 @@
 #include <clearance/io/packing_cache.hpp>
 #include <clearance/io/spheres_file.hpp>
 
+#include <sys/stat.h>
+
+#include <algorithm>
 #include <thread>
 
 namespace packing_cache_test {
@@ -181,6 +184,39 @@ TEST_CASE("a damaged entry of the cache is packed anew and repaired") {
   std::filesystem::create_directories(entry);  // a folder in its place
   CHECK(through(folder.path).ran);
   CHECK(first.bytes.size() == through(folder.path).bytes.size());
+}
+
+TEST_CASE("what somebody else put into the cache is not waited for, followed or removed, and the packing is made") {
+  const robot_folder folder;
+  const packed first = through({});
+  const auto entry = io::packing_cache(folder.path).file(io::packing_key(box, {.count = 40}));
+  const auto made = [&](const char* what) {
+    INFO(what);
+    const packed now = through(folder.path);
+    CHECK((now.ran && now.bytes.size() == first.bytes.size()));
+  };
+  REQUIRE(::mkfifo(entry.c_str(), 0600) == 0);  // nobody writes into it, so a reader would wait for ever
+  made("a pipe");
+  CHECK(std::filesystem::is_fifo(entry));
+  std::filesystem::remove(entry);
+  const auto elsewhere = folder.put("elsewhere", "another's");
+  std::filesystem::create_symlink(elsewhere, entry);
+  made("a link to a file");
+  CHECK(io::read_bytes(elsewhere.string()) == "another's");
+  std::filesystem::remove(entry);
+  std::filesystem::create_symlink(folder.path / "nowhere", entry);
+  made("a link to nothing");
+  CHECK(!std::filesystem::exists(folder.path / "nowhere"));
+  std::filesystem::remove(entry);
+  CHECK(through(folder.path).ran);
+  const std::string good = io::read_bytes(entry.string());
+  std::string swapped = good;  // as a machine of the other byte order would write the version
+  std::reverse(swapped.begin() + 8, swapped.begin() + 12);
+  REQUIRE(swapped != good);
+  std::ofstream(entry, std::ios::binary | std::ios::trunc) << swapped;
+  made("the other byte order");
+  std::filesystem::permissions(entry, std::filesystem::perms::none);
+  CHECK(through(folder.path).bytes.size() == first.bytes.size());  // a root may read it all the same
 }
 
 TEST_CASE("a cache that cannot be written is no error") {

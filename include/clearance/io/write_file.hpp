@@ -36,10 +36,7 @@ namespace detail {
 /// early. Where the system has no such files, it gets an unpredictable name, and loses it at the end.
 class file_beside {
  public:
-  file_beside(const std::string& file, ::mode_t mode) : file_(file) {
-    const std::size_t slash = file.rfind('/');
-    folder_ = slash == file.npos ? "." : file.substr(0, slash + 1);
-    before_ = (slash == file.npos ? "" : folder_) + ".clearance-";
+  file_beside(const std::string& file, ::mode_t mode) : file_beside(file) {  // so what throws here is cleaned up
     at_ = ::open(folder_.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, mode);
     if (at_ >= 0 && ::access(itself().c_str(), F_OK) != 0) ::close(std::exchange(at_, -1));  // it could get no name
     if (at_ < 0)
@@ -82,6 +79,12 @@ class file_beside {
   }
 
  private:
+  explicit file_beside(const std::string& file) : file_(file) {
+    const std::size_t slash = file.rfind('/');
+    folder_ = slash == file.npos ? "." : file.substr(0, slash + 1);
+    before_ = (slash == file.npos ? "" : folder_) + ".clearance-";
+  }
+
   std::string itself() const { return "/proc/self/fd/" + std::to_string(at_); }
   bool link_to(const char* name) const {
     return ::linkat(AT_FDCWD, itself().c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;

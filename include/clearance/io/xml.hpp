@@ -114,12 +114,13 @@ class xml_reader {
   }
 
   void end() {
-    if (thrown_ || why_) return;
-    for (const auto& [key, value] : open_.back()->attributes)
-      if (const auto at = key.starts_with(declares) ? declared_.find(key.substr(declares.size())) : declared_.end();
-          at != declared_.end() && --at->second == 0)
-        declared_.erase(at);
-    open_.pop_back();
+    guarded([&] {
+      for (const auto& [key, value] : open_.back()->attributes)
+        if (const auto at = key.starts_with(declares) ? declared_.find(key.substr(declares.size())) : declared_.end();
+            at != declared_.end() && --at->second == 0)
+          declared_.erase(at);
+      open_.pop_back();
+    });
   }
 
   /// Prefixes of other vocabularies are declared; in a damaged name a prefix is an accident.
