@@ -131,8 +131,8 @@ soak_counts soak(const On& on, double seconds, unsigned seed, verdict& v, const 
   return count;
 }
 
-/// A sanitizer keeps what is freed.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+/// A sanitizer keeps what is freed, and an emulator (scripts/aarch64) what it has translated.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__x86_64__)
 inline constexpr bool keeps_freed_memory = true;
 #elif defined(__has_feature)
 inline constexpr bool keeps_freed_memory = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);

@@ -6,6 +6,7 @@
 #include "support/same_answer.hpp"
 
 #include <clearance/concepts/answer.hpp>
+#include <clearance/points/masked.hpp>
 
 #include <algorithm>
 
@@ -56,6 +57,15 @@ class facts {
   const fact* find(const fact& f) const {
     const auto at = std::lower_bound(all_.begin(), all_.end(), f);
     return at != all_.end() && !(f < *at) ? &*at : nullptr;
+  }
+  /// Does it name this point, or say that it, or some point, is inside?
+  bool notice(std::uint64_t point) const {
+    return std::any_of(all_.begin(), all_.end(), [&](const fact& f) {
+      const bool named = f.kind == fact_kind::who || f.kind == fact_kind::lowest || f.kind == fact_kind::lone;
+      return (named && f.bits == point) || (f.kind == fact_kind::pair && f.id == point && f.value <= 0) ||
+             (f.kind == fact_kind::other && f.id == point && f.value == double(clearance::point_label::own)) ||
+             (f.kind == fact_kind::state && clearance::state(f.bits) == clearance::state::collision);
+    });
   }
   bool contradicts = false;
 
