@@ -188,6 +188,76 @@ class PairDistance:
 
     def __repr__(self) -> str: ...
 
+class UnseenPart:
+    """
+    A part, and where the room that no camera sees is nearest to it: cloud is the camera, point the pixel, at lies on the pixel's way. Metres.
+    """
+
+    @property
+    def distance(self) -> float: ...
+
+    @property
+    def part(self) -> int | None: ...
+
+    @property
+    def cloud(self) -> int | None: ...
+
+    @property
+    def point(self) -> int | None: ...
+
+    @property
+    def primitive(self) -> int | None: ...
+
+    @property
+    def at(self) -> tuple[float, float, float]: ...
+
+    @property
+    def nearest(self) -> tuple[float, float, float]: ...
+
+    @property
+    def normal(self) -> tuple[float, float, float]: ...
+
+    @property
+    def lower(self) -> float:
+        """At least so far away is all that no camera sees and some camera hides."""
+
+    @property
+    def out_of_view(self) -> float:
+        """
+        Which share of the ball around the part no camera shows. Nothing is said about that. NaN if a ray image may show the rest.
+        """
+
+    @property
+    def to_edge(self) -> float:
+        """
+        If edges are asked for: the ball around the part is at least so far from all that no image shows; 0 if some of it is there, NaN of ray images alone. Metres.
+        """
+
+    @property
+    def link(self) -> str | None:
+        """The name of that part, or None."""
+
+    def __repr__(self) -> str: ...
+
+class UnseenResult:
+    """
+    all: as a min_distance_result. If the robot reaches into what is hidden its state is unknown. seen counts pixels, valid those that hide room. With several cameras a place is hidden only if no camera sees it: lower holds for that, distance is an estimate, and upper is not known (infinite).
+    """
+
+    @property
+    def all(self) -> MinDistanceResult: ...
+
+    @property
+    def parts(self) -> NDArray[numpy.void]: ...
+
+    @property
+    def own_shadow(self) -> MinDistanceResult:
+        """
+        What pixels of the robot's own points (masked) hide, of all cameras together.
+        """
+
+    def __repr__(self) -> str: ...
+
 class SelfFilterCounts:
     """
     How many points of some clouds are the robot's. Plain data that a kernel may write or read.
@@ -1104,76 +1174,6 @@ class SignedDistances:
 
     def __hash__(self) -> int: ...
 
-class UnseenPart:
-    """
-    A part, and where the room that no camera sees is nearest to it: cloud is the camera, point the pixel, at lies on the pixel's way. Metres.
-    """
-
-    @property
-    def distance(self) -> float: ...
-
-    @property
-    def part(self) -> int | None: ...
-
-    @property
-    def cloud(self) -> int | None: ...
-
-    @property
-    def point(self) -> int | None: ...
-
-    @property
-    def primitive(self) -> int | None: ...
-
-    @property
-    def at(self) -> tuple[float, float, float]: ...
-
-    @property
-    def nearest(self) -> tuple[float, float, float]: ...
-
-    @property
-    def normal(self) -> tuple[float, float, float]: ...
-
-    @property
-    def lower(self) -> float:
-        """At least so far away is all that no camera sees and some camera hides."""
-
-    @property
-    def out_of_view(self) -> float:
-        """
-        Which share of the ball around the part no camera shows. Nothing is said about that. NaN if a ray image may show the rest.
-        """
-
-    @property
-    def link(self) -> str | None:
-        """The name of that part, or None."""
-
-    @property
-    def to_edge(self) -> float:
-        """
-        If edges are asked for: the ball around the part is at least so far from all that no image shows; 0 if some of it is there, NaN of ray images alone. Metres.
-        """
-
-    def __repr__(self) -> str: ...
-
-class UnseenResult:
-    """
-    all: as a min_distance_result. If the robot reaches into what is hidden its state is unknown. seen counts pixels, valid those that hide room. With several cameras a place is hidden only if no camera sees it: lower holds for that, distance is an estimate, and upper is not known (infinite).
-    """
-
-    @property
-    def all(self) -> MinDistanceResult: ...
-
-    @property
-    def parts(self) -> NDArray[numpy.void]: ...
-
-    @property
-    def own_shadow(self) -> MinDistanceResult:
-        """
-        What pixels of the robot's own points (masked) hide, of all cameras together.
-        """
-
-    def __repr__(self) -> str: ...
-
 class Unseen:
     """
     How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or masked ones, or uncertain ones of those: then hidden is what may be hidden, so that the state is not unknown but possible. Refused: depths that are no range, a ray image without half_pixel, not one label per pixel, and radii as in_collision.
@@ -1274,7 +1274,9 @@ class Zone:
 
     @property
     def nearest(self) -> float:
-        """The least distance of its points, less their radii, as computed. Metres."""
+        """
+        The least distance of its points, less their radii, as computed. Metres.
+        """
 
     @property
     def nearest_cloud(self) -> int | None:
