@@ -143,6 +143,41 @@ TEST_CASE("No valid point is no data, never far away") {
     CHECK(std::string(to_string(s)).size() > 3);
 }
 
+TEST_CASE("Of a list's distance nothing is certain below what the part and its errors may be off") {
+  const clearance::distance_certainty off{{0.01, 0}, 0.1};
+  CHECK(off.lower(0.05f) == 0);
+  CHECK(off.lower(0.2f) == Approx(0.09));
+  CHECK((off.lower(clearance::infinity) == 0 && off.lower(clearance::not_a_number) == 0));
+}
+
+namespace {
+
+/// One point that stands where a sensor says, which may be a fifth of its true distance away.
+struct a_fifth_off {
+  vec3 said;
+  CLEARANCE_HD std::size_t size() const { return 1; }
+  CLEARANCE_HD clearance::sample operator[](std::size_t) const { return {said}; }
+  clearance::position_error rounding() const { return {0, 0.2}; }
+};
+
+}  // namespace
+
+TEST_CASE("What a source may be off by far from its origin is in the bracket of what is near the robot") {
+  const Eigen::Isometry3d pose(Eigen::Translation3d(10, 0, 0));  // the ball ends at 11
+  const auto far = ask(host{}, unit_ball(0), pose, a_fifth_off{{12, 0, 0}}, min_distance{});
+  CHECK(far.distance == 1);
+  CHECK(far.upper >= 15 - 11);  // 15 less a fifth is 12
+  CHECK(far.upper < 5);
+  CHECK(far.lower == 0);  // 10 and a fifth is 12
+}
+
+TEST_CASE("A part that is one point has a bracket like any other") {
+  const auto dot =
+      clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 0}}), 0);
+  const auto r = ask(host{}, dot, Eigen::Isometry3d::Identity(), std::vector<vec3>{{1, 0, 0}}, min_distance{});
+  CHECK((r.distance == 1 && r.lower > 0.9999f && r.upper < 1.0001f));
+}
+
 TEST_CASE("A valid point inside a triangle part makes its distance 0, and certainly a collision if it is well inside") {
   const auto ask = [](vec3 p, real tolerance = 0) {
     return clearance::ask(host{}, cube_part(tolerance), Eigen::Isometry3d::Identity(), std::vector<vec3>{{5, 0, 0}, p},
