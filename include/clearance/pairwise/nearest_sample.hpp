@@ -8,6 +8,7 @@
 #include <clearance/ground/vectors.hpp>
 #include <clearance/pairwise/nearest_bins.hpp>
 #include <clearance/points/thinned.hpp>
+#include <clearance/result.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/tile_scan.hpp>

@@ -2,6 +2,7 @@
 #pragma once
 // Asks about many configurations on one backend, frame after frame.
 
+#include <clearance/backend/plain.hpp>
 #include <clearance/frame/readable.hpp>
 #include <clearance/plan/configurations.hpp>
 #include <clearance/plan/host_batch.hpp>
