@@ -84,10 +84,19 @@ std::size_t end_memory_everywhere(const Attempt& attempt, const Lost& lost) {
   ++testing::allocations.living;
   return p;
 }
+// A sanitizer has this one of its own, whose memory std::free would not take.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return operator new(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 [[gnu::noinline]] void operator delete(void* p) noexcept {
   if (p) --testing::allocations.living;
   std::free(p);
 }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { operator delete(p); }
+[[gnu::noinline]] void operator delete(void* p, const std::nothrow_t&) noexcept { operator delete(p); }
 [[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept { operator delete(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept { operator delete(p); }
