@@ -7,6 +7,7 @@
 #include <clearance/frame/clouds.hpp>
 #include <clearance/ground/vectors.hpp>
 #include <clearance/pairwise/nearest_bins.hpp>
+#include <clearance/pairwise/pairs_on.hpp>
 #include <clearance/points/thinned.hpp>
 #include <clearance/result.hpp>
 #include <clearance/robot/model.hpp>
@@ -49,19 +50,22 @@ struct every {
 };
 
 /// Opens the windows of a frame, and lowers their bounds by a pass over some of the points. A device has all points in
-/// flight at once, so that a bound found on the way comes too late. Enqueued. `to` may be written.
+/// flight at once, so that a bound found on the way comes too late; a loop over points has the bound of those before.
+/// Enqueued. `to` may be written.
 template <class Passes, class Clouds>
 void sample_bounds(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t points,
                    const nearest_bins& to, std::uint32_t* bounds, std::uint32_t k, real d_max, point_counts* counts) {
   const auto& on = passes.on;
   const std::size_t parts = passes.model.size();
   on.for_each(parts, open_windows{to.windows, bounds, k, ordered(d_max)});
-  // With n / s points first, and some k s then, the root of n / k is best. Odd, so that it meets all columns.
-  const auto stride = std::size_t(std::sqrt(double(points) / double(k))) | 1;
-  if (stride < 5) return;
-  on.for_each(parts * nearest_bins::bins, zero_words{to.counts});
-  passes.enqueue(poses, clouds, to, counts, every{stride});
-  on.for_each(parts, keep_bound{to.counts, to.windows, bounds, k});
+  if constexpr (pairs_on<std::remove_cvref_t<decltype(on)>>::meets_points) {
+    // With n / s points first, and some k s then, the root of n / k is best. Odd, so that it meets all columns.
+    const auto stride = std::size_t(std::sqrt(double(points) / double(k))) | 1;
+    if (stride < 5) return;
+    on.for_each(parts * nearest_bins::bins, zero_words{to.counts});
+    passes.enqueue(poses, clouds, to, counts, every{stride});
+    on.for_each(parts, keep_bound{to.counts, to.windows, bounds, k});
+  }
 }
 
 /// On a host walks are what takes time, and nearly all of them end at a root once there is a bound.
@@ -70,7 +74,7 @@ struct nearest_sample {
   template <class Passes, class Clouds>
   static void lower(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
                     std::vector<real>& bounds) {
-    if (bounds.empty()) return;
+    if (!pairs_on<On>::meets_points || bounds.empty()) return;
     const auto a = passes.look(poses, clouds);
     auto* const words = a.template room<std::uint32_t>(bounds.size());
     const nearest_bins to{a.template room<std::uint32_t>(bounds.size() * nearest_bins::bins),
