@@ -215,15 +215,18 @@ void with_options(Q& q, const F& f) {
   if constexpr (clearance::detail::count_members<Q>() != 0)
     std::apply([&](auto&... each) { (f(each), ...); }, clearance::detail::members_of(q));
 }
-/// All lengths are longer. Returns whether there is one.
+/// All lengths are longer but `radii`, which make answers less certain. Returns whether there is one.
 template <class Q>
 bool lengthen(Q& q) {
   bool any = false;
   with_options(q, [&]<class T>(T& option) {
     if constexpr (std::is_same_v<T, double>)
       option += 0.04, any = true;
-    else if constexpr (std::is_same_v<T, std::vector<double>>)
+    else if constexpr (std::is_same_v<T, std::vector<double>>) {
+      if constexpr (requires { q.radii; })
+        if (&option == &q.radii) return;
       for (double& each : option) each += 0.04, any = true;
+    }
   });
   return any;
 }
