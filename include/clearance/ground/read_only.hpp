@@ -3,6 +3,7 @@
 
 #include <clearance/ground/math.hpp>
 
+#include <cstring>
 #include <type_traits>
 
 namespace clearance {
@@ -25,8 +26,12 @@ CLEARANCE_HD T read_only(const T* from) {
       c.words[i] = __ldg(reinterpret_cast<const word*>(from) + i);
     return c.value;
   }
-#endif
   return *from;
+#else
+  T value;  // what lies there may be of another type, such as four points of three floats
+  std::memcpy(&value, from, sizeof value);
+  return value;
+#endif
 }
 
 }  // namespace clearance
