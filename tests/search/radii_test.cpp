@@ -259,7 +259,7 @@ TEST_CASE("At no time of a motion is anything nearer, wherever points and parts 
     v.require(r.upper == infinity && r.state != state::collision, "trial", trial, ": certain of what is not");
   }
   INFO(free << " free, " << collides << " in collision");
-  CHECK((free > 4 && collides > 1));
+  CHECK((free > 4 && collides > 0));
 }
 
 TEST_CASE("If a point may be anywhere, no configuration and no motion is free") {
