@@ -151,7 +151,6 @@ __global__ void __launch_bounds__(1024)
 class device_tree {
  public:
   using view_type = tree_view<8, 8>;
-  using ball_view_type = ball_tree_view<8, 8>;
 
   explicit device_tree(const device& on, std::pmr::memory_resource* memory = nullptr)
       : on_(on), memory_(memory), order_(on, memory), done_(1, on.id, memory) {
@@ -175,13 +174,10 @@ class device_tree {
     put_up(source, shape, order_.build(source, dropped), dropped);
   }
   const view_type& view() const { return view_; }
-  /// If it was built over such a source: over its points, or over its balls.
+  /// If it was built over such a source.
   template <point_source S>
   auto view_of() const {
-    if constexpr (ball_source<S>)
-      return ball_view_type{view_, radii_.data(), widest_.data()};
-    else
-      return view_;
+    return view_over<S>(view_, radii_.data(), widest_.data());
   }
 
  private:

@@ -17,7 +17,6 @@ namespace clearance::cloud_tree {
 class host_tree {
  public:
   using view_type = tree_view<8, 8>;
-  using ball_view_type = ball_tree_view<8, 8>;
 
   /// Builds it. Adds invalid points to `dropped`.
   template <point_source S>
@@ -31,13 +30,10 @@ class host_tree {
     put_up(workers);
   }
   const view_type& view() const { return view_; }
-  /// If it was built over such a source: over its points, or over its balls.
+  /// If it was built over such a source.
   template <point_source S>
   auto view_of() const {
-    if constexpr (ball_source<S>)
-      return ball_view_type{view_, radii_.data(), widest_.data()};
-    else
-      return view_;
+    return view_over<S>(view_, radii_.data(), widest_.data());
   }
 
  private:

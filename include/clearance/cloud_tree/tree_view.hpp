@@ -74,6 +74,15 @@ struct ball_tree_view : tree_view<Tile, Fan> {
   CLEARANCE_HD numbered_ball point(std::uint32_t i) const { return {this->points[i], radii[i]}; }
 };
 
+/// What a tree that was built over `S` shows: its points, or its balls.
+template <point_source S, std::uint32_t Tile, std::uint32_t Fan>
+auto view_over(const tree_view<Tile, Fan>& points, const real* radii, const real* widest) {
+  if constexpr (ball_source<S>)
+    return ball_tree_view<Tile, Fan>{points, radii, widest};
+  else
+    return points;
+}
+
 /// The middle of a box, and the distance of its farthest corner. A radius may be too large by a rounding, never too
 /// small.
 CLEARANCE_HD inline vec3 middle(const extent& box) {

@@ -36,8 +36,8 @@ template <point_source S>
 consteval bool points_alone() {
   static_assert(
       !capsule_source<S>,
-      "the points of this source stand for more (what they hide, where they may be): questions about pairs, about the "
-      "least distance and about many configurations take such sources; this does not");
+      "the points of this source stand for more (what they hide, where they may be): questions about pairs and "
+      "the least distance take such sources, many configurations only balls; this does not");
   return true;
 }
 /// For whatever takes points and balls.

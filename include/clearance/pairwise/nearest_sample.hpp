@@ -41,7 +41,7 @@ class least_distances {
 };
 
 /// Takes every `stride`-th point of a source.
-struct every {
+struct every_nth {
   std::size_t stride;
   template <point_source S>
   thinned<S> operator()(const S& source, std::uint32_t) const {
@@ -63,14 +63,15 @@ void sample_bounds(Passes& passes, std::span<const Eigen::Isometry3d> poses, con
     const auto stride = std::size_t(std::sqrt(double(points) / double(k))) | 1;
     if (stride < 5) return;
     on.for_each(parts * nearest_bins::bins, zero_words{to.counts});
-    passes.enqueue(poses, clouds, to, counts, every{stride});
+    passes.enqueue(poses, clouds, to, counts, every_nth{stride});
     on.for_each(parts, keep_bound{to.counts, to.windows, bounds, k});
   }
 }
 
-/// On a host walks are what takes time, and nearly all of them end at a root once there is a bound.
+/// Where a bound is worth a look before all points are asked.
 template <class On>
 struct nearest_sample {
+  /// Lowers `bounds`, one per part and all alike, to a distance within which k points certainly are, if k are found.
   template <class Passes, class Clouds>
   static void lower(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
                     std::vector<real>& bounds) {
@@ -86,9 +87,9 @@ struct nearest_sample {
   }
 };
 
+/// On a host walks are what takes time, and nearly all of them end at a root once there is a bound.
 template <>
 struct nearest_sample<host> {
-  /// Lowers `bounds`, one per part, to a distance within which k points certainly are, if k are found.
   template <class Passes, class Clouds>
   static void lower(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::size_t k,
                     std::vector<real>& bounds) {
