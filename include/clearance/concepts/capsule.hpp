@@ -31,6 +31,10 @@ concept vague_source = capsule_source<S> && S::vague;
 template <class S>
 concept ball_source = vague_source<S> && S::balls;
 
+/// A source whose capsules have no width and lead straight away from its (0,0,0), as far as they lead anywhere.
+template <class S>
+concept sight_source = capsule_source<S> && S::sight;
+
 /// For whatever looks at points alone.
 template <point_source S>
 consteval bool points_alone() {
@@ -65,14 +69,23 @@ CLEARANCE_HD inline real least_along(vec3 point, vec3 from, vec3 along) {
 
 namespace detail {
 
+/// No less than its length.
+CLEARANCE_HD inline real size_of(vec3 v) { return absolute(v.x) + absolute(v.y) + absolute(v.z); }
+
 /// More than rounding adds to a bound along a way, and loses where the radius is added to a reach.
 CLEARANCE_HD inline real noise_along(const capsule& c) {
-  return 2 * slack * (rough_length(c.from) + rough_length(c.along) + c.radius);
+  return 2 * slack * (size_of(c.from) + size_of(c.along) + c.radius);
 }
 
+/// From the place of the way that is roughly nearest to a point.
+CLEARANCE_HD inline vec3 rough_way(const capsule& c, vec3 to) {
+  const vec3 way = to - c.from;
+  const real square = dot(c.along, c.along);
+  const real t = square > least_normal ? saturated(dot(way, c.along) * rough_inverse(square)) : 0;
+  return fma(-t, c.along, way);
+}
 CLEARANCE_HD inline real bound_along(const ball& b, const capsule& c) {
-  const real away = rough_length(c.at(least_along(b.center, c.from, c.along)) - b.center);
-  return away * (1 - 2 * slack) - b.radius - noise_along(c);
+  return rough_length(rough_way(c, b.center)) * (1 - 2 * slack) - b.radius - noise_along(c);
 }
 
 /// By tangents. Each is a line below the distance along the way, which is convex. So the least is where a falling and a
@@ -138,7 +151,8 @@ CLEARANCE_HD real distance_to(const P& primitive, const capsule& c) {
                 "const");
   const real away = primitive.distance(c.at(primitive.least_along(c.from, c.along)));
   // A way that passes through a surface comes to it within rounding.
-  const bool touches = away >= 0 && away <= 0x1p-22f * (length(c.from) + length(c.along));
+  const bool touches = away >= 0 && away <= 0x1p-21f * (detail::size_of(c.from) + detail::size_of(c.along)) &&
+                       away <= 0x1p-22f * (length(c.from) + length(c.along));
   return (touches ? 0 : away) - c.radius;
 }
 

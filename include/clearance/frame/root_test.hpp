@@ -17,8 +17,8 @@ CLEARANCE_HD inline bool may_reach(const ball& around, real reach, vec3 p) {
 
 /// The same for anything in a capsule.
 CLEARANCE_HD inline bool may_reach(const ball& around, real reach, const capsule& c) {
-  return may_reach(around, reach + c.radius + detail::noise_along(c),
-                   c.at(clearance::least_along(around.center, c.from, c.along)));
+  return may_reach({{0, 0, 0}, around.radius}, reach + c.radius + detail::noise_along(c),
+                   detail::rough_way(c, around.center));
 }
 
 /// A ball, with what a test against it needs for any reach.
@@ -41,6 +41,26 @@ struct capsule_test {
       : from(c.from), along(c.along), inverse(0), wide(c.radius + detail::noise_along(c)) {
     if (const real square = dot(along, along); square > least_normal) inverse = rough_inverse(square);
   }
+};
+
+/// A way that leads from a place straight away from an eye, however far, with what tests against many balls need. A way
+/// that begins so near the eye that its direction is rounding passes every test.
+struct sight_test {
+  vec3 from, away;
+  real square, away_square, along;  ///< |from|^2 less a margin, |away|^2, from * away.
+
+  sight_test() = default;
+  /// `from`: the place less the frame's origin.
+  CLEARANCE_HD sight_test(vec3 from, vec3 origin)
+      : from(from),
+        away(from + origin),
+        square(dot(from, from) * (1 - margin)),
+        away_square(dot(away, away)),
+        along(dot(from, away)) {
+    if (!(256 * away_square >= dot(origin, origin) && away_square >= least_normal))
+      away = {0, 0, 0}, away_square = 0, along = from.x == from.x ? -infinity : not_a_number;
+  }
+  static constexpr real margin = 0x1p-16f;  ///< More than rounding changes in a square, as a share of all squares.
 };
 
 /// Cheap and conservative: may a point x be within reach of a part's ball? If `value(x) <= -|x|^2`, it may, in the
@@ -67,6 +87,12 @@ struct alignas(16) root_test {
     const real dx = way.x - share * x.along.x, dy = way.y - share * x.along.y, dz = way.z - share * x.along.z;
     const real limit = rough_root(c.x * c.x + c.y * c.y + c.z * c.z - w) + x.wide;  // NaN if nothing is within reach
     return dx * dx + dy * dy + dz * dz <= limit * limit;
+  }
+  /// Is the way's line that near, and ahead of it, or its start?
+  CLEARANCE_HD bool passes(const sight_test& x) const {
+    const real start = value(x.from) + x.square - 0.25f * sight_test::margin * dot(m, m);
+    const real ahead = -0.5f * dot(m, x.away) - x.along;
+    return start <= 0 || (ahead > 0 && start * x.away_square <= ahead * ahead);
   }
   CLEARANCE_HD bool passes(vec3 x) const { return value(x) <= -(x.x * x.x + x.y * x.y + x.z * x.z); }
 };

@@ -44,6 +44,8 @@ struct nearest_bins {
     if (taken == w.wanted || (taken > w.wanted && taken % 64 == 0)) sharpen(w, its);
   }
 
+  /// No bin before it has a point, after the first pass.
+  CLEARANCE_HD static std::uint32_t first_of(const nearest_window& w) { return w.lowest < bins ? w.lowest : 0; }
   /// The end of a bin, as a bound.
   CLEARANCE_HD static std::uint32_t end_of(std::uint32_t low, std::uint32_t bin, int shift) {
     return low + (bin << shift) + ((1u << shift) - 1);
@@ -65,12 +67,13 @@ struct zero_words {
   CLEARANCE_HD void operator()(std::size_t i) const { words[i] = 0; }
 };
 
-/// The bin of the wanted point (the number of bins if there are fewer points), and how many points lie before it.
+/// The bin of the wanted point (the number of bins if there are fewer points), and how many points lie before it. No bin
+/// before `from` has one.
 struct wanted_bin {
   std::uint32_t bin = 0, before = 0, its = 0;
 };
-CLEARANCE_HD inline wanted_bin find_wanted(const std::uint32_t* counts, std::uint32_t wanted) {
-  wanted_bin found;
+CLEARANCE_HD inline wanted_bin find_wanted(const std::uint32_t* counts, std::uint32_t wanted, std::uint32_t from = 0) {
+  wanted_bin found{from};
   for (; found.bin < nearest_bins::bins; ++found.bin) {
     found.its = counts[found.bin];
     if (found.before + std::uint64_t(found.its) >= wanted) return found;
@@ -90,7 +93,8 @@ struct next_window {
   CLEARANCE_HD wanted_bin operator()(std::size_t p) const {
     nearest_window& w = windows[p];
     if (w.wanted == 0) return {nearest_bins::bins, 0, 0};
-    const wanted_bin found = find_wanted(counts + p * nearest_bins::bins, w.wanted);
+    const std::uint32_t from = shift == nearest_bins::first_shift ? nearest_bins::first_of(w) : 0;
+    const wanted_bin found = find_wanted(counts + p * nearest_bins::bins, w.wanted, from);
     if (found.bin < nearest_bins::bins) {
       const std::uint32_t end = nearest_bins::end_of(w.low, found.bin, shift);
       if (end < bounds[p]) bounds[p] = end;
@@ -122,7 +126,8 @@ struct keep_bound {
   nearest_window* windows;
   std::uint32_t *bounds, wanted;
   CLEARANCE_HD void operator()(std::size_t p) const {
-    const wanted_bin found = find_wanted(counts + p * nearest_bins::bins, wanted);
+    const std::uint32_t* const its = counts + p * nearest_bins::bins;
+    const wanted_bin found = find_wanted(its, wanted, nearest_bins::first_of(windows[p]));
     if (found.bin < nearest_bins::bins) {
       const std::uint32_t end = nearest_bins::end_of(0, found.bin, nearest_bins::first_shift);
       if (end < bounds[p]) bounds[p] = end;

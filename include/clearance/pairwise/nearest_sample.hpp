@@ -42,7 +42,7 @@ class least_distances {
 
 /// Takes every `stride`-th point of a source.
 struct every_nth {
-  std::size_t stride;
+  std::uint32_t stride;
   template <point_source S>
   thinned<S> operator()(const S& source, std::uint32_t) const {
     return {source, stride};
@@ -60,7 +60,7 @@ void sample_bounds(Passes& passes, std::span<const Eigen::Isometry3d> poses, con
   on.for_each(parts, open_windows{to.windows, bounds, k, ordered(d_max)});
   if constexpr (pairs_on<std::remove_cvref_t<decltype(on)>>::meets_points) {
     // With n / s points first, and some k s then, the root of n / k is best. Odd, so that it meets all columns.
-    const auto stride = std::size_t(std::sqrt(double(points) / double(k))) | 1;
+    const auto stride = std::uint32_t(std::sqrt(double(points) / double(k))) | 1;
     if (stride < 5) return;
     on.for_each(parts * nearest_bins::bins, zero_words{to.counts});
     passes.enqueue(poses, clouds, to, counts, every_nth{stride});

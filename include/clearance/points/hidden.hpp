@@ -27,6 +27,8 @@ struct hiding {
 /// bracket carries it.
 template <seeing_image Image>
 struct hidden {
+  static constexpr bool sight = true;
+
   Image image;
   hiding room;
   real half_pixel;

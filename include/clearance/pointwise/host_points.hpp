@@ -82,8 +82,8 @@ struct host_points {
     const auto one = [&](std::size_t j) { groups.add(t[j], std::uint32_t(begin + j)); };
     if (d_max < infinity) {
       scan::tile_survivors survivors;
-      for (const auto& place : places) survivors.add(t, place.around, d_max);
-      survivors.for_each(one);
+      for (const auto& place : places) survivors.add(t, place.around, d_max, 0);
+      survivors.for_each([&](std::size_t j, std::uint32_t) { one(j); });
       return;
     }
     for (std::size_t j = 0; j < count; ++j)

@@ -91,8 +91,10 @@ struct triangle {
     const real square = rough_max(rough_max(dot(way, way), dot(ab - way, ab - way)), dot(ac - way, ac - way));
     return {middle, rough_root(square) * (1 + 4 * slack) + slack * (extent(middle) + extent(way))};
   }
-  /// See swept_primitive. An end, where the way crosses the plane, or the place that is nearest to a side is nearest.
+  /// See swept_primitive. An end, where the way crosses the plane, or the place that is nearest to a side is nearest;
+  /// where no corner lies ahead, as before most of what a camera sees, the start is.
   CLEARANCE_HD real least_along(vec3 from, vec3 along) const {
+    if (dot(a - from, along) <= 0 && dot(b - from, along) <= 0 && dot(c - from, along) <= 0) return 0;
     const real height = dot(from - a, unit_normal), rise = dot(along, unit_normal);
     const real shares[] = {0,
                            1,

@@ -93,7 +93,9 @@ template <class Passes, class Clouds>
 std::vector<real> radii_of_nearest(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                    std::uint32_t k, real d_max, const std::vector<real>& first, bool again) {
   const auto& on = passes.on;
-  const std::size_t parts = passes.model.size(), enough = 4 * k * parts + (1 << 16);
+  // A device passes over all points while a host copies and sorts some thousand pairs.
+  constexpr std::size_t as_long = pairs_on<std::remove_cvref_t<decltype(on)>>::meets_points ? 1 << 11 : 1 << 16;
+  const std::size_t parts = passes.model.size(), enough = 4 * k * parts + as_long;
   std::vector<nearest_window> windows;
   std::vector<std::uint32_t> bounds, before(parts);
   for (const real bound : first)

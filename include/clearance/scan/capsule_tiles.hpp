@@ -46,7 +46,23 @@ struct capsule_hull {
   bool may_reach(const ball& around, real reach) const {
     const real most = frames::limit(around, reach + wide);
     const vec3 c = around.center, r{most, most, most};
-    return most >= 0 && may_touch({c - r, c + r}, 0);
+    return most >= 0 && !behind(c, most) && may_touch({c - r, c + r}, 0);
+  }
+  /// Do all begin so far from a place and lead away from it? A plane between it and both boxes says so. Up to rounding.
+  bool behind(vec3 c, real most) const {
+    using clearance::detail::size_of;
+    const auto beyond = [](real low, real high, real at) { return low > at ? low - at : high < at ? high - at : 0; };
+    const vec3 way{beyond(starts.lower.x, starts.upper.x, c.x), beyond(starts.lower.y, starts.upper.y, c.y),
+                   beyond(starts.lower.z, starts.upper.z, c.z)};
+    const auto nearest = [](real along, real low, real high) { return along * (along > 0 ? low : high); };
+    const auto away = [&](const extent& box) {
+      return nearest(way.x, box.lower.x - c.x, box.upper.x - c.x) +
+             nearest(way.y, box.lower.y - c.y, box.upper.y - c.y) +
+             nearest(way.z, box.lower.z - c.z, box.upper.z - c.z);
+    };
+    const real square = dot(way, way), least = min(square, away(ends));
+    const real limit = most + 8 * slack * (size_of(c) + size_of(ends.lower) + size_of(ends.upper));
+    return least > 0 && least * least > limit * limit * square;
   }
 };
 
@@ -77,7 +93,7 @@ class capsule_tile {
   vec3 start(std::size_t j) const { return starts_[j]; }
 
   /// Marks those that may be within reach of a ball.
-  void mark(const ball& around, real reach, std::uint32_t* near) const {
+  void mark(const ball& around, real reach, std::uint32_t bit, std::uint32_t* near) const {
     const real most = reach + around.radius;
     const vec3 c = around.center;
     for (std::size_t j = 0; j < points; ++j) {
@@ -86,7 +102,7 @@ class capsule_tile {
       const real t = min(max(share, 0), 1);
       const real dx = x - t * along_.x[j], dy = y - t * along_.y[j], dz = z - t * along_.z[j];
       const real limit = (most + wide_[j]) * (1 + 4 * slack);
-      near[j] |= std::uint32_t(int(limit >= 0) & int(dx * dx + dy * dy + dz * dz <= limit * limit));
+      near[j] |= bool(int(limit >= 0) & int(dx * dx + dy * dy + dz * dz <= limit * limit)) ? bit : 0;
     }
   }
 
@@ -142,8 +158,8 @@ void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const e
     bool any = false;
     for (std::uint32_t k = 0; k < body.part_count; ++k)
       if (const ball& around = body.places[k].around; hull.may_reach(around, body.answer.reach(k)))
-        any = true, those.add(t, around, body.answer.reach(k));
-    if (any) with_vectors([&] { those.for_each([&](std::size_t j) { body.visit(t.start(j), i + j); }); });
+        any = true, those.add(t, around, body.answer.reach(k), k);
+    if (any) with_vectors([&] { those.for_each([&](std::size_t j, std::uint32_t parts) { body.visit(t.start(j), i + j, parts); }); });
   }
 }
 

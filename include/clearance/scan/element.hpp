@@ -35,6 +35,7 @@ CLEARANCE_HD auto element_less(const S& s, std::size_t i, vec3 x, vec3 origin) {
 /// What a device's kernels make of a position: the same.
 struct as_points {
   using element = vec3;
+  static constexpr bool sight = false;
   CLEARANCE_HD vec3 operator()(std::uint32_t, vec3 p) const { return p; }
   CLEARANCE_HD vec3 less(std::uint32_t, vec3 x, vec3) const { return x; }
 };
@@ -44,6 +45,7 @@ template <capsule_source S>
 class as_capsules {
  public:
   using element = capsule;
+  static constexpr bool sight = sight_source<S>;
 
   as_capsules() = default;
   explicit as_capsules(const S& source) { std::memcpy(bytes_, &source, sizeof source); }

@@ -59,15 +59,13 @@ __device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clust
   const auto& s = pairs::here();
   constexpr bool points = std::is_same_v<typename pairs::element, vec3>;
   real square[quad];
-  std::conditional_t<points, vec3, frames::capsule_test> all[quad];
+  typename pairs::root_element all[quad];
 #pragma unroll
   for (int j = 0; j < quad; ++j) {
     if constexpr (points)
       square[j] = -dot(p.at[j], p.at[j]);
-    else if ((p.reasons >> 8 * j & 0xff) == 0)  // there may be no such point
-      all[j] = frames::capsule_test(pairs::element_at(first() + j, p.at[j]));
     else
-      all[j] = frames::capsule_test({{not_a_number, 0, 0}, {0, 0, 0}, 0});
+      all[j] = pairs::root_element_at(first() + j, p.at[j], (p.reasons >> 8 * j & 0xff) == 0);
   }
   const auto passes = [&](const frames::root_test& test, int j) {
     if constexpr (points)

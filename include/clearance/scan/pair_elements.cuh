@@ -12,6 +12,16 @@ struct pair_elements : tree_steps<Tally> {
   using frame = frame_parts<Tally>;
   using element = typename element_of_tally<Tally>::type;
 
+  static constexpr bool sight = requires { requires decltype(frame::here().head.answer.around)::sight; };
+  /// What many tests against balls take of a capsule.
+  using root_element = std::conditional_t<sight, frames::sight_test, frames::capsule_test>;
+  /// That of a point of this cloud less the origin; it passes no test if there is no such point.
+  static __device__ root_element root_element_at(std::uint32_t i, vec3 x, bool any) {
+    if constexpr (sight)
+      return root_element(any ? x : vec3{not_a_number, 0, 0}, frame::here().origin);
+    else
+      return root_element(any ? element_at(i, x) : capsule{{not_a_number, 0, 0}, {0, 0, 0}, 0});
+  }
   /// A point of this cloud less the origin, or its capsule.
   static __device__ element element_at(std::uint32_t i, vec3 x) {
     if constexpr (std::is_same_v<element, vec3>)

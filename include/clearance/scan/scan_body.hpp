@@ -39,10 +39,11 @@ struct scan_body {
   /// A point less the origin, or its capsule.
   CLEARANCE_HD auto element(vec3 p, std::size_t i) const { return element_less(source, i, p, origin); }
 
-  /// Tests one point against every part.
-  CLEARANCE_HD void visit(vec3 p, std::size_t i) const {
+  /// Tests one point against every part, or those whose bit k % 32 is set.
+  CLEARANCE_HD void visit(vec3 p, std::size_t i, std::uint32_t those = ~0u) const {
     const auto all = element(p, i);
-    for (std::uint32_t k = 0; k < part_count; ++k) visit(all, first + std::uint32_t(i), k);
+    for (std::uint32_t k = 0; k < part_count; ++k)
+      if ((those >> k % 32 & 1) != 0) visit(all, first + std::uint32_t(i), k);
   }
 
   /// Tests it, or its capsule, against one part. `index` is its number among all clouds' points.

@@ -12,36 +12,40 @@ namespace clearance::scan {
 
 namespace detail {
 
-inline void mark_here(const tile& t, vec3 c, real most, std::uint32_t* near) {
+inline void mark_here(const tile& t, vec3 c, real most, std::uint32_t bit, std::uint32_t* near) {
   for (std::size_t j = 0; j < tile_points; ++j) {
     const real dx = t.x[j] - c.x, dy = t.y[j] - c.y, dz = t.z[j] - c.z;
-    near[j] |= std::uint32_t(dx * dx + dy * dy + dz * dz <= most);
+    near[j] |= dx * dx + dy * dy + dz * dz <= most ? bit : 0;
   }
 }
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__AVX2__)
-__attribute__((target("avx2"), flatten)) inline void mark_avx2(const tile& t, vec3 c, real most, std::uint32_t* near) {
-  mark_here(t, c, most, near);
+__attribute__((target("avx2"), flatten)) inline void mark_avx2(const tile& t, vec3 c, real most, std::uint32_t bit,
+                                                               std::uint32_t* near) {
+  mark_here(t, c, most, bit, near);
 }
-inline void mark(const tile& t, vec3 c, real most, std::uint32_t* near) {
-  __builtin_cpu_supports("avx2") ? mark_avx2(t, c, most, near) : mark_here(t, c, most, near);
+inline void mark(const tile& t, vec3 c, real most, std::uint32_t bit, std::uint32_t* near) {
+  __builtin_cpu_supports("avx2") ? mark_avx2(t, c, most, bit, near) : mark_here(t, c, most, bit, near);
 }
 #else
-inline void mark(const tile& t, vec3 c, real most, std::uint32_t* near) { mark_here(t, c, most, near); }
+inline void mark(const tile& t, vec3 c, real most, std::uint32_t bit, std::uint32_t* near) {
+  mark_here(t, c, most, bit, near);
+}
 #endif
 
 }  // namespace detail
 
-/// Which points of a tile may be within reach of some part.
+/// Which points of a tile may be within reach of which parts: bit k % 32 of a point stands for part k.
 class tile_survivors {
  public:
   /// Conservative, like `may_reach`. A reach below 0 may leave no point at all.
-  void add(const tile& t, const ball& around, real reach) {
+  void add(const tile& t, const ball& around, real reach, std::uint32_t part) {
     const real most = frames::limit(around, reach);
-    if (most >= 0) detail::mark(t, around.center, most * most, near_);
+    if (most >= 0) detail::mark(t, around.center, most * most, 1u << part % 32, near_);
   }
-  void add(const capsule_tile& t, const ball& around, real reach) {
-    with_vectors([&] { t.mark(around, reach, near_); });
+  void add(const capsule_tile& t, const ball& around, real reach, std::uint32_t part) {
+    with_vectors([&] { t.mark(around, reach, 1u << part % 32, near_); });
   }
+  /// visit(point of the tile, bits of parts)
   template <class Visit>
   void for_each(Visit visit) const {
     constexpr std::size_t group = 16;
@@ -49,7 +53,7 @@ class tile_survivors {
       std::uint32_t any = 0;
       for (std::size_t j = 0; j < group; ++j) any |= near_[i + j];
       for (std::size_t j = 0; any != 0 && j < group; ++j)
-        if (near_[i + j] != 0) visit(i + j);
+        if (near_[i + j] != 0) visit(i + j, near_[i + j]);
     }
   }
 
@@ -130,8 +134,8 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, drop_tally
     }
     tile_survivors near;
     for (; k < body.part_count; ++k)
-      if (may_reach(body.places[k].around, reach(k), box)) near.add(t, body.places[k].around, reach(k));
-    with_vectors([&] { near.for_each([&](std::size_t j) { body.visit(t[j], i + j); }); });
+      if (may_reach(body.places[k].around, reach(k), box)) near.add(t, body.places[k].around, reach(k), k);
+    with_vectors([&] { near.for_each([&](std::size_t j, std::uint32_t parts) { body.visit(t[j], i + j, parts); }); });
   }
 }
 
