@@ -24,7 +24,10 @@ using any_cloud = placed_any<clearance::point_span, clearance::strided_points<fl
 
 namespace clearance {
 struct certain_distance;
-}
+struct in_collision;
+struct unseen;
+struct zones;
+}  // namespace clearance
 
 /// What a question's clouds may be: uncertain, too, if the question is about that. Each kind is compiled.
 template <class Q>
@@ -39,8 +42,10 @@ template <class... S>
 struct or_uncertain<std::variant<clearance::placed<S>...>> {
   using type = std::variant<clearance::placed<S>..., placed_uncertain<S>...>;
 };
-template <>
-struct cloud_about<clearance::certain_distance> : or_uncertain<any_cloud> {};
+template <class Q>
+  requires(std::same_as<Q, clearance::certain_distance> || std::same_as<Q, clearance::in_collision> ||
+           std::same_as<Q, clearance::unseen> || std::same_as<Q, clearance::zones>)
+struct cloud_about<Q> : or_uncertain<any_cloud> {};
 template <class Q>
 using clouds_about = std::vector<typename cloud_about<Q>::type>;
 

@@ -44,7 +44,8 @@ clouds_about<Q> clouds_for(const std::vector<seen_cloud>& seen) {
           else
             throw std::invalid_argument(std::string("clearance: a cloud is uncertain, and in Python ") +
                                         declared<Q>::name +
-                                        " takes points where they were measured; CertainDistance is about that");
+                                        " takes points where they were measured; CertainDistance, InCollision, "
+                                        "Zones and Unseen take uncertain ones");
         },
         each.cloud);
   return made;

@@ -335,8 +335,8 @@ def test_what_cannot_be_uncertain(options, said):
 
 def test_an_uncertain_cloud_is_for_its_question(ball):
     cloud = clearance.uncertain(clearance.points(good), shift=0.01)
-    zones, certain = (clearance.Query(ball, q) for q in (clearance.Zones([0.1]), clearance.CertainDistance()))
-    refused(lambda: zones(cloud, poses=one), "uncertain", "Zones", "CertainDistance")
+    within, certain = (clearance.Query(ball, q) for q in (clearance.Within(0.1), clearance.CertainDistance()))
+    refused(lambda: within(cloud, poses=one), "uncertain", "Within", "CertainDistance", "Zones")
     refused(lambda: clearance.uncertain(cloud), "uncertain already")
     refused(lambda: certain(cloud, poses=one, cloud_pose=np.eye(4)), "cloud_pose")
 

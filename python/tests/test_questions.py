@@ -895,6 +895,31 @@ def _(s):
         assert r.certain.shares.time == pytest.approx(0 if r.certain.cloud % 2 else 0.03, rel=1e-4)
 
 
+def test_an_uncertain_point_is_near_wherever_it_may_be(rng):
+    points = some(rng)
+    s = scene_of(rng, {"points": clearance.points(points)}, points)
+    radii = rng.uniform(0, 0.05, len(points)).astype("f4")
+    seen, off = clearance.uncertain(clearance.points(points), radii), s.of_parts - radii
+    for margin in (np.quantile(off, 0.2), off.min() - 0.01):
+        r = clearance.Query(s.robot, clearance.InCollision(margin))(clouds=[seen], poses=s.poses)
+        assert r.state == (State.possible if (off <= margin).any() else State.free)
+        if r.point is not None:
+            assert off[r.part, r.point] <= margin + near_enough
+    threshold = max(np.quantile(off, 0.3), 0.01)
+    r = clearance.Query(s.robot, clearance.Zones([threshold]))(clouds=[seen], poses=s.poses)
+    for k, its in enumerate(off):
+        assert abs(r.of(k, 0).points - (its <= threshold).sum()) <= (np.abs(its - threshold) < near_enough).sum()
+        if its.min() <= threshold:
+            assert r.of(k, 0).nearest == pytest.approx(its.min(), abs=near_enough)
+
+
+def test_what_an_uncertain_image_may_hide():
+    image = clearance.depth_image(np.full((12, 16), 2.0, "f4"), camera)
+    ask = clearance.Query(clearance.Robot.from_spheres({"ball": np.array([[0, 0, 1, 0.1]], "f4")}), clearance.Unseen())
+    bare, r = (ask(clouds=[c], poses=np.eye(4)[None]).all for c in (image, clearance.uncertain(image, shift=0.03)))
+    assert bare.lower > 0.03 and r.lower == pytest.approx(bare.lower - 0.03, abs=1e-4) and r.upper == np.inf
+
+
 @pytest.mark.parametrize("noise, sigma", [
     (clearance.KinectNoise(2), lambda p, away: 2 * (0.0012 + 0.0019 * (p[:, 2] - 0.4) ** 2) * away / p[:, 2]),
     (clearance.StereoNoise(424, 0.05, 0.08), lambda p, away: 3 * 0.08 / (424 * 0.05) * p[:, 2] * away),

@@ -2,6 +2,7 @@
 #pragma once
 // How far is a robot at least from what its sensors see, if places of points and of parts are uncertain?
 
+#include <clearance/backend/apart.hpp>
 #include <clearance/points/uncertain.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/traversal/any_depth.hpp>
@@ -134,8 +135,15 @@ class certain_distance::engine {
     q.check(model_.size());
     const auto& here = readable_(clouds);
     result r;
-    r.nominal = nominal_.run(poses, mapped_clouds(here, as_measured{}), min_distance{});
-    const min_distance_per_part_result certain = search_.run(poses, here, min_distance_per_part{});
+    const auto measured = mapped_clouds(here, as_measured{});
+    min_distance_per_part_result certain;
+    if constexpr (requires { search_.begin(poses, here, min_distance_per_part{}); }) {  // a device need not wait between
+      nominal_.begin(poses, measured, min_distance{}), search_.begin(poses, here, min_distance_per_part{});
+      r.nominal = nominal_.finish(), certain = search_.finish();
+    } else {
+      r.nominal = nominal_.run(poses, measured, min_distance{});
+      certain = search_.run(poses, here, min_distance_per_part{});
+    }
     const bool vague = read(poses, here, certain.parts, r.nominal);
     conclude(q, certain, vague || !q.parts.empty(), r);
     return r;
@@ -159,10 +167,11 @@ class certain_distance::engine {
           vague = vague || vague_source<S>;
           for (std::uint32_t k = 0; k < parts; ++k) errors_[k] = std::max(errors_[k], double(frame_.places[k].error));
           const auto* const places = std::get<0>(memory_.put(frame_.places));
-          on_.for_each(parts + (nominal.part != none),
-                       minimum::read_pair<PartView, S>{model_.parts, places, parts, source, frame_.origin,
-                                                       frame_.world_from_cloud, now.cloud, wanted,
-                                                       any_depth{stack_need(model_.depth, model_.width)}, pairs});
+          backends::for_each_apart(
+              on_, parts + (nominal.part != none),
+              minimum::read_pair<PartView, S>{model_.parts, places, parts, source, frame_.origin,
+                                              frame_.world_from_cloud, now.cloud, wanted,
+                                              any_depth{stack_need(model_.depth, model_.width)}, pairs});
         });
     pairs_ = on_.copy_out(pairs, parts + 1);
     return vague;

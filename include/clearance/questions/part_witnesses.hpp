@@ -2,6 +2,7 @@
 #pragma once
 // Where every part's least distance is, after min_distance_per_part.
 
+#include <clearance/backend/apart.hpp>
 #include <clearance/backend/few_values.hpp>
 #include <clearance/minimum/plain_search.hpp>
 #include <clearance/query/query.hpp>
@@ -100,9 +101,10 @@ class part_witnesses::engine {
     frames::for_each_turn(
         frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
           const auto places = backends::few_or_kept<minimum::few>(frame_.places, memory_);
-          on_.for_each(model_.size(),
-                       minimum::witness_body<PartView, S>{model_.parts, places, source, frame_.origin,
-                                                          frame_.world_from_cloud, now.cloud, minima, walk, witnesses});
+          backends::for_each_apart(
+              on_, model_.size(),
+              minimum::witness_body<PartView, S>{model_.parts, places, source, frame_.origin, frame_.world_from_cloud,
+                                                 now.cloud, minima, walk, witnesses});
         });
   }
 
