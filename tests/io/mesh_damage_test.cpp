@@ -221,6 +221,24 @@ TEST_CASE("a damaged member of a glTF file is refused, or it was of no use") {
   CHECK(says(refused(with("/nodes/1/scale", {0, 1, 1})), "flattens"));
 }
 
+TEMPLATE_TEST_CASE("indices of a glTF file have one, two or four bytes each", "", std::uint8_t, std::uint16_t,
+                   std::uint32_t) {
+  const mesh_file read("m.glb");
+  const std::string two = glb_bytes();
+  std::string data = two.substr(0, 68);
+  for (std::size_t k = 68; k < two.size(); k += 2) {
+    const TestType index = std::uint8_t(two[k]);
+    data.append(reinterpret_cast<const char*>(&index), sizeof index);
+  }
+  nlohmann::json json = glb_json();
+  json["accessors"][1]["componentType"] = sizeof(TestType) == 1 ? 5121 : sizeof(TestType) == 2 ? 5123 : 5125;
+  json["bufferViews"][1]["byteLength"] = 12 * sizeof(TestType);
+  json["buffers"][0]["byteLength"] = data.size();
+  const outcome made = read(glb(json.dump(), data));
+  CHECK(made.refusal == "");
+  CHECK(made.answer == read(glb(glb_json().dump(), two)).answer);
+}
+
 TEST_CASE("one byte of a mesh file changed does not change how much there is, unless it is a number") {
   const std::string json = glb(glb_json().dump(), glb_bytes());
   std::string stl = "solid s\n";
