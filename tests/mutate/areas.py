@@ -30,7 +30,7 @@ TESTS = {
     "frame/mapped_clouds.hpp": ["search/self_filter", "search/min_distance_by", "search/minimum"],
     "frame/root_test.hpp": ["search/root_test", "search/bracket", "search/minimum", "search/unseen"],
     "scan/*": ["search/prepared", "search/minimum", "search/distances", "search/tangents", "search/unseen"],
-    "scan/capsule_tiles.hpp": ["search/unseen"],
+    "scan/capsule_tiles.hpp": ["search/capsule_tiles", "search/unseen"],
     "scan/element.hpp": ["search/unseen", "search/bracket", "search/prepared"],
     "scan/group_walk.hpp": ["search/distances", "search/tangents"],
     "scan/neighbours.hpp": ["search/distances", "search/tangents"],
