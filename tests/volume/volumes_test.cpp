@@ -84,6 +84,18 @@ TEST_CASE("An oriented box turns with a turned box") {
   }
 }
 
+TEST_CASE("A sphere around two balls is hardly larger than the smallest") {
+  dice d(37);
+  verdict v;
+  for (int round = 0; round < 200; ++round) {
+    const std::vector<ball> two{{d.point(1), d.number(0, 0.2)}, {d.point(1), d.number(0, 0.2)}};
+    const real apart = length(two[1].center - two[0].center);
+    const real least = std::max({(apart + two[0].radius + two[1].radius) / 2, two[0].radius, two[1].radius});
+    v.require(clearance::sphere::fit(two).radius <= 1.01f * least, "not ", least, " but ",
+              clearance::sphere::fit(two).radius);
+  }
+}
+
 TEST_CASE("The balls of an oriented box are at its corners, each at another") {
   dice d(29);
   std::vector<ball> inside(8);
