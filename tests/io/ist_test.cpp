@@ -159,6 +159,7 @@ TEST_CASE("an .ist file that is not what it should be is refused with a sentence
   says(refused(with(good, 8, little(2u))), "is of version 2, and this clearance reads version 1");
   says(refused(with(good, 8, std::string("\0\0\0\1", 4))), "big-endian");
   says(refused(with(good, 12, little(0u))), "holds no part");
+  says(refused(with(good.substr(0, 28), 12, little(0u) + little(std::uint64_t(28)))), "holds no part");
   says(refused(with(good, 12, little(1u))), "bytes after its last part");
   says(refused(with(good, 12, little(3u))), "ends in the middle of a record");
   says(refused(with(good, 12, little(0xffffffffu))), "ends in the middle of a record");

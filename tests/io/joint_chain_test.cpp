@@ -110,6 +110,51 @@ TEST_CASE("Ways that cancel are refused where double loses more of them than a b
   CHECK_FALSE(refused(chain(0.1, 0.2), 0.3));
 }
 
+TEST_CASE("Where a link is turned, exact ways lose more, and are refused if a bracket does not cover it") {
+  const auto lost = [](bool turns) {
+    clearance::chain_link first, second, third;
+    first.value = 0, first.factor = 1;
+    second.parent = 0, second.origin.m[0][3] = 3e6;
+    if (turns)  // about the way, which stays as it is
+      second.origin.m[1][1] = second.origin.m[2][2] = 0, second.origin.m[1][2] = -1, second.origin.m[2][1] = 1;
+    third.parent = 1, third.origin.m[0][3] = -3e6;
+    const joint_chain<> chain({first, second, third}, {2}, {{"turn", {}}});
+    const double values[] = {0};
+    return std::isnan(chain.view().pose(values, 0).m[0][0]);
+  };
+  CHECK(lost(true));
+  CHECK_FALSE(lost(false));
+}
+
+TEST_CASE("A pose that is rigid but for its last digits becomes the nearest that is, and no other is taken") {
+  verdict v;
+  dice d(31);
+  for (int trial = 0; trial < 200; ++trial) {
+    Eigen::Isometry3d pose = d.pose(2);
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) pose(r, c) += d.uniform(-1, 1) * 1e-5;
+    clearance::world_transform t(pose);
+    v.require(make_rigid(t), "is not taken");
+    const Eigen::Isometry3d made = to_isometry(t);
+    const Eigen::Matrix3d rest = made.linear().transpose() * pose.linear();  // symmetric only of the nearest
+    v.require((made.linear().transpose() * made.linear() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 4e-15 &&
+                  (rest - rest.transpose()).cwiseAbs().maxCoeff() < 4e-15 && made.translation() == pose.translation(),
+              "is another pose");
+  }
+  const auto taken = [](int r, int c, double x) {
+    clearance::world_transform t;
+    t.m[r][c] = x;
+    return make_rigid(t);
+  };
+  for (int r = 0; r < 3; ++r) {
+    v.require(taken(r, 3, 1e18) && taken(r, 3, -1e18) && !taken(r, 3, 1.01e18) && !taken(r, 3, -1.01e18), "far ", r);
+    v.require(!taken(r, r, -1) && !taken(r, r, 1.001) && taken(r, r, 1.00001), "scaled or mirrored ", r);
+    v.require(!taken(r, (r + 1) % 3, 0.001) && !taken(r, (r + 2) % 3, -0.001), "sheared ", r);
+    for (int c = 0; c < 4; ++c)
+      for (const double x : {std::nan(""), HUGE_VAL, -HUGE_VAL}) v.require(!taken(r, c, x), "not finite ", r, " ", c);
+  }
+}
+
 TEST_CASE("What is no joint vector is refused, by configuration and joint") {
   joint shoulder, elbow;
   shoulder.name = "shoulder", shoulder.parent = "base", shoulder.child = "upper", shoulder.lower = -1,

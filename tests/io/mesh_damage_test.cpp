@@ -221,6 +221,49 @@ TEST_CASE("a damaged member of a glTF file is refused, or it was of no use") {
   CHECK(says(refused(with("/nodes/1/scale", {0, 1, 1})), "flattens"));
 }
 
+TEMPLATE_TEST_CASE("indices of a glTF file have one, two or four bytes each", "", std::uint8_t, std::uint16_t,
+                   std::uint32_t) {
+  const mesh_file read("m.glb");
+  const std::string two = glb_bytes();
+  std::string data = two.substr(0, 68);
+  for (std::size_t k = 68; k < two.size(); k += 2) {
+    const TestType index = std::uint8_t(two[k]);
+    data.append(reinterpret_cast<const char*>(&index), sizeof index);
+  }
+  nlohmann::json json = glb_json();
+  json["accessors"][1]["componentType"] = sizeof(TestType) == 1 ? 5121 : sizeof(TestType) == 2 ? 5123 : 5125;
+  json["bufferViews"][1]["byteLength"] = 12 * sizeof(TestType);
+  json["buffers"][0]["byteLength"] = data.size();
+  const outcome made = read(glb(json.dump(), data));
+  CHECK(made.refusal == "");
+  CHECK(made.answer == read(glb(glb_json().dump(), two)).answer);
+}
+
+TEST_CASE("a strip and a fan of a glTF file are the triangles that its page says, and loose triangles fill the limit") {
+  const mesh_file read("m.glb");
+  const auto of = [](int mode, const std::vector<int>& corners) {
+    std::string data;
+    for (const int c : corners)
+      for (const float x : {float(c), float(c * c % 7), float(c * c * c % 5)})
+        data.append(reinterpret_cast<const char*>(&x), sizeof x);
+    nlohmann::json json = nlohmann::json::parse(R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+      "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3"}],
+      "bufferViews": [{"buffer": 0}], "buffers": [{}]})");
+    json["meshes"][0]["primitives"][0]["mode"] = mode;
+    json["accessors"][0]["count"] = corners.size();
+    json["bufferViews"][0]["byteLength"] = json["buffers"][0]["byteLength"] = data.size();
+    return glb(json.dump(), data);
+  };
+  const auto strip = read(of(5, {0, 1, 2, 3, 4})), fan = read(of(6, {0, 1, 2, 3, 4}));
+  CHECK(strip.answer == read(of(4, {0, 1, 2, 2, 1, 3, 2, 3, 4})).answer);
+  CHECK(fan.answer == read(of(4, {0, 1, 2, 0, 2, 3, 0, 3, 4})).answer);
+  CHECK(std::ranges::count(strip.answer, ';') == 3);
+  CHECK(read(of(4, {0, 1, 2, 2, 1, 3})).refusal == "");
+  CHECK(io::load_mesh(read.file, {.triangles = 2}).triangles.size() == 2);
+  CHECK(says(sentence([&] { io::load_mesh(read.file, {.triangles = 1}); }), "more than the 1 triangles"));
+}
+
 TEST_CASE("one byte of a mesh file changed does not change how much there is, unless it is a number") {
   const std::string json = glb(glb_json().dump(), glb_bytes());
   std::string stl = "solid s\n";

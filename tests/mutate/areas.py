@@ -15,7 +15,7 @@ ASKED = ["search/bracket", "search/minimum", "search/prepared", "search/distance
 TESTS = {
     "*": ASKED,
     "ground/*": ["primitive/primitives", "volume/volumes", "search/minimum", "search/prepared", "search/far"],
-    "ground/pose.hpp": ["search/minimum", "io/joint_chain", "search/far"],
+    "ground/pose.hpp": ["io/joint_chain", "search/minimum", "search/far"],
     "ground/sine.hpp": ["io/joint_chain"],
     "ground/chain_rounding.hpp": ["io/joint_chain", "io/robot_words", "io/kinematics"],
     "ground/segments.hpp": ["primitive/primitives", "search/unseen"],
@@ -28,8 +28,9 @@ TESTS = {
     "frame/margins.hpp": ["search/collision", "search/distances", "search/within", "search/bracket"],
     "frame/masked_clouds.hpp": ["search/self_filter"],
     "frame/mapped_clouds.hpp": ["search/self_filter", "search/min_distance_by", "search/minimum"],
+    "frame/root_test.hpp": ["search/root_test", "search/bracket", "search/minimum", "search/unseen"],
     "scan/*": ["search/prepared", "search/minimum", "search/distances", "search/tangents", "search/unseen"],
-    "scan/capsule_tiles.hpp": ["search/unseen"],
+    "scan/capsule_tiles.hpp": ["search/capsule_tiles", "search/unseen"],
     "scan/element.hpp": ["search/unseen", "search/bracket", "search/prepared"],
     "scan/group_walk.hpp": ["search/distances", "search/tangents"],
     "scan/neighbours.hpp": ["search/distances", "search/tangents"],
@@ -73,6 +74,7 @@ TESTS = {
     "questions/within.hpp": ["search/within", "search/too_close"],
     "questions/zones.hpp": ["search/zones"],
     "cloud_tree/*": ["search/min_distances"],
+    "cloud_tree/pixel_order.hpp": ["search/pixel_order"],  # of images only kernels make trees
     "io/*": ["io/robot", "io/mesh", "io/robot_damage"],
     "io/bytes.hpp": ["io/ply", "io/pcd", "io/mesh_damage"],
     "io/certify.hpp": ["io/packing_cache", "io/spheres"],

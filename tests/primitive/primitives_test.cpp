@@ -161,6 +161,20 @@ TEST_CASE("On a triangle the distance is 0 and the normal the triangle's own") {
   CHECK(t.nearest({-3, -4, 0}) == vec3{0, 0, 0});
 }
 
+TEST_CASE("The ball around a triangle has its corners inside, and one on it") {
+  dice d(6);
+  verdict v;
+  for (int k = 0; k < 200; ++k) {
+    const triangle t = d.face(1, 1);
+    const ball around = t.as_ball();
+    const real most = std::max({length(t.a - around.center), length(t.b - around.center), length(t.c - around.center)});
+    v.require(most <= around.radius && around.radius < most * 1.0001f + 1e-5f, "corners at ", most, " of ",
+              around.radius);
+    const vec3 off = scaled(3, around.center) - t.a - t.b - t.c;
+    v.require(length(off) < 1e-5f, "its middle is elsewhere");
+  }
+}
+
 TEST_CASE("The hull of a primitive's balls contains it") {
   dice d(5);
   verdict v;

@@ -4,6 +4,7 @@
 #include "support/scenes.hpp"
 
 #include <clearance/bvh/build.hpp>
+#include <clearance/minimum/beyond.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -62,6 +63,20 @@ TEST_CASE("The bracket is the distance less the gap to the distance, rounded out
   CHECK(wider.distance == 2);
   CHECK(wider.lower == Approx(1.25).epsilon(1e-4));
   CHECK(wider.upper == Approx(2.25).epsilon(1e-4));
+}
+
+TEST_CASE("A search that stopped has as lower end what is certain there, and 0 if that is nothing") {
+  const auto stopped = [](real d_max) {
+    clearance::min_distance_result r;
+    r.valid = 1;
+    clearance::minimum::beyond(r, d_max, 0.5, {0, 0});
+    return r;
+  };
+  CHECK((stopped(2).lower > 1.4999f && stopped(2).lower <= 1.5f && stopped(2).state == state::free));
+  for (const real d_max : {0.5f, 0.25f, 0.0f, -1.0f})
+    CHECK((stopped(d_max).lower == 0 && stopped(d_max).state == state::possible));
+  CHECK((stopped(0.25f).distance == infinity && stopped(0.25f).part == clearance::none));
+  CHECK(stopped(infinity).state == state::no_data);
 }
 
 TEST_CASE("A gap larger than the distance leaves only what is possible") {

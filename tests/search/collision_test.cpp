@@ -119,6 +119,36 @@ TEST_CASE("What gap and tolerance leave open is possible, and no point says noth
                   std::invalid_argument);
 }
 
+TEST_CASE("Of two pieces' answers the certain one counts, then the first, whichever is merged into the other") {
+  const std::vector<inner_sphere> ball{{{0, 0, 0}, 1}};
+  const std::vector poses{Eigen::Isometry3d::Identity()};
+  const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball), 0.3)}};
+  verdict v;
+  dice d(97);
+  std::size_t states[4] = {};
+  for (int trial = 0; trial < 100; ++trial) {
+    const std::vector<vec3> all = d.points(6, 1.8);
+    const auto ask = [&](std::uint32_t begin, std::uint32_t end) {
+      auto r = clearance::ask(host{}, robot, poses, point_span(std::span(all).subspan(begin, end - begin)),
+                              in_collision{{0.1}});
+      if (r.cloud != clearance::none) r.point += begin;
+      return r;
+    };
+    const auto whole = ask(0, 6);
+    ++states[int(whole.state)];
+    for (const std::uint32_t cut : {0u, 1u, 3u, 6u})
+      for (const bool turned : {false, true}) {
+        auto r = turned ? ask(cut, 6) : ask(0, cut);
+        in_collision::merge(r, turned ? ask(0, cut) : ask(cut, 6));
+        v.require(r.state == whole.state && r.cloud == whole.cloud && r.point == whole.point && r.part == whole.part &&
+                      r.counts.valid == 6,
+                  "cut at ", cut, turned ? ", turned: " : ": ", to_string(r.state), " of point ", r.point, " and not ",
+                  to_string(whole.state), " of ", whole.point);
+      }
+  }
+  CHECK((states[int(state::free)] > 5 && states[int(state::possible)] > 5 && states[int(state::collision)] > 5));
+}
+
 TEST_CASE("Of a robot without parts nothing is known, whatever is asked") {
   const std::vector<inner_sphere> ball{{{0, 0, 0}, 1}};
   const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball))}};

@@ -84,6 +84,31 @@ TEST_CASE("An oriented box turns with a turned box") {
   }
 }
 
+TEST_CASE("A sphere around two balls is hardly larger than the smallest") {
+  dice d(37);
+  verdict v;
+  for (int round = 0; round < 200; ++round) {
+    const std::vector<ball> two{{d.point(1), d.number(0, 0.2)}, {d.point(1), d.number(0, 0.2)}};
+    const real apart = length(two[1].center - two[0].center);
+    const real least = std::max({(apart + two[0].radius + two[1].radius) / 2, two[0].radius, two[1].radius});
+    v.require(clearance::sphere::fit(two).radius <= 1.01f * least, "not ", least, " but ",
+              clearance::sphere::fit(two).radius);
+  }
+}
+
+TEST_CASE("The balls of an oriented box are at its corners, each at another") {
+  dice d(29);
+  std::vector<ball> inside(8);
+  for (ball& b : inside) b = {d.point(1), d.number(0, 0.3)};
+  const auto box = clearance::obb::fit(inside);
+  const auto balls = box.balls();
+  for (int k = 0; k < 8; ++k) {
+    vec3 corner = box.center;
+    for (int a = 0; a < 3; ++a) corner = clearance::fma(k >> a & 1 ? box.half[a] : -box.half[a], box.axis[a], corner);
+    CHECK(std::ranges::count_if(balls, [&](const ball& b) { return length(b.center - corner) < 1e-5f; }) == 1);
+  }
+}
+
 TEST_CASE("A bound of a point that is not a number is no bound to go by") {
   const std::vector<ball> balls = {{{1, 2, 3}, 0.5f}, {{2, 2, 2}, 0.5f}};
   const vec3 nowhere{clearance::not_a_number, 0, 0};

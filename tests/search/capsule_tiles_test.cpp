@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is left out of a scan of capsules has none within reach.
+#include "support/laws.hpp"
+
+#include <clearance/scan/capsule_tiles.hpp>
+
+namespace capsule_tiles_test {
+
+using namespace testing;
+using clearance::capsule, clearance::extent, clearance::scan::capsule_hull;
+
+namespace {
+
+vec3 clamped(vec3 p, const extent& box) {
+  return {std::clamp(p.x, box.lower.x, box.upper.x), std::clamp(p.y, box.lower.y, box.upper.y),
+          std::clamp(p.z, box.lower.z, box.upper.z)};
+}
+
+}  // namespace
+
+TEST_CASE("A hull of capsules may touch what one of them touches, and not what is far from all") {
+  verdict v;
+  dice d(67);
+  std::size_t touched = 0, apart = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    capsule_hull hull;
+    const vec3 from = d.point(2), to = d.point(2);
+    std::vector<capsule> all;
+    for (int k = 0; k < 4; ++k) {
+      const vec3 start = d.point(0.2, from), end = d.point(0.2, to);
+      hull.starts.add(start), hull.ends.add(end);
+      all.push_back({start, end - start, 0});
+    }
+    const vec3 corner = d.point(2);
+    extent box;
+    box.add(corner), box.add(corner + d.point(0.6));
+    bool touches = false;
+    real away = infinity;
+    for (const capsule& c : all)
+      for (int k = 0; k <= 64; ++k) {
+        const vec3 p = c.at(real(k) / 64), q = clamped(p, box);
+        touches = touches || p == q;
+        away = std::min(away, length(p - q));
+      }
+    v.require(!touches || hull.may_touch(box, 0), "it may not touch what one of its own touches");
+    v.require(away > 0.1f || hull.may_touch(box, 0.1f), "nor what is as near as it was told");
+    v.require(away < 0.8f || !hull.may_touch(box, 0), "it may touch what is ", away, " away");
+    touched += touches, apart += away > 0.8f;
+  }
+  CHECK(touched > 100);
+  CHECK(apart > 100);
+}
+
+}  // namespace capsule_tiles_test
