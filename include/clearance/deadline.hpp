@@ -77,13 +77,21 @@ so_far<typename Q::result> ask_while(query<Q, On, PartView>& ask, const Poses& p
     all.add(ask(poses, mapped_clouds(clouds, slices), q), place);
     for (const std::uint32_t count : place.count) seen += count;
   };
-  std::size_t i = 0;
-  for (; i < n && go_on(); ++i) {
-    const std::size_t k = detail::spread(i, n);
-    look({k, k + 1, n});
+  const auto forget = [&] {
+    if constexpr (requires { ask.forget(); }) ask.forget();
+  };
+  try {
+    std::size_t i = 0;
+    for (; i < n && go_on(); ++i) {
+      const std::size_t k = detail::spread(i, n);
+      look({k, k + 1, n});
+    }
+    if (i == 0) look({0, 0, n});  // at no points; what cannot be asked is refused all the same
+  } catch (...) {
+    forget();  // also a bound that no frame has used
+    throw;
   }
-  if (i == 0) look({0, 0, n});  // at no points; what cannot be asked is refused all the same
-  if constexpr (requires { ask.forget(); }) ask.forget();
+  forget();
   so_far<typename Q::result> known{all.result(), numbers.total() - seen};
   Q::so_far(known.result, known.unseen);
   return known;

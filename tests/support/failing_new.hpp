@@ -69,6 +69,7 @@ std::size_t end_memory_everywhere(const Attempt& attempt, const Lost& lost) {
 
 }  // namespace testing
 
+#if !defined(__CUDA_ARCH__)  // nvcc would have these on a device, too
 [[gnu::noinline]] void* operator new(std::size_t size) {
   if (testing::allocations.fails()) throw std::bad_alloc();
   void* p = std::malloc(size == 0 ? 1 : size);
@@ -100,3 +101,4 @@ std::size_t end_memory_everywhere(const Attempt& attempt, const Lost& lost) {
 [[gnu::noinline]] void operator delete(void* p, const std::nothrow_t&) noexcept { operator delete(p); }
 [[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept { operator delete(p); }
 [[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept { operator delete(p); }
+#endif

@@ -39,7 +39,7 @@ class host_search {
   }
 
   /// Drops what is known of the last frame. The next one takes longer; its answer is the same.
-  void forget() { last_.clear(); }
+  void forget() { last_.clear(), within_ = infinity; }
 
   /// The next frame alone, which must not ask for minima, need not find anything farther than `within`.
   void bound_by(real within) { within_ = within; }
