@@ -42,4 +42,31 @@ TEST_CASE("What is within reach of a part's ball passes its test, and what is cl
   CHECK((within > 1000 && beyond > 1000));
 }
 
+TEST_CASE("A line of sight that may hide something within reach of a ball passes its test") {
+  verdict v;
+  dice d(62);
+  std::size_t within = 0, beyond = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const ball around{d.point(2), d.number(0, 1)};
+    const real reach = d.number(0, 1);
+    const root_test test(around, reach);
+    const vec3 origin = trial % 3 == 0 ? vec3{0, 0, 0} : d.point(3);
+    for (int k = 0; k < 200; ++k) {
+      const vec3 start = scaled(k % 5 == 0 ? 1e-4f : 1, d.point(3));  // from the eye
+      const vec3 way = around.center - (start - origin);
+      const double far = length(way), along = dot(way, start) / std::max<double>(length(start), 1e-30);
+      const double least = along <= 0 ? far : std::sqrt(std::max(far * far - along * along, 0.0));
+      const double most = double(reach) + around.radius;
+      const bool passes = test.passes(clearance::frames::sight_test(start - origin, origin));
+      v.require(passes || least > most, "a line at ", least, " of ", most, " fails");
+      if (length(start) > length(origin) / 16)
+        v.require(!passes || least <= most + 0.01, "a line at ", least, " of ", most, " passes");
+      ++(least <= most ? within : beyond);
+    }
+    v.require(!test.passes(clearance::frames::sight_test({clearance::not_a_number, 0, 0}, origin)), "no point passes");
+    v.require(test.passes(clearance::frames::sight_test(-origin, origin)), "what begins at the eye fails");
+  }
+  CHECK((within > 1000 && beyond > 1000));
+}
+
 }  // namespace root_test_test
