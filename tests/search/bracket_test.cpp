@@ -103,6 +103,15 @@ TEST_CASE("Floats of a bracket, and of what a margin makes of distances, are on 
   }
 }
 
+TEST_CASE("Facts that are no lengths certify nothing") {
+  const auto slop = [](real gap, real tolerance) {
+    return clearance::frames::slop({.radius = 1, .gap = gap, .tolerance = tolerance});
+  };
+  CHECK(slop(0.25f, 0.5f) == 0.75);
+  for (const real none : {-0.1f, clearance::not_a_number, infinity})
+    CHECK((slop(none, 0) == infinity && slop(0, none) == infinity));
+}
+
 TEST_CASE("A gap larger than the distance leaves only what is possible") {
   const auto r = ask(2.5f, 3);
   CHECK(r.lower == 0);
