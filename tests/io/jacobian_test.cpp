@@ -111,6 +111,7 @@ TEST_CASE("What has no gradient has none by joints, and what is no link or part 
   const auto poses = tree.link_poses(q);
   CHECK(!joint_gradient(tree, poses, 2, clearance::pose_gradient{}));
   CHECK(says(sentence<std::invalid_argument>([&] { jacobian(tree, poses, 9, {0, 0, 0}); }), "link number 9"));
+  CHECK(says(sentence<std::invalid_argument>([&] { jacobian(tree, poses, poses.size(), {0, 0, 0}); }), "link number"));
   CHECK(says(sentence<std::invalid_argument>([&] { jacobian(tree, std::span(poses).first(2), 1, {0, 0, 0}); }),
              "2 poses"));
 

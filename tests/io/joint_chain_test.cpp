@@ -151,7 +151,18 @@ TEST_CASE("A pose that is rigid but for its last digits becomes the nearest that
     v.require(!taken(r, r, -1) && !taken(r, r, 1.001) && taken(r, r, 1.00001), "scaled or mirrored ", r);
     v.require(!taken(r, (r + 1) % 3, 0.001) && !taken(r, (r + 2) % 3, -0.001), "sheared ", r);
     for (int c = 0; c < 4; ++c)
-      for (const double x : {std::nan(""), HUGE_VAL, -HUGE_VAL}) v.require(!taken(r, c, x), "not finite ", r, " ", c);
+      for (const double x : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+        v.require(!taken(r, c, x), "not finite ", r, " ", c);
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+        pose(r, c) = x;
+        std::string why;
+        try {
+          clearance::rigid_transform_of(pose);
+        } catch (const std::invalid_argument& e) {
+          why = e.what();
+        }
+        v.require(why.find("not finite") != why.npos, why);
+      }
   }
 }
 

@@ -264,6 +264,22 @@ TEST_CASE("a strip and a fan of a glTF file are the triangles that its page says
   CHECK(says(sentence([&] { io::load_mesh(read.file, {.triangles = 1}); }), "more than the 1 triangles"));
 }
 
+TEST_CASE("a strip and a fan of a COLLADA file are the triangles that its page says") {
+  const mesh_file read("m.dae");
+  const std::string input = "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>";
+  const auto with = [&](const std::string& strip, const std::string& fan) {
+    std::string text = dae_with("<tristrips count=\"1\">" + input + "0 4 2 6</p></tristrips>", strip);
+    const std::string old = "<trifans count=\"1\">" + input + "1 3 7 5</p></trifans>";
+    return read(text.replace(text.find(old), old.size(), fan));
+  };
+  const auto made = with("<tristrips count=\"1\">" + input + "0 4 2 6 1</p></tristrips>",
+                         "<trifans count=\"1\">" + input + "1 3 7 5 0</p></trifans>");
+  CHECK(made.refusal == "");
+  CHECK(made.answer == with("<triangles count=\"3\">" + input + "0 4 2 2 4 6 2 6 1</p></triangles>",
+                            "<triangles count=\"3\">" + input + "1 3 7 1 7 5 1 5 0</p></triangles>")
+                           .answer);
+}
+
 TEST_CASE("one byte of a mesh file changed does not change how much there is, unless it is a number") {
   const std::string json = glb(glb_json().dump(), glb_bytes());
   std::string stl = "solid s\n";

@@ -15,7 +15,7 @@ ASKED = ["search/bracket", "search/minimum", "search/prepared", "search/distance
 TESTS = {
     "*": ASKED,
     "ground/*": ["primitive/primitives", "volume/volumes", "search/minimum", "search/prepared", "search/far"],
-    "ground/pose.hpp": ["io/joint_chain", "search/minimum", "search/far"],
+    "ground/pose.hpp": ["search/merge", "io/joint_chain", "search/minimum", "search/far"],
     "ground/sine.hpp": ["io/joint_chain"],
     "ground/chain_rounding.hpp": ["io/joint_chain", "io/robot_words", "io/kinematics"],
     "ground/segments.hpp": ["primitive/primitives", "search/unseen"],
@@ -74,6 +74,7 @@ TESTS = {
     "questions/within.hpp": ["search/within", "search/too_close"],
     "questions/zones.hpp": ["search/zones"],
     "cloud_tree/*": ["search/min_distances"],
+    "cloud_tree/tree_view.hpp": ["search/min_distances", "search/radii"],
     "cloud_tree/pixel_order.hpp": ["search/pixel_order"],  # of images only kernels make trees
     "io/*": ["io/robot", "io/mesh", "io/robot_damage"],
     "io/bytes.hpp": ["io/ply", "io/pcd", "io/mesh_damage"],

@@ -35,6 +35,7 @@ def expressions(folder, mutants):
     wrong = [d for d in unit.diagnostics if d.severity >= cindex.Diagnostic.Error]
     if wrong:
         raise RuntimeError(f"clang: {wrong[0]}")
+    declarations = (cindex.CursorKind.VAR_DECL, cindex.CursorKind.FIELD_DECL)
     found = {}
 
     def visit(cursor, its=None):
@@ -47,6 +48,8 @@ def expressions(folder, mutants):
             inside = [m for m in at_most if begin.offset <= m.at < end.offset]
             if not inside:
                 continue
+            if cursor.kind in declarations and inside[0].before[: begin.offset].rstrip().endswith("["):
+                continue  # an array's bound: with a switch g++ would take it for one that is known when it runs
             if child.kind.is_expression():
                 for m in inside:
                     first, last = room(m)

@@ -161,6 +161,12 @@ TEST_CASE("On a triangle the distance is 0 and the normal the triangle's own") {
   CHECK(t.nearest({-3, -4, 0}) == vec3{0, 0, 0});
 }
 
+TEST_CASE("A share of a way is between its ends, and no transform is none at all") {
+  for (const real t : {-2.0f, -0.0f, 0.0f, 0.25f, 1.0f, 1.5f, 3.0f})
+    CHECK(clearance::clamp01(t) == std::clamp(t, 0.0f, 1.0f));
+  CHECK(clearance::rigid_transform{}(vec3{1, 2, 3}) == vec3{1, 2, 3});
+}
+
 TEST_CASE("The ball around a triangle has its corners inside, and one on it") {
   dice d(6);
   verdict v;

@@ -4,6 +4,7 @@
 #include "support/scenes.hpp"
 
 #include <clearance/bvh/build.hpp>
+#include <clearance/frame/margins.hpp>
 #include <clearance/minimum/beyond.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -77,6 +78,38 @@ TEST_CASE("A search that stopped has as lower end what is certain there, and 0 i
     CHECK((stopped(d_max).lower == 0 && stopped(d_max).state == state::possible));
   CHECK((stopped(0.25f).distance == infinity && stopped(0.25f).part == clearance::none));
   CHECK(stopped(infinity).state == state::no_data);
+}
+
+TEST_CASE("Floats of a bracket, and of what a margin makes of distances, are on the safe side of the doubles") {
+  dice d(43);
+  verdict v;
+  for (int trial = 0; trial < 200; ++trial) {
+    const clearance::frames::float_error error{d.uniform(0, 1e-3), d.uniform(0, 1e-3)};
+    const clearance::part_facts facts{.radius = 1, .gap = d.number(0, 0.1), .tolerance = d.number(0, 0.1)};
+    clearance::min_distance_result r;
+    r.part = 0, r.distance = d.number(0.5, 2);
+    const double lower = d.uniform(0.1, 0.5);
+    clearance::minimum::bracket(r, lower, facts.tolerance, false, error);
+    v.require(r.lower <= lower && r.upper >= double(r.distance) + facts.tolerance + error.at(r.distance), "a bracket");
+    for (const double margin : {d.uniform(0.2, 1), d.uniform(-1, -0.5)}) {
+      const double most = clearance::frames::may_be_within(margin, facts, error);
+      const double least = clearance::frames::is_within(margin, facts, error);
+      // A hair for the quotient of doubles, which floats do not see.
+      v.require(most - error.per_metre * std::abs(most) >= margin + facts.gap + facts.tolerance + error.here - 1e-15,
+                "may be within ", margin);
+      v.require(least + error.per_metre * std::abs(least) <= margin - facts.tolerance - error.here + 1e-15,
+                "is within ", margin);
+    }
+  }
+}
+
+TEST_CASE("Facts that are no lengths certify nothing") {
+  const auto slop = [](real gap, real tolerance) {
+    return clearance::frames::slop({.radius = 1, .gap = gap, .tolerance = tolerance});
+  };
+  CHECK(slop(0.25f, 0.5f) == 0.75);
+  for (const real none : {-0.1f, clearance::not_a_number, infinity})
+    CHECK((slop(none, 0) == infinity && slop(0, none) == infinity));
 }
 
 TEST_CASE("A gap larger than the distance leaves only what is possible") {

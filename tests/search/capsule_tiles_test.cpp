@@ -3,6 +3,7 @@
 #include "support/laws.hpp"
 
 #include <clearance/scan/capsule_tiles.hpp>
+#include <clearance/volume/sphere.hpp>
 
 namespace capsule_tiles_test {
 
@@ -49,6 +50,21 @@ TEST_CASE("A hull of capsules may touch what one of them touches, and not what i
   }
   CHECK(touched > 100);
   CHECK(apart > 100);
+}
+
+TEST_CASE("A bound on a sphere's distance from a capsule is below it, and hardly") {
+  verdict v;
+  dice d(68);
+  for (int trial = 0; trial < 500; ++trial) {
+    const clearance::sphere s{d.point(1), d.number(0, 0.5)};
+    const vec3 along = d.point(1);
+    const capsule c{d.point(2), along, d.number(0, 0.5)};
+    double away = infinity;
+    for (int k = 0; k <= 1000; ++k) away = std::min<double>(away, length(c.at(real(k) / 1000) - s.center));
+    const real bound = lower_bound(s, c, infinity);
+    v.require(bound <= away - s.radius - c.radius, "above");
+    v.require(bound >= away - s.radius - c.radius - 0.002, "far below");
+  }
 }
 
 }  // namespace capsule_tiles_test

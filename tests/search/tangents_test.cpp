@@ -167,6 +167,22 @@ TEST_CASE("By tangents to 200 parts") {
   check(s, model, patches(d, 1.5), v, "200 parts", nothing_inside);
 }
 
+TEST_CASE("By tangents through a node of more children than are looked at together") {
+  verdict v;
+  dice d(46);
+  const scene<inner_sphere> s{"wide", {random_spheres(d, 30)}, {d.pose(0.3)}, {}};
+  const auto tree = clearance::build<clearance::sphere>(s.parts[0], {.leaf_size = 1});
+  auto wide = tree;
+  wide.nodes.resize(1), wide.volumes.resize(1);
+  for (std::size_t n = 1; n < tree.nodes.size(); ++n)
+    if (tree.nodes[n].is_leaf()) wide.nodes.push_back(tree.nodes[n]), wide.volumes.push_back(tree.volumes[n]);
+  wide.width = std::uint32_t(wide.nodes.size() - 1);
+  wide.nodes[0] = {1, wide.width};
+  REQUIRE(wide.width == 30);
+  const clearance::model model{std::vector{clearance::make_part(wide)}};
+  check(s, model, patches(d, 1.5), v, "30 children", nothing_inside);
+}
+
 TEST_CASE("By tangents from a wall in rows and in a picture") {
   verdict v;
   dice d(45);

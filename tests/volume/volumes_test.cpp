@@ -96,7 +96,7 @@ TEST_CASE("A sphere around two balls is hardly larger than the smallest") {
   }
 }
 
-TEST_CASE("The balls of an oriented box are at its corners, each at another") {
+TEST_CASE("The balls of a box are at its corners, each at another") {
   dice d(29);
   std::vector<ball> inside(8);
   for (ball& b : inside) b = {d.point(1), d.number(0, 0.3)};
@@ -106,6 +106,13 @@ TEST_CASE("The balls of an oriented box are at its corners, each at another") {
     vec3 corner = box.center;
     for (int a = 0; a < 3; ++a) corner = clearance::fma(k >> a & 1 ? box.half[a] : -box.half[a], box.axis[a], corner);
     CHECK(std::ranges::count_if(balls, [&](const ball& b) { return length(b.center - corner) < 1e-5f; }) == 1);
+  }
+  const auto straight = clearance::aabb::fit(inside);
+  const auto its = straight.balls();
+  for (int k = 0; k < 8; ++k) {
+    const auto at = [&](int axis, real low, real high) { return k >> axis & 1 ? high : low; };
+    const vec3 l = straight.lower, h = straight.upper, corner{at(0, l.x, h.x), at(1, l.y, h.y), at(2, l.z, h.z)};
+    CHECK(std::ranges::count_if(its, [&](const ball& b) { return length(b.center - corner) < 1e-5f; }) == 1);
   }
 }
 
