@@ -21,8 +21,7 @@ class staging_ring {
   static constexpr std::size_t rooms = 3;
 
   explicit staging_ring(const device& on) : on_(on), copies_(on.id) {
-    const device_guard guard(on.id);
-    for (room& r : rooms_) r.copied = event(on.id), r.read = event(on.id);
+    for (room& r : rooms_) r.copied = own_event(on.id), r.read = own_event(on.id);
   }
 
   /// Call it before the first turn, with the largest sizes of any turn, in bytes, on either side.
@@ -78,29 +77,10 @@ class staging_ring {
   void wait() const { copies_.on().wait(), on_.wait(); }
 
  private:
-  class event {
-   public:
-    event() = default;
-    explicit event(int id) : id_(id) {
-      check_cuda(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "cudaEventCreateWithFlags");
-    }
-    event(event&& other) noexcept { *this = std::move(other); }
-    event& operator=(event&& other) noexcept {
-      return std::swap(event_, other.event_), std::swap(id_, other.id_), *this;
-    }
-    ~event() {
-      if (event_ != nullptr) on_device(id_, [this] { return cudaEventDestroy(event_); });
-    }
-    cudaEvent_t get() const { return event_; }
-
-   private:
-    cudaEvent_t event_ = nullptr;
-    int id_ = 0;
-  };
   struct room {
     pinned_buffer<std::byte> pinned;
     device_buffer<std::byte> there;
-    event copied, read;
+    own_event copied, read;
   };
 
   static bool within(const pinned_buffer<std::byte>& memory, const std::byte* p) {

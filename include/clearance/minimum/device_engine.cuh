@@ -34,9 +34,10 @@ class engine<device, PartView, Q> {
   /// Enqueues a frame whose result `finish` waits for.
   template <class Clouds>
   void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&) {
+    if constexpr (Q::per_part)
+      if (minima_.data() == nullptr) minima_ = pinned_buffer<part_minimum>(search_.parts(), on_.id, pinned_);
     if (answer_.data() == nullptr) {
       answer_ = pinned_buffer<answer>(1, on_.id, pinned_);
-      if constexpr (Q::per_part) minima_ = pinned_buffer<part_minimum>(search_.parts(), on_.id, pinned_);
       answer_.data()->done = 0;
     }
     ++frame_number_;

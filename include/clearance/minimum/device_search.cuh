@@ -97,8 +97,9 @@ class device_search {
   };
 
   void forget_bounds() {
-    const std::vector<typename one::state_type> fresh(launch_.groups());
-    on_.stage(std::span<const typename one::state_type>(fresh), state_.data());
+    const typename one::state_type fresh;
+    for (std::uint32_t group = 0; group < launch_.groups(); ++group)
+      on_.stage(std::span(&fresh, 1), state_.data() + group);
   }
 
   template <bool PerPart, class Source, class Place>

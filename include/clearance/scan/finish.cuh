@@ -15,6 +15,7 @@ __noinline__ __device__ void finish_block(const scan_arguments<Tally>& a, const 
   scan_state& state = *a.state;
   if (t < drop_reasons && s.dropped[t] != 0)
     atomicAdd(&state.dropped[t], static_cast<unsigned long long>(s.dropped[t]));
+  __syncwarp();  // thread 0 counts this block as done, and so must come after these
   Tally::hand_in(a, source);
   if (t == 0) s.last = count_in(state.done) + 1 == gridDim.x;
   __syncthreads();

@@ -55,9 +55,10 @@ class launcher {
   /// The most blocks of a kernel.
   unsigned most_blocks() const { return 2 * processors_; }
 
+  /// It needs no memory, because there may be none left.
   void forget() {
-    const std::vector<scan_state> fresh(groups());
-    on_.stage(std::span<const scan_state>(fresh), state_.data());
+    const scan_state fresh;
+    for (std::uint32_t group = 0; group < groups(); ++group) on_.stage(std::span(&fresh, 1), state_.data() + group);
   }
 
   /// The arguments for one cloud and one group of parts.
