@@ -67,8 +67,8 @@ struct zero_words {
   CLEARANCE_HD void operator()(std::size_t i) const { words[i] = 0; }
 };
 
-/// The bin of the wanted point (the number of bins if there are fewer points), and how many points lie before it. No bin
-/// before `from` has one.
+/// The bin of the wanted point (the number of bins if there are fewer points), and how many points lie before it.
+/// No bin before `from` has one.
 struct wanted_bin {
   std::uint32_t bin = 0, before = 0, its = 0;
 };

@@ -137,7 +137,9 @@ class certain_distance::engine {
     result r;
     const auto measured = mapped_clouds(here, as_measured{});
     min_distance_per_part_result certain;
-    if constexpr (requires { search_.begin(poses, here, min_distance_per_part{}); }) {  // a device need not wait between
+    if constexpr (requires {
+                    search_.begin(poses, here, min_distance_per_part{});
+                  }) {  // a device need not wait between
       nominal_.begin(poses, measured, min_distance{}), search_.begin(poses, here, min_distance_per_part{});
       r.nominal = nominal_.finish(), certain = search_.finish();
     } else {
@@ -167,11 +169,10 @@ class certain_distance::engine {
           vague = vague || vague_source<S>;
           for (std::uint32_t k = 0; k < parts; ++k) errors_[k] = std::max(errors_[k], double(frame_.places[k].error));
           const auto* const places = std::get<0>(memory_.put(frame_.places));
-          backends::for_each_apart(
-              on_, parts + (nominal.part != none),
-              minimum::read_pair<PartView, S>{model_.parts, places, parts, source, frame_.origin,
-                                              frame_.world_from_cloud, now.cloud, wanted,
-                                              any_depth{stack_need(model_.depth, model_.width)}, pairs});
+          backends::for_each_apart(on_, parts + (nominal.part != none),
+                                   minimum::read_pair<PartView, S>{
+                                       model_.parts, places, parts, source, frame_.origin, frame_.world_from_cloud,
+                                       now.cloud, wanted, any_depth{stack_need(model_.depth, model_.width)}, pairs});
         });
     pairs_ = on_.copy_out(pairs, parts + 1);
     return vague;

@@ -159,7 +159,9 @@ void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const e
     for (std::uint32_t k = 0; k < body.part_count; ++k)
       if (const ball& around = body.places[k].around; hull.may_reach(around, body.answer.reach(k)))
         any = true, those.add(t, around, body.answer.reach(k), k);
-    if (any) with_vectors([&] { those.for_each([&](std::size_t j, std::uint32_t parts) { body.visit(t.start(j), i + j, parts); }); });
+    if (any)
+      with_vectors(
+          [&] { those.for_each([&](std::size_t j, std::uint32_t parts) { body.visit(t.start(j), i + j, parts); }); });
   }
 }
 
