@@ -137,9 +137,8 @@ class certain_distance::engine {
     result r;
     const auto measured = mapped_clouds(here, as_measured{});
     min_distance_per_part_result certain;
-    if constexpr (requires {
-                    search_.begin(poses, here, min_distance_per_part{});
-                  }) {  // a device need not wait between
+    constexpr bool enqueues = requires { search_.begin(poses, here, min_distance_per_part{}); };
+    if constexpr (enqueues) {  // the host need not wait between the searches
       nominal_.begin(poses, measured, min_distance{}), search_.begin(poses, here, min_distance_per_part{});
       r.nominal = nominal_.finish(), certain = search_.finish();
     } else {
