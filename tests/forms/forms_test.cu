@@ -93,4 +93,19 @@ TEST_CASE("Frame after frame a device's prepared questions are right, and take n
   CHECK(n.end.resident - n.begin.resident < 48e6);
 }
 
+TEST_CASE("Answer after answer, a device counts every valid point", "[slow]") {
+  moving_frames f(4, 19);
+  f.see(2600);
+  for (auto& cloud : f.points)
+    for (std::size_t i = 0; i < cloud.size(); i += 37) cloud[i].y = clearance::not_a_number;
+  const auto here = f.model();
+  const auto there = here.on(device{});
+  const clearance::nearest_k q{.k = 7};
+  const auto valid = ask(host{}, here, f.s.poses, f.here(), q).counts.valid;
+  clearance::query prepared(device{}, there, q);
+  std::size_t wrong = 0;
+  for (int k = 0; k < 5000; ++k) wrong += prepared(f.s.poses, f.here()).counts.valid != valid;
+  CHECK(wrong == 0);
+}
+
 }  // namespace forms_device_test

@@ -10,17 +10,17 @@ namespace clearance::scan {
 /// Points of a packet that another warp has given away.
 struct given_lanes {
   std::uint32_t packet;
-  unsigned lanes;
+  unsigned lanes;  ///< 0: none.
 };
 
-/// In a block's shared memory. Warps meet here by atomics alone.
+/// In a block's shared memory. Warps write here by atomics alone.
 struct lane_memory {
-  std::uint32_t idle;               ///< One bit per warp. If all are set, no warp has anything left to give.
-  unsigned long long given[warps];  ///< A packet's number, then lanes of it; 0: nothing, as no lanes are given.
+  std::uint32_t idle;  ///< One bit per warp. If all are set, no warp has anything left to give.
+  given_lanes given[warps];
 
   __device__ void clear() {
     idle = 0;
-    for (auto& g : given) g = 0;
+    for (auto& g : given) g.lanes = 0;
   }
 };
 
@@ -29,34 +29,38 @@ template <class Tally>
 struct lane_sharing {
   /// Waits for work to help with. Returns false if no warp of the block has any left.
   static __device__ bool receive(given_lanes& work) {
-    auto& s = memory();
-    if (lane() == 0) atomicOr(&s.idle, 1u << warp());
-    unsigned long long mine = 0;
+    auto& mine = memory().given[warp()];
+    if (lane() == 0) atomicOr(&memory().idle, 1u << warp());
     for (;;) {
-      bool over = false;
-      if (lane() == 0)
-        mine = atomicExch(&s.given[warp()], 0ull), over = mine == 0 && atomicOr(&s.idle, 0u) == all_warps;
-      mine = __shfl_sync(all_lanes, mine, 0);
-      if (mine != 0) break;
+      bool over = false, given = false;
+      if (lane() == 0) given = fresh(mine.lanes) != 0, over = fresh(memory().idle) == all_warps;
+      if (__any_sync(all_lanes, given)) break;
       if (__any_sync(all_lanes, over)) return false;
       __nanosleep(1000);  // waiting warps should not slow working ones; how long changes no answer
     }
-    work = {std::uint32_t(mine >> 32), unsigned(mine)};
+    __threadfence_block();
+    work = mine;
+    __syncwarp();
+    if (lane() == 0) atomicExch(&mine.lanes, 0u);
     return true;
   }
 
   /// Does a warp of the block wait for work?
-  static __device__ bool asked() { return __any_sync(all_lanes, lane() == 0 && atomicOr(&memory().idle, 0u) != 0); }
+  static __device__ bool asked() { return __any_sync(all_lanes, fresh(memory().idle) != 0); }
 
   /// Gives points to an idle warp. Returns false if there is none.
   static __device__ bool give(const given_lanes& work) {
     auto& s = memory();
     bool found = false;
     if (lane() == 0) {
-      if (const unsigned idle = atomicOr(&s.idle, 0u); idle != 0 && idle != all_warps) {
+      if (const unsigned idle = fresh(s.idle); idle != 0 && idle != all_warps) {
         const std::uint32_t one = std::uint32_t(__ffs(int(idle))) - 1;
         found = (atomicAnd(&s.idle, ~(1u << one)) >> one & 1) != 0;
-        if (found) atomicExch(&s.given[one], static_cast<unsigned long long>(work.packet) << 32 | work.lanes);
+        if (found) {
+          atomicExch(&s.given[one].packet, work.packet);
+          __threadfence_block();
+          atomicExch(&s.given[one].lanes, work.lanes);
+        }
       }
     }
     return __any_sync(all_lanes, found);
