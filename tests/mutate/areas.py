@@ -18,6 +18,7 @@ TESTS = {
     "ground/pose.hpp": ["search/merge", "io/joint_chain", "search/minimum", "search/far"],
     "ground/sine.hpp": ["io/joint_chain"],
     "ground/chain_rounding.hpp": ["io/joint_chain", "io/robot_words", "io/kinematics"],
+    "ground/vectors.hpp": ["search/distances", "search/tangents"],
     "ground/segments.hpp": ["primitive/primitives", "search/unseen"],
     "ground/ordered.hpp": ["primitive/primitives", "search/minimum", "search/prepared"],
     "volume/*": ["volume/volumes", "bvh/build", "search/tangents", "search/minimum"],

@@ -34,6 +34,7 @@ TEST_CASE("What is within reach of a part's ball passes its test, and what is cl
                 "the tests differ");
       if (most < 0.02) continue;  // a capsule's reach begins at its radius
       v.require(sweeps || way - c.radius > most, "a capsule at ", way, " fails");
+      v.require(clearance::frames::may_reach(around, reach, c) || way - c.radius > most, "it is not within reach");
       v.require(!sweeps || way - c.radius <= most + 0.01, "a capsule at ", way, " of ", most, " passes");
       ++(way - c.radius <= most ? within : beyond);
     }
