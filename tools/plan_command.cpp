@@ -49,6 +49,10 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   if (ranks) there = ranks->together(std::move(there), model, questions_of(asked));
   report.upload = there->see(clouds.seen);
   report.found = ask_plan(*there, placed, asked.d_max, report.query);
+  if (asked.unseen) {
+    shown.show("asking about what is hidden");
+    report.unseen = ask_plan_unseen(*there, placed, {*asked.unseen}, bodies.size(), report.query);
+  }
   if (asked.between) {
     shown.show("asking about the ways between them");
     // With a margin only as exact as the decision needs; otherwise to a centimetre.
@@ -67,6 +71,9 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
     notes.push_back(asked.configurations +
                     (first ? ": row " + std::to_string(*first) + " is the first whose lower end is not above the margin"
                            : ": every row's lower end is above the margin"));
+    if (const auto row = report.first_hidden_below())
+      notes.push_back(asked.configurations + ": in row " + std::to_string(*row) +
+                      " what is hidden may be within the margin, which no row before is known to be");
     if (const auto way = report.first_way_below())
       notes.push_back(asked.configurations + ": on the way from row " + std::to_string(*way) +
                       " to the next the margin may be fallen below");

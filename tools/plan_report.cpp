@@ -44,6 +44,18 @@ std::optional<std::size_t> plan_report::first_way_below() const {
   return std::nullopt;
 }
 
+std::optional<std::size_t> plan_report::first_hidden_below() const {
+  for (std::size_t k = 0; k < unseen.size(); ++k)
+    if (!of_unseen(k).passes()) return k;
+  return std::nullopt;
+}
+
+unseen_report plan_report::of_unseen(std::size_t row) const {
+  unseen_report its{.asked = asked, .found = &unseen[row], .clouds = {}, .bodies = bodies};
+  for (const observation& cloud : *clouds) its.clouds.push_back(&cloud);
+  return its;
+}
+
 json outcome_of(const plan_report& report) {
   const auto& all = report.found.of;
   const auto least = std::ranges::min_element(all, {}, [](const min_distance_result& r) { return r.distance; });
@@ -54,6 +66,14 @@ json outcome_of(const plan_report& report) {
   if (report.asked->margin) {
     const auto first = report.first_below();
     out["first_below"] = first ? json(*first) : json(nullptr);
+  }
+  if (!report.unseen.empty()) {
+    const auto its = std::ranges::min_element(report.unseen, {}, [](const unseen_result& r) { return r.all.lower; });
+    out["unseen"] = {{"least_lower", or_null(its->all.lower)}, {"at", its - report.unseen.begin()}};
+    if (report.asked->margin) {
+      const auto first = report.first_hidden_below();
+      out["unseen"]["first_below"] = first ? json(*first) : json(nullptr);
+    }
   }
   if (!report.asked->between) return out;
   const auto worst =
@@ -74,6 +94,7 @@ std::string to_json(const plan_report& report) {
     const min_distance_result& r = report.found.of[k];
     json row = {{"row", k}};
     row.update(witness(r, cloud_of(report, r), r.point, *report.bodies));
+    if (!report.unseen.empty()) row["unseen"] = unseen_of(report.of_unseen(k));
     if (k < report.ways.size()) row["way"] = way_of(report, k);
     out += json_text(row, -1);
   }
@@ -94,11 +115,12 @@ std::string to_json(const plan_report& report) {
 
 std::string to_csv(const plan_report& report) {
   std::string out =
-      std::string("row,") + witness_columns +
+      std::string("row,") + witness_columns + (report.unseen.empty() ? "" : std::string(",") + unseen_columns) +
       (report.asked->between ? ",way_state,way_lower,way_upper,way_time,way_from,way_to,way_part\n" : "\n");
   for (std::size_t k = 0; k < report.found.of.size(); ++k) {
     const min_distance_result& r = report.found.of[k];
     out += std::to_string(k) + ',' + witness_cells(r, cloud_of(report, r), r.point, *report.bodies);
+    if (!report.unseen.empty()) out += ',' + unseen_cells(report.of_unseen(k));
     if (report.asked->between) {
       const json way = k < report.ways.size() ? way_of(report, k) : json::object();  // the last has none
       for (const char* name : {"state", "lower", "upper", "time", "from", "to", "part"})

@@ -5,6 +5,7 @@
 #include "observations.hpp"
 #include "query_options.hpp"
 #include "report_json.hpp"
+#include "unseen_report.hpp"
 
 #include <clearance/motion_clearance.hpp>
 #include <clearance/questions/min_distances.hpp>
@@ -15,6 +16,7 @@ struct plan_report {
   const std::vector<observation>* clouds = nullptr;
   const std::vector<body>* bodies = nullptr;
   clearance::min_distances_result found = {};
+  std::vector<clearance::unseen_result> unseen = {};            // for --unseen: of each configuration
   std::vector<clearance::motion_clearance_result> ways = {};    // for --between: way k goes from row k to the next
   double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds
 
@@ -22,9 +24,15 @@ struct plan_report {
   std::optional<std::size_t> first_below() const;
   /// The first way that may come nearer than the margin.
   std::optional<std::size_t> first_way_below() const;
+  /// The first configuration that what is hidden may be nearer to than the margin, or as near.
+  std::optional<std::size_t> first_hidden_below() const;
+  unseen_report of_unseen(std::size_t row) const;
   bool blind() const { return found.of[0].state == clearance::state::no_data; }
   /// 3 without a valid point, 2 if --check fails.
-  int code() const { return blind() ? 3 : asked->margin && (first_below() || first_way_below()) ? 2 : 0; }
+  int code() const {
+    const bool below = asked->margin && (first_below() || first_way_below() || first_hidden_below());
+    return blind() ? 3 : below ? 2 : 0;
+  }
 };
 
 /// The number of configurations, the least distance of all with its configuration, and, for --check, the first that

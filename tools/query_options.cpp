@@ -564,6 +564,8 @@ void add_shard(CLI::App& app, raw_options& raw) {
                "Under mpirun: each rank asks about its share of every cloud, and rank 0 prints the one answer");
 }
 
+void add_unseen(CLI::App& app, raw_options& raw);
+
 void add_plan_questions(CLI::App& app, raw_options& raw) {
   app.add_option("--d-max", raw.d_max,
                  "Metres: configurations that are farther from every point are only said to be so, which is quicker");
@@ -572,6 +574,7 @@ void add_plan_questions(CLI::App& app, raw_options& raw) {
                "nearer than its lower end at any time; "
                "--check is about the ways, too");
   app.add_flag("--fields", raw.fields, of_fields);
+  add_unseen(app, raw);
   app.add_flag("--csv", raw.csv, "Print CSV; without it, one JSON object per configuration and a last one about all");
   add_shard(app, raw);
   app.footer(std::string(of_clouds) + "\nThe exit code is 3 without a valid point, also with --check.");

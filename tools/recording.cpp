@@ -7,6 +7,7 @@
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
 #include <clearance/questions/min_distances.hpp>
+#include <clearance/questions/unseen.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -200,6 +201,18 @@ min_distances_result ask_plan(backend_robot& there, const placed_rows& rows, dou
     const min_distances_result some = there.plan(poses, d_max);
     all.of.insert(all.of.end(), some.of.begin(), some.of.end());
     query += there.query;
+  });
+  return all;
+}
+
+std::vector<unseen_result> ask_plan_unseen(backend_robot& there, const placed_rows& rows, const clearance::unseen& q,
+                                           std::size_t links, double& query) {
+  std::vector<unseen_result> all;
+  rows.for_each_block([&](poses_of poses) {
+    for (std::size_t first = 0; first < poses.size(); first += links) {
+      all.push_back(there.unseen(poses.subspan(first, links), q));
+      query += there.query;
+    }
   });
   return all;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What `query` and `run` say about room that no camera sees.
+// What `query`, `run` and `plan` say about room that no camera sees.
 
 #include "query_options.hpp"
 #include "report_json.hpp"

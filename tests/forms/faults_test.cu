@@ -330,7 +330,7 @@ TEST_CASE("A question that waits for long leaves no error to the caller's next c
   }
 }
 
-TEST_CASE("Every question of a process, before and after a kernel traps", "[.after_a_trap]") {
+TEST_CASE("Every question of a process, before and after a kernel traps", "[.after_a_trap][slow]") {
   const two_frames f;
   const auto& poses = f.many.s.poses;
   verdict v;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `--unseen` says how far each link is from what depth images hide, in `query` and in `run`.
+// `--unseen` says how far each link is from what depth images hide, in `query`, `run` and `plan`.
 #include "tools/small_png.hpp"
 #include "tools/two_boxes.hpp"
 
@@ -185,6 +185,34 @@ TEST_CASE("run --unseen has both distances of every frame and part, in JSON, in 
   CHECK(told == parsed(run_command(q.ask(own) + " --json" + filtered)).at("unseen"));
   const scratch_file cloud(".xyz", "0 0 1\n"), clouds(".txt", cloud.path + "\n");
   refuses("run" + q.robot + " --frames " + clouds.path + " --unseen", "is a point cloud");
+}
+
+TEST_CASE("plan --unseen says of each configuration what query says of it, and --check is about all") {
+  const watched_boxes q;
+  const scratch_file urdf(".urdf", moving_boxes_text), image(".png", png(1000, 1200));
+  const scratch_file rows(".csv", "turn,slide\n0,0.5\n0,-0.1\n0,0\n");
+  const std::string robot = " --backend host --model triangles --robot " + urdf.path + q.camera + " --cloud " +
+                            image.path + " --unseen 0.1:1.5";
+  const std::string ask = "plan" + robot + " --configurations " + rows.path;
+  const auto all = lines(run_command(ask));
+  REQUIRE(all.size() == 4);
+  for (int k = 0; k < 3; ++k) {
+    const char* const slides[] = {"0.5", "-0.1", "0"};
+    const auto alone = parsed(run_command("query --json --joint slide=" + std::string(slides[k]) + robot));
+    CHECK(all[k].at("unseen") == alone.at("unseen"));
+    CHECK(all[k].at("unseen").at("lower") >= all[3].at("plan").at("unseen").at("least_lower"));
+  }
+  CHECK(run_command(ask + " --check 0.3").code == 0);
+  const outcome fails = run_command(ask + " --check 0.5");  // all points are farther
+  CHECK(fails.code == 2);
+  CHECK(lines(fails)[3].at("plan").at("unseen").at("first_below") == 0);
+  CHECK(lines(fails)[3].at("plan").at("first_below").is_null());
+  std::istringstream table(run_command(ask + " --csv").out);
+  std::string names, row;
+  std::getline(table, names), std::getline(table, row);
+  CHECK(names.find(",unseen_state,unseen_distance,unseen_lower") != names.npos);
+  CHECK(std::count(names.begin(), names.end(), ',') == std::count(row.begin(), row.end(), ','));
+  refuses(ask + " --shard", "--shard");
 }
 
 }  // namespace unseen_tool_test
