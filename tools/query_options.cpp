@@ -564,7 +564,15 @@ void add_shard(CLI::App& app, raw_options& raw) {
                "Under mpirun: each rank asks about its share of every cloud, and rank 0 prints the one answer");
 }
 
-void add_unseen(CLI::App& app, raw_options& raw);
+void add_unseen(CLI::App& app, raw_options& raw) {
+  app.add_option_function<std::vector<std::string>>(
+         "--unseen",
+         [&raw](const std::vector<std::string>& given) { raw.unseen = given.empty() ? std::string() : given[0]; },
+         std::string("NEAR:FAR (m along z; default 0.1:10): how far each link is from what no depth image shows: from "
+                     "a pixel's depth, or without one from NEAR on, up to FAR; --check is about that, too") +
+             (app.get_option_no_throw("--self-filter") ? "; what the points of --self-filter hide is told apart" : ""))
+      ->expected(0, 1);
+}
 
 void add_plan_questions(CLI::App& app, raw_options& raw) {
   app.add_option("--d-max", raw.d_max,
@@ -586,16 +594,6 @@ void add_self_filter(CLI::App& app, raw_options& raw) {
       "Metres: hide the points that certainly are within that of the robot, or of what it holds, from all questions, "
       "--check among them; says how many "
       "they are; exit code 3 if none is left");
-}
-
-void add_unseen(CLI::App& app, raw_options& raw) {
-  app.add_option_function<std::vector<std::string>>(
-         "--unseen",
-         [&raw](const std::vector<std::string>& given) { raw.unseen = given.empty() ? std::string() : given[0]; },
-         std::string("NEAR:FAR (m along z; default 0.1:10): how far each link is from what no depth image shows: from "
-                     "a pixel's depth, or without one from NEAR on, up to FAR; --check is about that, too; what the "
-                     "points of --self-filter hide is told apart"))
-      ->expected(0, 1);
 }
 
 void add_run_questions(CLI::App& app, raw_options& raw) {

@@ -211,6 +211,7 @@ std::vector<unseen_result> ask_plan_unseen(backend_robot& there, const placed_ro
   rows.for_each_block([&](poses_of poses) {
     for (std::size_t first = 0; first < poses.size(); first += links) {
       all.push_back(there.unseen(poses.subspan(first, links), q));
+      all.back().parts = {};  // a plan may have many rows
       query += there.query;
     }
   });

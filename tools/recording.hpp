@@ -66,7 +66,7 @@ void note_fields(const backend_robot& there, const std::vector<body>& bodies, st
 
 /// Asks about all rows; adds the seconds to `query`.
 clearance::min_distances_result ask_plan(backend_robot& there, const placed_rows& rows, double d_max, double& query);
-/// How far each row, of so many links, is from what the clouds hide.
+/// How far each row, of so many links, is from what the clouds hide; nothing about single links.
 std::vector<clearance::unseen_result> ask_plan_unseen(backend_robot& there, const placed_rows& rows,
                                                       const clearance::unseen& q, std::size_t links, double& query);
 

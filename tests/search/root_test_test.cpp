@@ -9,15 +9,25 @@ namespace root_test_test {
 using namespace testing;
 using clearance::capsule, clearance::frames::root_test, clearance::frames::capsule_test;
 
+/// A ball and a reach, at least `least`, with their test, and how far from the ball's middle a place may be.
+struct tested_ball {
+  ball around;
+  real reach;
+  root_test test;
+  double most;
+};
+tested_ball tested(dice& d, real least) {
+  const ball around{d.point(2), d.number(0, 1)};
+  const real reach = d.number(least, 1);
+  return {around, reach, root_test(around, reach), double(reach) + around.radius};
+}
+
 TEST_CASE("What is within reach of a part's ball passes its test, and what is clearly not does not") {
   verdict v;
   dice d(61);
   std::size_t within = 0, beyond = 0;
   for (int trial = 0; trial < 300; ++trial) {
-    const ball around{d.point(2), d.number(0, 1)};
-    const real reach = d.number(-0.2, 1);
-    const root_test test(around, reach);
-    const double most = double(reach) + around.radius;
+    const auto [around, reach, test, most] = tested(d, -0.2f);
     for (int k = 0; k < 200; ++k) {
       const capsule c{d.point(3), d.point(k % 2), d.number(0, k % 4 == 3 ? 0.3 : 0)};
       const vec3 far = c.from - around.center, end = far + c.along;
@@ -48,16 +58,13 @@ TEST_CASE("A line of sight that may hide something within reach of a ball passes
   dice d(62);
   std::size_t within = 0, beyond = 0;
   for (int trial = 0; trial < 300; ++trial) {
-    const ball around{d.point(2), d.number(0, 1)};
-    const real reach = d.number(0, 1);
-    const root_test test(around, reach);
+    const auto [around, reach, test, most] = tested(d, 0);
     const vec3 origin = trial % 3 == 0 ? vec3{0, 0, 0} : d.point(3);
     for (int k = 0; k < 200; ++k) {
       const vec3 start = scaled(k % 5 == 0 ? 1e-4f : 1, d.point(3));  // from the eye
       const vec3 way = around.center - (start - origin);
       const double far = length(way), along = dot(way, start) / std::max<double>(length(start), 1e-30);
       const double least = along <= 0 ? far : std::sqrt(std::max(far * far - along * along, 0.0));
-      const double most = double(reach) + around.radius;
       const bool passes = test.passes(clearance::frames::sight_test(start - origin, origin));
       v.require(passes || least > most, "a line at ", least, " of ", most, " fails");
       if (length(start) > length(origin) / 16)
