@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one 640 x 480 frame hides up to 5 m, on the CPU, beside every part's minimum to what it shows. *silent*: pixels
+// What one 640 x 480 frame hides up to 5 m, on the CPU, beside the minimum to what it shows, and both. *silent*: pixels
 // that return nothing hide room from 0.4 m on, and the robot reaches into it. *certain*: what is certain of the minimum
 // in spite of a stereo camera's noise.
 #include "unseen.hpp"

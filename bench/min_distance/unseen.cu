@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one 640 x 480 frame on a GPU hides up to 5 m, beside every part's minimum to what it shows. *silent*: pixels
+// What one 640 x 480 frame on a GPU hides up to 5 m, beside the minimum to what it shows, and both. *silent*: pixels
 // that return nothing hide room from 0.4 m on, and the robot reaches into it. One call as in a program, by the host's
 // clock.
 #include "device.cuh"

@@ -4,7 +4,7 @@
 #include "scene.hpp"
 
 #include <clearance/questions/certain_distance.hpp>
-#include <clearance/questions/unseen.hpp>
+#include <clearance/seen_and_unseen.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -37,8 +37,10 @@ template <class Result>
 float least_of(const Result& r) {
   if constexpr (requires { r.nominal; })
     return r.lower;
-  else
+  else if constexpr (requires { r.all; })
     return r.all.distance;
+  else
+    return r.distance;
 }
 
 /// All that is seen 2 m farther away, and a return in every pixel, so that the robot stands before it.
@@ -63,7 +65,8 @@ int add_rows(const Ask& ask, const Finish& finish) {
     }));
   };
   both("parts", clearance::min_distance_per_part{});
-  both("unseen", hidden_to_5m), both("unseen_silent", hidden_to_5m, true);
+  both("seen", clearance::min_distance{}), both("unseen", hidden_to_5m), both("unseen_silent", hidden_to_5m, true);
+  both("seen_and_unseen", clearance::seen_and_unseen{hidden_to_5m});
   both("certain", clearance::certain_distance{});
   return 0;
 }

@@ -42,6 +42,7 @@
 #include <clearance/questions/zones.hpp>
 #include <clearance/robot/attached.hpp>
 #include <clearance/robot/model.hpp>
+#include <clearance/seen_and_unseen.hpp>
 #include <clearance/separation.hpp>
 #include <clearance/solid/implicit.hpp>
 #include <clearance/solid/mesh_solid.hpp>

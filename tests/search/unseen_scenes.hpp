@@ -4,13 +4,16 @@
 
 #include "solid/shapes.hpp"
 #include "support/brute_unseen.hpp"
+#include "support/laws.hpp"
 #include "support/same_result.hpp"
 
 #include <clearance/make_model.hpp>
-#include <clearance/questions/unseen.hpp>
+#include <clearance/seen_and_unseen.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
+
+#include <functional>
 
 namespace testing {
 
@@ -148,6 +151,57 @@ inline bool same_unseen(const clearance::unseen_result& a, const clearance::unse
   };
   return same_result(a.all, b.all) && same_result(a.own_shadow, b.own_shadow) &&
          std::ranges::equal(a.parts, b.parts, same_part);
+}
+
+/// What a call is refused with, or "".
+inline std::string refusal(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "";
+}
+
+/// Asks both at once in frame after frame, with labels and without: the bits are those of each question alone on a
+/// host.
+template <class On>
+void check_seen_and_unseen(const On& on, unsigned seed) {
+  using clearance::host;
+  verdict v;
+  dice d(seed);
+  std::size_t seen = 0, masked = 0;
+  for (int n = 0; n < 12; ++n) {
+    const picture<std::uint16_t> first(d, 0.2, 1.5), second(d, 0.1, 1.5);
+    const seen_robot<inner_sphere> robot(d, first.pose, 1.5);
+    const auto model = robot.model<clearance::sphere>(8);
+    const auto there = model.on(on);
+    clearance::query both(on, there, clearance::seen_and_unseen{});
+    for (int frame = 0; frame < 4; ++frame) {
+      const std::string what = "robot " + std::to_string(n) + ", frame " + std::to_string(frame);
+      std::vector<placed<clearance::depth_image<std::uint16_t>>> images{{first.image(), d.pose(0.1) * first.pose}};
+      std::vector<point_label> labels = first.labels;
+      if (d.below(2) == 0)
+        images.push_back({second.image(), second.pose}),
+            labels.insert(labels.end(), second.labels.begin(), second.labels.end());
+      clearance::seen_and_unseen q{{some_room(d, 1.5)}};
+      if (frame % 2 == 1) q.labels = labels;
+      const auto& found = frame == 2 ? ask(on, there, robot.poses, images, q) : both(robot.poses, images, q);
+      const auto shown = q.labels.empty()
+                             ? ask(host{}, model, robot.poses, images, clearance::min_distance{})
+                             : ask(host{}, model, robot.poses, clearance::masked_clouds(images, labels.data()),
+                                   clearance::min_distance{});
+      v.require(same_result(found.seen, shown), what, ": seen");
+      v.require(same_unseen(found, ask(host{}, model, robot.poses, images, static_cast<const clearance::unseen&>(q))),
+                what, ": unseen");
+      seen += found.seen.part != clearance::none;
+      masked += found.seen.dropped[int(clearance::drop_reason::masked)];
+      labels.push_back({}), q.labels = labels;
+      v.require(refusal([&] { both(robot.poses, images, q); }).find("labels, and there are") != std::string::npos, what,
+                ": too many labels");
+    }
+  }
+  CHECK((seen > 10 && masked > 5));
 }
 
 }  // namespace testing

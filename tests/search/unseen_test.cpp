@@ -353,15 +353,6 @@ clearance::unseen_result look(
   return clearance::ask(host{}, robot.first, robot.second, source, q);
 }
 
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
-}
-
 }  // namespace
 
 TEST_CASE("A prepared question says in every frame what a fresh one says, whatever it saw before") {
@@ -612,6 +603,10 @@ TEST_CASE("Pixels that are nearly 0 hide all that is behind them, also far from 
     const auto r = look(ball_at(at.x(), at.y(), at.z()), one.image(), {{.nearest = 0.001f, .farthest = 150}});
     CHECK(r.all.distance == Approx(0.2).margin(1e-4));
   }
+}
+
+TEST_CASE("What is seen and what is not, asked together, are the answers of both questions") {
+  check_seen_and_unseen(host{}, 3240);
 }
 
 TEST_CASE("What would change an answer of `unseen` is refused in a sentence") {

@@ -54,6 +54,10 @@ TEST_CASE("Room behind pictures is as far from triangles on a device as on the h
   check<clearance::aabb, triangle, float>(3224);
 }
 
+TEST_CASE("On a device, what is seen and what is not, asked together, are the answers of both questions") {
+  check_seen_and_unseen(device{}, 3241);
+}
+
 TEST_CASE("A table of rays, and solids that room begins in, say the same on a device") {
   verdict v;
   dice d(3225);

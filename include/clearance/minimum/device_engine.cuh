@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearance/backend/beside.cuh>
 #include <clearance/backend/kept_pinned.cuh>
 #include <clearance/backend/pinned_buffer.cuh>
 #include <clearance/frame/readable.cuh>

@@ -70,6 +70,16 @@ uncertain<hidden<S>, N> as_uncertain(const uncertain<Image, N>& image, const hid
   return image.around_same(room);
 }
 
+/// Throws std::invalid_argument unless there are no labels, or one for each pixel.
+template <class Clouds>
+void check_labels(std::span<const point_label> labels, const Clouds& clouds) {
+  std::size_t pixels = 0;
+  for_each_cloud(clouds, [&](const auto& image, const auto&) { pixels += image.size(); });
+  if (!labels.empty() && labels.size() != pixels)
+    throw std::invalid_argument("clearance: unseen has " + std::to_string(labels.size()) + " labels, and there are " +
+                                std::to_string(pixels) + " pixels");
+}
+
 }  // namespace detail
 
 template <class On, class PartView>
@@ -91,11 +101,7 @@ class unseen::engine {
     r.all = {}, r.own_shadow = {}, r.parts.clear();
     const point_label* labels = nullptr;
     if (!q.labels.empty()) {
-      std::size_t pixels = 0;
-      for_each_cloud(clouds, [&](const auto& image, const auto&) { pixels += image.size(); });
-      if (q.labels.size() != pixels)
-        throw std::invalid_argument("clearance: unseen has " + std::to_string(q.labels.size()) +
-                                    " labels, and there are " + std::to_string(pixels) + " pixels");
+      detail::check_labels(q.labels, clouds);
       memory_.begin();
       labels = std::get<0>(memory_.put(q.labels));
     }
