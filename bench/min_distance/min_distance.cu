@@ -6,6 +6,7 @@
 #include "device.cuh"
 #include "scene_files.hpp"
 
+#include <clearance/fields.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -32,6 +33,7 @@ struct manner {
   bool each = false;     ///< Also every part's minimum.
   bool flushed = false;  ///< The cache is cold.
   bool queued = false;   ///< Behind other work.
+  bool fields = false;   ///< Its parts have fields.
 };
 
 void empty(benchmark::State& state, bool queued) {
@@ -66,7 +68,7 @@ void ask(benchmark::State& state, const bench::scene& s, const Model& model, man
   const auto& points = repeated(s.cloud, std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const clearance::vec3>(points));
   const clearance::point_span view(there.data(), points.size());
-  const auto placed_there = model.on(gpu);
+  const auto placed_there = (how.fields ? clearance::with_fields(gpu, model).model : model).on(gpu);
   clearance::query query(gpu, placed_there, clearance::min_distance{});
   clearance::query each(gpu, placed_there, clearance::min_distance_per_part{});
   const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
@@ -166,6 +168,11 @@ void triangles_cold_queued(benchmark::State& state) {
   if (!no_device(state)) ask(state, triangles<V>(), {.cold = true, .queued = true});
 }
 
+void with_fields(benchmark::State& state, manner how) {
+  how.fields = true;
+  if (!no_device(state)) ask(state, spheres<clearance::sphere>(), how);
+}
+
 template <bench::scene (*Make)(const bench::scene&)>
 void crowd(benchmark::State& state, manner how) {
   if (no_device(state)) return;
@@ -204,6 +211,10 @@ BENCHMARK(triangles_cold<clearance::aabb>) FRAME;
 BENCHMARK(triangles_cold<clearance::obb>) FRAME;
 BENCHMARK(triangles_warm_queued<clearance::aabb>) FRAME;
 BENCHMARK(triangles_cold_queued<clearance::aabb>) FRAME;
+BENCHMARK_CAPTURE(with_fields, cold, {.cold = true}) FRAME;
+BENCHMARK_CAPTURE(with_fields, cold_queued, {.cold = true, .queued = true}) FRAME;
+BENCHMARK_CAPTURE(with_fields, every_part_cold, {.cold = true, .each = true}) FRAME;
+BENCHMARK_CAPTURE(with_fields, warm_queued, {.queued = true}) FRAME;
 BENCHMARK_CAPTURE(sixty_four_parts, warm, {}) FRAME;
 BENCHMARK_CAPTURE(sixty_four_parts, cold, {.cold = true}) FRAME;
 BENCHMARK_CAPTURE(sixty_four_parts, every_part_warm, {.each = true}) FRAME;

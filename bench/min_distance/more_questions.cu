@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Zones, lists, the nearest, confirmed points, motions, gradients and joint vectors on a GPU that holds the points.
 // Calls that wait are timed by the host's clock. *enqueued* and *placed* use CUDA events, behind other work: in one
-// call, with memory for it, or prepared.
+// call, with memory for it, or prepared. *fields*: of a robot whose parts have them.
 #include "device.cuh"
 #include "more_questions.hpp"
 
 #include <clearance/compacted.cuh>
 #include <clearance/device.cuh>
+#include <clearance/fields.hpp>
 #include <clearance/io/joint_chain.hpp>
 #include <clearance/motion_clearance.hpp>
 #include <clearance/questions/distances_per_part.hpp>
@@ -25,20 +26,24 @@ namespace {
 using namespace bench;
 using clearance::device, clearance::vec3, clearance::point_counts, clearance::device_buffer;
 
-auto model_there(const device& gpu) { return sphere_model<clearance::sphere>(the_scene()).on(gpu); }
+auto model_there(const device& gpu, bool fields = false) {
+  auto model = sphere_model<clearance::sphere>(the_scene());
+  return (fields ? clearance::with_fields(gpu, std::move(model)).model : std::move(model)).on(gpu);
+}
 
 /// The robot and the frame on the GPU.
 struct question {
   const scene& s = the_scene();
   device gpu;
-  decltype(model_there(gpu)) model = model_there(gpu);
+  decltype(model_there(gpu)) model;
   device_buffer<vec3> points;
   clearance::placed<clearance::point_span> cloud;
   device_buffer<point_counts> counts{1, gpu.id};
   device_clock clock{true};
 
-  explicit question(std::size_t count)
-      : points(gpu.copy_in(std::span<const vec3>(repeated(s.cloud, count)))),
+  explicit question(std::size_t count, bool fields = false)
+      : model(model_there(gpu, fields)),
+        points(gpu.copy_in(std::span<const vec3>(repeated(s.cloud, count)))),
         cloud{clearance::point_span(points.data(), points.size()), s.world_from_camera} {}
 
   template <class Frame>
@@ -199,15 +204,16 @@ BENCHMARK_CAPTURE(placed_call, by_the_host, false)
 
 const int rows = [] {
   for_each_question([](const std::string& name, const auto& row) {
-    benchmark::RegisterBenchmark(name.c_str(),
-                                 [row](benchmark::State& state) {
-                                   if (no_device(state)) return;
-                                   const question q(307200);
-                                   row(state, q.gpu, q.model, q.cloud);
-                                 })
-        ->UseRealTime()
-        ->Unit(benchmark::kMicrosecond)
-        ->Iterations(200);
+    for (const bool fields : {false, true})
+      benchmark::RegisterBenchmark((fields ? name + "/fields" : name).c_str(),
+                                   [row, fields](benchmark::State& state) {
+                                     if (no_device(state)) return;
+                                     const question q(307200, fields);
+                                     row(state, q.gpu, q.model, q.cloud);
+                                   })
+          ->UseRealTime()
+          ->Unit(benchmark::kMicrosecond)
+          ->Iterations(200);
   });
   return 0;
 }();

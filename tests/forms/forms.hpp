@@ -8,6 +8,7 @@
 
 #include <clearance/chunked_query.hpp>
 #include <clearance/deadline.hpp>
+#include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/questions/certain_distance.hpp>
 #include <clearance/questions/distances_per_part.hpp>
@@ -64,12 +65,13 @@ inline auto closed_boxes(std::size_t parts) {
   return clearance::model(std::vector(parts, part));
 }
 
-/// Calls `f(name, question, model, frames)` for all of them, in each of some frames.
-template <class F>
-void ask_everything(const F& f) {
+/// Calls `f(name, question, made, frames)` for all of them, in each of some frames; `made` is what `make` makes of a
+/// model.
+template <class F, class Make = std::identity>
+void ask_everything(const F& f, const Make& make = {}) {
   moving_frames frames(4, 77);
-  const auto spheres = frames.model();
-  const auto meshes = closed_boxes(4);
+  const auto spheres = make(frames.model());
+  const auto meshes = make(closed_boxes(4));
   for (; frames.there(); frames.next()) {
     for_each_question([&](const char* name, const auto& q) { f(name, q, spheres, frames); });
     for_each_question_of_meshes([&](const char* name, const auto& q) { f(name, q, meshes, frames); });
@@ -77,6 +79,29 @@ void ask_everything(const F& f) {
     f("in_collision", clearance::in_collision{{0.02}}, meshes, frames);
     f("min_distances", clearance::min_distances{}, meshes, frames);
   }
+}
+
+/// A robot, and the same one with fields.
+template <class Model>
+struct with_and_without {
+  Model bare, fielded;
+
+  explicit with_and_without(const Model& model)
+      : bare(model), fielded(clearance::with_fields(clearance::host{}, model, {1 << 15}).model) {}
+};
+/// Asks `once(robot, question, frames)` about robots with fields and without: the answers must be the same bits.
+template <class Once>
+void check_fields_change_nothing(verdict& v, const Once& once) {
+  std::size_t asked = 0;
+  ask_everything(
+      [&](const char* name, const auto& q, const auto& robots, const moving_frames& f) {
+        v.require(robots.fielded.view().fields != nullptr && robots.bare.view().fields == nullptr, name, ": no field");
+        v.require(same_answer(once(robots.bare, q, f), once(robots.fielded, q, f)), name, ", frame ", f.number,
+                  ": with fields");
+        ++asked;
+      },
+      [](const auto& model) { return with_and_without(model); });
+  v.require(asked == 6 * 18, asked, " questions");
 }
 
 /// The table of docs/choosing.md.

@@ -42,6 +42,15 @@ TEST_CASE("On the host, prepared questions, chunks and complete deadlines give t
   CHECK(asked == 6 * 18);
 }
 
+TEST_CASE("Fields change no bit of any answer") {
+  verdict v;
+  check_fields_change_nothing(v, []<class Q>(const auto& model, const Q& q, const moving_frames& f) {
+    clearance::query prepared(host{2}, model, q);
+    prepared(f.s.poses, f.here());
+    return typename Q::result(prepared(f.s.poses, f.here()));
+  });
+}
+
 TEST_CASE("While points are unseen, nothing is said that another point could make false") {
   verdict v;
   moving_frames f(4, 78);

@@ -44,6 +44,17 @@ TEST_CASE("One call, prepared questions and two devices give the bits of the hos
   CHECK(asked == 6 * 18);
 }
 
+TEST_CASE("On a device fields change no bit of any answer") {
+  verdict v;
+  const device gpu{};
+  check_fields_change_nothing(v, [&]<class Q>(const auto& model, const Q& q, const moving_frames& f) {
+    const auto there = model.on(gpu);
+    clearance::query prepared(gpu, there, q);
+    if (f.number % 2 == 1) prepared(f.s.poses, f.here());
+    return typename Q::result(prepared(f.s.poses, f.here()));
+  });
+}
+
 TEST_CASE("On a device, on any stream, on two and in chunks every answer has the bits that are kept") {
   cudaStream_t streams[3] = {};  // the first is the device's own
   for (int k : {1, 2}) REQUIRE(cudaStreamCreateWithFlags(&streams[k], cudaStreamNonBlocking) == cudaSuccess);

@@ -5,11 +5,15 @@
 #include "solid/shapes.hpp"
 #include "support/brute_pairs.hpp"
 #include "support/configurations.hpp"
+#include "support/same_answer.hpp"
 
 #include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
+#include <clearance/questions/self_filter.hpp>
+#include <clearance/questions/within.hpp>
+#include <clearance/questions/zones.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -72,6 +76,26 @@ struct fields_law {
   }
 };
 
+/// Questions about pairs of a point and a part, in some configurations: distances far from and near to the parts.
+template <class On, class Bare, class Fielded, class Clouds>
+void require_no_change_of_pairs(const On& on, const Bare& bare, const Fielded& fielded, const configurations& poses,
+                                const Clouds& clouds, double size, verdict& v, const std::string& what) {
+  const std::size_t parts = view_of(bare).size();
+  const auto same = [&](std::span<const Eigen::Isometry3d> at, const auto& q, const char* of, double reach) {
+    v.require(same_answer(ask(clearance::host{1}, bare, at, clouds, q), ask(on, fielded, at, clouds, q)), what, ": ",
+              of, ", ", reach);
+  };
+  for (std::size_t c = 0; c < std::min<std::size_t>(4, poses.size() / parts); ++c) {
+    const std::span<const Eigen::Isometry3d> at(poses.data() + c * parts, parts);
+    for (const double reach : {0.0, 0.03 * size, 0.4 * size}) {
+      same(at, clearance::zones{.thresholds = {0, reach / 2, reach}}, "zones", reach);
+      same(at, clearance::in_collision{{reach}}, "in_collision", reach);
+      same(at, clearance::within{{reach}}, "within", reach);
+      same(at, clearance::self_filter{.padding = {reach}}, "self_filter", reach);
+    }
+  }
+}
+
 /// Every question about configurations gives the robot with fields the answers of the one without, in every bit.
 template <class On, class Bare, class Fielded, class Clouds>
 void require_no_change(const On& on, const Bare& bare, const Fielded& fielded, const configurations& poses,
@@ -102,6 +126,7 @@ void require_no_change(const On& on, const Bare& bare, const Fielded& fielded, c
     v.require(ask(on, fielded, poses, clouds, clearance::in_collisions{{margins}}).of == expected.of, what, ", margin",
               margin, ": other states");
   }
+  require_no_change_of_pairs(on, bare, fielded, poses, clouds, size, v, what);
 }
 
 /// All scenes, extreme ones, solids with a tolerance, and a crowd; fields are sampled by `on`.

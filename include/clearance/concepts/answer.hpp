@@ -44,8 +44,9 @@ concept ending_answer = settling_answer<A> && requires(const A a, std::uint32_t 
 
 /// An answer that needs only the range of a pair's distance, so that a walk may stop early.
 /// Law: `reach(part, found, nearest)` is how near another primitive must be to matter to a pair that has one at
-/// `found`, if some pair of the part is no farther than `nearest`. It never grows as those fall. `take` may get a
-/// primitive that is not the pair's nearest, if no nearer one is within that reach.
+/// `found`, if some pair of the part is no farther than `nearest`. It never grows as those fall. `take` may get the
+/// distance of a primitive that is not the pair's nearest, if no nearer one is within that reach; or, from a field, an
+/// upper bound on the least distance, with `none` as its primitive.
 template <class A>
 concept coarse_answer = answer<A> && requires(const A a, std::uint32_t part, real d) {
   { a.reach(part, d, d) } -> std::same_as<real>;

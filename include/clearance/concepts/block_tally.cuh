@@ -56,14 +56,19 @@ concept pair_tally =
     };
 
 /// A pair tally that first goes down to one leaf with every pair, and then walks only with the pairs that it left open.
-/// With at most `few` pairs it walks at once.
+/// With at most `few` pairs it walks at once. `fields(block)`, one per part or null, are looked into before, and may
+/// leave `few_left` to walk; `hear_bound(block, part, pair, distance)` takes what they tell from above.
 template <class T>
 concept leaf_first_tally =
-    pair_tally<T> && requires(typename T::block& s, const typename T::block& c, std::uint32_t n) {
+    pair_tally<T> && requires(typename T::block& s, const typename T::block& c, std::uint32_t n, real d) {
       { T::few } -> std::convertible_to<std::uint32_t>;
+      { T::few_left } -> std::convertible_to<std::uint32_t>;
+      T::fields(c);
+      T::hear_bound(s, n, n, d);
       { T::open_pairs(c) } -> std::same_as<std::uint32_t>;
       { T::open_pair(c, n) } -> std::same_as<std::uint32_t>;
       T::leave_open(s, n);
+      T::close_all(s);
     };
 
 /// For the kernel of packets (scan/packet_kernel.cuh): each lane has a point with a visitor of its own.

@@ -35,7 +35,8 @@ struct least {
     record* records;           ///< Room for one per part and block, if each part has a bound;
     witness_type* candidates;  ///< else room for one per block.
     min_distance_result* result;
-    part_minimum* minima;  ///< One per part, or null.
+    part_minimum* minima;      ///< One per part, or null.
+    const field_view* fields;  ///< One per part, or null: for a first bound.
     Around around;
   };
 

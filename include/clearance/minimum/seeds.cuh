@@ -82,8 +82,8 @@ class last_frame {
 };
 
 /// Without a last frame, eight lanes take the most promising of their points down a tree (if every part needs a bound,
-/// each eight lanes take another part). Then all blocks wait a little for one another. Only speed depends on that wait,
-/// so it gives up rather than hang.
+/// each eight lanes take another part), or each lane looks its own up in a field. Then all blocks wait a little for one
+/// another. Only speed depends on that wait, so it gives up rather than hang.
 template <class Tally>
 __noinline__ __device__ void seed_cold(scan::quad_points p) {
   using parts = scan::frame_parts<Tally>;
@@ -115,11 +115,16 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
   } else {
     for (std::uint32_t k = first; k < end; ++k) test(k, p.at[0]);
   }
-  const real nearest = team.least(least_power);
-  const int winner = team.first(least_power < infinity && least_power == nearest);
-  k_least = team.from(winner, k_least), x = team.from(winner, x);
-  const real d =
-      scan::descend(scan::steps_of_part<Tally>{k_least}, parts::place(k_least).part_from_cloud(x), winner >= 0, team);
+  real d = infinity;
+  if (a.answer.fields != nullptr) {
+    if (least_power < infinity) d = a.answer.fields[k_least](parts::place(k_least).part_from_cloud(x)).high;
+    d = team.least(d);
+  } else {
+    const real nearest = team.least(least_power);
+    const int winner = team.first(least_power < infinity && least_power == nearest);
+    k_least = team.from(winner, k_least), x = team.from(winner, x);
+    d = scan::descend(scan::steps_of_part<Tally>{k_least}, parts::place(k_least).part_from_cloud(x), winner >= 0, team);
+  }
   std::uint32_t bound = d < infinity ? ordered(d) : no_bound;
   if constexpr (!per_part) bound = least_of(all_lanes, bound);
   if ((per_part || (threadIdx.x & 31) == 0) && bound != no_bound) atomicMin(&s.bound[Tally::slot(k_least)], bound);

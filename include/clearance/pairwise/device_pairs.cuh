@@ -23,6 +23,8 @@ struct pairs_of {
   static constexpr bool bound_per_part = true;
   /// So few pairs walk at once without going down to a leaf first. Few pairs of an answer that ends are that near.
   static constexpr std::uint32_t few = ending_answer<Answer> ? 8 * scan::warps : 0;
+  /// The same of those that fields have left: if labels settle most pairs, few are left.
+  static constexpr std::uint32_t few_left = settling_answer<Answer> && few == 0 ? 4 * scan::warps : few;
   static constexpr bool points = std::is_same_v<element, vec3>;
   static constexpr bool coarse = coarse_answer<Answer>, labels = labelling_answer<Answer>, goes_ahead = points;
   /// Leaves room for two blocks on a processor of an H200 and, up to 20 parts, for the cache that reading points ahead
@@ -32,6 +34,7 @@ struct pairs_of {
   struct arguments {
     Answer answer;
     std::uint32_t first_part;  ///< Number of the kernel's first part.
+    const field_view* fields;  ///< One for each of its parts, or null.
     point_counts* counts;      ///< Or null.
     label_counts* labelled;    ///< Room for one per block, if there are labels.
     bool last_group;           ///< Of parts.
@@ -66,6 +69,7 @@ struct pairs_of {
     }
   }
   static __device__ std::uint32_t common_bound(const block&) { return 0; }
+  static __device__ const field_view* fields(const block& s) { return s.head.answer.fields; }
 
   static __device__ bool settled(const block&, std::uint32_t, std::uint32_t) { return false; }
   static __device__ bool touched(const block&, std::uint32_t, std::uint32_t) { return false; }
@@ -99,9 +103,14 @@ struct pairs_of {
       if (const std::uint32_t distance = ordered(key_distance(found)); distance < scan::fresh(s.answer.least[part]))
         atomicMin(&s.answer.least[part], distance);
   }
+  /// Takes an upper bound on a pair's distance. Only a coarse answer can do with that.
+  static __device__ void hear_bound(block& s, std::uint32_t part, std::uint32_t pair, real high) {
+    if (coarse && high <= reach_of_part(s, part, 0)) hear(s, part, pair, make_key(high, none));
+  }
   static __device__ void leave_open(block& s, std::uint32_t pair) {
     s.answer.open[atomicAdd(&s.answer.open_count, 1u)] = std::uint16_t(pair);
   }
+  static __device__ void close_all(block& s) { s.answer.open_count = 0; }
   static __device__ std::uint32_t open_pairs(const block& s) { return s.answer.open_count; }
   static __device__ std::uint32_t open_pair(const block& s, std::uint32_t i) { return s.answer.open[i]; }
   /// Called by all threads when the block has nothing left to walk.
@@ -166,6 +175,7 @@ class device_pairs {
  public:
   device_pairs(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
       : facts_(model.facts.begin(), model.facts.end()),
+        fields_(model.fields),
         launch_(on, model, memory),
         labelled_(launch_.most_blocks(), on.id, memory) {}
 
@@ -181,14 +191,15 @@ class device_pairs {
           const auto around = scan::elements_of(source);
           return launch_.template begin<pairs_of<PartView, Answer, std::remove_const_t<decltype(around)>>>(
               group, now,
-              {answer, group * scan::most_parts, group == 0 ? counts : nullptr, labelled_.data(),
-               group + 1 == launch_.groups(), around});
+              {answer, group * scan::most_parts, fields_ == nullptr ? nullptr : fields_ + group * scan::most_parts,
+               group == 0 ? counts : nullptr, labelled_.data(), group + 1 == launch_.groups(), around});
         },
         here);
   }
 
  private:
   std::vector<part_facts> facts_;
+  const field_view* fields_;
   scan::launcher<PartView> launch_;
   device_buffer<label_counts> labelled_;
 };

@@ -4,6 +4,7 @@
 
 #include <clearance/ground/ordered.hpp>
 #include <clearance/result.hpp>
+#include <clearance/robot/field.hpp>
 #include <clearance/visitor/nearest.hpp>
 
 namespace clearance::pairwise {
@@ -35,7 +36,8 @@ template <answer Answer>
 struct each_pair {
   Answer answer;
   std::uint32_t cloud, first;
-  std::uint32_t* least;  ///< Per part, for an answer that asks for it.
+  std::uint32_t* least;                ///< Per part, for an answer that asks for it.
+  const field_view* fields = nullptr;  ///< One per part, or null.
 
   CLEARANCE_HD real reach(std::uint32_t k) const { return answer.reach(k); }
   CLEARANCE_HD real reach_of_pair(std::uint32_t index, std::uint32_t k) const {
@@ -59,6 +61,26 @@ struct each_pair {
       return near_enough<Answer>{&answer, k, least + k, {answer.reach(k)}};
     else
       return nearest{answer.reach(k)};
+  }
+  /// Does a field tell enough of a pair outside its part's solid? The answer has it then, if it counts. Otherwise the
+  /// visitor need not look any farther than the field does.
+  template <class Visitor>
+  CLEARANCE_HD bool foresees(std::uint32_t index, std::uint32_t k, vec3 q, bool solid, Visitor& ask) const {
+    if (fields == nullptr) return false;
+    const field_range its = fields[k](q);
+    if (solid && its.side != field_side::outside) return false;
+    if (its.low > ask.within) return true;
+    if constexpr (coarse_answer<Answer>)
+      if (its.high <= ask.within) {
+        const std::uint32_t u = ordered(its.high), known = load_relaxed(least + k);
+        if (u < known) lower_word(least + k, u);
+        if (its.low > answer.reach(k, its.high, from_ordered(u < known ? u : known))) {
+          answer.take({cloud, index - first, k, none, its.high});
+          return true;
+        }
+      }
+    ask.within = min(ask.within, its.high);
+    return false;
   }
   template <class Visitor>
   CLEARANCE_HD void take(std::uint32_t index, std::uint32_t k, const Visitor& walked) const {

@@ -24,7 +24,7 @@ struct pairs_on {
                  point_counts* counts, const Here& here) {
       auto least = staged(on, std::vector<std::uint32_t>(coarse_answer<Answer> ? model.size() : 0, ordered(infinity)));
       const auto of_cloud = [&](const auto&, const frames::turn& now) {
-        return each_pair<Answer>{answer, now.cloud, now.first, least.data()};
+        return each_pair<Answer>{answer, now.cloud, now.first, least.data(), model.fields};
       };
       scan::plain_pass(on, model, poses, clouds, of_cloud, counts, here);
     }

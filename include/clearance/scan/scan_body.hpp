@@ -53,6 +53,9 @@ struct scan_body {
     if (!frames::may_reach(place.around, answer.reach_of_pair(index, k), p)) return;
     const PartView& part = parts[k];
     const auto q = moved(place.part_from_cloud, p);
+    auto ask = answer.visitor(index, k);
+    if constexpr (requires { answer.foresees(index, k, q, has_interior<PartView>, ask); })
+      if (answer.foresees(index, k, q, has_interior<PartView>, ask)) return;
     if constexpr (has_interior<PartView>) {
       if (answer.settled(index, k)) return;
       constexpr bool point = std::is_same_v<Element, vec3>;
@@ -64,7 +67,6 @@ struct scan_body {
         return;
       }
     }
-    auto ask = answer.visitor(index, k);
     walk_for(walk, part.tree, q, ask);
     answer.take(index, k, ask);
   }
