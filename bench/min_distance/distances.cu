@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every point's own distance on a GPU that holds the points: cold, and warm with what was nearest in the last frame.
+// *fields*: to a robot whose parts have them.
 // CUDA events, behind other work.
 #include "device.cuh"
 #include "shell.hpp"
 
 #include <clearance/device.cuh>
+#include <clearance/fields.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/distances.hpp>
@@ -22,9 +24,10 @@ using clearance::device, clearance::vec3;
 /// Alternates two clouds, so that a frame remembers the other one; when cold, each is the first.
 template <class Model, class Source>
 void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::Isometry3d>& poses,
-         const Eigen::Isometry3d& pose, const Source& first, const Source& second, float d_max, bool warm) {
+         const Eigen::Isometry3d& pose, const Source& first, const Source& second, float d_max, bool warm,
+         bool fields) {
   const device gpu;
-  const auto there = model.on(gpu);
+  const auto there = (fields ? clearance::with_fields(gpu, model).model : model).on(gpu);
   clearance::query query(gpu, there, clearance::distances{});
   clearance::pointwise::device_points<typename decltype(there)::view_type> once(gpu, there.view());
   const clearance::device_buffer<float> out(first.size(), gpu.id);
@@ -51,7 +54,7 @@ void ask(benchmark::State& state, const Model& model, const std::vector<Eigen::I
 
 struct options {
   float d_max = clearance::infinity;
-  bool warm = false, close = false;
+  bool warm = false, close = false, fields = false;
   clearance::build_options build = {};
 };
 
@@ -66,7 +69,8 @@ void frame(benchmark::State& state, Make make, const options& how) {
   const auto first = gpu.copy_in(std::span<const vec3>(points));
   const auto second = gpu.copy_in(std::span<const vec3>(twice).subspan(s.cloud.size()));
   ask(state, make(s, how.build), s.poses, how.close ? close_camera() : s.world_from_camera,
-      clearance::point_span(first.data(), count), clearance::point_span(second.data(), count), how.d_max, how.warm);
+      clearance::point_span(first.data(), count), clearance::point_span(second.data(), count), how.d_max, how.warm,
+      how.fields);
 }
 
 constexpr auto of_spheres = [](const scene& s, clearance::build_options build) {
@@ -92,7 +96,7 @@ void image(benchmark::State& state, Make make, const options& how) {
   const clearance::intrinsics camera{525, 525, 320, 240};
   ask(state, make(s, how.build), s.poses, how.close ? close_camera() : s.world_from_camera,
       clearance::depth_image(first.data(), 640, 480, camera), clearance::depth_image(second.data(), 640, 480, camera),
-      how.d_max, how.warm);
+      how.d_max, how.warm, how.fields);
 }
 void spheres_image(benchmark::State& state, const options& how) { image(state, of_spheres, how); }
 void triangles_image(benchmark::State& state, const options& how) { image(state, of_triangles, how); }
@@ -123,13 +127,14 @@ void shell(benchmark::State& state, bool ordered) {
     gpu.stage(std::span<const vec3>(points), there.data());
   }
   const clearance::point_span points(there.data(), there.size());
-  ask(state, model, s.poses, Eigen::Isometry3d::Identity(), points, points, 0.3f - 2e-6f, false);
+  ask(state, model, s.poses, Eigen::Isometry3d::Identity(), points, points, 0.3f - 2e-6f, false, false);
 }
 BENCHMARK_CAPTURE(shell, random, false)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
 BENCHMARK_CAPTURE(shell, ordered, true)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
 
 constexpr options cold{}, warm{.warm = true}, within_10cm{.d_max = 0.1f}, close_cold{.close = true},
-    close_warm{.warm = true, .close = true};
+    close_warm{.warm = true, .close = true}, fields{.fields = true}, fields_10cm{.d_max = 0.1f, .fields = true},
+    fields_close{.close = true, .fields = true}, fields_warm{.warm = true, .fields = true};
 #define TIMES ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(30)
 #define FRAMES ->Arg(307200)->Arg(5000000) TIMES
 BENCHMARK_CAPTURE(spheres, untruncated, cold) FRAMES;
@@ -145,6 +150,14 @@ BENCHMARK_CAPTURE(triangles_image, untruncated, cold) TIMES;
 BENCHMARK_CAPTURE(triangles_image, warm, warm) TIMES;
 BENCHMARK_CAPTURE(triangles_image, close, close_cold) TIMES;
 BENCHMARK_CAPTURE(triangles_image, close_warm, close_warm) TIMES;
+BENCHMARK_CAPTURE(spheres, fields, fields) FRAMES;
+BENCHMARK_CAPTURE(spheres, fields_within_10cm, fields_10cm) FRAMES;
+BENCHMARK_CAPTURE(triangles, fields, fields) FRAMES;
+BENCHMARK_CAPTURE(triangles, fields_close, fields_close)->Arg(307200) TIMES;
+BENCHMARK_CAPTURE(spheres_image, fields, fields) TIMES;
+BENCHMARK_CAPTURE(triangles_image, fields, fields) TIMES;
+BENCHMARK_CAPTURE(triangles_image, fields_warm, fields_warm) TIMES;
+BENCHMARK_CAPTURE(triangles_image, fields_close, fields_close) TIMES;
 
 }  // namespace
 }  // namespace distances_bench

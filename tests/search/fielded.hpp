@@ -9,6 +9,7 @@
 
 #include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/questions/distances.hpp>
 #include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/questions/self_filter.hpp>
@@ -93,6 +94,8 @@ void require_no_change_of_pairs(const On& on, const Bare& bare, const Fielded& f
       same(at, clearance::within{{reach}}, "within", reach);
       same(at, clearance::self_filter{.padding = {reach}}, "self_filter", reach);
     }
+    for (const double d_max : {0.05 * size, double(infinity)})
+      same(at, clearance::distances{.d_max = d_max, .which = true}, "distances", d_max);
   }
 }
 

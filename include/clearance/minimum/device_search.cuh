@@ -32,7 +32,6 @@ class device_search {
   device_search(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
       : on_(on),
         facts_(model.facts.begin(), model.facts.end()),
-        fields_(model.fields),
         launch_(on, model, memory),
         state_(launch_.groups(), on.id, memory),
         witnesses_(launch_.groups() * scan::most_parts, on.id, memory),
@@ -114,7 +113,7 @@ class device_search {
         {state_.data() + group, witnesses_.data() + before,
          records_.data() + std::size_t(before) * launch_.most_blocks(),
          candidates_.data() + group * launch_.most_blocks(), alone ? end.result : of_group_.data() + group,
-         PerPart ? end.minima + before : nullptr, fields_ == nullptr ? nullptr : fields_ + before, around});
+         PerPart ? end.minima + before : nullptr, launch_.fields(group), around});
     if (alone) a.done = end.done, a.number = end.number;
     place(a);
     launch_(source, a);
@@ -127,7 +126,6 @@ class device_search {
 
   device on_;
   std::vector<part_facts> facts_;
-  const field_view* fields_;
   scan::launcher<PartView> launch_;
   device_buffer<typename one::state_type> state_;
   device_buffer<typename one::witness_type> witnesses_;

@@ -175,7 +175,6 @@ class device_pairs {
  public:
   device_pairs(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
       : facts_(model.facts.begin(), model.facts.end()),
-        fields_(model.fields),
         launch_(on, model, memory),
         labelled_(launch_.most_blocks(), on.id, memory) {}
 
@@ -191,15 +190,14 @@ class device_pairs {
           const auto around = scan::elements_of(source);
           return launch_.template begin<pairs_of<PartView, Answer, std::remove_const_t<decltype(around)>>>(
               group, now,
-              {answer, group * scan::most_parts, fields_ == nullptr ? nullptr : fields_ + group * scan::most_parts,
-               group == 0 ? counts : nullptr, labelled_.data(), group + 1 == launch_.groups(), around});
+              {answer, group * scan::most_parts, launch_.fields(group), group == 0 ? counts : nullptr, labelled_.data(),
+               group + 1 == launch_.groups(), around});
         },
         here);
   }
 
  private:
   std::vector<part_facts> facts_;
-  const field_view* fields_;
   scan::launcher<PartView> launch_;
   device_buffer<label_counts> labelled_;
 };

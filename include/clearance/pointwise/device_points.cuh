@@ -36,6 +36,7 @@ struct points_of {
     std::uint32_t first_part;    ///< The kernel's first part. If it is not 0, other kernels have written before.
     point_counts* counts;        ///< Or null.
     remembered<PartView>* last;  ///< Per point, the nearest in the last frame, then in this one; or null.
+    const field_view* fields;    ///< One for each of the kernel's parts, or null.
   };
   struct memory {
     __device__ void clear(std::uint32_t) {}
@@ -74,17 +75,21 @@ struct points_of {
     const arguments& a = s.head.answer;
     return {a.d_max, a.first_part, a.first_part != 0 && counts ? read(a.out, index) : found{}, {}};
   }
-  /// Evaluates the last nearest primitive anew. It gives only a bound, because the walk finds that primitive and
-  /// equally near ones again.
+  /// Evaluates the last nearest primitive anew, or looks into the parts' fields. That gives only a bound, because the
+  /// walk finds the nearest primitive and equally near ones again.
   static __device__ void remind(const block& s, std::uint32_t index, vec3 x, visitor_type& v) {
     const arguments& a = s.head.answer;
-    if (a.last == nullptr) return;
-    const remembered<PartView> last = a.last[index];
-    const std::uint32_t k = last.part - a.first_part;
-    if (k >= s.head.parts) return;
-    using parts = scan::tree_steps<points_of>;
-    const real d = parts::primitive(k, last.place).distance(parts::place(k).part_from_cloud(x));
-    if (d <= a.d_max) v.best.offer({d, none, none});
+    if (a.last != nullptr) {
+      const remembered<PartView> last = a.last[index];
+      if (const std::uint32_t k = last.part - a.first_part; k < s.head.parts) {
+        using parts = scan::tree_steps<points_of>;
+        const real d = parts::primitive(k, last.place).distance(parts::place(k).part_from_cloud(x));
+        if (d <= a.d_max) v.best.offer({d, none, none});
+        return;
+      }
+    }
+    if (a.fields == nullptr) return;
+    if (const real high = foreseen(x); high <= a.d_max) v.best.offer({high, none, none});
   }
   /// The last nearest primitive, if it is of one of this kernel's parts.
   static __device__ scan::primitive_of_part known(const block& s, std::uint32_t index) {
@@ -104,6 +109,21 @@ struct points_of {
       a.last[index] = {v.best.part, v.at};
     else if (of_these || a.first_part == 0)
       a.last[index].part = none;
+  }
+
+  /// How far the part at most is whose ball is nearest. Not inlined, so that it costs those nothing that have no
+  /// fields.
+  static __noinline__ __device__ real foreseen(vec3 x) {
+    using parts = scan::frame_parts<points_of>;
+    const auto& head = scan::memory_of_block<points_of>().head;
+    real least = infinity;
+    std::uint32_t nearest = 0;
+    for (std::uint32_t k = 0; k < head.parts; ++k) {
+      const ball around = parts::place(k).root.around;
+      const real away = rough_length(x - around.center) - around.radius;
+      if (away < least) least = away, nearest = k;
+    }
+    return head.parts == 0 ? infinity : head.answer.fields[nearest](parts::place(nearest).part_from_cloud(x)).high;
   }
 
   template <class Source>
@@ -170,8 +190,9 @@ class device_points {
     return certainty_of(launch_.pass(
         facts_, poses, clouds,
         [&](const auto&, std::uint32_t group, const frames::turn& now) {
-          return launch_.template begin<tally>(
-              group, now, {out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr, last_.data()});
+          return launch_.template begin<tally>(group, now,
+                                               {out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr,
+                                                last_.data(), d_max == infinity ? launch_.fields(group) : nullptr});
         },
         here));
   }

@@ -23,6 +23,7 @@ class launcher {
   launcher(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory)
       : on_(on),
         parts_(std::uint32_t(model.size())),
+        fields_(model.fields),
         processors_(ask(cudaDevAttrMultiProcessorCount)),
         most_shared_(ask(cudaDevAttrMaxSharedMemoryPerBlockOptin)),
         shared_of_processor_(ask(cudaDevAttrMaxSharedMemoryPerMultiprocessor)),
@@ -52,6 +53,10 @@ class launcher {
 
   /// Parts come in groups of 128, with one kernel per group.
   std::uint32_t groups() const { return parts_ == 0 ? 1 : (parts_ + most_parts - 1) / most_parts; }
+  /// One for each part of a group, or null.
+  const field_view* fields(std::uint32_t group) const {
+    return fields_ == nullptr ? nullptr : fields_ + group * most_parts;
+  }
   /// The most blocks of a kernel.
   unsigned most_blocks() const { return 2 * processors_; }
 
@@ -159,6 +164,7 @@ class launcher {
   device on_;
   frames::cloud_frame frame_;  ///< For `pass`.
   std::uint32_t parts_;
+  const field_view* fields_;
   unsigned processors_, most_shared_, shared_of_processor_;
   device_buffer<scan_state> state_;
   device_buffer<PartView> views_;
