@@ -126,7 +126,7 @@ TEST_CASE("a recording that is interrupted has printed whole answers, and the ol
   }
 }
 
-TEST_CASE("whenever a question is interrupted, its files are the old ones or whole, and nothing is half printed") {
+TEST_CASE("whenever a question is interrupted, files are old or whole, nothing is half printed") {
   const workplace w;
   std::string rows = "\n";
   for (int k = 0; k < 3000; ++k) rows += "\n";
