@@ -232,7 +232,8 @@ int run_frames(const query_options& asked) {
       std::tie(report.cloud, report.point) =
           frame ? std::pair<const observation*, std::uint32_t>(frame, r.point) : merged.origin(r.point);
     frame ? frame->recount(r) : merged.recount(r);
-    std::cout << (asked.csv ? to_csv(report) : to_json(report));
+    // At once and as a whole: who waits for it has it, and whoever interrupts a recording has no half of it.
+    std::cout << (asked.csv ? to_csv(report) : to_json(report)) << std::flush;
     if (!std::cout) return code;  // main reports it
     if (!asked.recording.svg.empty()) {
       drawn.seen.push_back(r);

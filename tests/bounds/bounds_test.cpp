@@ -54,6 +54,14 @@ TEST_CASE("A search finds a bound that is too high by a fraction of a unit of ro
   CHECK(raised{}(f.at).left == f.least);
 }
 
+TEST_CASE("A box about the origin is wider than its content by a share of its own size") {
+  // A side along y whose ends are about as far from the origin, and a point before one end.
+  constexpr std::array<float, 15> at = {
+      0x0p+0, -0x1.88bee4p-14f, 0x0p+0,          0x0p+0, -0x1.8ae9fp-10f,  0x0p+0,         0x0p+0,    0x1.89d43ep-10f,
+      0x0p+0, 0x1p-149f,        0x1.89ff22p-10f, 0x0p+0, -0x1.5a1438p-19f, 0x1.61d55ap-9f, -0x1p-149f};
+  CHECK(bounds::volume_law<clearance::aabb, triangle>{}(at).left > 10);
+}
+
 TEST_CASE("An exact distance is the least over many places of a triangle, and of a way") {
   testing::dice d(3);
   for (int round = 0; round < 300; ++round) {

@@ -50,7 +50,7 @@ struct field_law {
 
 /// A tree over a few points: every node's ball holds its points (0), and its box does (1).
 struct tree_law {
-  static constexpr std::size_t points = 20, content = 0, numbers = 3 * points;
+  static constexpr std::size_t points = 72, content = 0, numbers = 3 * points;  // of two levels
 
   mutable clearance::host_workers workers{clearance::host{.threads = 1}};
   mutable clearance::cloud_tree::host_tree tree;

@@ -25,11 +25,11 @@ inline constexpr double unit = 0x1p-24, underflow = 0x1p-72;
 
 inline vec3 vector_at(const float* x) { return {x[0], x[1], x[2]}; }
 
-/// Draws numbers about `middle`, and at times straight or flat ones.
+/// Draws numbers about `middle`, and at times straight or flat ones: one or two coordinates of all are alike.
 inline void draw_near(float* x, std::size_t count, vec3 middle, float size, chance& c) {
   const float about[3] = {middle.x, middle.y, middle.z};
-  const std::uint32_t flat = c.below(16);
-  for (std::size_t k = 0; k < count; ++k) x[k] = about[k % 3] + (k % 3 == flat ? 0 : size * c.number());
+  const std::uint32_t flat = c.below(4) == 0 ? 1 + c.below(6) : 0;
+  for (std::size_t k = 0; k < count; ++k) x[k] = about[k % 3] + ((flat >> k % 3 & 1) != 0 ? 0 : size * c.number());
 }
 inline vec3 somewhere(chance& c, float size) {
   if (c.below(2) == 0) return {0, 0, 0};
@@ -60,9 +60,12 @@ struct about<triangle> {
   static constexpr std::size_t numbers = 9, together = 1;
   static void draw(float* x, vec3 middle, float size, chance& c) {
     draw_near(x, 9, middle, size, c);
+    if (c.below(8) == 0)  // a side about the origin
+      for (int k = 0; k < 3; ++k) x[3 + k] = -x[k];
     if (c.below(4) != 0) return;
     const float thin = c.power(-20, -1);  // a needle: one corner near another
-    for (int k = 0; k < 3; ++k) x[6 + k] = x[3 + k] + thin * size * c.number();
+    const float* const other = x + 3 * c.below(2);
+    for (int k = 0; k < 3; ++k) x[6 + k] = other[k] + thin * size * c.number();
   }
   static triangle make(const float* x) { return triangle::from(vector_at(x), vector_at(x + 3), vector_at(x + 6)); }
   static double distance(const triangle& t, wide q) {

@@ -3,6 +3,7 @@
 // Every search, by name.
 
 #include "bounds/built.hpp"
+#include "bounds/groups.hpp"
 
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
@@ -38,9 +39,12 @@ void primitive_rows(const std::string& p, std::uint64_t cases, std::uint64_t see
     take(v + " of " + p, [&, v] { return row_of(v + " of " + p, search(volume_law<V, P>{}, cases, seed)); });
     take(v + " of " + p + ", capsule",
          [&, v] { return row_of(v + " of " + p + ", capsule", search(capsule_law<V, P>{}, cases, seed)); });
+    take(v + " of " + v + " of " + p,
+         [&, v] { return row_of(v + " of " + v + " of " + p, search(layered_law<V, P>{}, cases, seed)); });
   };
   in("sphere", sphere{}), in("aabb", aabb{}), in("obb", obb{});
   take(p + ", bracket", [&] { return row_of(p + ", bracket", search(bracket_law<P>{}, cases, seed)); });
+  take(p + ", together", [&] { return row_of(p + ", together", search(together_law<P>{}, cases, seed)); });
   take(p + ", field", [&] {
     found<3> all;
     chance c(seed);
@@ -55,7 +59,8 @@ void each_row(std::uint64_t cases, std::uint64_t seed, Take take) {
   primitive_rows<inner_sphere>("inner sphere", cases, seed, take);
   primitive_rows<triangle>("triangle", cases, seed, take);
   take("ball", [&] { return row_of("ball", search(ball_law{}, cases, seed)); });
-  take("cloud tree", [&] { return row_of("cloud tree", search(tree_law{}, cases / 16, seed)); });
+  take("capsule tile", [&] { return row_of("capsule tile", search(tile_law{}, cases / 32, seed)); });
+  take("cloud tree", [&] { return row_of("cloud tree", search(tree_law{}, cases / 32, seed)); });
 }
 
 }  // namespace bounds

@@ -110,6 +110,23 @@ TEST_CASE("Ways that cancel are refused where double loses more of them than a b
   CHECK_FALSE(refused(chain(0.1, 0.2), 0.3));
 }
 
+TEST_CASE("Ways that vanish one by one are counted as lost, and what a bracket covers is not refused") {
+  const clearance::position far{0x1p20, 0, 0}, little{0x1p-33, 0, 0};  // half a unit of rounding there
+  clearance::chain_rounding r;
+  constexpr int times = 10;
+  for (int k = 0; k < times; ++k) {
+    REQUIRE(far.x + little.x == far.x);
+    r.step(far, little, far, little.x);
+  }
+  r.step(far, {-far.x, 0, 0}, {0, 0, 0}, far.x);
+  const double lost = times * little.x;
+  REQUIRE(lost > 1e-9);
+  CHECK(r.lost >= lost);
+  CHECK_FALSE(r.covered(0));
+  CHECK(clearance::chain_rounding{.lost = 0x1p-45 * 1e6}.covered(1e6));
+  CHECK_FALSE(clearance::chain_rounding{.lost = 0x1p-44 * 1e6}.covered(1e6));
+}
+
 TEST_CASE("Where a link is turned, exact ways lose more, and are refused if a bracket does not cover it") {
   const auto lost = [](bool turns) {
     clearance::chain_link first, second, third;

@@ -3,6 +3,7 @@
 #include "support/catch.hpp"
 
 #include <clearance/io/robot.hpp>
+#include <clearance/io/robot_bodies.hpp>
 
 #include <cstdlib>
 #include <numbers>
@@ -222,6 +223,23 @@ TEST_CASE("joints keep the file's order, whatever else is called joint, and mimi
   CHECK(r.poses(std::vector<double>{0, 0, 0}, {.ignore_limits = true}).size() == 1);
 }
 
+TEST_CASE("Who waits for spheres is told whose they are: a link by its name, or how many") {
+  const triangle_mesh cube = io::tessellate_box({1, 1, 1}).mesh;
+  std::vector<io::body_source> sources{{"hand", &cube}, {"arm", &cube}};
+  for (const auto& [links, what] : {std::pair{2, "2 links"}, std::pair{1, "hand"}}) {
+    sources.resize(std::size_t(links));
+    std::vector<std::string> said;
+    io::body_options how;
+    how.pack.count = 2;
+    how.doing = [&](const std::string& now) { said.push_back(now); };
+    io::body_account account;
+    io::make_bodies(sources, how, account);
+    CHECK(said.front() == std::string("closing ") + what);
+    CHECK(std::ranges::any_of(
+        said, [&](const std::string& s) { return s.starts_with(std::string("packing ") + what + ' '); }));
+  }
+}
+
 TEST_CASE("package names are looked up where given, then above the URDF, then in the environment") {
   const robot_folder folder;
   const auto urdf = [&](const std::string& where, const std::string& uri) {
@@ -243,6 +261,9 @@ TEST_CASE("package names are looked up where given, then above the URDF, then in
   folder.put("ws/other_name/package.xml", "<package format=\"2\">\n <name> beta </name></package>");
   folder.put("ws/other_name/t.obj", sized(3));
   CHECK(corner(urdf("ws/other_name/urdf/deep/r.urdf", "package://beta/t.obj")) == 3);
+
+  folder.put("ws/beside/t.obj", sized(6));
+  CHECK(corner(urdf("ws/alpha/urdf/beside.urdf", "package://beside/t.obj")) == 6);
 
   const auto gamma = urdf("x/r.urdf", "package://gamma/t.obj");
   CHECK(says(sentence([&] { load_robot(gamma); }), "--package gamma="));

@@ -13,6 +13,12 @@
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
 namespace shard_test {
 
 using namespace testing;
@@ -22,8 +28,11 @@ namespace mpi = clearance::mpi;
 
 // As MPI does in a communicator that returns its errors.
 bool gathering_fails = false, sending_fails = false;
+// A rank that is killed while all others wait for it.
+bool gathering_kills = false;
 extern "C" int MPI_Allgather(const void* from, int n, MPI_Datatype type, void* to, int m, MPI_Datatype their,
                              MPI_Comm comm) {
+  if (gathering_kills) std::raise(SIGKILL);
   return gathering_fails ? MPI_ERR_OTHER : PMPI_Allgather(from, n, type, to, m, their, comm);
 }
 extern "C" int MPI_Bcast(void* data, int n, MPI_Datatype type, int by, MPI_Comm comm) {
@@ -214,6 +223,29 @@ TEST_CASE("A rank that throws ends all with its sentence, and all can ask again"
     *call = false;
   }
   CHECK(same_result(query(poses, mine), expected));
+}
+
+// dies.py starts it and sees how it ends.
+TEST_CASE("The last rank dies while the others ask", "[.]") {
+  const auto how = std::string_view(std::getenv("CLEARANCE_TEST_DIES"));
+  dice d(4);
+  const auto model = clearance::make_model<clearance::sphere>(
+      std::vector<std::vector<inner_sphere>>{random_primitives<inner_sphere>(d, 30, 0.3, 0.1)});
+  const auto points = d.points(500, 2);
+  const std::vector<Eigen::Isometry3d> poses = {shifted(0, 0, 0)};
+  clearance::query query(on, model, min_distance{});
+  const auto mine = piece_of(point_span(points), std::size_t(rank()), std::size_t(ranks()));
+  REQUIRE(same_result(query(poses, mine), ask(host{1}, model, poses, points, min_distance{})));
+  if (rank() == 0) std::printf("all live\n"), std::fflush(stdout);
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (rank() == ranks() - 1) {
+    if (how == "killed") std::raise(SIGKILL);
+    if (how == "quits") ::_exit(0);
+    if (how == "aborts") std::abort();
+    gathering_kills = how == "inside";
+  }
+  query(poses, mine);
+  std::printf("an answer\n"), std::fflush(stdout);
 }
 
 }  // namespace shard_test

@@ -139,6 +139,36 @@ TEST_CASE("The distance to needles and slivers is right, down to aspects of 1e-9
     }
 }
 
+TEST_CASE("However short a side is, a triangle may be as near as it is") {
+  verdict v;
+  for (int power = 50; power < 75; ++power) {  // at 63 its square is the least normal number
+    const vec3 b{std::ldexp(1.0f, -power), 0, 0}, c{0, 1, 0};
+    for (const triangle& t :
+         {triangle::from({0, 0, 0}, b, c), triangle::from(c, {0, 0, 0}, b), triangle::from(b, c, {0, 0, 0})})
+      for (const vec3 q : {vec3{0, 0, 0}, vec3{1, 0, 0}, vec3{0, -1, 0}, vec3{0, 0, 1}, vec3{-1, 0.5f, 0.5f}})
+        v.require(t.may_reach(q, t.distance(q)), "a side of 2^-", power, ": ruled out at ", q);
+  }
+}
+
+TEST_CASE("A triangle twice as large and far is twice as far, to the bit") {
+  dice d(8);
+  verdict v;
+  for (int k = 0; k < 20000; ++k) {
+    const vec3 a = d.point(1), along = d.direction(),
+               thin = clearance::scaled(std::ldexp(1.0f, -int(d.below(24))), d.direction());
+    const vec3 b = a + along, c = (k % 2 == 0 ? a : clearance::fma(d.number(0, 1), along, a)) + thin;
+    // Mostly near a tip, and beyond it.
+    const vec3 q = clearance::fma(std::ldexp(d.number(-1, 1), -int(d.below(20))), along, k % 3 == 0 ? a : b) +
+                   clearance::scaled(std::ldexp(1.0f, -int(d.below(24))), d.direction());
+    const real is = triangle::from(a, b, c).distance(q);
+    for (const real s : {0x1p-10f, 0x1p12f}) {
+      const auto by = [&](vec3 p) { return vec3{s * p.x, s * p.y, s * p.z}; };
+      v.require(triangle::from(by(a), by(b), by(c)).distance(by(q)) == s * is, "by ", s, ": not ", is,
+                " times that, at ", q);
+    }
+  }
+}
+
 TEST_CASE("A triangle without area is its edges") {
   dice d(4);
   verdict v;
@@ -150,6 +180,22 @@ TEST_CASE("A triangle without area is its edges") {
       for (const vec3 q : around(d, t)) check(t, q, v);
   }
   CHECK(triangle::from({1, 1, 1}, {1, 1, 1}, {1, 1, 1}).normal({1, 1, 1}) == vec3{0, 0, 0});
+}
+
+TEST_CASE("A way through a triangle touches it, however long it is") {
+  dice d(6);
+  std::size_t through = 0;
+  verdict v;
+  for (int k = 0; k < 2000; ++k) {
+    const triangle t = triangle::from(d.point(0.5), d.point(0.5), d.point(0.5));
+    const vec3 middle = clearance::fma(0.25f, t.b - t.a, clearance::fma(0.25f, t.c - t.a, t.a)),
+               along = clearance::scaled(d.number(2, 16), d.direction());
+    if (std::abs(dot(along, t.unit_normal)) < 0.2f * length(along)) continue;
+    const clearance::capsule way{clearance::fma(-d.number(0, 0.2), along, middle), along, d.number(0, 0.1)};
+    v.require(distance_to(t, way) == -way.radius, "a way of", length(along), "is", distance_to(t, way), "away");
+    ++through;
+  }
+  CHECK(through > 1000);
 }
 
 TEST_CASE("On a triangle the distance is 0 and the normal the triangle's own") {

@@ -196,6 +196,8 @@ TEST_CASE("Of a list's distance nothing is certain below what the part and its e
   CHECK(off.lower(0.05f) == 0);
   CHECK(off.lower(0.2f) == Approx(0.09));
   CHECK((off.lower(clearance::infinity) == 0 && off.lower(clearance::not_a_number) == 0));
+  for (real d = 0.2f; d < 1; d += 0.01f)
+    CHECK(double(off.lower(d)) <= clearance::minimum::certain_distance(d, off.slop, off.error));
 }
 
 namespace {

@@ -2,6 +2,9 @@
 // What is left out of a scan of capsules has none within reach.
 #include "support/laws.hpp"
 
+#include <clearance/make_model.hpp>
+#include <clearance/points/uncertain.hpp>
+#include <clearance/questions/min_distance.hpp>
 #include <clearance/scan/capsule_tiles.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -64,6 +67,23 @@ TEST_CASE("A bound on a sphere's distance from a capsule is below it, and hardly
     const real bound = lower_bound(s, c, infinity);
     v.require(bound <= away - s.radius - c.radius, "above");
     v.require(bound >= away - s.radius - c.radius - 0.002, "far below");
+  }
+}
+
+TEST_CASE("A cloud whose size is no multiple of a tile's is read to its end, and no further") {
+  const auto part =
+      clearance::make_part(clearance::build<clearance::sphere>(std::vector<inner_sphere>{{{0, 0, 0}, 1}}));
+  std::vector<vec3> points(3 * clearance::scan::capsule_tile::points, vec3{9, 0, 0});
+  for (const std::size_t size : {points.size() / 3 - 1, points.size() / 3, points.size() / 3 + 1}) {
+    auto all = points;
+    std::fill(all.begin() + std::ptrdiff_t(size), all.end(), vec3{clearance::not_a_number, 0, 0});
+    all[size - 1].x = 3;
+    const auto balls =
+        clearance::uncertain(clearance::point_span(all.data(), size), clearance::no_noise{}, {.shift = 0.5f});
+    const auto r = ask(clearance::host{}, part, Eigen::Isometry3d::Identity(), balls, clearance::min_distance{});
+    CHECK(r.valid == size);
+    CHECK(r.dropped[int(clearance::drop_reason::not_finite)] == 0);
+    CHECK(r.point == size - 1);
   }
 }
 

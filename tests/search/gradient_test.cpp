@@ -138,6 +138,28 @@ struct cube_interior {
 
 }  // namespace
 
+TEST_CASE("The witness of a capsule that begins inside a solid is where it begins") {
+  struct swept {
+    vec3 from, along;
+    std::size_t size() const { return 1; }
+    clearance::sample operator[](std::size_t) const { return {from, clearance::drop_reason::none}; }
+    clearance::capsule around(std::size_t, vec3 p) const { return {p, along, 0}; }
+  };
+  std::vector<triangle> faces{triangle::from({1, -9, -9}, {1, 9, -9}, {1, 0, 9})};
+  auto surface = clearance::make_part(clearance::build<clearance::obb>(faces));
+  using cube = clearance::part<decltype(surface.tree), cube_interior>;
+  const clearance::model robot{std::vector{cube{surface.tree, {}, surface.facts}}};
+  const std::vector poses{Eigen::Isometry3d::Identity()};
+  for (const vec3 from : {vec3{0.5f, 0, 0}, vec3{1.5f, 0, 0}}) {
+    const swept cloud{from, {0.25f, 0, 0}};
+    const auto [least, minima] = ask(host{}, robot, poses, cloud, min_distance_per_part{});
+    const part_witness w = ask(host{}, robot, poses, cloud, part_witnesses{minima})[0];
+    CHECK(w.distance == (from.x < 1 ? 0 : from.x - 1));
+    CHECK(same_bytes(w.at, clearance::position{double(from.x), 0, 0}));
+    CHECK(same_bytes(w.at, least.at));
+  }
+}
+
 TEST_CASE("Gradients of distances to inner spheres are those of differences") {
   against_differences<clearance::sphere, inner_sphere>();
 }

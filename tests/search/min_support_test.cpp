@@ -55,6 +55,39 @@ TEST_CASE("The nearest point of triangles that others confirm is the first of al
   all_scenes<clearance::aabb, triangle>();
 }
 
+TEST_CASE("Points counted one by one, as kernels do, are those within the radius") {
+  namespace pairwise = clearance::pairwise;
+  dice d(12);
+  const auto points = d.points(400, 1, {2, -3, 1});
+  const clearance::world_transform world_from_cloud(d.pose(4));
+  const double radius = 0.4;
+  std::vector<clearance::position> at;
+  std::vector<clearance::ball> near;
+  for (std::size_t c = 0; c < 5; ++c) {
+    at.push_back(world_from_cloud(points[7 * c]));
+    near.push_back(pairwise::around(at[c], radius, world_from_cloud).near);
+  }
+  std::vector<std::uint32_t> support(at.size(), 0);
+  const pairwise::count_support<point_span> count{points,
+                                                  world_from_cloud,
+                                                  clearance::sphere::fit(near).as_ball(),
+                                                  near.data(),
+                                                  at.data(),
+                                                  support.data(),
+                                                  std::uint32_t(at.size()),
+                                                  1000,
+                                                  radius * radius};
+  for (std::size_t i = 0; i < points.size(); ++i) count(i);
+  for (std::size_t c = 0; c < at.size(); ++c) {
+    const auto within = std::count_if(points.begin(), points.end(), [&](vec3 p) {
+      const clearance::position q = world_from_cloud(p);
+      return std::hypot(q.x - at[c].x, q.y - at[c].y, q.z - at[c].z) <= radius;
+    });
+    CHECK(within > 1);
+    CHECK(support[c] == std::uint32_t(within));
+  }
+}
+
 TEST_CASE("A grain of dust is told apart from a wall, whichever camera sees it") {
   std::vector<vec3> points{{1.02f, 0, 0}, {0, 1.5f, 0}, {3, 0, 0}, {3, 0.01f, 0}, {clearance::not_a_number, 0, 0}};
   const std::vector<vec3> other{{3, 0, 0.01f}};

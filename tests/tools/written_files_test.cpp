@@ -5,7 +5,12 @@
 
 #include <clearance/io/error.hpp>
 
+#include <poll.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
 
 namespace written_files_test {
 
@@ -56,7 +61,104 @@ struct workplace {
   }
 };
 
+/// What a command that gets SIGINT had printed until then, and its status as wait() tells it. It comes once the command
+/// has printed a line, or after a time.
+struct interrupted {
+  int status = 0;
+  std::string out;
+
+  interrupted(const std::string& arguments, std::chrono::duration<double> after) {
+    int ends[2];
+    REQUIRE(::pipe(ends) == 0);
+    const auto own = std::signal(SIGINT, SIG_DFL);  // Catch2 has its own handler, which a child would have, too
+    const ::pid_t child = ::fork();
+    if (child == 0) {
+      ::dup2(ends[1], 1), ::close(ends[0]), ::close(ends[1]);
+      const std::string line = "CLEARANCE_CACHE= exec \"" CLEARANCE_COMMAND "\" " + arguments + " 2>/dev/null";
+      ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+      ::_exit(127);
+    }
+    std::signal(SIGINT, own);
+    ::close(ends[1]);
+    const auto begin = std::chrono::steady_clock::now();
+    bool sent = false;
+    for (char piece[4096];;) {
+      if (!sent && (out.find('\n') != out.npos || std::chrono::steady_clock::now() - begin >= after))
+        sent = ::kill(child, SIGINT) == 0;
+      ::pollfd wait{ends[0], POLLIN, 0};
+      if (!sent && ::poll(&wait, 1, 1) == 0) continue;
+      const ::ssize_t n = ::read(ends[0], piece, sizeof piece);
+      if (n <= 0) break;
+      out.append(piece, std::size_t(n));
+    }
+    ::close(ends[0]);
+    ::waitpid(child, &status, 0);
+  }
+  bool ended() const { return WIFSIGNALED(status) && WTERMSIG(status) == SIGINT; }
+};
+
 }  // namespace
+
+TEST_CASE("a recording that is interrupted has printed whole answers, and the old picture stays") {
+  const workplace w;
+  std::string frames;
+  for (int k = 0; k < 5000; ++k) frames += "cloud.xyz\n";
+  w.put("frames.txt", frames);
+  w.put("out.svg", "old");
+  const std::string run = "run --model triangles --backend host --robot " + w.at("robot.urdf") + " --frames " +
+                          w.at("frames.txt") + " --svg " + w.at("out.svg");
+  const std::size_t before = w.files();
+  for (const bool csv : {false, true}) {
+    const interrupted i(run + (csv ? " --csv" : ""), std::chrono::hours(1));
+    CHECK(i.ended());
+    REQUIRE(i.out.ends_with('\n'));
+    std::istringstream in(i.out);
+    std::size_t answers = 0, commas = 0;
+    for (std::string line; std::getline(in, line); ++answers) {
+      if (!csv) CHECK(nlohmann::json::parse(line).at("frame") == answers);
+      const auto its = std::size_t(std::count(line.begin(), line.end(), ','));
+      CHECK((!csv || answers == 0 || its == commas));
+      commas = its;
+    }
+    CHECK(answers < 5000);
+    CHECK(w.read("out.svg") == "old");
+    CHECK(w.files() == before);
+  }
+}
+
+TEST_CASE("whenever a question is interrupted, files are old or whole, nothing is half printed") {
+  const workplace w;
+  std::string rows = "\n";
+  for (int k = 0; k < 3000; ++k) rows += "\n";
+  w.put("rows.csv", rows);
+  const std::string ask =
+      " --model triangles --backend host --robot " + w.at("robot.urdf") + " --cloud " + w.at("cloud.xyz");
+  std::size_t ended = 0;
+  for (const std::string& line : {"query" + ask + " --scene " + w.at("out") + ".glb",
+                                  "query" + ask + " --json --distances " + w.at("out") + ".ply",
+                                  "plan" + ask + " --csv --configurations " + w.at("rows.csv")}) {
+    const std::string name = line.ends_with(".glb") ? "out.glb" : "out.ply";
+    const auto begin = std::chrono::steady_clock::now();
+    const outcome all = run_command(line);
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+    INFO(line << ": " << all.err);
+    CHECK(all.code == 0);
+    const std::string whole = line.starts_with("plan") ? "" : w.read(name);
+    w.put(name, "old");
+    const std::size_t before = w.files();
+    for (const double share : {0.0, 0.2, 0.5, 0.8, 1.0}) {
+      const interrupted i(line, share * time);
+      ended += i.ended();
+      CHECK((i.ended() || i.status == 0));
+      const std::string is = w.read(name);
+      CHECK((is == "old" || is == whole));
+      CHECK(w.files() == before);
+      CHECK((i.out.empty() || i.out.size() == all.out.size() || i.out.ends_with('\n')));
+      w.put(name, "old");
+    }
+  }
+  CHECK(ended > 0);
+}
 
 TEST_CASE("a file is replaced as a whole, with its permissions, and nothing is left beside it") {
   const workplace w;

@@ -66,12 +66,15 @@ struct obb {
     return beyond.x * beyond.x + beyond.y * beyond.y + beyond.z * beyond.z <= square_of_reach(reach);
   }
 
+  /// A corner is rounded where it is, which may be far from the origin.
   std::array<ball, 8> balls() const {
+    const real off = slack * (half[0] + half[1] + half[2]) +
+                     0x1p-22f * (absolute(center.x) + absolute(center.y) + absolute(center.z));
     std::array<ball, 8> corners;
     for (int k = 0; k < 8; ++k) {
       vec3 p = center;
       for (int a = 0; a < 3; ++a) p = fma(k >> a & 1 ? half[a] : -half[a], axis[a], p);
-      corners[k] = {p, slack * (half[0] + half[1] + half[2])};
+      corners[k] = {p, off};
     }
     return corners;
   }
