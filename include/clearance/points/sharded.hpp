@@ -13,7 +13,7 @@
 namespace clearance {
 
 /// Up to 16 sources of one kind, one after another. Points are numbered through all of them. Each piece may be in the
-/// memory of another device, and may be empty.
+/// memory of another device, and may be empty. Pieces may be `uncertain`, and so may the whole.
 template <point_source S>
 class sharded {
   static_assert(points_or_balls<S>());
