@@ -25,7 +25,9 @@ class chunk_engine {
   template <class C>
   typename Q::result run(std::span<const Eigen::Isometry3d> poses, chunked<C>& cloud, const Eigen::Isometry3d& pose,
                          const Q& q) {
-    constexpr bool on_host = std::is_same_v<On, host> || !requires { requires C::in_place; };
+    // A device's clouds in place, and radii that it reads, may not be read here.
+    constexpr bool on_host =
+        std::is_same_v<On, host> || (!requires { requires C::in_place; } && !capsule_source<loaded_source<C>>);
     constexpr bool skips = on_host && requires(typename Q::result& r, const point_counts& counts,
                                                const part_facts& facts, const frames::float_error& error) {
       Q::set_counts(r, counts);
@@ -76,11 +78,12 @@ class chunk_engine {
                                 const Eigen::Isometry3d& pose, const Q& q) const {
     const auto none_of_it = minimum::load_range(cloud.cloud(), point_range{0, 0}, nullptr);
     const frames::cloud_frame frame(facts_, poses, pose, rounding_of(none_of_it));
-    return cloud.where([&](const extent& seen) {
-      const extent box{seen.lower - frame.origin, seen.upper - frame.origin};
-      for (std::size_t k = 0; k < facts_.size(); ++k)
-        if (scan::may_reach(frame.places[k].around, q.reach(k, facts_.size(), facts_[k], frame.error), box))
-          return true;
+    return cloud.where([&](const scan::boxed_piece& seen) {
+      const extent box = seen.box_from(frame.origin);
+      for (std::size_t k = 0; k < facts_.size(); ++k) {
+        const real reach = q.reach(k, facts_.size(), facts_[k], frame.error) + seen.wide;
+        if (scan::may_reach(frame.places[k].around, reach, box)) return true;
+      }
       return false;
     });
   }

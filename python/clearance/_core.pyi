@@ -125,7 +125,7 @@ def depth_image(depth: object, intrinsics: object | None = None, pose: object | 
 
 def uncertain(cloud: object, noise: object | None = None, *, shift: float = 0.0, turn: float = 0.0, max_speed: float = 0.0, age: float = 0.0) -> Cloud:
     """
-    The same cloud, whose points may be elsewhere: for CertainDistance. noise: KinectNoise(), StereoNoise(...), TofNoise(...), LidarNoise(...), or an array of radii (m), one a point, float32, where the query asks. shift, turn: of the sensor's pose (m, rad). max_speed, age: of obstacles (m/s), of the cloud (s).
+    The same cloud, whose points may be elsewhere: for CertainDistance and others. noise: KinectNoise(), StereoNoise(...), TofNoise(...), LidarNoise(...), or an array of radii (m), one a point, float32, where the query asks. shift, turn: of the sensor's pose (m, rad). max_speed, age: of obstacles (m/s), of the cloud (s).
     """
 
 def half_pixel_of(rays: object) -> float:
@@ -255,6 +255,117 @@ class UnseenResult:
         """
         What pixels of the robot's own points (masked) hide, of all cameras together.
         """
+
+    def __repr__(self) -> str: ...
+
+class UncertaintyShares:
+    """
+    What lies between the distance of a pair and what is certain of it, one by one. Metres.
+    """
+
+    @property
+    def noise(self) -> float:
+        """Of the point."""
+
+    @property
+    def calibration(self) -> float: ...
+
+    @property
+    def time(self) -> float: ...
+
+    @property
+    def joints(self) -> float:
+        """Of the part."""
+
+    @property
+    def delay(self) -> float: ...
+
+    @property
+    def gap(self) -> float:
+        """The part's gap and tolerance."""
+
+    @property
+    def rounding(self) -> float: ...
+
+    def sum(self) -> float: ...
+
+    def __repr__(self) -> str: ...
+
+class CertainPair:
+    """
+    The pair of a part that is least far apart for certain. distance is what was measured, lower the rest, at least 0. The pair need not be the nearest. Without a valid point the distance is infinite.
+    """
+
+    @property
+    def distance(self) -> float: ...
+
+    @property
+    def part(self) -> int | None: ...
+
+    @property
+    def cloud(self) -> int | None: ...
+
+    @property
+    def point(self) -> int | None: ...
+
+    @property
+    def primitive(self) -> int | None: ...
+
+    @property
+    def at(self) -> tuple[float, float, float]: ...
+
+    @property
+    def nearest(self) -> tuple[float, float, float]: ...
+
+    @property
+    def normal(self) -> tuple[float, float, float]: ...
+
+    @property
+    def lower(self) -> float: ...
+
+    @property
+    def shares(self) -> UncertaintyShares: ...
+
+    @property
+    def to_ball(self) -> float:
+        """Metres from the part to the ball around the point, the nearest ball."""
+
+    @property
+    def link(self) -> str | None:
+        """The name of that part, or None."""
+
+    def __repr__(self) -> str: ...
+
+class CertainDistanceResult:
+    """
+    lower <= distance to the solid <= upper if no radius is too small. certain is the pair that decides lower. collision: a point is inside by more than all radii, which of a part that is a mesh is not known: possible. nominal is what min_distance says about the same points.
+    """
+
+    @property
+    def state(self) -> State: ...
+
+    @property
+    def lower(self) -> float: ...
+
+    @property
+    def upper(self) -> float: ...
+
+    @property
+    def nominal(self) -> MinDistanceResult: ...
+
+    @property
+    def certain(self) -> CertainPair: ...
+
+    @property
+    def parts(self) -> NDArray[numpy.void]: ...
+
+    @property
+    def anywhere(self) -> int:
+        """So many points may be anywhere: if it is not 0, nothing is free."""
+
+    @property
+    def any_radius(self) -> bool:
+        """Some cloud was uncertain, or parts had radii."""
 
     def __repr__(self) -> str: ...
 
@@ -470,109 +581,6 @@ class PartRadius:
         """and because it moves while the answer is made."""
 
     def sum(self) -> float: ...
-
-    def __repr__(self) -> str: ...
-
-class UncertaintyShares:
-    """
-    What lies between the distance of a pair and what is certain of it, one by one. Metres.
-    """
-
-    @property
-    def noise(self) -> float:
-        """Of the point."""
-
-    @property
-    def calibration(self) -> float: ...
-
-    @property
-    def time(self) -> float: ...
-
-    @property
-    def joints(self) -> float:
-        """Of the part."""
-
-    @property
-    def delay(self) -> float: ...
-
-    @property
-    def gap(self) -> float:
-        """The part's gap and tolerance."""
-
-    @property
-    def rounding(self) -> float: ...
-
-    def sum(self) -> float: ...
-
-    def __repr__(self) -> str: ...
-
-class CertainPair:
-    """
-    The pair of a part that is least far apart for certain. distance is what was measured, lower the rest, at least 0. The pair need not be the nearest. Without a valid point the distance is infinite.
-    """
-
-    @property
-    def distance(self) -> float: ...
-
-    @property
-    def part(self) -> int | None: ...
-
-    @property
-    def cloud(self) -> int | None: ...
-
-    @property
-    def point(self) -> int | None: ...
-
-    @property
-    def primitive(self) -> int | None: ...
-
-    @property
-    def at(self) -> tuple[float, float, float]: ...
-
-    @property
-    def nearest(self) -> tuple[float, float, float]: ...
-
-    @property
-    def normal(self) -> tuple[float, float, float]: ...
-
-    @property
-    def lower(self) -> float: ...
-
-    @property
-    def shares(self) -> UncertaintyShares: ...
-
-    @property
-    def link(self) -> str | None:
-        """The name of that part, or None."""
-
-    def __repr__(self) -> str: ...
-
-class CertainDistanceResult:
-    """
-    lower <= distance to the solid <= upper if no radius is too small. certain is the pair that decides lower. collision: a point is inside by more than all radii, which of a part that is a mesh is not known: possible. nominal is what min_distance says about the same points.
-    """
-
-    @property
-    def state(self) -> State: ...
-
-    @property
-    def lower(self) -> float: ...
-
-    @property
-    def upper(self) -> float: ...
-
-    @property
-    def nominal(self) -> MinDistanceResult: ...
-
-    @property
-    def certain(self) -> CertainPair: ...
-
-    @property
-    def parts(self) -> NDArray[numpy.void]: ...
-
-    @property
-    def anywhere(self) -> int:
-        """So many points may be anywhere: if it is not 0, nothing is free."""
 
     def __repr__(self) -> str: ...
 

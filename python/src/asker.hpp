@@ -25,9 +25,15 @@ using any_cloud = placed_any<clearance::point_span, clearance::strided_points<fl
 namespace clearance {
 struct certain_distance;
 struct in_collision;
+struct in_collisions;
+struct min_distances;
+struct min_distances_per_part;
 struct unseen;
 struct zones;
 }  // namespace clearance
+
+template <class Q, class... About>
+inline constexpr bool one_of = (std::same_as<Q, About> || ...);
 
 /// What a question's clouds may be: uncertain, too, if the question is about that. Each kind is compiled.
 template <class Q>
@@ -43,8 +49,8 @@ struct or_uncertain<std::variant<clearance::placed<S>...>> {
   using type = std::variant<clearance::placed<S>..., placed_uncertain<S>...>;
 };
 template <class Q>
-  requires(std::same_as<Q, clearance::certain_distance> || std::same_as<Q, clearance::in_collision> ||
-           std::same_as<Q, clearance::unseen> || std::same_as<Q, clearance::zones>)
+  requires one_of<Q, clearance::certain_distance, clearance::in_collision, clearance::in_collisions,
+                  clearance::min_distances, clearance::min_distances_per_part, clearance::unseen, clearance::zones>
 struct cloud_about<Q> : or_uncertain<any_cloud> {};
 template <class Q>
 using clouds_about = std::vector<typename cloud_about<Q>::type>;

@@ -317,11 +317,12 @@ void bind_clouds(nb::module_& m) {
       "A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or "
       "float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): "
       "x / z and y / z of each pixel. pose: world-from-camera, z forward.");
-  m.def("uncertain", &uncertain_of, nb::arg("cloud"), nb::arg("noise").none() = nb::none(), nb::kw_only(),
-        nb::arg("shift") = 0.0, nb::arg("turn") = 0.0, nb::arg("max_speed") = 0.0, nb::arg("age") = 0.0,
-        "The same cloud, whose points may be elsewhere: for CertainDistance. noise: KinectNoise(), StereoNoise(...), "
-        "TofNoise(...), LidarNoise(...), or an array of radii (m), one a point, float32, where the query asks. shift, "
-        "turn: of the sensor's pose (m, rad). max_speed, age: of obstacles (m/s), of the cloud (s).");
+  m.def(
+      "uncertain", &uncertain_of, nb::arg("cloud"), nb::arg("noise").none() = nb::none(), nb::kw_only(),
+      nb::arg("shift") = 0.0, nb::arg("turn") = 0.0, nb::arg("max_speed") = 0.0, nb::arg("age") = 0.0,
+      "The same cloud, whose points may be elsewhere: for CertainDistance and others. noise: KinectNoise(), "
+      "StereoNoise(...), TofNoise(...), LidarNoise(...), or an array of radii (m), one a point, float32, where the "
+      "query asks. shift, turn: of the sensor's pose (m, rad). max_speed, age: of obstacles (m/s), of the cloud (s).");
   m.def("half_pixel_of", &half_pixel, nb::arg("rays"),
         "Half the diagonal of the widest pixel at z = 1, of a table of rays (rows, columns, 2), float32: for Unseen.");
 }

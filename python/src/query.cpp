@@ -45,7 +45,8 @@ clouds_about<Q> clouds_for(const std::vector<seen_cloud>& seen) {
             throw std::invalid_argument(std::string("clearance: a cloud is uncertain, and in Python ") +
                                         declared<Q>::name +
                                         " takes points where they were measured; CertainDistance, InCollision, "
-                                        "Zones and Unseen take uncertain ones");
+                                        "Zones, Unseen, InCollisions, MinDistances and MinDistancesPerPart take "
+                                        "uncertain ones");
         },
         each.cloud);
   return made;

@@ -665,7 +665,14 @@ def test_what_is_certain_is_the_same_on_a_device(scene):
         found = ask(clouds=seen, poses=scene.poses)
         expected = expected or bits(found)
         assert bits(found) == expected
-    ask = clearance.Query(scene.robot, question, device=GPU)
+    clouds = [clearance.uncertain(clearance.points(scene.points), its, **off) for its in (radii, there)]
+    many = np.stack([scene.poses] * 2)
+    for question in (clearance.MinDistances(radii=[0.01]), clearance.MinDistancesPerPart(0.5),
+                     clearance.InCollisions(0.05)):
+        here, on_gpu = (clearance.Query(scene.robot, question, device=d)(clouds=[c], poses=many)
+                        for d, c in zip(("cpu", GPU), clouds))
+        assert bits(here) == bits(on_gpu)
+    ask = clearance.Query(scene.robot, clearance.CertainDistance(), device=GPU)
     with pytest.raises(ValueError, match="radii of one of the clouds lie on cpu"):
         ask(clouds=[clearance.uncertain(clearance.points(scene.points), radii)], poses=scene.poses)
 

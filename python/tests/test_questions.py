@@ -913,6 +913,24 @@ def test_an_uncertain_point_is_near_wherever_it_may_be(rng):
             assert r.of(k, 0).nearest == pytest.approx(its.min(), abs=near_enough)
 
 
+def test_many_configurations_are_as_near_as_an_uncertain_point_may_be(rng):
+    points = some(rng)
+    s = scene_of(rng, {"points": clearance.points(points)}, points)
+    radii = rng.uniform(0, 0.05, len(points)).astype("f4")
+    moves, tables = configurations(s)
+    ask = lambda q: clearance.Query(s.robot, q)(clouds=[clearance.uncertain(clearance.points(points), radii)], poses=moves)
+    offs = [table - radii for table in tables]
+    least, of_parts = ask(clearance.MinDistances()), ask(clearance.MinDistancesPerPart())
+    for c, off in enumerate(offs):
+        row, number = next(each_result([least.of[c]])), off.argmin()
+        assert row.distance == pytest.approx(off.min(), abs=near_enough) and row.lower <= max(off.min(), 0)
+        assert off[row.part, row.point] == pytest.approx(off.ravel()[number], abs=near_enough)
+        assert of_parts.of(c)["distance"] == pytest.approx(off.min(axis=1), abs=near_enough)
+    margin = np.sort([off.min() for off in offs])[:2].mean()
+    states = [State(int(state)) for state in ask(clearance.InCollisions(margin)).of]
+    assert states == [State.possible if off.min() <= margin else State.free for off in offs]
+
+
 def test_what_an_uncertain_image_may_hide():
     image = clearance.depth_image(np.full((12, 16), 2.0, "f4"), camera)
     ask = clearance.Query(clearance.Robot.from_spheres({"ball": np.array([[0, 0, 1, 0.1]], "f4")}), clearance.Unseen())

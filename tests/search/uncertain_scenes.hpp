@@ -16,11 +16,13 @@ namespace testing {
 using clearance::certain_distance, clearance::certain_distance_result, clearance::cloud_uncertainty;
 
 inline bool same_pair(const clearance::certain_pair& a, const clearance::certain_pair& b) {
-  return same_witness(a, b) && same_bits(a.lower, b.lower) && same_bytes(a.shares, b.shares);
+  return same_witness(a, b) && same_bits(a.lower, b.lower) && same_bytes(a.shares, b.shares) &&
+         same_bits(a.to_ball, b.to_ball);
 }
 inline bool same_certain(const certain_distance_result& a, const certain_distance_result& b) {
-  return a.state == b.state && a.anywhere == b.anywhere && same_bits(a.lower, b.lower) && same_bits(a.upper, b.upper) &&
-         same_result(a.nominal, b.nominal) && same_pair(a.certain, b.certain) &&
+  return a.state == b.state && a.anywhere == b.anywhere && a.any_radius == b.any_radius &&
+         same_bits(a.lower, b.lower) && same_bits(a.upper, b.upper) && same_result(a.nominal, b.nominal) &&
+         same_pair(a.certain, b.certain) &&
          std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(), same_pair);
 }
 

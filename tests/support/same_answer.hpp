@@ -17,7 +17,7 @@ void with_members(const T& a, const F& f) {
   else if constexpr (std::is_same_v<T, clearance::supported_distance>)
     f(a.state, a.distance, a.lower, a.cloud, a.point, a.part, a.primitive, a.isolated, a.nearest_isolated, a.counts);
   else if constexpr (std::is_same_v<T, clearance::certain_pair>)
-    f(static_cast<const clearance::part_witness&>(a), a.lower, a.shares);
+    f(static_cast<const clearance::part_witness&>(a), a.lower, a.shares, a.to_ball);
   else if constexpr (std::is_same_v<T, clearance::point_counts>)
     f(a.seen, a.valid, a.dropped);
   else

@@ -55,13 +55,13 @@ class chunked {
     for (std::size_t at = 0; at < size(); at += chunk_) ranges.push_back({at, std::min(size(), at + chunk_)});
     return ranges;
   }
-  /// The ranges whose boxes satisfy `matters(box)`. Short gaps are read, too: that is faster than another chunk.
+  /// The ranges whose pieces satisfy `matters(piece)`. Short gaps are read, too: that is faster than another chunk.
   template <class Matters>
   std::vector<point_range> where(const Matters& matters) const {
     constexpr std::size_t short_gap = 16 * scan::piece_points;
     std::vector<point_range> ranges;
     for (std::size_t k = 0; k < pieces_.size(); ++k) {
-      if (pieces_[k].empty() || !matters(pieces_[k].box)) continue;
+      if (pieces_[k].empty() || !matters(pieces_[k])) continue;
       const point_range its = piece(k);
       if (!ranges.empty() && its.begin <= ranges.back().end + short_gap && its.end - ranges.back().begin <= chunk_)
         ranges.back().end = its.end;
@@ -148,13 +148,13 @@ min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> f
   }
   // The balls include the errors of arithmetic and poses. What a source has lost does not matter here.
   const frames::cloud_frame frame(facts, poses, pose);
-  const auto box_of = [&](const extent& e) { return extent{e.lower - frame.origin, e.upper - frame.origin}; };
   std::vector<std::size_t> nearest(facts.size(), pieces);
   std::vector<double> least(facts.size(), double(infinity));
   for (std::size_t k = 0; k < pieces; ++k)
     if (!cloud.pieces()[k].empty())
       for (std::size_t part = 0; part < facts.size(); ++part)
-        if (const double its = scan::away(frame.places[part].around, box_of(cloud.pieces()[k].box)); its < least[part])
+        if (const double its = scan::away(frame.places[part].around, cloud.pieces()[k], frame.origin);
+            its < least[part])
           least[part] = its, nearest[part] = k;
   if (minima.empty()) {  // the robot's nearest box is enough
     const auto best = std::size_t(std::ranges::min_element(least) - least.begin());
@@ -168,10 +168,10 @@ min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> f
   search(first, result, nullptr);
   std::vector<real> reach(facts.size(), result.part == none ? infinity : result.distance);
   for (std::size_t part = 0; part < minima.size(); ++part) reach[part] = minima[part].distance;
-  const auto matters = [&](const extent& seen) {
-    const extent box = box_of(seen);
+  const auto matters = [&](const scan::boxed_piece& seen) {
+    const extent box = seen.box_from(frame.origin);
     for (std::size_t part = 0; part < facts.size(); ++part)
-      if (scan::may_reach(frame.places[part].around, reach[part], box)) return true;
+      if (scan::may_reach(frame.places[part].around, reach[part] + seen.wide, box)) return true;
     return false;
   };
   search(cloud.where(matters), result, nullptr);

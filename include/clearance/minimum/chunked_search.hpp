@@ -37,10 +37,16 @@ class chunked_search<host, PartView> {
     std::future<part> ahead;
     const auto next = [&](std::size_t k) {
       const auto make = [&](const part& source) {
-        const scan::boxing<part> boxing{
-            source, seen == nullptr || turns[k].points == 0 ? nullptr : seen->data() + numbers_[turns[k].piece]};
-        boxing.add_rest();
-        return placed<scan::boxing<part>>{boxing, pose};
+        scan::boxed_piece* const to =
+            seen == nullptr || turns[k].points == 0 ? nullptr : seen->data() + numbers_[turns[k].piece];
+        if constexpr (capsule_source<part>) {  // a scan sees no boxes around capsules
+          if (to != nullptr) scan::box_points(source, to);
+          return placed<part>{source, pose};
+        } else {
+          const scan::boxing<part> boxing{source, to};
+          boxing.add_rest();
+          return placed<scan::boxing<part>>{boxing, pose};
+        }
       };
       if constexpr (requires { requires C::in_place; }) return make(load(k));
       const part source = k == 0 ? load(0) : ahead.get();

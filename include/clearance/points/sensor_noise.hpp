@@ -13,6 +13,8 @@ namespace clearance {
 /// Law: `n(i, p)` is a radius in metres around point i, whose place is p, in the sensor's frame; pure, with the same
 /// bits on every backend (`clearance::fma`, `product`, `divide`). Below 0, NaN and 1e6 m or more: the point may be
 /// anywhere. Optional: `check(points)` throws std::invalid_argument for options that cannot be.
+/// Optional law: `n.slice(begin, end)` is the noise of points `begin` to `end - 1` as a cloud of their own; else every
+/// noise can be sliced, too, but its slices are of another type.
 /// Optional law: no radius of 128 neighbours from number `begin` on is above `n.most(begin, box)`, if all are in the
 /// box.
 template <class N>
@@ -49,10 +51,37 @@ inline real most_along_ray(real deviation, const extent& box) {
 
 }  // namespace detail
 
+/// The noise of the points from number `first` on.
+template <sensor_noise N>
+struct noise_from {
+  N whole;
+  std::size_t first;
+
+  CLEARANCE_HD real operator()(std::size_t i, vec3 p) const { return whole(first + i, p); }
+  real most(std::size_t begin, const extent& box) const
+    requires requires(const N n, std::size_t i, extent e) { n.most(i, e); }
+  {
+    return whole.most(first + begin, box);
+  }
+  noise_from slice(std::size_t begin, std::size_t) const { return {whole, first + begin}; }
+};
+
+/// The noise of points `begin` to `end - 1`, by its own `slice` if it has one.
+template <sensor_noise N>
+auto slice(const N& noise, std::size_t begin, std::size_t end) {
+  if constexpr (requires {
+                  { noise.slice(begin, end) } -> sensor_noise;
+                })
+    return noise.slice(begin, end);
+  else
+    return noise_from<N>{noise, begin};
+}
+
 /// The sensor measures without noise.
 struct no_noise {
   CLEARANCE_HD real operator()(std::size_t, vec3) const { return 0; }
   real most(std::size_t, const extent&) const { return 0; }
+  no_noise slice(std::size_t, std::size_t) const { return *this; }
 };
 
 /// Microsoft's first Kinect: 1.2 mm + 1.9 mm/m^2 (z - 0.4 m)^2 along z. Nguyen, Izadi, Lovell, "Modeling Kinect sensor
@@ -69,6 +98,7 @@ struct kinect_noise {
     return detail::most_along_ray(k * (0.0019f * z * z + 0.0012f) * (1 + slack), box);
   }
   void check(std::size_t) const { detail::check_uncertain(k, "the noise's k"); }
+  kinect_noise slice(std::size_t, std::size_t) const { return *this; }
 };
 
 /// Stereo, active or passive, and structured light: z^2 s / (f B) along z. Gallup et al., "Variable baseline/resolution
@@ -95,6 +125,7 @@ struct stereo_noise {
                                     std::to_string(focal_length) + " pixels and " + std::to_string(baseline) +
                                     " m, which must be above 0");
   }
+  stereo_noise slice(std::size_t, std::size_t) const { return *this; }
 };
 
 /// Time of flight: constant + square |p|^2, because light that returns falls with the square of the way. Lange and
@@ -114,6 +145,7 @@ struct tof_noise {
         detail::check_uncertain(constant, "a time of flight camera's constant");
     detail::check_uncertain(square, "what a time of flight camera's noise grows by");
   }
+  tof_noise slice(std::size_t, std::size_t) const { return *this; }
 };
 
 /// LiDAR: constant + share |p|, as data sheets say it. Glennie and Lichti, "Static calibration and analysis of the
@@ -131,6 +163,7 @@ struct lidar_noise {
     detail::check_uncertain(k, "the noise's k"), detail::check_uncertain(constant, "a LiDAR's constant");
     detail::check_uncertain(share, "what a LiDAR's noise grows by");
   }
+  lidar_noise slice(std::size_t, std::size_t) const { return *this; }
 };
 
 /// A radius for each point, in metres.
@@ -164,6 +197,7 @@ struct point_radii {
       throw std::invalid_argument("clearance: there are " + std::to_string(points) + " points, but " +
                                   std::to_string(count) + " radii");
   }
+  point_radii slice(std::size_t begin, std::size_t end) const { return {radii + begin, end - begin}; }
 };
 
 /// The kind of a sensor that a program learns while it runs.
@@ -213,6 +247,11 @@ struct any_noise {
   void check(std::size_t points) const {
     kinect.check(points), stereo.check(points), tof.check(points), lidar.check(points);
     if (kind == noise_kind::radii) radii.check(points);
+  }
+  any_noise slice(std::size_t begin, std::size_t end) const {
+    any_noise its = *this;
+    if (kind == noise_kind::radii) its.radii = radii.slice(begin, end);
+    return its;
   }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 // A cloud made of pieces, the reverse of slices.
 
+#include <clearance/concepts/capsule.hpp>
 #include <clearance/points/slice.hpp>
 
 #include <algorithm>
@@ -12,22 +13,34 @@
 namespace clearance {
 
 /// Up to 16 sources of one kind, one after another. Points are numbered through all of them. Each piece may be in the
-/// memory of another device, and may be empty.
+/// memory of another device, and may be empty. Pieces may be `uncertain`, and so may the whole.
 template <point_source S>
 class sharded {
-  static_assert(points_alone<S>());
+  static_assert(points_or_balls<S>());
 
  public:
   static constexpr std::size_t most = 16;  // as an argument of a kernel it has 4 KiB
+  static constexpr bool vague = ball_source<S>, balls = vague;
 
   /// Throws std::invalid_argument if there are no pieces or too many.
   explicit sharded(const std::vector<S>& pieces) : sharded(checked(pieces), std::make_index_sequence<most>()) {}
 
   CLEARANCE_HD std::size_t size() const { return first_[most]; }
   CLEARANCE_HD sample operator[](std::size_t i) const {
-    std::uint32_t k = 0;
-    while (i >= first_[k + 1]) ++k;
+    const std::size_t k = piece_with(i);
     return piece_[k][i - first_[k]];
+  }
+  CLEARANCE_HD capsule around(std::size_t i, vec3 p) const
+    requires ball_source<S>
+  {
+    const std::size_t k = piece_with(i);
+    return piece_[k].around(i - first_[k], p);
+  }
+  CLEARANCE_HD auto shares(std::size_t i, vec3 p) const
+    requires requires(const S s) { s.shares(i, p); }
+  {
+    const std::size_t k = piece_with(i);
+    return piece_[k].shares(i - first_[k], p);
   }
   /// The largest errors of all pieces.
   position_error rounding() const {
@@ -40,11 +53,16 @@ class sharded {
   }
 
   std::size_t pieces() const { return pieces_; }
-  const S& piece(std::size_t k) const { return piece_[k]; }
+  CLEARANCE_HD const S& piece(std::size_t k) const { return piece_[k]; }
   /// The number of piece k's first point. For k = pieces(), the number of points.
   std::size_t first(std::size_t k) const { return first_[k]; }
 
  private:
+  CLEARANCE_HD std::uint32_t piece_with(std::size_t i) const {
+    std::uint32_t k = 0;
+    while (i >= first_[k + 1]) ++k;
+    return k;
+  }
   template <std::size_t... K>
   sharded(const std::vector<S>& pieces, std::index_sequence<K...>)
       : piece_{pieces[std::min(K, pieces.size() - 1)]...}, pieces_(pieces.size()) {
@@ -63,18 +81,26 @@ class sharded {
   std::size_t first_[most + 1] = {};
 };
 
+/// A cloud that is made of pieces.
+template <class S>
+concept sharded_source = point_source<S> && requires(const S s, std::size_t k) {
+  s.pieces();
+  s.first(k);
+  s.piece(k);
+};
+
 /// The number of the first point of piece `k`, if a cloud is split into `n`: sharded clouds into their own pieces,
 /// others into about equal slices. For k = n, the number of points.
 template <point_source S>
 std::size_t first_of_piece(const S& cloud, std::size_t k, std::size_t n) {
-  if constexpr (requires { cloud.piece(k); })
+  if constexpr (sharded_source<S>)
     return cloud.first(k);
   else
     return first_of_slice(cloud.size(), k, n);
 }
 template <point_source S>
 auto piece_of(const S& cloud, std::size_t k, std::size_t n) {
-  if constexpr (requires { cloud.piece(k); })
+  if constexpr (sharded_source<S>)
     return cloud.piece(k);
   else
     return slice(cloud, first_of_piece(cloud, k, n), first_of_piece(cloud, k + 1, n));
@@ -83,7 +109,7 @@ auto piece_of(const S& cloud, std::size_t k, std::size_t n) {
 /// Throws std::invalid_argument if a sharded cloud does not have `n` pieces.
 template <point_source S>
 void check_pieces(const S& cloud, std::size_t n) {
-  if constexpr (requires { cloud.pieces(); })
+  if constexpr (sharded_source<S>)
     if (cloud.pieces() != n)
       throw std::invalid_argument("clearance: a cloud of " + std::to_string(cloud.pieces()) + " pieces for " +
                                   std::to_string(n) + " devices");

@@ -4,6 +4,7 @@
 
 #include <clearance/concepts/capsule.hpp>
 #include <clearance/points/sensor_noise.hpp>
+#include <clearance/points/sharded.hpp>
 
 namespace clearance {
 
@@ -28,6 +29,10 @@ CLEARANCE_HD vec3 sensor_of(const S& s) {
     return s.filter.sensor;
   else if constexpr (requires { sensor_of(s.source); })
     return sensor_of(s.source);
+  else if constexpr (requires { sensor_of(s.whole); })
+    return sensor_of(s.whole);
+  else if constexpr (sharded_source<S>)
+    return sensor_of(s.piece(0));
   else
     return {0, 0, 0};
 }
@@ -58,6 +63,12 @@ struct uncertain {
     detail::check_uncertain(of.max_speed, "the obstacles' greatest speed");
     detail::check_uncertain(of.age, "a cloud's age"), detail::check_uncertain(drift, "speed times age");
     if constexpr (requires { noise.check(source.size()); }) noise.check(source.size());
+    if constexpr (sharded_source<S>)
+      for (std::size_t k = 1; k < source.pieces(); ++k)
+        if (sensor_of(source.piece(k)) != sensor_of(source))
+          throw std::invalid_argument("clearance: piece " + std::to_string(k) +
+                                      " of an uncertain cloud is seen from another place than piece 0: make each "
+                                      "uncertain, then the cloud of them");
   }
 
   CLEARANCE_HD std::size_t size() const { return source.size(); }
@@ -110,12 +121,34 @@ struct uncertain {
     for (int k = 0; k < drop_reasons; ++k) dropped[k] += its[k];
     return true;
   }
-  /// Another source of as many points, with the same uncertainty.
-  template <point_source Other>
-  uncertain<Other, N> around_same(const Other& other) const {
-    uncertain<Other, N> same(other, noise);
+  /// Another source with the same uncertainty, and a noise for each of its points.
+  template <point_source Other, sensor_noise Its>
+  uncertain<Other, Its> around_same(const Other& other, const Its& its) const {
+    uncertain<Other, Its> same(other, its);
     same.shift = shift, same.turn = turn, same.drift = drift;
     return same;
+  }
+  /// Points `begin` to `end - 1`, each with its own radius.
+  auto slice(std::size_t begin, std::size_t end) const
+    requires(!capsule_source<S>)
+  {
+    return around_same(clearance::slice(source, begin, end), clearance::slice(noise, begin, end));
+  }
+  /// The pieces of a `sharded` source, as that says them.
+  std::size_t pieces() const
+    requires sharded_source<S>
+  {
+    return source.pieces();
+  }
+  auto piece(std::size_t k) const
+    requires sharded_source<S>
+  {
+    return around_same(source.piece(k), clearance::slice(noise, first(k), first(k + 1)));
+  }
+  std::size_t first(std::size_t k) const
+    requires sharded_source<S>
+  {
+    return source.first(k);
   }
 
   position_error rounding() const {
@@ -147,6 +180,12 @@ struct as_measured {
   template <point_source S, sensor_noise N>
   CLEARANCE_HD S operator()(const uncertain<S, N>& s) const {
     return s.source;
+  }
+  template <vague_source S>
+  auto operator()(const sharded<S>& s) const {
+    std::vector<decltype((*this)(s.piece(0)))> pieces;
+    for (std::size_t k = 0; k < s.pieces(); ++k) pieces.push_back((*this)(s.piece(k)));
+    return sharded(pieces);
   }
 };
 

@@ -3,6 +3,7 @@
 // How far is a robot at least from what its sensors see, if places of points and of parts are uncertain?
 
 #include <clearance/backend/apart.hpp>
+#include <clearance/minimum/certain_pairs.hpp>
 #include <clearance/points/uncertain.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/traversal/any_depth.hpp>
@@ -23,35 +24,6 @@ inline std::vector<double> sums(std::span<const part_radius> radii) {
   for (const part_radius& r : radii) all.push_back(r.sum());
   return all;
 }
-
-/// What lies between the distance of a pair and what is certain of it, one by one. Metres.
-struct uncertainty_shares {
-  double noise = 0, calibration = 0, time = 0;  ///< Of the point.
-  double joints = 0, delay = 0;                 ///< Of the part.
-  double gap = 0;                               ///< The part's gap and tolerance.
-  double rounding = 0;
-
-  double sum() const { return noise + calibration + time + joints + delay + gap + rounding; }
-};
-
-/// The pair of a part that is least far apart for certain. `distance` is what was measured, `lower` the rest, at least
-/// 0. The pair need not be the nearest. Without a valid point the distance is infinite.
-struct certain_pair : part_witness {
-  real lower = 0;
-  uncertainty_shares shares;
-};
-
-/// `lower <= distance to the solid <= upper` if no radius is too small. `certain` is the pair that decides `lower`.
-/// `collision`: a point is inside by more than all radii, which of a part that is a mesh is not known: `possible`.
-/// `nominal` is what min_distance says about the same points.
-struct certain_distance_result {
-  clearance::state state = clearance::state::no_data;
-  real lower = 0, upper = infinity;
-  min_distance_result nominal;
-  certain_pair certain;
-  std::vector<certain_pair> parts;
-  std::uint64_t anywhere = 0;  ///< So many points may be anywhere: if it is not 0, nothing is free.
-};
 
 namespace minimum {
 
@@ -107,7 +79,17 @@ struct certain_distance {
   using result = certain_distance_result;
   template <class On, class PartView>
   class engine;
+  template <class PartView>
+  using joined = minimum::joined_certain<PartView>;
 
+  /// A point that is unseen may be anywhere.
+  static void so_far(result& r, std::uint64_t unseen) {
+    minimum::allow_for_unseen(r.nominal, unseen);
+    if (unseen == 0) return;
+    r.lower = r.certain.lower = 0;
+    for (certain_pair& part : r.parts) part.lower = 0;
+    if (r.state == state::free) r.state = state::possible;
+  }
   void check(std::size_t count) const {
     if (!parts.empty() && parts.size() != count)
       throw std::invalid_argument("clearance: there are " + std::to_string(count) + " parts, but " +
@@ -145,8 +127,9 @@ class certain_distance::engine {
       r.nominal = nominal_.run(poses, measured, min_distance{});
       certain = search_.run(poses, here, min_distance_per_part{});
     }
-    const bool vague = read(poses, here, certain.parts, r.nominal);
-    conclude(q, certain, vague || !q.parts.empty(), r);
+    r.any_radius = read(poses, here, certain.parts, r.nominal) || !q.parts.empty();
+    tell(q, certain, r);
+    minimum::conclude(r);
     return r;
   }
 
@@ -177,37 +160,33 @@ class certain_distance::engine {
     return vague;
   }
 
-  void conclude(const certain_distance& q, const min_distance_per_part_result& found, bool any_radius,
-                result& r) const {
+  void tell(const certain_distance& q, const min_distance_per_part_result& found, result& r) const {
     r.anywhere = found.all.dropped[int(drop_reason::too_close)];
-    double lower = infinity;
     const auto radius = [&q](std::size_t k) { return q.parts.empty() ? part_radius{} : q.parts[k]; };
     for (std::size_t k = 0; k < model_.size(); ++k) {
       const minimum::uncertain_pair& pair = pairs_[k];
       certain_pair& part = r.parts.emplace_back();
       if (found.parts[k].point == none) continue;
       static_cast<part_witness&>(part) = pair.measured;
+      part.to_ball = found.parts[k].distance;
       const frames::float_error error{errors_[k], frame_.error.per_metre};
-      const real least = found.parts[k].distance;
-      const double its = minimum::certain_distance(least, frames::slop(model_.facts[k]), error) - radius(k).sum();
-      part.lower = its > 0 && r.anywhere == 0 ? rounded_down(its) : 0;
       const radius_shares& s = pair.shares;
-      part.shares = {s.noise,          s.calibration,   s.time,
-                     radius(k).joints, radius(k).delay, frames::slop(model_.facts[k]),
-                     error.at(least)};
-      if (its < lower) lower = its, r.certain = part;
+      part.shares = {s.noise,
+                     s.calibration,
+                     s.time,
+                     radius(k).joints,
+                     radius(k).delay,
+                     frames::slop(model_.facts[k]),
+                     error.at(part.to_ball)};
     }
-    if (r.nominal.part == none) return;  // nothing is known
-    r.lower = lower > 0 && r.anywhere == 0 ? rounded_down(lower) : 0;
+    if (r.nominal.part == none) return;
     const minimum::uncertain_pair& nearest = pairs_.back();
     const double uncertain =
         (nearest.bounded ? double(nearest.shares.sum()) : double(infinity)) + radius(r.nominal.part).sum();
     const double most = double(r.nominal.distance) + model_.facts[r.nominal.part].tolerance +
                         frame_.error.at(r.nominal.distance) + uncertain;
-    const bool inside = any_radius ? most < 0 : r.nominal.state == state::collision;
-    r.upper = inside ? 0 : any_radius ? rounded_up(most) : r.nominal.upper;
-    if (inside) r.lower = 0;
-    r.state = inside ? state::collision : r.lower > 0 ? state::free : state::possible;
+    r.state = most < 0 ? state::collision : state::possible;
+    r.upper = most < 0 ? 0 : rounded_up(most);
   }
 
   On on_;

@@ -67,7 +67,7 @@ hidden<S> as_uncertain(const auto&, const hidden<S>& room) {
 }
 template <class Image, class S, class N>
 uncertain<hidden<S>, N> as_uncertain(const uncertain<Image, N>& image, const hidden<S>& room) {
-  return image.around_same(room);
+  return image.around_same(room, image.noise);
 }
 
 /// Throws std::invalid_argument unless there are no labels, or one for each pixel.

@@ -24,10 +24,10 @@ __global__ void __launch_bounds__(boxing_threads) box_pieces(const __grid_consta
   const std::size_t begin = blockIdx.x * piece_points, all = source.size(),
                     end = all - begin < piece_points ? all : begin + piece_points;
   boxed_piece mine;
-  for (std::size_t i = begin + threadIdx.x; i < end; i += boxing_threads) mine.add(source[i]);
+  for (std::size_t i = begin + threadIdx.x; i < end; i += boxing_threads) mine.add(source, i);
   for (unsigned step = 16; step != 0; step /= 2) {
     const boxed_piece other = others(mine, step);
-    mine.add(other.box, other.dropped);
+    mine.add(other);
   }
   __shared__ unsigned of_warp[warps][words];
   if (threadIdx.x % 32 == 0) memcpy(of_warp[threadIdx.x / 32], &mine, sizeof mine);
@@ -36,7 +36,7 @@ __global__ void __launch_bounds__(boxing_threads) box_pieces(const __grid_consta
   for (unsigned w = 1; w < warps; ++w) {
     boxed_piece other;
     memcpy(&other, of_warp[w], sizeof other);
-    mine.add(other.box, other.dropped);
+    mine.add(other);
   }
   pieces[blockIdx.x] = mine;
 }

@@ -8,31 +8,48 @@
 
 namespace clearance::scan {
 
-/// A box around the valid ones of `piece_points` neighbours, and how many are invalid. It fills a cache line, because
-/// several threads write neighbouring pieces.
+/// A box around the valid ones of `piece_points` neighbours, or around the ways of their capsules, which are at most so
+/// wide; and how many are invalid. It fills a cache line, because several threads write neighbouring pieces.
 struct alignas(64) boxed_piece {
   extent box;
   std::uint32_t dropped[drop_reasons] = {};
+  real wide = 0;
 
   CLEARANCE_HD bool empty() const { return !(box.lower.x <= box.upper.x); }
-  CLEARANCE_HD void add(const sample& s) {
+  /// Point i of a source.
+  template <point_source S>
+  CLEARANCE_HD void add(const S& source, std::size_t i) {
+    const sample s = source[i];
     for (int r = 1; r < drop_reasons; ++r) dropped[r] += int(s.dropped) == r;
-    if (s.valid()) box.add(s.position);
+    if (!s.valid()) return;
+    box.add(s.position);
+    if constexpr (capsule_source<S>) {
+      const capsule c = source.around(i, s.position);
+      box.add(c.at(1)), wide = max(wide, c.radius + clearance::detail::noise_along(c));
+    }
   }
   CLEARANCE_HD void add(const extent& more, const std::uint32_t (&drops)[drop_reasons]) {
     box.lower = {min(box.lower.x, more.lower.x), min(box.lower.y, more.lower.y), min(box.lower.z, more.lower.z)};
     box.upper = {max(box.upper.x, more.upper.x), max(box.upper.y, more.upper.y), max(box.upper.z, more.upper.z)};
     for (int r = 0; r < drop_reasons; ++r) dropped[r] += drops[r];
   }
+  CLEARANCE_HD void add(const boxed_piece& other) {
+    add(other.box, other.dropped);
+    wide = max(wide, other.wide);
+  }
+  /// Its box less an origin.
+  extent box_from(vec3 origin) const { return {box.lower - origin, box.upper - origin}; }
 };
+static_assert(sizeof(boxed_piece) == 64);
 
-/// The approximate distance of a box from a ball.
-inline double away(const ball& around, const extent& box) {
+/// The approximate distance of what is in a piece from a ball.
+inline double away(const ball& around, const boxed_piece& piece, vec3 origin) {
+  const extent box = piece.box_from(origin);
   const auto beyond = [](double low, double high, double c) { return std::max({low - c, c - high, 0.0}); };
   const vec3 c = around.center;
   const double x = beyond(box.lower.x, box.upper.x, c.x), y = beyond(box.lower.y, box.upper.y, c.y),
                z = beyond(box.lower.z, box.upper.z, c.z);
-  return std::sqrt(x * x + y * y + z * z) - around.radius;
+  return std::sqrt(x * x + y * y + z * z) - around.radius - piece.wide;
 }
 
 /// A source that records what a host's scan sees of it. `pieces`: one per `piece_points`, which one thread scans; or
@@ -67,22 +84,23 @@ struct boxing {
   }
   void add_rest() const {
     for (std::size_t i = size() / tile_points * tile_points; pieces != nullptr && i < size(); ++i)
-      pieces[i / piece_points].add(source[i]);
+      pieces[i / piece_points].add(source, i);
   }
 };
 
-/// Boxes around a source's points: `pieces` has one per `piece_points`.
+/// Boxes around a source's points or capsules: `pieces` has one per `piece_points`.
 template <point_source S>
 void box_points(const S& source, boxed_piece* pieces) {
   const std::size_t size = source.size();
-  for (std::size_t i = 0; i < size; ++i) pieces[i / piece_points].add(source[i]);
+  for (std::size_t i = 0; i < size; ++i) pieces[i / piece_points].add(source, i);
 }
 
 /// Some pieces of a source as one source: its piece k is piece `numbers[k]` of the whole. The whole's last piece, which
 /// may be shorter, may only come last.
 template <point_source S>
 struct listed_pieces {
-  static_assert(points_alone<S>());
+  static_assert(points_or_balls<S>());
+  static constexpr bool vague = ball_source<S>, balls = vague;
 
   S whole;
   const std::uint32_t* numbers;
@@ -93,6 +111,11 @@ struct listed_pieces {
     return numbers[i / piece_points] * piece_points + i % piece_points;
   }
   CLEARANCE_HD sample operator[](std::size_t i) const { return whole[at(i)]; }
+  CLEARANCE_HD capsule around(std::size_t i, vec3 p) const
+    requires ball_source<S>
+  {
+    return whole.around(at(i), p);
+  }
   position_error rounding() const { return rounding_of(whole); }
   bool unfiltered() const
     requires unfiltered_source<S>
@@ -103,6 +126,12 @@ struct listed_pieces {
     requires surveyed_source<S>
   {
     return whole.survey(at(begin), box, dropped);
+  }
+  bool survey_capsules(std::size_t begin, extent& box, extent& ends, real& widest,
+                       std::uint32_t (&dropped)[drop_reasons]) const
+    requires surveyed_capsules<S>
+  {
+    return whole.survey_capsules(at(begin), box, ends, widest, dropped);
   }
 };
 
