@@ -111,19 +111,15 @@ struct points_of {
       a.last[index].part = none;
   }
 
-  /// How far the part at most is whose ball is nearest. Not inlined, so that it costs those nothing that have no
-  /// fields.
+  /// How far the nearest part at most is. Not inlined, so that it costs those nothing that have no fields.
   static __noinline__ __device__ real foreseen(vec3 x) {
     using parts = scan::frame_parts<points_of>;
     const auto& head = scan::memory_of_block<points_of>().head;
-    real least = infinity;
-    std::uint32_t nearest = 0;
-    for (std::uint32_t k = 0; k < head.parts; ++k) {
-      const ball around = parts::place(k).root.around;
-      const real away = rough_length(x - around.center) - around.radius;
-      if (away < least) least = away, nearest = k;
-    }
-    return head.parts == 0 ? infinity : head.answer.fields[nearest](parts::place(nearest).part_from_cloud(x)).high;
+    real high = infinity;
+    for (std::uint32_t k = 0; k < head.parts; ++k)
+      if (const scan::frame_part& place = parts::place(k); frames::may_reach(place.root.around, high, x))
+        high = min(high, head.answer.fields[k](place.part_from_cloud(x)).high);
+    return high;
   }
 
   template <class Source>
@@ -189,10 +185,12 @@ class device_points {
     using tally = points_of<PartView, Tangents>;
     return certainty_of(launch_.pass(
         facts_, poses, clouds,
-        [&](const auto&, std::uint32_t group, const frames::turn& now) {
+        [&](const auto& source, std::uint32_t group, const frames::turn& now) {
+          // Many points do not wait for their first primitives.
+          const bool look_up = d_max == infinity && source.size() < 1u << 20;
           return launch_.template begin<tally>(group, now,
                                                {out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr,
-                                                last_.data(), d_max == infinity ? launch_.fields(group) : nullptr});
+                                                last_.data(), look_up ? launch_.fields(group) : nullptr});
         },
         here));
   }
