@@ -114,10 +114,13 @@ TEST_CASE("Uncertain clouds in chunks have the answer of one call, whatever is s
   const auto check = [&](const auto& source, auto& chunks, const std::string& what) {
     chunks.forget();
     for_each_question_of_balls(arm_poses, [&]<class Q>(const char* name, const Q& q, auto poses) {
-      clearance::chunked_query ask_it(host{}, model, q);
-      for (int round = 0; round < 3; ++round, poses[0].translation().x() += round == 2 ? 3 : 0.02)
-        v.require(same_answer(ask(host{}, model, poses, source, pose, q), ask_it(poses, chunks, pose)), what, ": ",
-                  name, ", round ", round);
+      // Points that are read are compiled for a few questions alone.
+      if constexpr (!std::is_same_v<decltype(source.source), places> || !requires { typename Q::searched; }) {
+        clearance::chunked_query ask_it(host{}, model, q);
+        for (int round = 0; round < 3; ++round, poses[0].translation().x() += round == 2 ? 3 : 0.02)
+          v.require(same_answer(ask(host{}, model, poses, source, pose, q), ask_it(poses, chunks, pose)), what, ": ",
+                    name, ", round ", round);
+      }
     });
   };
   for (const std::size_t n : {0, 1, 4097, 30000})
