@@ -30,6 +30,7 @@ struct cloud_options {
   bool use_viewpoint = false, zero_is_missing = false;
   clearance::any_noise sensor = {};       // --sensor
   clearance::cloud_uncertainty off = {};  // --calibration, --delay, --max-speed
+  double later = 0;                       // --plan-time, of the plan of `clearance run`; seconds
   clearance::io::read_limits limits;
   std::uint64_t bytes_each = 0;    // made per point, in memory or in an output file; the limit counts these
   std::vector<std::string> given;  // the options before the first --cloud, by name: for all clouds
