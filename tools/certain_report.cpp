@@ -49,7 +49,10 @@ struct wrong_joints {
   }
   std::vector<part_radius> radii(const std::vector<double>& joints, const io::joint_uncertainty& of,
                                  io::joint_options options) const {
-    return io::part_radii(tree, links, placed, joints, of, options);
+    auto all = io::part_radii(tree, links, placed, joints, of, options);
+    for (const part_radius& r : all)
+      if (!(r.sum() <= 1e15)) throw usage_error("--joint-error", "and --joint-speed move a link by more than 1e15 m");
+    return all;
   }
 
   const io::kinematic_tree& tree;

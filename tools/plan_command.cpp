@@ -55,7 +55,7 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   report.bodies = &bodies;
   report.pack = clock.lap();
   shown.show("asking about " + std::to_string(rows.size()) + " configurations");
-  const asked_model model{asked.model, asked.volume, &bodies, asked.fields};
+  const asked_model model{asked.model, asked.volume, &bodies, uses_fields(asked, rows.size())};
   auto there = robot_on(asked.on_device, model);
   if (ranks) there = ranks->together(std::move(there), model, questions_of(asked));
   report.upload = there->see(clouds.seen);

@@ -21,7 +21,7 @@ json certain_of(const plan_report& report, std::size_t k) {
   const bool any = row.state != state::no_data, point = row.point != none;
   return {{"state", to_string(row.state)},
           {"lower", any ? or_null(row.lower) : json(nullptr)},
-          {"part", any ? json((*report.bodies)[row.part].name) : json(nullptr)},
+          {"part", row.part != none ? json((*report.bodies)[row.part].name) : json(nullptr)},
           {"cloud", point ? json((*report.clouds)[row.cloud].name) : json(nullptr)},
           {"point", point ? json(row.point) : json(nullptr)}};
 }

@@ -55,11 +55,11 @@ struct raw_options {
       trajectory, unfolded;
   std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, support_limit, svg,
       report, deadline, nearest, delay, max_speed, plan_time, joint_error, joint_speed, stamps, max_age;
-  std::optional<std::string> unseen;  // without a value: empty
+  std::optional<std::string> unseen, fields;  // without a value: empty
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges,
       sensors, calibrations;
   bool ignore_limits = false, strict = false, json = false, no_cache = false, merge = false, csv = false,
-       gradient = false, shard = false, is_signed = false, between = false, fields = false;
+       gradient = false, shard = false, is_signed = false, between = false;
 };
 
 /// A number that is not negative.
@@ -98,8 +98,17 @@ clearance::any_noise sensor_of(const std::string& option, const std::string& tex
   return sensor;
 }
 constexpr const char* of_fields =
-    "Sample a table around each link first (1 MiB; up to seconds a link on a host, 5 ms on a GPU): configurations then "
-    "take less time, and every answer is the same; for thousands of them";
+    "on (also without a value), off or auto (default): sample a table around each link first (1 MiB; up to seconds a "
+    "link on a host, 5 ms on a GPU). Configurations take less time then, and every answer is the same; auto: for "
+    "100,000 and more (rows times frames) without --d-max";
+
+void add_fields(CLI::App& app, raw_options& raw) {
+  app.add_option_function<std::vector<std::string>>(
+         "--fields",
+         [&raw](const std::vector<std::string>& given) { raw.fields = given.empty() ? std::string() : given[0]; },
+         of_fields)
+      ->expected(0, 1);
+}
 
 /// Sets one per-cloud option, given on the command line.
 void set(cloud_options& cloud, const std::string& option, const std::string& text) {
@@ -357,8 +366,11 @@ void read_questions(const raw_options& raw, query_options& o) {
   if (o.between && !o.attached.empty())
     throw usage_error("--between", "cannot be mixed with --attach: how what is held moves is not bounded yet");
   o.recording.plan = raw.plan;
-  o.fields = raw.fields;
-  if (o.fields && o.configurations.empty() && o.recording.plan.empty()) throw usage_error("--fields", "is for --plan");
+  if (raw.fields) {
+    if (o.configurations.empty() && o.recording.plan.empty()) throw usage_error("--fields", "is for --plan");
+    const std::size_t how = raw.fields->empty() ? 0 : choice("--fields", *raw.fields, {"on", "off", "auto"});
+    if (how != 2) o.fields = how == 0;
+  }
   o.recording.svg = raw.svg;
   if (!raw.svg.empty() && clearance::io::extension(raw.svg) != ".svg")
     throw usage_error("--svg", raw.svg + ": its name must end in .svg, which is what is written");
@@ -480,7 +492,7 @@ void add_joint_options(CLI::App& app, raw_options& raw, asking how) {
         "CSV as --trajectory: configurations to come, one a row; every frame says how near they are to its points, and "
         "with --check which is the "
         "first that is too near");
-    app.add_flag("--fields", raw.fields, of_fields);
+    add_fields(app, raw);
     app.add_option("--joint", raw.joint, "name=value: a joint that has no column in the trajectory (and in the plan)");
   } else if (planned) {
     app.add_option("--configurations", raw.configurations,
@@ -589,7 +601,7 @@ void add_plan_questions(CLI::App& app, raw_options& raw) {
                "Judge also the way from each configuration to the next, every joint at constant speed: no point is "
                "nearer than its lower end at any time; "
                "--check is about the ways, too");
-  app.add_flag("--fields", raw.fields, of_fields);
+  add_fields(app, raw);
   add_unseen(app, raw);
   app.add_flag("--csv", raw.csv, "Print CSV; without it, one JSON object per configuration and a last one about all");
   add_shard(app, raw);
@@ -662,6 +674,11 @@ void add_query_questions(CLI::App& app, raw_options& raw) {
 }
 
 }  // namespace
+
+bool uses_fields(const query_options& asked, std::size_t configurations) {
+  constexpr std::size_t pays_from = 100'000;  // docs/plan.md
+  return asked.fields.value_or(configurations >= pays_from && !(asked.d_max < clearance::infinity));
+}
 
 std::string questions_of(const query_options& asked) {
   std::ostringstream all;

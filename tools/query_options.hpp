@@ -114,9 +114,13 @@ struct query_options {
   std::string configurations;      // for `clearance plan`
   bool csv = false;                // for `clearance plan` and `clearance run`
   bool between = false;            // for `clearance plan`
-  bool fields = false;             // for `clearance plan` and the plan of `clearance run`
+  std::optional<bool> fields;      // for `clearance plan` and the plan of `clearance run`; auto: not given
   recording_options recording;     // for `clearance run`
 };
+
+/// Are so many configurations asked about with fields? If not said by --fields: where sampling costs less than it
+/// saves.
+bool uses_fields(const query_options& asked, std::size_t configurations);
 
 enum class asking { query, run, plan };
 

@@ -212,11 +212,12 @@ std::vector<certain_row> ask_certain_plan(backend_robot& there, const placed_row
     const min_distances_per_part_result some = there.certain_plan(poses, d_max, radii);
     for (std::size_t c = 0; c < some.size(); ++c) {
       certain_row& row = all.emplace_back();
+      row.anywhere = some.of(c)[0].dropped[int(drop_reason::too_close)];
+      if (row.anywhere != 0) row.state = state::possible;  // if no other point is left, too
       for (std::uint32_t k = 0; k < some.parts; ++k) {
         const min_distance_result& r = some.of(c)[k];
         if (r.state == state::no_data || (row.part != none && !(r.lower < row.lower))) continue;
-        row = {r.lower > 0 ? state::free : state::possible, r.lower, k, r.cloud, r.point,
-               r.dropped[int(drop_reason::too_close)]};
+        row = {r.lower > 0 ? state::free : state::possible, r.lower, k, r.cloud, r.point, row.anywhere};
       }
     }
     query += there.query;

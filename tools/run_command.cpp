@@ -140,6 +140,8 @@ class waypoints {
   }
   waypoints(const waypoints&) = delete;
 
+  std::size_t size() const { return rows_.size(); }
+
   std::optional<plan_report> ask(backend_robot& there) {
     if (!placed_) return std::nullopt;
     plan_report plan{.asked = &asked_};
@@ -194,7 +196,8 @@ int run_frames(const query_options& asked) {
   if (!asked.recording.svg.empty()) check_picture(asked.recording.svg, frames, inputs);
   const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
   print(notes, shown);
-  const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies, asked.fields});
+  const auto there = robot_on(asked.on_device,
+                              {asked.model, asked.volume, &bodies, uses_fields(asked, to_come.size() * frames.size())});
   int code = 0;
   double upload = asked.recording.merge ? there->see({merged.finish(moves.poses(0))}) : 0;
   asked_clouds clouds;  // the frame's

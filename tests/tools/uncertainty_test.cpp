@@ -216,6 +216,11 @@ TEST_CASE("clearance plan says of each row what query says is certain, until the
                                      " --configurations " + rows.path + " --cloud " + cloud.path);
   CHECK(behind.err.find("1 points may be anywhere, so nothing is free") != behind.err.npos);
   CHECK(lines(behind)[0].at("certain").at("lower") == 0);
+  const auto fast =
+      lines(run_command("plan --backend host --model triangles --max-speed 1e9 --delay 1 --plan-time 1 --robot " +
+                        urdf.path + " --configurations " + rows.path + " --cloud " + cloud.path));
+  CHECK(fast[0].at("certain") ==
+        nlohmann::json::parse(R"({"state": "possible", "lower": 0.0, "part": null, "cloud": null, "point": null})"));
 }
 
 TEST_CASE("clearance run --plan says what plan says is certain, and each frame is about its own time") {
@@ -334,6 +339,7 @@ TEST_CASE("What is wrong about uncertainty is one sentence that names the option
   refuses(q.ask + " --sensor lidar:0.1,0 --shard", "--sensor: cannot be mixed with --shard");
   refuses(q.ask + " --calibration 0.1,0 --deadline 5", "--deadline: is for the least distance alone");
   refuses(m.ask + " --joint-error 1,2,3", "--joint-error: needs one number, or one for each of the robot's 2");
+  refuses(m.ask + " --joint-error 1e300", "--joint-error: and --joint-speed move a link by more than 1e15 m");
   refuses(m.ask + " --joint-error -1", "--joint-error: needs 0 or more");
   refuses(m.ask + " --joint-speed 1", "--joint-speed: needs --delay");
   refuses(q.ask + " --max-speed 1 --delay 1 --plan-time 1", "--plan-time");
