@@ -24,6 +24,7 @@ struct zones;
 struct zones_result;
 struct point_distances;
 struct min_distances_result;
+struct min_distances_per_part_result;
 struct nearest_k_result;
 struct self_filter_result;
 struct min_distance_supported;
@@ -61,6 +62,7 @@ struct seen_points {
   Eigen::Isometry3d pose;  // world-from-points
   clearance::any_noise sensor = {};
   clearance::cloud_uncertainty off = {};
+  double later = 0;  // seconds more until a plan ends
 };
 
 struct reply {
@@ -106,6 +108,9 @@ class backend_robot {
   /// `poses`: those of one configuration after another. The query is prepared at the first call, and remembers the
   /// places of the minima.
   virtual clearance::min_distances_result plan(poses_of poses, double d_max) = 0;
+  /// The same about all places where points may be until the plan ends, and parts that may be `radii` elsewhere.
+  virtual clearance::min_distances_per_part_result certain_plan(poses_of poses, double d_max,
+                                                                const std::vector<double>& radii) = 0;
   /// How near the robot comes on each way.
   virtual std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
                                                                const clearance::motion_clearance_options& options) = 0;

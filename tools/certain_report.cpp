@@ -5,6 +5,9 @@
 
 #include <clearance/io/part_radii.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 using namespace clearance;
 
 namespace {
@@ -32,23 +35,87 @@ part_facts in_link(const part_facts& facts, const Eigen::Isometry3d& link_from_p
   return moved;
 }
 
+/// The joints' errors and speeds, and the parts on their links.
+struct wrong_joints {
+  wrong_joints(const joints_off& wrong, const asked_robot& robot, std::span<const part_facts> facts)
+      : tree(robot.description.kinematics()),
+        errors(each_of("--joint-error", wrong.errors, tree)),
+        speeds(each_of("--joint-speed", wrong.speeds, tree)) {
+    for (std::size_t k = 0; k < facts.size(); ++k) {
+      links.push_back(robot.link_of(k));
+      const attached_thing* held = robot.held_as(k);
+      placed.push_back(held ? in_link(facts[k], held->from.pose) : facts[k]);
+    }
+  }
+  std::vector<part_radius> radii(const std::vector<double>& joints, const io::joint_uncertainty& of,
+                                 io::joint_options options) const {
+    auto all = io::part_radii(tree, links, placed, joints, of, options);
+    for (const part_radius& r : all)
+      if (!(r.sum() <= 1e15)) throw usage_error("--joint-error", "and --joint-speed move a link by more than 1e15 m");
+    return all;
+  }
+
+  const io::kinematic_tree& tree;
+  std::vector<double> errors, speeds;
+  std::vector<std::size_t> links;
+  std::vector<part_facts> placed;
+};
+
+/// Makes each radius at least as great as `other`'s.
+void raise(std::vector<double>& radii, const std::vector<double>& other) {
+  radii.resize(other.size());
+  for (std::size_t k = 0; k < other.size(); ++k) radii[k] = std::max(radii[k], other[k]);
+}
+
 }  // namespace
 
 std::vector<part_radius> radii_of(const query_options& asked, const asked_robot& robot,
                                   const std::vector<double>& joints, std::span<const part_facts> facts, double off) {
   const joints_off& wrong = *asked.certain;
   if (wrong.errors.empty() && wrong.speeds.empty()) return {};
-  const io::kinematic_tree& tree = robot.description.kinematics();
-  const auto errors = each_of("--joint-error", wrong.errors, tree),
-             speeds = each_of("--joint-speed", wrong.speeds, tree);
-  std::vector<std::size_t> links;
-  std::vector<part_facts> placed;
-  for (std::size_t k = 0; k < facts.size(); ++k) {
-    links.push_back(robot.link_of(k));
-    const attached_thing* held = robot.held_as(k);
-    placed.push_back(held ? in_link(facts[k], held->from.pose) : facts[k]);
+  const wrong_joints of(wrong, robot, facts);
+  return of.radii(joints, {of.errors, of.speeds, wrong.delay + off}, {asked.ignore_limits});
+}
+
+std::vector<double> summed_radii(const query_options& asked, const asked_robot& robot,
+                                 const std::vector<double>& joints, std::span<const part_facts> facts, double off) {
+  if (!asked.certain) return {};
+  return sums(radii_of(asked, robot, joints, facts, off));
+}
+
+std::vector<double> radii_in_rows(const query_options& asked, const asked_robot& robot,
+                                  const std::vector<std::vector<double>>& rows, std::span<const part_facts> facts) {
+  std::vector<double> most;
+  for (const std::vector<double>& row : rows) raise(most, summed_radii(asked, robot, row, facts));
+  return most;
+}
+
+std::vector<double> radii_between_rows(const query_options& asked, const asked_robot& robot,
+                                       const std::vector<std::vector<double>>& rows,
+                                       std::span<const part_facts> facts) {
+  if (!asked.certain || (asked.certain->errors.empty() && asked.certain->speeds.empty())) return {};
+  const wrong_joints of(*asked.certain, robot, facts);
+  std::vector<double> errors(of.tree.size()), half(of.tree.size()), most;
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    errors[i] = (of.errors.empty() ? 0 : of.errors[i]) +
+                (of.speeds.empty() ? 0 : std::abs(of.speeds[i]) * asked.certain->delay);
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const std::vector<double>&from = rows[k - 1], &to = rows[k];
+    double widest = 0;
+    for (std::size_t i = 0; i < from.size(); ++i) widest = std::max(widest, std::abs(to[i] - from[i]));
+    const int pieces = int(std::clamp(std::ceil(widest / 0.02), 1.0, 1000.0));
+    for (std::size_t i = 0; i < from.size(); ++i) half[i] = std::abs(to[i] - from[i]) / (2 * pieces) * (1 + 0x1p-30);
+    // Around the middle of a piece joints may be half of the piece away, and then their errors more: what the second
+    // adds to the first is at least the radius anywhere in the piece, because levers grow by at most the first.
+    for (int piece = 0; piece < pieces; ++piece) {
+      std::vector<double> middle, radii;
+      for (std::size_t i = 0; i < from.size(); ++i) middle.push_back(std::lerp(from[i], to[i], (piece + 0.5) / pieces));
+      for (const part_radius& r : of.radii(middle, {half, errors, 1}, {.ignore_limits = true}))
+        radii.push_back(r.delay);
+      raise(most, radii);
+    }
   }
-  return io::part_radii(tree, links, placed, joints, {errors, speeds, wrong.delay + off}, {asked.ignore_limits});
+  return most;
 }
 
 cloud_uncertainty carried_off(const query_options& asked, const asked_robot& robot, const std::vector<double>& joints,
@@ -109,10 +176,10 @@ std::string certain_text(const certain_distance_result& r, const std::vector<bod
                    s.noise, s.calibration, s.time, s.joints, s.delay, s.gap, s.rounding);
 }
 
-void note_anywhere(const certain_distance_result& r, std::vector<std::string>& notes) {
-  if (r.anywhere != 0)
+void note_anywhere(std::uint64_t count, std::vector<std::string>& notes) {
+  if (count != 0)
     notes.push_back(
         text("%llu points may be anywhere, so nothing is free: they are too close to be measured, or where "
              "--sensor measures nothing, such as behind a camera (z is forward)",
-             (unsigned long long)r.anywhere));
+             (unsigned long long)count));
 }

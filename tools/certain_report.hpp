@@ -13,6 +13,20 @@ std::vector<clearance::part_radius> radii_of(const query_options& asked, const a
                                              const std::vector<double>& joints,
                                              std::span<const clearance::part_facts> facts, double off = 0);
 
+/// The same summed, in metres, as questions take them.
+std::vector<double> summed_radii(const query_options& asked, const asked_robot& robot,
+                                 const std::vector<double>& joints, std::span<const clearance::part_facts> facts,
+                                 double off = 0);
+
+/// One radius per part that holds in all rows of a plan: its greatest.
+std::vector<double> radii_in_rows(const query_options& asked, const asked_robot& robot,
+                                  const std::vector<std::vector<double>>& rows,
+                                  std::span<const clearance::part_facts> facts);
+/// And one that holds all the way from each row to the next.
+std::vector<double> radii_between_rows(const query_options& asked, const asked_robot& robot,
+                                       const std::vector<std::vector<double>>& rows,
+                                       std::span<const clearance::part_facts> facts);
+
 /// A cloud's own uncertainty, and what joints that are wrong do to the camera, which this link carries.
 clearance::cloud_uncertainty carried_off(const query_options& asked, const asked_robot& robot,
                                          const std::vector<double>& joints, const std::string& link,
@@ -27,5 +41,5 @@ json certain_of(const clearance::certain_pair& pair, const std::vector<const obs
 /// Lines of the text.
 std::string certain_text(const clearance::certain_distance_result& r, const std::vector<body>& bodies);
 
-/// Adds a note if points may be anywhere.
-void note_anywhere(const clearance::certain_distance_result& r, std::vector<std::string>& notes);
+/// Adds a note if so many points may be anywhere.
+void note_anywhere(std::uint64_t count, std::vector<std::string>& notes);

@@ -14,10 +14,11 @@ bool is_uncertain(const self_filter_result& filter, const min_distance_result& n
 
 }  // namespace
 
-own_points hide_own_points(const query_options& asked, backend_robot& there, poses_of poses, asked_clouds& clouds) {
+own_points hide_own_points(const query_options& asked, backend_robot& there, poses_of poses, asked_clouds& clouds,
+                           const std::vector<double>& radii) {
   own_points found{.filter = there.own_points(poses, *asked.self_filter), .unseen = {}};
   if (asked.unseen) {
-    found.unseen = there.unseen(poses, {*asked.unseen, 0, found.filter.labels});
+    found.unseen = there.unseen(poses, {.room = *asked.unseen, .labels = found.filter.labels, .radii = radii});
     found.unseen_query = there.query;
   }
   clouds.hide(found.filter.labels);

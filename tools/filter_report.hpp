@@ -16,7 +16,8 @@ struct own_points {
 };
 
 /// Hides the points that are the robot's own from the questions that follow.
-own_points hide_own_points(const query_options& asked, backend_robot& there, poses_of poses, asked_clouds& clouds);
+own_points hide_own_points(const query_options& asked, backend_robot& there, poses_of poses, asked_clouds& clouds,
+                           const std::vector<double>& radii);
 
 /// Adds a note if a threshold is within --self-filter, which hides the points that it is about.
 void note_hidden(const query_options& asked, std::vector<std::string>& notes);

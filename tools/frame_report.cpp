@@ -64,6 +64,8 @@ std::string to_json(const frame_report& report) {
     plan["lower"] = json::array();
     for (const min_distance_result& r : report.plan->found.of)
       plan["lower"].push_back(r.state == state::no_data ? json(nullptr) : or_null(r.lower));
+    for (const certain_row& row : report.plan->certain)
+      plan["certain_lower"].push_back(row.state == state::no_data ? json(nullptr) : or_null(row.lower));
     plan["latency_us"] = microseconds(report.plan->query);
   }
   return json_text(out, -1);
@@ -79,6 +81,7 @@ std::string to_csv(const frame_report& report) {
     if (report.unseen) out += std::string(",") + unseen_columns;
     out += part_columns(report);
     if (report.plan) out += report.plan->asked->margin ? ",plan_least,plan_at,plan_first_below" : ",plan_least,plan_at";
+    if (report.plan && !report.plan->certain.empty()) out += ",plan_certain_lower,plan_certain_at";
     out += '\n';
   }
   out += std::to_string(report.frame) + ',' + csv_word(report.file) + ',' +
@@ -94,5 +97,8 @@ std::string to_csv(const frame_report& report) {
   if (report.plan)
     for (const auto plan = outcome_of(*report.plan); const char* const name : {"least", "at", "first_below"})
       if (plan.contains(name)) out += ',' + csv_word(plan[name]);
+  if (report.plan && !report.plan->certain.empty())
+    for (const auto plan = outcome_of(*report.plan); const char* const name : {"least_lower", "at"})
+      out += ',' + csv_word(plan["certain"][name]);
   return out + '\n';
 }

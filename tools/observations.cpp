@@ -84,13 +84,13 @@ seen_points observation::seen(const Eigen::Isometry3d& carrier, poses_of robot) 
                                       *from.camera, from.scale);
     source.nearest = real(from.nearest);
     source.farthest = real(from.farthest);
-    return {source, placed, from.sensor, from.off};
+    return {source, placed, from.sensor, from.off, from.later};
   }
   floats_ = points()->near(robot, placed);
   auto [source, pose] = floats_.view();
   source.filter.nearest = real(from.nearest);
   source.filter.farthest = real(from.farthest);
-  return {source, pose, from.sensor, from.off};
+  return {source, pose, from.sensor, from.off, from.later};
 }
 
 std::vector<Eigen::Vector3d> observation::in_world(const Eigen::Isometry3d& carrier, const seen_points& seen,

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "asked_clouds.hpp"
+#include "certain_report.hpp"
 #include "command_line.hpp"
 #include "messages.hpp"
 #include "plan_report.hpp"
 #include "ranks.hpp"
 #include "recording.hpp"
+#include "report_text.hpp"
 
 #include <clearance/io/joint_motion.hpp>
 
@@ -23,6 +25,15 @@ std::vector<io::joint_motion> ways_between(const query_options& asked, const ask
   for (std::size_t k = 1; k < rows.size(); ++k)
     ways.emplace_back(robot.description, rows[k - 1], rows[k], io::joint_options{asked.ignore_limits}, asked.base);
   return ways;
+}
+
+/// Throws usage_error if no row beyond --d-max could pass --check, because parts may be elsewhere.
+void check_d_max(const query_options& asked, const std::vector<double>& radii) {
+  const double most = radii.empty() ? 0 : std::ranges::max(radii);
+  if (asked.margin && !(asked.d_max - most > *asked.margin))
+    throw usage_error("--d-max", text("must be above the margin of --check by more than %g m, as far as a link may be "
+                                      "elsewhere, or nothing could pass",
+                                      most));
 }
 
 /// `ranks`: those of --shard.
@@ -44,20 +55,28 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   report.bodies = &bodies;
   report.pack = clock.lap();
   shown.show("asking about " + std::to_string(rows.size()) + " configurations");
-  const asked_model model{asked.model, asked.volume, &bodies, asked.fields};
+  const asked_model model{asked.model, asked.volume, &bodies, uses_fields(asked, rows.size())};
   auto there = robot_on(asked.on_device, model);
   if (ranks) there = ranks->together(std::move(there), model, questions_of(asked));
   report.upload = there->see(clouds.seen);
+  std::vector<double> radii;
+  if (asked.certain) check_d_max(asked, radii = radii_in_rows(asked, robot, rows, there->facts()));
   report.found = ask_plan(*there, placed, asked.d_max, report.query);
+  if (asked.certain) {
+    report.certain = ask_certain_plan(*there, placed, asked.d_max, radii, report.query);
+    note_anywhere(report.certain[0].anywhere, notes);
+  }
   if (asked.unseen) {
     shown.show("asking about what is hidden");
-    report.unseen = ask_plan_unseen(*there, placed, {*asked.unseen}, bodies.size(), report.query);
+    report.unseen =
+        ask_plan_unseen(*there, placed, {.room = *asked.unseen, .radii = radii}, bodies.size(), report.query);
   }
   if (asked.between) {
     shown.show("asking about the ways between them");
     // With a margin only as exact as the decision needs; otherwise to a centimetre.
     const motion_clearance_options options{.tolerance = asked.margin ? double(infinity) : 0.01,
-                                           .margin = asked.margin.value_or(0)};
+                                           .margin = asked.margin.value_or(0),
+                                           .radii = radii_between_rows(asked, robot, rows, there->facts())};
     report.ways = there->ways(ways_between(asked, robot, rows), options);
     report.query += there->query;
   }

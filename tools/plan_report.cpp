@@ -15,6 +15,17 @@ const observation* cloud_of(const plan_report& report, const min_distance_result
   return r.point == none ? nullptr : &(*report.clouds)[r.cloud];
 }
 
+/// What is certain of row k.
+json certain_of(const plan_report& report, std::size_t k) {
+  const certain_row& row = report.certain[k];
+  const bool any = row.state != state::no_data, point = row.point != none;
+  return {{"state", to_string(row.state)},
+          {"lower", any ? or_null(row.lower) : json(nullptr)},
+          {"part", row.part != none ? json((*report.bodies)[row.part].name) : json(nullptr)},
+          {"cloud", point ? json((*report.clouds)[row.cloud].name) : json(nullptr)},
+          {"point", point ? json(row.point) : json(nullptr)}};
+}
+
 /// The way from row k to the next; `time`, `from` and `to` are between 0 and 1.
 json way_of(const plan_report& report, std::size_t k) {
   const motion_clearance_result& way = report.ways[k];
@@ -34,7 +45,10 @@ json way_of(const plan_report& report, std::size_t k) {
 }  // namespace
 
 std::optional<std::size_t> plan_report::first_below() const {
-  const std::size_t first = blind() ? 0 : found.first_below(*asked->margin);
+  const auto near = [&](const certain_row& row) { return !(row.lower > *asked->margin); };
+  const std::size_t first = blind()           ? 0
+                            : certain.empty() ? found.first_below(*asked->margin)
+                                              : std::size_t(std::ranges::find_if(certain, near) - certain.begin());
   return first < found.of.size() ? std::optional(first) : std::nullopt;
 }
 
@@ -67,6 +81,11 @@ json outcome_of(const plan_report& report) {
     const auto first = report.first_below();
     out["first_below"] = first ? json(*first) : json(nullptr);
   }
+  if (!report.certain.empty()) {
+    const auto its = std::ranges::min_element(report.certain, {}, &certain_row::lower);
+    out["certain"] = {{"least_lower", report.blind() ? json(nullptr) : or_null(its->lower)},
+                      {"at", report.blind() ? json(nullptr) : json(its - report.certain.begin())}};
+  }
   if (!report.unseen.empty()) {
     const auto its = std::ranges::min_element(report.unseen, {}, [](const unseen_result& r) { return r.all.lower; });
     out["unseen"] = {{"least_lower", or_null(its->all.lower)}, {"at", its - report.unseen.begin()}};
@@ -94,6 +113,7 @@ std::string to_json(const plan_report& report) {
     const min_distance_result& r = report.found.of[k];
     json row = {{"row", k}};
     row.update(witness(r, cloud_of(report, r), r.point, *report.bodies));
+    if (!report.certain.empty()) row["certain"] = certain_of(report, k);
     if (!report.unseen.empty()) row["unseen"] = unseen_of(report.of_unseen(k));
     if (k < report.ways.size()) row["way"] = way_of(report, k);
     out += json_text(row, -1);
@@ -115,11 +135,16 @@ std::string to_json(const plan_report& report) {
 
 std::string to_csv(const plan_report& report) {
   std::string out =
-      std::string("row,") + witness_columns + (report.unseen.empty() ? "" : std::string(",") + unseen_columns) +
+      std::string("row,") + witness_columns +
+      (report.certain.empty() ? "" : ",certain_state,certain_lower,certain_part") +
+      (report.unseen.empty() ? "" : std::string(",") + unseen_columns) +
       (report.asked->between ? ",way_state,way_lower,way_upper,way_time,way_from,way_to,way_part\n" : "\n");
   for (std::size_t k = 0; k < report.found.of.size(); ++k) {
     const min_distance_result& r = report.found.of[k];
     out += std::to_string(k) + ',' + witness_cells(r, cloud_of(report, r), r.point, *report.bodies);
+    if (!report.certain.empty())
+      for (const json row = certain_of(report, k); const char* const name : {"state", "lower", "part"})
+        out += ',' + csv_word(row[name]);
     if (!report.unseen.empty()) out += ',' + unseen_cells(report.of_unseen(k));
     if (report.asked->between) {
       const json way = k < report.ways.size() ? way_of(report, k) : json::object();  // the last has none

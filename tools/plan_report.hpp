@@ -4,6 +4,7 @@
 #include "backends.hpp"
 #include "observations.hpp"
 #include "query_options.hpp"
+#include "recording.hpp"
 #include "report_json.hpp"
 #include "unseen_report.hpp"
 
@@ -16,11 +17,13 @@ struct plan_report {
   const std::vector<observation>* clouds = nullptr;
   const std::vector<body>* bodies = nullptr;
   clearance::min_distances_result found = {};
+  std::vector<certain_row> certain = {};                        // of each, if something is uncertain
   std::vector<clearance::unseen_result> unseen = {};            // for --unseen: of each configuration
   std::vector<clearance::motion_clearance_result> ways = {};    // for --between: way k goes from row k to the next
   double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds
 
-  /// The first configuration whose lower end is not above the margin of --check; without a valid point, the first one.
+  /// The first configuration whose lower end, of what is certain if that was asked, is not above the margin of --check;
+  /// without a valid point, the first one.
   std::optional<std::size_t> first_below() const;
   /// The first way that may come nearer than the margin.
   std::optional<std::size_t> first_way_below() const;

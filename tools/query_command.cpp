@@ -127,8 +127,9 @@ void ask_questions(query_report& report, backend_robot& there, poses_of poses, c
   const query_options& asked = *report.asked;
   report.found = asked.deadline ? there.least_by(poses, *asked.deadline / 1000) : there.least_per_part(poses, 1);
   report.query = there.query;
+  const std::vector<double> radii = summed_radii(asked, *report.robot, joints, there.facts());
   if (!asked.zones.empty())
-    report.zones = there.zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points});
+    report.zones = there.zones(poses, {.thresholds = asked.zones, .min_points = asked.min_points, .radii = radii});
   if (asked.nearest != 0) {
     std::size_t points = 1;  // for more points there is no list
     for (const observation& cloud : *report.clouds) points += cloud.size();
@@ -139,9 +140,9 @@ void ask_questions(query_report& report, backend_robot& there, poses_of poses, c
         poses, {.min_points = asked.support->min_points, .radius = asked.support->radius, .most = asked.support->most});
   if (asked.certain) {
     report.certain = there.certain(poses, radii_of(asked, *report.robot, joints, there.facts()));
-    note_anywhere(*report.certain, report.notes);
+    note_anywhere(report.certain->anywhere, report.notes);
   }
-  if (asked.unseen && !report.unseen) report.unseen = there.unseen(poses, {*asked.unseen});
+  if (asked.unseen && !report.unseen) report.unseen = there.unseen(poses, {.room = *asked.unseen, .radii = radii});
   if (asked.gradient)
     report.gradients = gradients(asked, *report.robot, joints, poses, there.witnesses(poses, report.found.parts));
 }
@@ -182,7 +183,7 @@ int run(const query_options& asked, all_ranks* ranks) {
   if (ranks) there = ranks->together(std::move(there), model, questions_of(asked));
   report.upload = there->see(clouds.seen);
   if (asked.self_filter) {
-    own_points own = hide_own_points(asked, *there, poses, clouds);
+    own_points own = hide_own_points(asked, *there, poses, clouds, summed_radii(asked, robot, joints, there->facts()));
     report.filter = std::move(own.filter), report.unseen = std::move(own.unseen), report.upload += own.upload;
     note_hidden(asked, report.notes);
   }

@@ -54,12 +54,12 @@ struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames,
       trajectory, unfolded;
   std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, support_limit, svg,
-      report, deadline, nearest, delay, max_speed, joint_error, joint_speed, stamps, max_age;
-  std::optional<std::string> unseen;  // without a value: empty
+      report, deadline, nearest, delay, max_speed, plan_time, joint_error, joint_speed, stamps, max_age;
+  std::optional<std::string> unseen, fields;  // without a value: empty
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges,
       sensors, calibrations;
   bool ignore_limits = false, strict = false, json = false, no_cache = false, merge = false, csv = false,
-       gradient = false, shard = false, is_signed = false, between = false, fields = false;
+       gradient = false, shard = false, is_signed = false, between = false;
 };
 
 /// A number that is not negative.
@@ -98,8 +98,17 @@ clearance::any_noise sensor_of(const std::string& option, const std::string& tex
   return sensor;
 }
 constexpr const char* of_fields =
-    "Sample a table around each link first (1 MiB; up to seconds a link on a host, 5 ms on a GPU): configurations then "
-    "take less time, and every answer is the same; for thousands of them";
+    "on (also without a value), off or auto (default): sample a table around each link first (1 MiB; up to seconds a "
+    "link on a host, 5 ms on a GPU). Configurations take less time then, and every answer is the same; auto: for "
+    "100,000 and more (rows times frames) without --d-max";
+
+void add_fields(CLI::App& app, raw_options& raw) {
+  app.add_option_function<std::vector<std::string>>(
+         "--fields",
+         [&raw](const std::vector<std::string>& given) { raw.fields = given.empty() ? std::string() : given[0]; },
+         of_fields)
+      ->expected(0, 1);
+}
 
 /// Sets one per-cloud option, given on the command line.
 void set(cloud_options& cloud, const std::string& option, const std::string& text) {
@@ -265,6 +274,8 @@ void read_uncertainty(const raw_options& raw, query_options& o) {
   joints_off off;
   if (!raw.delay.empty()) off.delay = amount("--delay", raw.delay, "seconds");
   const double speed = raw.max_speed.empty() ? 0 : amount("--max-speed", raw.max_speed, "m/s");
+  const double later = raw.plan_time.empty() ? 0 : amount("--plan-time", raw.plan_time, "seconds");
+  const bool alone = !raw.configurations.empty(), planned = alone || !raw.plan.empty();
   const auto each = [](const char* option, const std::string& text) {
     std::vector<double> all;
     if (!text.empty()) all = numbers(option, text);
@@ -275,6 +286,11 @@ void read_uncertainty(const raw_options& raw, query_options& o) {
     if (!(x >= 0)) throw usage_error("--joint-error", "needs 0 or more (rad, m)");
   if (!raw.max_speed.empty() && raw.delay.empty())
     throw usage_error("--max-speed", "needs --delay, the time in which things move");
+  if (!raw.max_speed.empty() && planned && raw.plan_time.empty())
+    throw usage_error("--max-speed", "needs --plan-time, the time until the plan ends, in which things move, too");
+  if (!raw.plan_time.empty() && !planned) throw usage_error("--plan-time", "is for --plan");
+  if (!raw.plan_time.empty() && raw.max_speed.empty())
+    throw usage_error("--plan-time", "needs --max-speed: what moves in that time?");
   if (!raw.joint_speed.empty() && raw.delay.empty() && raw.stamps.empty())
     throw usage_error("--joint-speed", "needs --delay, the time in which things move");
   if (!raw.delay.empty() && raw.max_speed.empty() && raw.joint_speed.empty())
@@ -288,17 +304,14 @@ void read_uncertainty(const raw_options& raw, query_options& o) {
     if (!is) continue;
     if (o.recording.merge)
       throw usage_error(option, "cannot be mixed with --merge: a merged cloud does not say what a point was seen from");
-    if (!raw.zones.empty())
-      throw usage_error(option, "cannot be mixed with --zones, which count points where they were measured");
     if (raw.shard) throw usage_error(option, "cannot be mixed with --shard");
-    if (!raw.plan.empty())
-      throw usage_error(option, "cannot be mixed with --plan, which takes points where they were measured");
-    if (raw.unseen && std::string_view(option).starts_with("--joint"))
-      throw usage_error(option, "cannot be mixed with --unseen, which takes links where they are said to be");
     o.certain = off;
   }
-  o.recording.camera.off.max_speed = speed, o.recording.camera.off.age = off.delay;
-  for (cloud_options& cloud : o.clouds) cloud.off.max_speed = speed, cloud.off.age = off.delay;
+  const auto set_age = [&](cloud_options& cloud) {
+    cloud.off.max_speed = speed, cloud.off.age = off.delay + (alone ? later : 0), cloud.later = alone ? 0 : later;
+  };
+  set_age(o.recording.camera);
+  for (cloud_options& cloud : o.clouds) set_age(cloud);
 }
 
 /// Throws if an option is about spheres, but the model has none.
@@ -353,8 +366,11 @@ void read_questions(const raw_options& raw, query_options& o) {
   if (o.between && !o.attached.empty())
     throw usage_error("--between", "cannot be mixed with --attach: how what is held moves is not bounded yet");
   o.recording.plan = raw.plan;
-  o.fields = raw.fields;
-  if (o.fields && o.configurations.empty() && o.recording.plan.empty()) throw usage_error("--fields", "is for --plan");
+  if (raw.fields) {
+    if (o.configurations.empty() && o.recording.plan.empty()) throw usage_error("--fields", "is for --plan");
+    const std::size_t how = raw.fields->empty() ? 0 : choice("--fields", *raw.fields, {"on", "off", "auto"});
+    if (how != 2) o.fields = how == 0;
+  }
   o.recording.svg = raw.svg;
   if (!raw.svg.empty() && clearance::io::extension(raw.svg) != ".svg")
     throw usage_error("--svg", raw.svg + ": its name must end in .svg, which is what is written");
@@ -476,7 +492,7 @@ void add_joint_options(CLI::App& app, raw_options& raw, asking how) {
         "CSV as --trajectory: configurations to come, one a row; every frame says how near they are to its points, and "
         "with --check which is the "
         "first that is too near");
-    app.add_flag("--fields", raw.fields, of_fields);
+    add_fields(app, raw);
     app.add_option("--joint", raw.joint, "name=value: a joint that has no column in the trajectory (and in the plan)");
   } else if (planned) {
     app.add_option("--configurations", raw.configurations,
@@ -512,7 +528,7 @@ void add_cloud_options(CLI::App& app, raw_options& raw, asking how) {
   app.add_flag("--zero-is-missing")->description("(0,0,0) is no point");
 }
 
-void add_uncertainty(CLI::App& app, raw_options& raw) {
+void add_uncertainty(CLI::App& app, raw_options& raw, asking how) {
   app.add_option(
       "--sensor", raw.sensors,
       "kinect, stereo:F,B,S (pixels, m, pixels), tof:C,S (m, m/m2) or lidar:C,S (m, m/m): points may be three "
@@ -521,8 +537,12 @@ void add_uncertainty(CLI::App& app, raw_options& raw) {
                  "DT,DTHETA: by how much the cloud's pose may be wrong (m, rad about the sensor)");
   app.add_option("--delay", raw.delay, "Seconds from what was seen and the joints' positions until the answer counts");
   app.add_option("--max-speed", raw.max_speed, "m/s: no obstacle is faster, in the time of --delay");
+  if (how != asking::query)
+    app.add_option("--plan-time", raw.plan_time,
+                   "Seconds from when the answer counts to the end of the plan: obstacles may move until then");
   app.add_option("--joint-error", raw.joint_error,
-                 "By how much joints may be wrong (rad, m): one number, or one each as for --joints");
+                 std::string("By how much joints may be wrong (rad, m): one number, or one each ") +
+                     (how == asking::query ? "as for --joints" : "in the robot's order"));
   app.add_option("--joint-speed", raw.joint_speed,
                  "How fast joints move, in the time of --delay (rad/s, m/s): one number, or one each");
 }
@@ -581,7 +601,7 @@ void add_plan_questions(CLI::App& app, raw_options& raw) {
                "Judge also the way from each configuration to the next, every joint at constant speed: no point is "
                "nearer than its lower end at any time; "
                "--check is about the ways, too");
-  app.add_flag("--fields", raw.fields, of_fields);
+  add_fields(app, raw);
   add_unseen(app, raw);
   app.add_flag("--csv", raw.csv, "Print CSV; without it, one JSON object per configuration and a last one about all");
   add_shard(app, raw);
@@ -619,7 +639,7 @@ void add_query_questions(CLI::App& app, raw_options& raw) {
   app.add_option(
       "--zones", raw.zones,
       "a,b,... (m, ascending): how many points may be within these distances of each link, and which; exit code 2 if "
-      "there are any in the first");
+      "there are any in the first; with --sensor and its kin wherever points and links may be");
   app.add_option("--min-points", raw.min_points, "A zone with fewer points counts as empty (default 1)");
   app.add_option(
       "--distances", raw.distances,
@@ -655,6 +675,11 @@ void add_query_questions(CLI::App& app, raw_options& raw) {
 
 }  // namespace
 
+bool uses_fields(const query_options& asked, std::size_t configurations) {
+  constexpr std::size_t pays_from = 100'000;  // docs/plan.md
+  return asked.fields.value_or(configurations >= pays_from && !(asked.d_max < clearance::infinity));
+}
+
 std::string questions_of(const query_options& asked) {
   std::ostringstream all;
   all << std::hexfloat << to_string(asked.model) << !asked.configurations.empty() << ' '
@@ -671,7 +696,7 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   add_joint_options(app, *raw, how);
   add_robot_options(app, *raw);
   add_cloud_options(app, *raw, how);
-  if (how != asking::plan) add_uncertainty(app, *raw);
+  add_uncertainty(app, *raw, how);
   add_model_options(app, *raw, how);
   switch (how) {
     case asking::plan:

@@ -30,6 +30,7 @@ struct cloud_options {
   bool use_viewpoint = false, zero_is_missing = false;
   clearance::any_noise sensor = {};       // --sensor
   clearance::cloud_uncertainty off = {};  // --calibration, --delay, --max-speed
+  double later = 0;                       // --plan-time, of the plan of `clearance run`; seconds
   clearance::io::read_limits limits;
   std::uint64_t bytes_each = 0;    // made per point, in memory or in an output file; the limit counts these
   std::vector<std::string> given;  // the options before the first --cloud, by name: for all clouds
@@ -113,9 +114,13 @@ struct query_options {
   std::string configurations;      // for `clearance plan`
   bool csv = false;                // for `clearance plan` and `clearance run`
   bool between = false;            // for `clearance plan`
-  bool fields = false;             // for `clearance plan` and the plan of `clearance run`
+  std::optional<bool> fields;      // for `clearance plan` and the plan of `clearance run`; auto: not given
   recording_options recording;     // for `clearance run`
 };
+
+/// Are so many configurations asked about with fields? If not said by --fields: where sampling costs less than it
+/// saves.
+bool uses_fields(const query_options& asked, std::size_t configurations);
 
 enum class asking { query, run, plan };
 

@@ -200,7 +200,8 @@ std::string innermost_text(const query_report& report) {
   if (report.zones->counts.dropped[int(drop_reason::too_close)] != 0)
     return "something is too close to be measured, which counts as the first";
   const std::size_t z = report.zones->innermost();
-  return z < report.zones->per_part ? text("the innermost is within %g m", report.asked->zones[z]) : "all are empty";
+  return (z < report.zones->per_part ? text("the innermost is within %g m", report.asked->zones[z]) : "all are empty") +
+         (report.certain ? ", wherever points and links may be" : "");
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include <clearance/query/pieces.hpp>
 #include <clearance/questions/distances.hpp>
 #include <clearance/questions/min_distance_supported.hpp>
-#include <clearance/questions/min_distances.hpp>
+#include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/questions/nearest_k.hpp>
 #include <clearance/questions/part_witnesses.hpp>
 #include <clearance/questions/self_filter.hpp>
@@ -173,6 +173,7 @@ class robot_of_ranks final : public backend_robot {
   min_distances_result plan(poses_of poses, double d_max) override {
     return joined<min_distances>(poses, [&] { return mine_->plan(poses, d_max); });
   }
+  min_distances_per_part_result certain_plan(poses_of, double, const std::vector<double>&) override { none_of_ranks(); }
   std::vector<motion_clearance_result> ways(std::span<const io::joint_motion> ways,
                                             const motion_clearance_options& options) override;
   std::span<const part_facts> facts() override { return mine_->facts(); }

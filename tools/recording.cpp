@@ -6,7 +6,7 @@
 #include <clearance/io/cloud_file.hpp>
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
-#include <clearance/questions/min_distances.hpp>
+#include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/questions/unseen.hpp>
 
 #include <algorithm>
@@ -200,6 +200,26 @@ min_distances_result ask_plan(backend_robot& there, const placed_rows& rows, dou
   rows.for_each_block([&](poses_of poses) {
     const min_distances_result some = there.plan(poses, d_max);
     all.of.insert(all.of.end(), some.of.begin(), some.of.end());
+    query += there.query;
+  });
+  return all;
+}
+
+std::vector<certain_row> ask_certain_plan(backend_robot& there, const placed_rows& rows, double d_max,
+                                          const std::vector<double>& radii, double& query) {
+  std::vector<certain_row> all;
+  rows.for_each_block([&](poses_of poses) {
+    const min_distances_per_part_result some = there.certain_plan(poses, d_max, radii);
+    for (std::size_t c = 0; c < some.size(); ++c) {
+      certain_row& row = all.emplace_back();
+      row.anywhere = some.of(c)[0].dropped[int(drop_reason::too_close)];
+      if (row.anywhere != 0) row.state = state::possible;  // if no other point is left, too
+      for (std::uint32_t k = 0; k < some.parts; ++k) {
+        const min_distance_result& r = some.of(c)[k];
+        if (r.state == state::no_data || (row.part != none && !(r.lower < row.lower))) continue;
+        row = {r.lower > 0 ? state::free : state::possible, r.lower, k, r.cloud, r.point, row.anywhere};
+      }
+    }
     query += there.query;
   });
   return all;

@@ -66,6 +66,16 @@ void note_fields(const backend_robot& there, const std::vector<body>& bodies, st
 
 /// Asks about all rows; adds the seconds to `query`.
 clearance::min_distances_result ask_plan(backend_robot& there, const placed_rows& rows, double d_max, double& query);
+/// What is certain of a row: that no point is nearer than `lower`, in metres, which `part` and that point keep down.
+struct certain_row {
+  clearance::state state = clearance::state::no_data;  // free, possible or no_data
+  clearance::real lower = 0;
+  std::uint32_t part = clearance::none, cloud = clearance::none, point = clearance::none;
+  std::uint64_t anywhere = 0;  // points that may be anywhere
+};
+/// Of all rows, about all places where points and parts may be.
+std::vector<certain_row> ask_certain_plan(backend_robot& there, const placed_rows& rows, double d_max,
+                                          const std::vector<double>& radii, double& query);
 /// How far each row, of so many links, is from what the clouds hide; nothing about single links.
 std::vector<clearance::unseen_result> ask_plan_unseen(backend_robot& there, const placed_rows& rows,
                                                       const clearance::unseen& q, std::size_t links, double& query);

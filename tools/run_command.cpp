@@ -68,6 +68,9 @@ class motion {
   std::vector<part_radius> radii(std::size_t frame, std::span<const part_facts> facts) const {
     return radii_of(asked_, robot_, row(frame), facts, off(frame));
   }
+  std::vector<double> summed(std::size_t frame, std::span<const part_facts> facts) const {
+    return summed_radii(asked_, robot_, row(frame), facts, off(frame));
+  }
   std::vector<Eigen::Isometry3d> poses(std::size_t frame) const {
     return placed_links(asked_, robot_, row(frame), " in frame " + std::to_string(frame));
   }
@@ -130,24 +133,32 @@ void check_picture(const std::string& file, const frame_files& frames, const io:
 /// The robot's waypoints for --plan; none without it.
 class waypoints {
  public:
-  waypoints(const query_options& asked, const asked_robot& robot) : asked_(asked) {
+  waypoints(const query_options& asked, const asked_robot& robot) : asked_(asked), robot_(robot) {
     if (asked.recording.plan.empty()) return;
     rows_ = read_rows(asked, robot.description, asked.recording.plan);
     placed_.emplace(asked, robot, rows_, asked.recording.plan);
   }
   waypoints(const waypoints&) = delete;
 
-  std::optional<plan_report> ask(backend_robot& there) const {
+  std::size_t size() const { return rows_.size(); }
+
+  std::optional<plan_report> ask(backend_robot& there) {
     if (!placed_) return std::nullopt;
     plan_report plan{.asked = &asked_};
     plan.found = ask_plan(there, *placed_, infinity, plan.query);
+    if (asked_.certain) {
+      if (!radii_) radii_ = radii_in_rows(asked_, robot_, rows_, there.facts());
+      plan.certain = ask_certain_plan(there, *placed_, infinity, *radii_, plan.query);
+    }
     return plan;
   }
 
  private:
   const query_options& asked_;
+  const asked_robot& robot_;
   std::vector<std::vector<double>> rows_;
   std::optional<placed_rows> placed_;
+  std::optional<std::vector<double>> radii_;  // of the parts, in all rows
 };
 
 /// What is certain, as the picture draws it.
@@ -174,7 +185,7 @@ int run_frames(const query_options& asked) {
   frame_files frames(asked, shown);
   const motion moves(asked, robot);
   moves.check(frames.size());
-  const waypoints to_come(asked, robot);
+  waypoints to_come(asked, robot);
   merged_cloud merged;
   if (asked.recording.merge)
     for (std::size_t k = 0; k < frames.size(); ++k) merged.add(frames.load(k), moves.carrier(k));
@@ -185,7 +196,8 @@ int run_frames(const query_options& asked) {
   if (!asked.recording.svg.empty()) check_picture(asked.recording.svg, frames, inputs);
   const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
   print(notes, shown);
-  const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies, asked.fields});
+  const auto there = robot_on(asked.on_device,
+                              {asked.model, asked.volume, &bodies, uses_fields(asked, to_come.size() * frames.size())});
   int code = 0;
   double upload = asked.recording.merge ? there->see({merged.finish(moves.poses(0))}) : 0;
   asked_clouds clouds;  // the frame's
@@ -203,7 +215,7 @@ int run_frames(const query_options& asked) {
     }
     std::optional<own_points> own;
     if (asked.self_filter) {
-      own = hide_own_points(asked, *there, poses, clouds);
+      own = hide_own_points(asked, *there, poses, clouds, moves.summed(k, there->facts()));
       upload += own->upload;
     }
     frame_report report{
@@ -215,7 +227,8 @@ int run_frames(const query_options& asked) {
     if (asked.certain) report.certain = there->certain(poses, moves.radii(k, there->facts()));
     std::optional<unseen_result> unseen;
     if (asked.unseen) {
-      unseen = own ? std::move(own->unseen) : there->unseen(poses, {*asked.unseen});
+      unseen = own ? std::move(own->unseen)
+                   : there->unseen(poses, {.room = *asked.unseen, .radii = moves.summed(k, there->facts())});
       report.unseen_query = own ? own->unseen_query : there->query;
       report.unseen = {
           .asked = &asked, .found = &*unseen, .clouds = {frame}, .bodies = &bodies, .filtered = own.has_value()};

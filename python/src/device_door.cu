@@ -3,6 +3,8 @@
 
 #include "on_device.cuh"
 
+#include <clearance/fields.hpp>
+
 namespace {
 
 std::shared_ptr<void> upload(const robot_trees<>& trees, int device) {
@@ -12,6 +14,18 @@ std::shared_ptr<void> upload(const robot_trees<>& trees, int device) {
       trees);
   stream.on().wait();
   return std::const_pointer_cast<robot_trees<clearance::device>>(made);
+}
+
+std::shared_ptr<const robot_trees<>> sample(const robot_trees<>& trees, std::size_t bytes,
+                                            std::vector<std::string>& without, int device) {
+  const clearance::own_stream stream(device);
+  return std::visit(
+      [&](const auto& model) {
+        auto sampled = clearance::with_fields(stream.on(), model, {bytes});
+        without = std::move(sampled.without);
+        return std::make_shared<const robot_trees<>>(std::move(sampled.model));
+      },
+      trees);
 }
 
 void* prepare_any(const char* type, const std::shared_ptr<void>& trees, const void* question, int device) {
@@ -54,7 +68,7 @@ int holder(const void* memory) {
 }  // namespace
 
 const device_door& this_door() {
-  static const device_door door{upload, prepare_any, allocate, order, bring, fetch, wait, holder};
+  static const device_door door{upload, sample, prepare_any, allocate, order, bring, fetch, wait, holder};
   return door;
 }
 

@@ -2,8 +2,11 @@
 #include "robot.hpp"
 
 #include "arrays.hpp"
+#include "device_array.hpp"
+#include "device_entry.hpp"
 #include "values.hpp"
 
+#include <clearance/fields.hpp>
 #include <clearance/io/jacobian.hpp>
 #include <clearance/io/mesh.hpp>
 #include <clearance/io/part_radii.hpp>
@@ -191,6 +194,36 @@ std::shared_ptr<robot_model> from_spheres(const nb::dict& given, double gap, dou
   return made;
 }
 
+/// A robot that Python holds, with fields.
+std::shared_ptr<robot_model> fielded_robot(const nb::object& self, nb::handle bytes, const std::string& device) {
+  const auto& robot = nb::cast<const robot_model&>(self);
+  const std::size_t size = count_of(bytes, "bytes");
+  const int where = device_number(device);
+  const auto made = std::make_shared<robot_model>();
+  made->maker = "with_fields", made->recipe = nb::make_tuple(self, size);  // on any machine: no answer depends on where
+  const nb::gil_scoped_release others;
+  made->name = robot.name, made->names = robot.names, made->bodies = robot.bodies, made->notes = robot.notes;
+  made->description = robot.description, made->spheres = robot.spheres;
+  std::vector<std::string> without;
+  if (where == on_the_host)
+    made->trees = std::visit(
+        [&](const auto& trees) {
+          auto sampled = with_fields(host{}, trees, {size});
+          without = std::move(sampled.without);
+          return std::make_shared<const robot_trees<>>(std::move(sampled.model));
+        },
+        *robot.trees);
+  else
+    made->trees = open_device_door().sample(*robot.trees, size, without, where);
+  made->has_fields = true;
+  for (std::size_t k = 0; k < without.size(); ++k) {
+    if (without[k].empty()) continue;
+    made->has_fields = false;
+    made->notes.push_back("part " + io::quoted((*robot.names)[k]) + ": " + without[k] + "; so no field is used");
+  }
+  return made;
+}
+
 const io::kinematic_tree& joints_of(const robot_model& robot) { return robot.described().kinematics(); }
 
 nb::object rows_of(const std::vector<Eigen::Isometry3d>& poses, std::vector<std::size_t> shape) {
@@ -337,6 +370,14 @@ void bind_robot(nb::module_& m) {
                   nb::arg("name") = "robot",
                   "One part for each {name: array (n, 4) of x, y, z, radius}. Metres. gap: the largest distance of the "
                   "solid to its spheres (inf: unknown, so there is no lower bound).")
+      .def(
+          "with_fields", &fielded_robot, nb::arg("bytes").none() = field_options{}.bytes, nb::arg("device") = "cpu",
+          "The same robot with a field of so many bytes around each part: questions about many configurations take "
+          "less time then, and no answer changes. device: where it is sampled, \"cpu\" (seconds a part) or \"cuda:0\". "
+          "If a part can have none, none is used, and `notes` say why.")
+      .def_prop_ro(
+          "has_fields", [](const robot_model& r) { return r.has_fields; },
+          "Was it made by with_fields, and are they used?")
       .def_prop_ro("name", [](const robot_model& r) { return r.name; })
       .def_prop_ro("model", [](const robot_model& r) { return r.spheres ? "spheres" : "triangles"; })
       .def_prop_ro(

@@ -26,7 +26,7 @@ struct robot_model {
   std::vector<clearance::io::body> bodies;
   std::optional<clearance::io::robot> description;  ///< Of a URDF file.
   std::vector<std::string> notes;
-  bool spheres = true;
+  bool spheres = true, has_fields = false;
   const char* maker = nullptr;  ///< What makes it again, and
   nb::object recipe;            ///< its arguments, for pickle.
 

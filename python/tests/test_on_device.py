@@ -285,6 +285,17 @@ def test_a_copy_comes_back_as_it_was(array):
             there.__dlpack__()
 
 
+def test_fields_sampled_on_a_device_change_no_bit(scene):
+    fielded = scene.robot.with_fields(40_000, device=GPU)
+    assert fielded.has_fields
+    for name in PLANS:
+        for question in asked(scene, name):
+            for device in "cpu", GPU:
+                one, other = (clearance.Query(robot, question, device=device)(**scene.seen(), **scene.where(name))
+                              for robot in (scene.robot, fielded))
+                assert bits(one) == bits(other), (question, device)
+
+
 def test_fields_are_views(small):
     robot, poses, points = small
     ask = clearance.Query(robot, clearance.MinDistance(), device=GPU)

@@ -22,6 +22,8 @@ struct path {
   std::string ask = with(rows.path);
 };
 
+const char* const no_field = "--fields: link \"huge\": a part without a finite size has no field; so no field is used";
+
 const char* const answered[] = {"state",     "distance", "upper",     "cloud",       "point", "pixel",
                                 "point_xyz", "part",     "primitive", "nearest_xyz", "normal"};
 
@@ -315,6 +317,8 @@ TEST_CASE("--fields changes no answer, and names a link that can have none") {
   CHECK(plain.size() > 100);
   const outcome o = run_command(p.ask + " --csv --fields");
   CHECK((o.code == 0 && o.out == plain && o.err.find("--fields") == std::string::npos));
+  CHECK(run_command(p.ask + " --csv --fields on").out == plain);
+  refuses(p.ask + " --fields maybe", "--fields");
   const scratch_file still{".csv", "turn,slide\n0,0\n"}, list{".txt", p.cloud.path + "\n"};
   const std::string run = "run --csv" + p.robot + " --trajectory " + still.path + " --frames " + list.path;
   refuses(run + " --fields", "--fields: is for --plan");
@@ -330,8 +334,29 @@ TEST_CASE("--fields changes no answer, and names a link that can have none") {
                             far.path + " --configurations " + once.path;
   const outcome none = run_command(alone + " --fields");
   CHECK(none.out == run_command(alone).out);
-  CHECK(none.err.find("--fields: link \"huge\": a part without a finite size has no field; so no field is used") !=
-        std::string::npos);
+  CHECK(none.err.find(no_field) != std::string::npos);
+}
+
+TEST_CASE("Without --fields they are used where it pays, which a link that can have none tells") {
+  const scratch_file turning{".urdf",
+                             "<robot name=\"r\"><link name=\"base\"/><link name=\"huge\"><collision><geometry><box "
+                             "size=\"3e6 3e6 3e6\"/></geometry></collision></link><joint name=\"j\" "
+                             "type=\"continuous\"><parent link=\"base\"/><child link=\"huge\"/></joint></robot>"},
+      far{".xyz", "0 0 2e6\n"}, start{".csv", "j\n0\n"}, two{".txt", far.path + "\n" + far.path + "\n"};
+  const auto noted = [&](const std::string& more, std::size_t rows) {
+    std::string csv = "j\n";
+    for (std::size_t k = 0; k < rows; ++k) csv += "0\n";
+    const scratch_file path{".csv", csv};
+    return run_command((more.starts_with("run") ? more + " --plan " : more + " --configurations ") + path.path +
+                       " --csv --backend host --model triangles --robot " + turning.path)
+               .err.find(no_field) != std::string::npos;
+  };
+  const std::string plan = "plan --cloud " + far.path;
+  CHECK_FALSE(noted(plan, 99'999));
+  CHECK(noted(plan, 100'000));
+  for (const char* never : {" --d-max 1", " --fields off"}) CHECK_FALSE(noted(plan + never, 100'000));
+  const std::string frames = "run --trajectory " + start.path + " --frames " + two.path;
+  CHECK(noted(frames, 50'000));
 }
 
 TEST_CASE("a plan of more poses than are in memory at once has the same answers") {

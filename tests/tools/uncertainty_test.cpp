@@ -125,6 +125,166 @@ TEST_CASE("clearance run says in every frame what query says is certain") {
   CHECK(picture.find("grey: with what is uncertain") != picture.npos);
 }
 
+TEST_CASE("A zone counts every point that may be in it, wherever points and links may be") {
+  dice d(62);
+  std::size_t moved = 0;
+  for (int trial = 0; trial < 6; ++trial) {
+    std::string text;
+    std::vector<Eigen::Vector3d> points;
+    for (int k = 0; k < 60; ++k) {
+      const double z = d.uniform(0.9, 2), y = d.uniform(-1, 1), x = d.uniform(-1, 1);
+      points.emplace_back(x, y, z);
+      char line[128];
+      std::snprintf(line, sizeof line, "%.9f %.9f %.9f\n", x, y, z);
+      text += line;
+    }
+    const scratch_file urdf(".urdf", moving_boxes_text), cloud(".xyz", text);
+    const std::string ask = "query --backend host --model triangles --robot " + urdf.path +
+                            " --joint slide=0.1 --cloud " + cloud.path + " --zones 0.3,0.6";
+    const std::string off = " --sensor lidar:0.01,0.01 --calibration 0.02,0 --joint-error 0.05,0";
+    const auto bare = parsed(run_command(ask + " --json")), o = parsed(run_command(ask + off + " --json"));
+    for (std::size_t part = 0; part < 2; ++part)
+      for (std::size_t z = 0; z < 2; ++z) {
+        const double within = z == 0 ? 0.3 : 0.6;
+        std::size_t least = 0, most = 0;  // what rounding may leave open
+        double nearest = 1e9;
+        for (const Eigen::Vector3d& p : points) {
+          const double away =
+              to_box(p, part == 0 ? 0 : 0.6) - 3 * (0.01 + 0.01 * p.norm()) - 0.02 - (part == 0 ? 0 : 0.05);
+          least += away < within - 1e-5, most += away < within + 1e-5;
+          nearest = std::min(nearest, away + (part == 0 ? 0 : 0.05));
+        }
+        const auto& zone = o.at("parts").at(part).at("zones").at(z);
+        CHECK(zone.at("points") >= least);
+        CHECK(zone.at("points") <= most);
+        if (least > 0) CHECK(zone.at("nearest").at("distance").get<double>() == Approx(nearest).margin(2e-5));
+        moved += zone.at("points") != bare.at("parts").at(part).at("zones").at(z).at("points");
+      }
+    const outcome said = run_command(ask + off);
+    CHECK(said.out.find(", wherever points and links may be\n") != said.out.npos);
+    CHECK(said.code == (o.at("zones").at("innermost") == 0 ? 2 : 0));
+  }
+  CHECK(moved > 6);
+}
+
+TEST_CASE("clearance plan says of each row what query says is certain, until the plan ends") {
+  const scratch_file urdf(".urdf", moving_boxes_text), rows(".csv", "slide,turn\n0,0\n0.3,1\n0.1,0\n"),
+      cloud(".xyz", "0 0 1.1\n0.35 0 0\n5 5 5\n");
+  const std::string how = " --backend host --robot " + urdf.path + " --cloud " + cloud.path +
+                          " --sensor lidar:0.005,0.001 --calibration 0.002,0.001 --joint-error 0.01,0 --max-speed 0.5";
+  for (const std::string model : {" --model triangles", " --model spheres --spheres 100"}) {
+    const std::string ask = "plan --configurations " + rows.path + how + model + " --delay 0.02 --plan-time 0.08";
+    const auto all = lines(run_command(ask));
+    REQUIRE(all.size() == 4);
+    double least = 1e9;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const char* const slides[] = {"0", "0.3", "0.1"};
+      const auto alone =
+          parsed(run_command("query --json --delay 0.1 --joint slide=" + std::string(slides[k]) + how + model))
+              .at("certain");
+      const auto& certain = all[k].at("certain");
+      INFO(certain << '\n' << alone);
+      CHECK(certain.at("lower").get<double>() == Approx(alone.at("lower").get<double>()).margin(1e-6));
+      for (const char* key : {"state", "part"}) CHECK(certain.at(key) == alone.at(key));
+      for (const char* key : {"cloud", "point"}) CHECK(certain.at(key) == alone.at("pair").at(key));
+      least = std::min(least, certain.at("lower").get<double>());
+    }
+    CHECK(all[3].at("plan").at("certain") == nlohmann::json({{"least_lower", least}, {"at", 1}}));
+    CHECK_FALSE(all[3].at("plan").contains("first_below"));
+    const auto judged = [&](double margin) { return run_command(ask + " --check " + std::to_string(margin)); };
+    CHECK(judged(least - 0.001).code == 0);
+    CHECK(judged(least + 0.001).code == 2);  // as measured it is farther
+    CHECK(lines(judged(least + 0.001)).back().at("plan").at("first_below") == 1);
+    if (model == " --model triangles")
+      CHECK(run_command(ask + " --csv --fields").out == run_command(ask + " --csv").out);
+    std::istringstream table(run_command(ask + " --csv").out);
+    std::string names, row;
+    std::getline(table, names), std::getline(table, row);
+    CHECK(names.ends_with(",nearest_z,certain_state,certain_lower,certain_part"));
+    CHECK(row.ends_with(",free," + all[0].at("certain").at("lower").dump() + ',' +
+                        all[0].at("certain").at("part").get<std::string>()));
+  }
+  const scratch_file blind(".xyz", "nan nan nan\n");
+  const outcome dark = run_command("plan --backend host --model triangles --joint-error 0.1 --check 0.1 --robot " +
+                                   urdf.path + " --configurations " + rows.path + " --cloud " + blind.path);
+  CHECK(dark.code == 3);
+  CHECK(lines(dark)[0].at("certain") ==
+        nlohmann::json::parse(R"({"state": "no_data", "lower": null, "part": null, "cloud": null, "point": null})"));
+  CHECK(lines(dark)[3].at("plan").at("certain") == nlohmann::json::parse(R"({"least_lower": null, "at": null})"));
+  // Behind a camera, whose z is forward, its noise says nothing.
+  const outcome behind = run_command("plan --backend host --model triangles --sensor kinect --robot " + urdf.path +
+                                     " --configurations " + rows.path + " --cloud " + cloud.path);
+  CHECK(behind.err.find("1 points may be anywhere, so nothing is free") != behind.err.npos);
+  CHECK(lines(behind)[0].at("certain").at("lower") == 0);
+  const auto fast =
+      lines(run_command("plan --backend host --model triangles --max-speed 1e9 --delay 1 --plan-time 1 --robot " +
+                        urdf.path + " --configurations " + rows.path + " --cloud " + cloud.path));
+  CHECK(fast[0].at("certain") ==
+        nlohmann::json::parse(R"({"state": "possible", "lower": 0.0, "part": null, "cloud": null, "point": null})"));
+}
+
+TEST_CASE("clearance run --plan says what plan says is certain, and each frame is about its own time") {
+  const scratch_file urdf(".urdf", moving_boxes_text), still(".csv", "slide,turn\n0,0\n"),
+      rows(".csv", "slide,turn\n0,0\n0.2,0\n"), first(".xyz", "0.7 0 0.5\n"), second(".xyz", "0.6 0 0.6\n0 0 2\n"),
+      list(".txt", first.path + '\n' + second.path + '\n');
+  const std::string how = " --backend host --model triangles --robot " + urdf.path +
+                          " --sensor lidar:0.005,0.001 --max-speed 0.5 --delay 0.02 --joint-error 0.01,0";
+  const std::string frames = "run --trajectory " + still.path + " --frames " + list.path + how;
+  const std::string ask = frames + " --plan " + rows.path + " --plan-time 0.1";
+  const auto all = lines(run_command(ask)), bare = lines(run_command(frames));
+  REQUIRE(all.size() == 2);
+  double least = 1e9;
+  for (std::size_t k = 0; k < 2; ++k) {
+    CHECK(all[k].at("certain") == bare[k].at("certain"));
+    const auto alone = lines(run_command("plan --configurations " + rows.path + " --cloud " +
+                                         (k == 0 ? first.path : second.path) + how + " --plan-time 0.1"));
+    const auto& plan = all[k].at("plan");
+    REQUIRE(plan.at("certain_lower").size() == 2);
+    for (std::size_t row = 0; row < 2; ++row)
+      CHECK(plan.at("certain_lower").at(row) == alone[row].at("certain").at("lower"));
+    CHECK(plan.at("certain") == alone[2].at("plan").at("certain"));
+    CHECK(plan.at("certain").at("least_lower") < all[k].at("certain").at("lower"));
+    least = std::min(least, plan.at("certain").at("least_lower").get<double>());
+  }
+  CHECK(run_command(ask + " --check " + std::to_string(least - 0.001)).code == 0);
+  const outcome fails = run_command(ask + " --csv --check " + std::to_string(least + 0.001));
+  CHECK(fails.code == 2);
+  std::istringstream table(fails.out);
+  std::string names, row;
+  std::getline(table, names), std::getline(table, row);
+  CHECK(names.ends_with(",plan_least,plan_at,plan_first_below,plan_certain_lower,plan_certain_at"));
+  CHECK(row.ends_with(",," + all[0].at("plan").at("certain").at("least_lower").dump() + ",0"));
+}
+
+TEST_CASE("On the way between two rows joints err as they do where the arm is longest") {
+  // Folded at both ends, up and down, and stretched between them; the shoulder turns it sideways to the point.
+  const scratch_file urdf(".urdf", R"(<robot name="arm"><link name="base"/><link name="upper"/>
+    <link name="hand"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.1 0.1 0.1"/></geometry></collision>
+    </link>
+    <joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/></joint>
+    <joint name="elbow" type="continuous"><parent link="upper"/><child link="hand"/><origin xyz="0.5 0 0"/>
+      <axis xyz="0 1 0"/></joint></robot>)");
+  const scratch_file ends(".csv", "shoulder,elbow\n0,-2.8\n0,2.8\n"), cloud(".xyz", "1 0.5 0\n");
+  std::string rows = "shoulder,elbow\n";
+  for (int k = -140; k <= 140; ++k)
+    for (const char* shoulder : {"-0.2", "0.2"}) rows += shoulder + (',' + std::to_string(0.02 * k)) + '\n';
+  const scratch_file path(".csv", rows);
+  const std::string how = " --backend host --model triangles --robot " + urdf.path + " --cloud " + cloud.path;
+  const auto way = [&](const std::string& more) {
+    return lines(run_command("plan --between --configurations " + ends.path + how + more))[0].at("way");
+  };
+  const double truly = lines(run_command("plan --configurations " + path.path + how)).back().at("plan").at("least"),
+               exact = way("").at("lower"), certain = way(" --joint-error 0.2,0").at("lower");
+  INFO(exact << ' ' << truly << ' ' << certain);
+  CHECK(certain <= truly);
+  CHECK(truly < exact - 0.17);    // more than the folded arm errs: its lever is below 0.25 m
+  CHECK(certain > truly - 0.08);  // and not by much more than its lever, 1.1 m, says
+  CHECK(way(" --joint-error 0.2,0").at("upper").get<double>() > way("").at("upper").get<double>());
+  const auto vague = way(" --sensor lidar:0.01,0");
+  CHECK(vague.at("upper").is_null());
+  CHECK(vague.at("lower").get<double>() == Approx(exact - 0.03).margin(0.011));
+}
+
 TEST_CASE("Joints that are wrong move the camera that a link carries, and so its points") {
   // The eye is 0.6 m above the base's middle, on the slide; a point 0.5 m before it is 0.4 m beside the base, say.
   const scratch_file slides(".urdf", boxes_with_eye_text), cloud(".xyz", "0.5 0 -0.6\n");
@@ -176,15 +336,27 @@ TEST_CASE("What is wrong about uncertainty is one sentence that names the option
   refuses(q.ask + " --delay -1 --max-speed 1", "--delay: must be from 0");
   refuses(q.ask + " --max-speed 1", "--max-speed: needs --delay");
   refuses(q.ask + " --max-speed nan --delay 1", "--max-speed");
-  refuses(q.ask + " --sensor lidar:0.1,0 --zones 0.1", "--sensor: cannot be mixed with --zones");
+  refuses(q.ask + " --sensor lidar:0.1,0 --shard", "--sensor: cannot be mixed with --shard");
   refuses(q.ask + " --calibration 0.1,0 --deadline 5", "--deadline: is for the least distance alone");
   refuses(m.ask + " --joint-error 1,2,3", "--joint-error: needs one number, or one for each of the robot's 2");
+  refuses(m.ask + " --joint-error 1e300", "--joint-error: and --joint-speed move a link by more than 1e15 m");
   refuses(m.ask + " --joint-error -1", "--joint-error: needs 0 or more");
   refuses(m.ask + " --joint-speed 1", "--joint-speed: needs --delay");
-  const scratch_file frames(".txt", ""), rows(".csv", "0\n");
-  refuses("run --robot " + m.urdf.path + " --frames " + frames.path + " --plan " + rows.path + " --sensor kinect",
-          "--sensor: cannot be mixed with --plan");
-  refuses("plan --robot x --configurations y --cloud z --sensor kinect", "--sensor");
+  refuses(q.ask + " --max-speed 1 --delay 1 --plan-time 1", "--plan-time");
+  const std::string plan = "plan --robot x --configurations y --cloud z", run = "run --robot x --frames y";
+  for (const std::string& planned : {plan, run + " --plan z"}) {
+    refuses(planned + " --max-speed 1 --delay 1", "--max-speed: needs --plan-time");
+    refuses(planned + " --plan-time 1", "--plan-time: needs --max-speed");
+    refuses(planned + " --max-speed 1 --delay 1 --plan-time -1", "--plan-time: must be from 0");
+  }
+  refuses(run + " --max-speed 1 --delay 1 --plan-time 1", "--plan-time: is for --plan");
+  refuses(plan + " --sensor kinect --shard", "--sensor: cannot be mixed with --shard");
+  const scratch_file rows(".csv", "slide,turn\n0,0\n0.2,0\n");
+  const std::string far = "plan --backend host --model triangles --robot " + m.urdf.path + " --cloud " + m.cloud.path +
+                          " --configurations " + rows.path + " --joint-error 0.1,0 --check 0.2 --d-max ";
+  refuses(far + "0.25", "--d-max: must be above the margin of --check by more than 0.1 m");
+  CHECK(run_command(far + "0.35").out.size() > 0);
+  refuses(far + "1 --joint-speed 1,2,3 --delay 1", "--joint-speed: needs one number, or one for each of the robot's 2");
 }
 
 }  // namespace uncertainty_test

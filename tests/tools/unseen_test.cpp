@@ -116,9 +116,6 @@ TEST_CASE("--unseen needs depth images, a range, and no question that it cannot 
     refuses(q.ask(image) + " --unseen=" + range, "--unseen");
   refuses(q.ask(image) + " --unseen --deadline 5", "cannot be mixed with --unseen");
   refuses(q.ask(image) + " --unseen --unseen", "--unseen");
-  for (const char* joints : {" --joint-error 0.1", " --joint-speed 1 --delay 0.1"})
-    refuses(q.ask(image) + " --unseen" + joints,
-            "cannot be mixed with --unseen, which takes links where they are said");
 }
 
 TEST_CASE("What is uncertain about a camera is in --unseen, too") {
@@ -134,6 +131,29 @@ TEST_CASE("What is uncertain about a camera is in --unseen, too") {
     CHECK(vague.at("upper").is_null());
   }
   CHECK(ask(" --calibration 0.5,0").at("state") == "possible");
+}
+
+TEST_CASE("What is uncertain about joints is in --unseen, of query, run and plan, with and without --self-filter") {
+  const watched_boxes q;
+  const scratch_file urdf(".urdf", moving_boxes_text), image(".png", png(1000, 1200));
+  const scratch_file rows(".csv", "turn,slide\n0,0\n0,-0.1\n"), still(".csv", "turn,slide\n0,-0.1\n"),
+      list(".txt", image.path + "\n");
+  const std::string robot = " --backend host --model triangles --robot " + urdf.path + q.camera + " --unseen 0.1:1.5",
+                    cloud = " --cloud " + image.path, off = " --joint-error 0.2,0",
+                    alone = "query --json --joint slide=-0.1" + robot + cloud,
+                    frame = "run --frames " + list.path + " --trajectory " + still.path + robot,
+                    plan = "plan --configurations " + rows.path + robot + cloud;
+  const auto sure = parsed(run_command(alone)), all = parsed(run_command(alone + off));
+  const auto lower = [](const auto& parts, int k) { return parts.at("parts").at(k).at("unseen").at("lower"); };
+  const auto& vague = all.at("unseen");
+  CHECK(lower(all, 0) == lower(sure, 0));  // the base has no joint
+  CHECK(lower(all, 1).template get<double>() == Approx(lower(sure, 1).template get<double>() - 0.2).margin(1e-6));
+  CHECK(vague.at("lower") == lower(all, 1));
+  CHECK(vague.at("lower") < sure.at("unseen").at("lower"));
+  CHECK(parsed(run_command(alone + off + " --self-filter 0.001")).at("unseen").at("lower") == vague.at("lower"));
+  for (const std::string filter : {"", " --self-filter 0.001"})
+    CHECK(lines(run_command(frame + off + filter))[0].at("unseen").at("lower") == vague.at("lower"));
+  CHECK(lines(run_command(plan + off))[1].at("unseen").at("lower") == vague.at("lower"));
 }
 
 TEST_CASE("--scene has the hidden room, and the way behind the pixel") {

@@ -5,3 +5,5 @@
 #include "plan.hpp"
 
 template clearance::min_distances_result robot_on_backend<clearance::device>::plan(poses_of, double);
+template clearance::min_distances_per_part_result robot_on_backend<clearance::device>::certain_plan(
+    poses_of, double, const std::vector<double>&);

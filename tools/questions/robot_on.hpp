@@ -11,6 +11,10 @@
 
 #include <variant>
 
+namespace clearance {
+struct min_distances_per_part;
+}
+
 /// A cloud in the library's terms.
 using placed_points =
     std::variant<clearance::placed<clearance::point_span>, clearance::placed<clearance::depth_image<std::uint16_t>>>;
@@ -39,6 +43,9 @@ struct prepared_plan {
   virtual ~prepared_plan() = default;
   virtual const clearance::min_distances_result& ask(poses_of poses, const std::vector<placed_points>& clouds,
                                                      double d_max) = 0;
+  virtual const clearance::min_distances_per_part_result& certain(poses_of poses,
+                                                                  const std::vector<uncertain_points>& clouds,
+                                                                  const clearance::min_distances_per_part& options) = 0;
 };
 
 template <class Backend>
@@ -51,6 +58,7 @@ class robot_on_backend final : public backend_robot {
     copies_.clear();
     clouds_.clear();
     uncertain_.clear();
+    until_end_.clear();
     any_uncertain_ = false;
     const clearance::frames::readable_on<Backend> readable{on_, copies_};
     for (const seen_points& cloud : clouds)
@@ -58,10 +66,12 @@ class robot_on_backend final : public backend_robot {
           [&](const auto& source) {
             const auto here = readable(source, std::uint32_t(clouds_.size()));
             clouds_.push_back(clearance::placed{here, cloud.pose});
-            uncertain_.push_back(clearance::placed{clearance::uncertain(here, cloud.sensor, cloud.off), cloud.pose});
-            const clearance::cloud_uncertainty& off = cloud.off;
+            clearance::cloud_uncertainty off = cloud.off;
+            uncertain_.push_back(clearance::placed{clearance::uncertain(here, cloud.sensor, off), cloud.pose});
             any_uncertain_ = any_uncertain_ || cloud.sensor.kind != clearance::noise_kind::none || off.shift > 0 ||
                              off.turn > 0 || off.max_speed * off.age > 0;
+            off.age += cloud.later;
+            until_end_.push_back(clearance::placed{clearance::uncertain(here, cloud.sensor, off), cloud.pose});
           },
           cloud.points);
     on_.wait();
@@ -81,6 +91,8 @@ class robot_on_backend final : public backend_robot {
   std::vector<clearance::part_witness> witnesses(poses_of poses,
                                                  std::span<const clearance::part_minimum> minima) override;
   clearance::min_distances_result plan(poses_of poses, double d_max) override;
+  clearance::min_distances_per_part_result certain_plan(poses_of poses, double d_max,
+                                                        const std::vector<double>& radii) override;
   std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
                                                        const clearance::motion_clearance_options& options) override;
   std::span<const clearance::part_facts> facts() override {
@@ -117,7 +129,14 @@ class robot_on_backend final : public backend_robot {
     return model;
   }
 
+  /// What clouds are for a question that takes certain ones, too.
+  template <class Ask>
+  auto with_clouds(Ask ask) {
+    return any_uncertain_ ? ask(uncertain_) : ask(clouds_);
+  }
+
   prepared_query& prepared();
+  prepared_plan& planned();
 
   Backend on_;
   asked_model asked_;
@@ -126,6 +145,7 @@ class robot_on_backend final : public backend_robot {
   std::unique_ptr<prepared_plan> planned_;
   std::vector<placed_points> clouds_;
   std::vector<uncertain_points> uncertain_;  // the same clouds
+  std::vector<uncertain_points> until_end_;  // and as they may be when a plan ends
   bool any_uncertain_ = false;
   clearance::frames::cloud_copies<Backend> copies_;
 };

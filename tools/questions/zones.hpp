@@ -11,7 +11,9 @@
 
 template <class Backend>
 clearance::zones_result robot_on_backend<Backend>::zones(poses_of poses, const clearance::zones& options) {
-  return with_usual_trees([&](const auto& trees) { return clearance::ask(on_, trees, poses, clouds_, options); });
+  return with_clouds([&](const auto& clouds) {
+    return with_usual_trees([&](const auto& trees) { return clearance::ask(on_, trees, poses, clouds, options); });
+  });
 }
 
 template <class Backend>
