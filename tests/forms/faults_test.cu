@@ -7,6 +7,7 @@
 #include "support/catch.hpp"
 #include "support/chunked.hpp"
 #include "support/counted_memory.cuh"
+#include "support/frames_device.cuh"
 #include "support/held_stream.cuh"
 
 #include <clearance/device.cuh>
@@ -196,6 +197,46 @@ TEST_CASE("Wherever memory ends for a device, nothing is lost", "[slow]") {
   for_each_question([&](const char* name, const auto& q) { end_memory(name, q, spheres); });
   for_each_question_of_meshes([&](const char* name, const auto& q) { end_memory(name, q, meshes); });
   end_memory("min_distance of meshes", clearance::min_distance{}, meshes);
+}
+
+TEST_CASE("Wherever memory ends while a frame is enqueued or captured, nothing is lost", "[slow]") {
+  using clearance::min_distance_per_part, clearance::part_minimum;
+  const its_stream stream;
+  const device gpu = stream.on();
+  const two_frames f;
+  const auto model = f.many.model();
+  const auto& poses = f.many.s.poses;
+  const auto there = model.on(gpu);
+  const frame_there few(gpu, f.few), many(gpu, f.many);
+  clearance::pinned_buffer<clearance::min_distance_result> all{1, 0};
+  clearance::pinned_buffer<part_minimum> minima{there.size(), 0};
+  const auto expected = [&](const moving_frames& at) {
+    return ask(host{1}, model, poses, at.here(), min_distance_per_part{});
+  };
+  const auto make = [&] { return clearance::query(gpu, there, min_distance_per_part{}); };
+  const auto enqueue = [&](auto& query, const moving_frames& at) {
+    query.enqueue(poses, (&at == &f.few ? few : many).all, {all.data(), minima.data()});
+  };
+  const auto answer = [&]() -> min_distance_per_part::result {
+    gpu.wait();
+    return {std::exchange(*all.data(), {}), std::vector<part_minimum>(minima.data(), minima.data() + there.size())};
+  };
+  const auto enqueued = [&](auto& query, const moving_frames& at) { return enqueue(query, at), answer(); };
+  const auto captured = [&](auto& query, const moving_frames& at) {
+    enqueue(query, at);  // once before: a graph cannot allocate
+    answer();
+    const captured_graph graph(gpu.stream, [&] { enqueue(query, at); });
+    graph.launch();
+    return answer();
+  };
+  verdict v;
+  const auto end_it = [&](const char* how, const auto& asked) {
+    const auto places = end_memory_of(make, asked, expected(f.few), expected(f.many), f, v, how, told_by_cuda);
+    v.require(left_alone(gpu), how, ": something of the caller's is not as it was");
+    std::printf("%s: memory has ended at %zu places\n", how, places);
+  };
+  end_it("enqueued", enqueued);
+  end_it("captured", captured);
 }
 
 namespace {

@@ -26,7 +26,12 @@ class captured_graph {
   template <class F>
   captured_graph(cudaStream_t stream, const F& enqueue) : stream_(stream) {
     check(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal));
-    enqueue();
+    try {
+      enqueue();
+    } catch (...) {
+      cudaStreamEndCapture(stream, &graph_), cudaGraphDestroy(graph_), cudaGetLastError();
+      throw;
+    }
     check(cudaStreamEndCapture(stream, &graph_));
     check(cudaGraphInstantiate(&ready_, graph_, 0));
   }
