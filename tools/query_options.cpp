@@ -676,7 +676,7 @@ void add_query_questions(CLI::App& app, raw_options& raw) {
 }  // namespace
 
 bool uses_fields(const query_options& asked, std::size_t configurations) {
-  constexpr std::size_t pays_from = 100'000;  // docs/plan.md
+  constexpr std::size_t pays_from = 100'000;  // docs/cpu-runs/2026-11-26-xeon-fields
   return asked.fields.value_or(configurations >= pays_from && !(asked.d_max < clearance::infinity));
 }
 
