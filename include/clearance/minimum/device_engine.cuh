@@ -32,15 +32,20 @@ class engine<device, PartView, Q> {
     begin(poses, clouds, q);
     return finish();
   }
-  /// Enqueues a frame whose result `finish` waits for.
-  template <class Clouds>
-  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&) {
+  /// Takes all pinned memory, which a first frame does otherwise. Kept memory is a thread's own, so that a question
+  /// that others ask for it takes it here.
+  void reserve() {
     if constexpr (Q::per_part)
       if (minima_.data() == nullptr) minima_ = pinned_buffer<part_minimum>(search_.parts(), on_.id, pinned_);
     if (answer_.data() == nullptr) {
       answer_ = pinned_buffer<answer>(1, on_.id, pinned_);
       answer_.data()->done = 0;
     }
+  }
+  /// Enqueues a frame whose result `finish` waits for.
+  template <class Clouds>
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&) {
+    reserve();
     ++frame_number_;
     asked_ = true;
     search_.template enqueue<Q::per_part>(

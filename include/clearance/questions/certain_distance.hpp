@@ -110,7 +110,9 @@ class certain_distance::engine {
         nominal_(on, model, from...),
         search_(on, model, from...),
         memory_(on, from...),
-        readable_(on, from...) {}
+        readable_(on, from...) {
+    if constexpr (requires { search_.reserve(); }) nominal_.reserve(), search_.reserve();
+  }
 
   template <class Clouds>
   result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const certain_distance& q) {
