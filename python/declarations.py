@@ -97,7 +97,7 @@ def read_members(lines, at, made):
         if re.match(r" (private|protected):", line):
             seen = False
         elif line.startswith("  using result = "):
-            made.question = True
+            made.question = made.header.parent.name == "questions"  # one beside them asks several: C++'s alone
         elif m := re.match(r"  using (out|searched) = (.*?);", line):
             made.out = m[2] if m[1] == "out" else "of*"
         elif line == "  static constexpr bool each_part = true;":
