@@ -94,6 +94,7 @@ void require_no_change_of_pairs(const On& on, const Bare& bare, const Fielded& f
       same(at, clearance::within{{reach}}, "within", reach);
       same(at, clearance::self_filter{.padding = {reach}}, "self_filter", reach);
     }
+    same(at, clearance::min_distance_per_part{}, "every part's minimum", clearance::infinity);
     for (const double d_max : {0.05 * size, double(infinity)})
       same(at, clearance::distances{.d_max = d_max, .which = true}, "distances", d_max);
   }

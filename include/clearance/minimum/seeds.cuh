@@ -98,10 +98,10 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
   // Compares powers: the squared distance to a ball's centre less its squared radius. This needs no root and is good
   // enough. A thread tests one point against all parts, or all four against few parts: a handful of tests.
   real least_power = infinity;
-  std::uint32_t k_least = 0;
   vec3 x = p.at[0];
   const std::uint32_t first = per_part ? (threadIdx.x / team.size + blockIdx.x) % a.parts : 0,
                       end = per_part ? first + 1 : a.parts;
+  std::uint32_t k_least = first;  // also of lanes without a point, which hear the team's bound
   const auto test = [&](std::uint32_t k, vec3 at) {
     const ball around = parts::place(k).root.around;
     const vec3 d = at - around.center;
