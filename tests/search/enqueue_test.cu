@@ -6,6 +6,7 @@
 #include "support/product_device.cuh"
 #include "support/tallied.hpp"
 
+#include <clearance/backend/early_start.cuh>
 #include <clearance/backend/pinned_buffer.cuh>
 #include <clearance/device.cuh>
 #include <clearance/questions/collect.hpp>
@@ -85,7 +86,54 @@ struct given {
   }
 };
 
+/// One block alone, so that it takes long. What follows may start at once.
+__global__ void copy_slowly(const vec3* from, vec3* to, std::size_t n) {
+  clearance::let_next_start();
+  for (std::size_t i = threadIdx.x; i < n; i += blockDim.x) to[i] = from[i];
+}
+
 }  // namespace
+
+TEST_CASE("Frames that follow at once see what was enqueued before them") {
+  given g;
+  verdict v;
+  const std::size_t n = 1 << 16, frames = 24;
+  std::vector<std::vector<vec3>> clouds(2);
+  for (std::size_t i = 0; i < n; ++i) {
+    const vec3 p = g.s.points[i % g.s.points.size()];
+    clouds[0].push_back(p), clouds[1].push_back({p.x + real(3 * g.s.size), p.y, p.z});
+  }
+  std::vector<clearance::min_distance_result> expected;
+  std::vector<device::buffer<vec3>> there;
+  for (const auto& points : clouds) {
+    expected.push_back(clearance::ask(host{}, g.on_host, g.s.poses, placed{point_span(points), g.s.cloud_pose},
+                                      clearance::min_distance{}));
+    there.push_back(g.gpu.copy_in(std::span<const vec3>(points)));
+  }
+  REQUIRE(!same_result(expected[0], expected[1]));
+  const device::buffer<vec3> now(n, 0);
+  clearance::pinned_buffer<clearance::min_distance_result> results(2 * frames, 0);
+  clearance::query other(g.gpu, g.model, clearance::min_distance{});
+  const auto enqueue = [&] {
+    for (std::size_t f = 0; f < frames; ++f) {
+      g.gpu.launch(copy_slowly, 1, 256, 0, static_cast<const vec3*>(there[f % 2].data()), now.data(), n);
+      const placed cloud{point_span(now.data(), n), g.s.cloud_pose};
+      g.query.enqueue(g.s.poses, cloud, results.data() + 2 * f);
+      other.enqueue(g.s.poses, cloud, results.data() + 2 * f + 1);
+    }
+  };
+  const auto look = [&](const std::string& what) {
+    g.gpu.wait();
+    for (std::size_t r = 0; r < 2 * frames; ++r)
+      v.require(same_result(results.data()[r], expected[r / 2 % 2]), what, ": frame ", r / 2, " has seen another");
+    std::fill_n(results.data(), 2 * frames, clearance::min_distance_result{});
+  };
+  enqueue();
+  look("enqueued");
+  const captured_graph graph(g.stream.handle, enqueue);
+  graph.launch(), graph.launch();
+  look("captured");
+}
 
 TEST_CASE("Every frame that is enqueued returns while its stream is held, and is right when it is released",
           "[concurrent]") {

@@ -65,6 +65,19 @@ struct device {
     kernel<<<blocks, threads, shared, stream>>>(arguments...);
     check_cuda(cudaGetLastError(), "kernel launch");
   }
+  /// The same for a kernel that may start while what is in the stream before it still runs: all its threads call
+  /// `wait_for_stream` before they touch what others read or write.
+  template <class... P, class... A>
+  void launch_early(void (*kernel)(P...), unsigned blocks, unsigned threads, std::size_t shared,
+                    const A&... arguments) const {
+    const device_guard guard(id);
+    cudaLaunchAttribute early{};
+    early.id = cudaLaunchAttributeProgrammaticStreamSerialization, early.val.programmaticStreamSerializationAllowed = 1;
+    cudaLaunchConfig_t how{};
+    how.gridDim = blocks, how.blockDim = threads, how.dynamicSmemBytes = shared, how.stream = stream;
+    how.attrs = &early, how.numAttrs = 1;
+    check_cuda(cudaLaunchKernelEx(&how, kernel, arguments...), "kernel launch");
+  }
 
   /// Enqueues `body(indices)` over a grid stride and returns at once. A recursive body gives the stack that it needs,
   /// in bytes, as device_stack(). Throws std::invalid_argument if the device's limit is lower.

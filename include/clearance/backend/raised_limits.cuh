@@ -3,7 +3,6 @@
 
 #include <clearance/backend/cuda_error.cuh>
 
-#include <algorithm>
 #include <vector>
 
 namespace clearance {
@@ -13,16 +12,25 @@ namespace clearance {
 /// where they are launched.
 class raised_limits {
  public:
-  /// Raises the limit on the current device, unless that was done.
-  void raise(const void* kernel, std::size_t bytes) {
-    if (std::find(kernels_.begin(), kernels_.end(), kernel) != kernels_.end()) return;
+  /// Raises the limit on the current device, unless that was done. Returns whether the code that this device has loaded
+  /// is new enough to wait for its stream.
+  bool raise(const void* kernel, std::size_t bytes) {
+    for (const raised& its : kernels_)
+      if (its.kernel == kernel) return its.waits;
     check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)),
                "cudaFuncSetAttribute");
-    kernels_.push_back(kernel);
+    cudaFuncAttributes of{};
+    check_cuda(cudaFuncGetAttributes(&of, kernel), "cudaFuncGetAttributes");
+    kernels_.push_back({kernel, of.ptxVersion >= 90 && of.binaryVersion >= 90});
+    return kernels_.back().waits;
   }
 
  private:
-  std::vector<const void*> kernels_;
+  struct raised {
+    const void* kernel;
+    bool waits;
+  };
+  std::vector<raised> kernels_;
 };
 
 }  // namespace clearance

@@ -3,6 +3,7 @@
 // A cloud in one kernel. It finds a first bound, reads every point once and tests it against the parts' balls in the
 // cloud's frame. The few near points go to the trees. The last block to finish writes the answer.
 
+#include <clearance/backend/early_start.cuh>
 #include <clearance/scan/ahead.cuh>
 #include <clearance/scan/filter.cuh>
 #include <clearance/scan/finish.cuh>
@@ -20,10 +21,12 @@ __global__ void __launch_bounds__(block_threads, 2)
   using pairs = pair_search<Tally>;
   auto& s = memory_of_block<Tally>();
   const std::uint32_t t = threadIdx.x, rounds = a.rounds, ahead = a.ahead, clusters = (a.parts + cluster - 1) / cluster;
-  typename Tally::seeds before(a);
+  let_next_start();
+  if (a.far) wait_for_stream();  // the parts are in memory
   const cards<Tally> all(rounds);
   point_reader<Source, Tally> reader(source, ahead, all);
-  pairs::prepare(a, [&] { reader.fetch(0), before.look(a, source); });
+  typename Tally::seeds before;
+  pairs::prepare(a, [&] { wait_for_stream(), before.ask(a), reader.fetch(0), before.look(a, source); });
   before.seed(a);
   __syncthreads();
   std::uint32_t bound = Tally::seeds::found(a.parts);

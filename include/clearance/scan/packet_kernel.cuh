@@ -3,6 +3,7 @@
 // A cloud in one kernel, for answers whose bound belongs to a single point. A warp takes one packet of 32 neighbours
 // after another, and then helps other warps.
 
+#include <clearance/backend/early_start.cuh>
 #include <clearance/scan/filter.cuh>
 #include <clearance/scan/finish.cuh>
 #include <clearance/scan/tangent_packets.cuh>
@@ -59,7 +60,9 @@ __global__ void __launch_bounds__(block_threads, 2)
     return i < a.points ? source[i] : sample{{not_a_number, 0, 0}};
   };
   sample next;
-  frame_parts<Tally>::prepare(a, [&] { next = read(packet); });
+  let_next_start();
+  if (a.far) wait_for_stream();  // the parts are in memory
+  frame_parts<Tally>::prepare(a, [&] { wait_for_stream(), next = read(packet); });
   __syncthreads();
   sharpen<Tally>(t, 0);
   __syncthreads();

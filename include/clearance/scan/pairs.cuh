@@ -87,8 +87,8 @@ struct pair_search : pair_elements<Tally> {
     const pair c = live ? s.pair_table[i] : pair{};
     const std::uint32_t part = live ? s.part_of_pair[i] : 0;
     live = live && pair_search::near_part(s, part, c.x) && !Tally::skips(s, part, c.point, i, start_of(c.x));
-    if constexpr (Tally::goes_ahead)
-      live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0;  // others may be changing its inputs
+    if constexpr (Tally::goes_ahead)  // others may be changing its inputs, and this warp is about to
+      live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0, __syncwarp();
     const element q = moved(frame::place(part).part_from_cloud, c.x);
     if constexpr (has_interior<typename Tally::part_type>) {
       const unsigned gone =
