@@ -6,6 +6,7 @@
 #include <clearance/minimum/field_sample.hpp>
 #include <clearance/robot/model.hpp>
 
+#include <optional>
 #include <string>
 
 namespace clearance {
@@ -68,18 +69,27 @@ extent box_around(const Part& part) {
   return box;
 }
 
-/// Makes the field of one part; it says why not otherwise.
-template <backend B, class Part>
-field<host> sampled_field(const B& on, const Part& part, const field_options& options, std::string& why_not) {
+/// A part's field without its cells; it says why not otherwise.
+template <class Part>
+std::optional<field<host>> field_of(const Part& part, const field_options& options, std::string& why_not) {
   const part_facts& facts = part.facts;
   constexpr std::size_t fewest = 512, each = field_view::levels * sizeof(field_cell);
   const std::size_t cubes = options.bytes / each;
   if (cubes < fewest)
     return why_not = std::to_string(options.bytes) + " bytes are too few for a field; it needs " +
                      std::to_string(fewest * each),
-           field<host>{};
+           std::nullopt;
   if (!(facts.radius > 0 && facts.radius < 1e6f && length(facts.center) < 1e6f))
-    return why_not = "a part without a finite size has no field", field<host>{};
+    return why_not = "a part without a finite size has no field", std::nullopt;
+  return field<host>{{}, field_around(box_around(part), {facts.center, facts.radius}, cubes), options.bytes};
+}
+
+/// Makes the field of one part; it says why not otherwise.
+template <backend B, class Part>
+field<host> sampled_field(const B& on, const Part& part, const field_options& options, std::string& why_not) {
+  auto made = field_of(part, options, why_not);
+  if (!made) return {};
+  field<host>& f = *made;
   const auto there = part.on(on);
   const auto view = there.view();
   const std::uint64_t need = stack_need(view.tree.depth(), view.tree.width());
@@ -89,10 +99,7 @@ field<host> sampled_field(const B& on, const Part& part, const field_options& op
                        " entries, too many for a device; sample its field on a host",
              field<host>{};
   using part_view = std::remove_const_t<decltype(view)>;
-  field<host> f;
-  f.shape = field_around(box_around(part), {facts.center, facts.radius}, cubes);
-  const auto& last = f.shape.grids[field_view::levels - 1];
-  const std::size_t all = last.first + last.cubes();
+  const std::size_t all = f.shape.all_cubes();
   const auto views = on.copy_in(std::span<const part_view>(&view, 1));
   auto cells = on.template make_scratch<field_cell>(all);
   auto lost = on.template make_scratch<std::uint32_t>(1);
@@ -108,6 +115,19 @@ field<host> sampled_field(const B& on, const Part& part, const field_options& op
   return f;
 }
 
+/// A robot of which part k has the field `make(part, why_not)`. An empty one has its sentence in `why_not`.
+template <class Part, class Make>
+fielded<model<Part>> fielded_by(model<Part> robot, Make make) {
+  using view = typename model<Part>::view_type;
+  static_assert(tangent_primitive<typename view::hierarchy_type::primitive_type>,
+                "a field needs primitives with `tangent_at`, see concepts/tangent.hpp");
+  std::vector<std::string> without(robot.size());
+  std::vector<field<host>> fields;
+  for (std::size_t k = 0; k < robot.size(); ++k) fields.push_back(make(robot.parts()[k], without[k]));
+  robot.set_fields(std::move(fields));
+  return {std::move(robot), std::move(without)};
+}
+
 }  // namespace detail
 
 /// Gives each part of a robot in host memory a field of about `bytes`, sampled where `on` runs. Questions about many
@@ -115,15 +135,9 @@ field<host> sampled_field(const B& on, const Part& part, const field_options& op
 /// too. A part that can have none keeps its tree alone. Source: Lipschitz and tangent bounds, minimum/field_sample.hpp.
 template <backend B, class Part>
 fielded<model<Part>> with_fields(const B& on, model<Part> robot, const field_options& options = {}) {
-  using view = typename model<Part>::view_type;
-  static_assert(tangent_primitive<typename view::hierarchy_type::primitive_type>,
-                "a field needs primitives with `tangent_at`, see concepts/tangent.hpp");
-  std::vector<std::string> without(robot.size());
-  std::vector<field<host>> fields;
-  for (std::size_t k = 0; k < robot.size(); ++k)
-    fields.push_back(detail::sampled_field(on, robot.parts()[k], options, without[k]));
-  robot.set_fields(std::move(fields));
-  return {std::move(robot), std::move(without)};
+  return detail::fielded_by(std::move(robot), [&](const Part& part, std::string& why_not) {
+    return detail::sampled_field(on, part, options, why_not);
+  });
 }
 
 }  // namespace clearance
