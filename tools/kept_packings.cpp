@@ -19,5 +19,5 @@ void check_kept(const io::packing_cache& cache, bool named, std::vector<std::str
   if (!there || ::access(folder.c_str(), W_OK | X_OK) != 0)
     notes.push_back(
         folder +
-        ": cannot be written to, so new packings are not kept (--cache names another folder, --no-cache none)");
+        ": cannot be written to, so nothing new is kept (--cache names another folder, --no-cache none)");
 }

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The .fields file: fields of a robot's parts, bound to the very parts that they were sampled from. Bytes:
-// docs/packing.md#fields.
+// The .fields file: fields of a robot's parts, bound to the very parts that they were sampled from.
+//
+// Head and checksum are those of the .ist file, docs/packing.md#the-ist-format-version-1, with "FLD" in the first
+// bytes. Each part: 16 bytes field_key, 8 bytes `bytes` of field_options, 8 bytes number of cells, then each
+// field_cell: value (2), way (3), below, above, side. Numbers have their least byte first. Where cells are is computed
+// from the part.
 
 #include <clearance/fields.hpp>
 #include <clearance/io/digest.hpp>
