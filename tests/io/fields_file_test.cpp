@@ -278,6 +278,8 @@ TEST_CASE("what was sampled once is not sampled again, and is the same to the bi
   const auto exchanged = model(std::vector{robot.parts()[1], balls(5).parts()[0]});
   const auto half = io::with_kept_fields(exchanged, small, io::field_cache(cache));
   CHECK((half.found == 0 && half.model.fields().empty()));
+  const auto others = io::with_kept_fields(sampled(balls(), {1 << 15}), {1 << 16}, io::field_cache(cache));
+  CHECK((others.found == 0 && others.model.fields().size() == 2));  // as it was
   CHECK(found(exchanged, cache) == 1);
   CHECK(found(boxes(), cache) == 0);
   CHECK(found(boxes(), cache) == 2);

@@ -71,14 +71,14 @@ cached_fields<model<Part>> with_fields_cached(const B& on, model<Part> robot, co
 /// The robot with fields if the cache has those of all its parts, else as it is. Nothing is sampled.
 template <file_fielded Part>
 cached_fields<model<Part>> with_kept_fields(model<Part> robot, const field_options& options, const field_cache& cache) {
-  const std::size_t parts = robot.size();
-  std::size_t found = 0, asked = 0;
-  auto made = clearance::detail::fielded_by(std::move(robot), [&](const Part& part, std::string&) {
-    field<host> kept = found == asked++ ? cache.find(part, options) : field<host>{};
-    found += !kept.empty();
-    return kept;
-  });
-  return {std::move(made), found == parts ? found : 0};
+  std::vector<field<host>> kept;
+  for (const Part& part : robot.parts()) {
+    kept.push_back(cache.find(part, options));
+    if (kept.back().empty()) break;
+  }
+  const std::size_t parts = robot.size(), found = kept.back().empty() ? 0 : parts;
+  if (found > 0) robot.set_fields(std::move(kept));
+  return {{std::move(robot), std::vector<std::string>(parts)}, found};
 }
 
 }  // namespace clearance::io
