@@ -412,7 +412,10 @@ TEST_CASE("The cache of fields: options that change nothing are refused, and wha
   for (int k = 0; k < 2; ++k)
     CHECK(run_command(run + " --fields --plan " + p.rows.path + " --cache " + in.string()).code == 0);
   CHECK(std::distance(std::filesystem::directory_iterator(in), std::filesystem::directory_iterator()) ==
-        1);                    // of equal links
+        1);                               // of equal links
+  const auto full = place.path / "full";  // no room for a field
+  CHECK(run_command(p.ask + " --csv --fields", full.string(), "ulimit -f 500; ").out == o.out);
+  CHECK(std::filesystem::is_empty(full));
   std::vector<FILE*> running;  // at once
   for (int k = 0; k < 2; ++k)
     running.push_back(::popen(("CLEARANCE_CACHE='" + (place.path / "new").string() + "' \"" CLEARANCE_COMMAND "\" " +
