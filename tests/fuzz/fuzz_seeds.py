@@ -51,7 +51,8 @@ def seeds_of(target):
         data = glb.files[glb.target]
         made += [data[20:20 + int.from_bytes(data[12:16], "little")], *_documents('{"asset')]
     if target == "fields":  # damages of five bytes, after one that says whether the checksum fits
-        made += [bytes([k, kind, 0, at, 1, 0]) for k in (0, 1) for kind in range(6) for at in (12, 30, 40, 50, 63, 250)] + [b"\1"]
+        places = (12, 30, 40, 50, 63, 250)
+        made += [b"\1"] + [bytes([k, kind, 0, at, 1, 0]) for k in (0, 1) for kind in range(6) for at in places]
     if target.startswith("same_"):
         made += [bytes([k]) + bytes(range(k, 256, 3)) + bytes([240]) * 5 for k in (0, 1, 7, 255)]
     return sorted(set(made))
