@@ -157,8 +157,10 @@ std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const as
 }
 
 std::vector<body> make_bodies(const query_options& asked, const asked_robot& robot, progress& shown,
-                              std::vector<std::string>& notes) {
-  if (asked.model == model_kind::spheres) check_kept(body_options_of(asked).cache, !asked.cache.empty(), notes);
+                              std::vector<std::string>& notes, field_use fields) {
+  const bool named = !asked.cache.empty();
+  if (asked.model == model_kind::spheres || fields == field_use::always || named)
+    check_kept(body_options_of(asked).cache, named, notes);
   std::vector<io::packed_part> given;
   if (!asked.packing.empty())
     given = io::within_memory(asked.packing, [&] { return io::load_spheres(asked.packing, asked.limits); });

@@ -57,6 +57,7 @@ std::vector<Eigen::Isometry3d> all_links(const query_options& asked, const clear
 std::vector<Eigen::Isometry3d> placed_links(const query_options& asked, const asked_robot& robot,
                                             const std::vector<double>& joints, const std::string& when = {});
 
-/// One body per part, packed if the model is of spheres. Notes are shown to the user.
+/// One body per part, packed if the model is of spheres. Notes are shown to the user. `fields`: what else the cache is
+/// for.
 std::vector<body> make_bodies(const query_options& asked, const asked_robot& robot, progress& shown,
-                              std::vector<std::string>& notes);
+                              std::vector<std::string>& notes, field_use fields = field_use::none);

@@ -13,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -118,17 +119,22 @@ class backend_robot {
 
   // After `plan` with fields: for each body that can have none the reason, else empty words. Then none is used.
   std::vector<std::string> without_field;
+  std::size_t fields = 0, fields_cached = 0;  // that are used; and how many of them the cache had
 
   // Seconds: for the last question; so far for building trees; and for moving them to where the backend reads them.
   double query = 0, build = 0, upload = 0;
 };
+
+/// The fields of all bodies, for `plan`: without, only if the cache has all of them, or sampled where it has them not.
+enum class field_use { none, if_cached, always };
 
 /// What trees are built from.
 struct asked_model {
   model_kind model = model_kind::spheres;
   volume_kind volume = volume_kind::sphere;  // of the trees of `least`
   const std::vector<body>* bodies = nullptr;
-  bool fields = false;  // of all bodies, for `plan`
+  field_use fields = field_use::none;
+  std::filesystem::path cache = {};  // a folder for fields; empty: they are not kept
 };
 
 std::unique_ptr<backend_robot> robot_on_host(const asked_model& asked);

@@ -17,7 +17,6 @@ void check_kept(const io::packing_cache& cache, bool named, std::vector<std::str
     throw usage_error(
         "--cache", folder + " is no folder, and none can be made: " + (failed ? failed.message() : unknown.message()));
   if (!there || ::access(folder.c_str(), W_OK | X_OK) != 0)
-    notes.push_back(
-        folder +
-        ": cannot be written to, so new packings are not kept (--cache names another folder, --no-cache none)");
+    notes.push_back(folder +
+                    ": cannot be written to, so nothing new is kept (--cache names another folder, --no-cache none)");
 }

@@ -51,11 +51,13 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   plan_report report{.asked = &asked, .clouds = &clouds.files};
   report.load = clock.lap();
 
-  const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
+  const field_use fields = uses_fields(asked, rows.size());
+  const std::vector<body> bodies = make_bodies(asked, robot, shown, notes, fields);
   report.bodies = &bodies;
   report.pack = clock.lap();
   shown.show("asking about " + std::to_string(rows.size()) + " configurations");
-  const asked_model model{asked.model, asked.volume, &bodies, uses_fields(asked, rows.size())};
+  const asked_model model{asked.model, asked.volume, &bodies, fields,
+                          chosen_cache(asked.no_cache, asked.cache).folder()};
   auto there = robot_on(asked.on_device, model);
   if (ranks) there = ranks->together(std::move(there), model, questions_of(asked));
   report.upload = there->see(clouds.seen);
@@ -83,6 +85,7 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   if (ranks) ranks->part();
   if (ranks && !ranks->speaks()) return 0;
   report.build = there->build;
+  report.fields = there->fields, report.fields_cached = there->fields_cached;
   report.upload += there->upload;
   shown.clear();
   if (asked.csv && asked.margin) {

@@ -124,6 +124,7 @@ std::string to_json(const plan_report& report) {
   for (const observation& cloud : *report.clouds) cloud.recount(all);
   last["points"] = counts(all);
   last["model"] = to_string(report.asked->model);
+  if (report.fields > 0) last["fields"] = {{"links", report.fields}, {"cached", report.fields_cached}};
   last["backend"] = report.asked->on_device ? "device" : "host";
   last["seconds"] = {{"load", report.load},
                      {"pack", report.pack},

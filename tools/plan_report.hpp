@@ -20,6 +20,7 @@ struct plan_report {
   std::vector<certain_row> certain = {};                        // of each, if something is uncertain
   std::vector<clearance::unseen_result> unseen = {};            // for --unseen: of each configuration
   std::vector<clearance::motion_clearance_result> ways = {};    // for --between: way k goes from row k to the next
+  std::size_t fields = 0, fields_cached = 0;                    // that were used, and how many of them the cache had
   double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds
 
   /// The first configuration whose lower end, of what is certain if that was asked, is not above the margin of --check;

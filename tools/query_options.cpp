@@ -99,8 +99,10 @@ clearance::any_noise sensor_of(const std::string& option, const std::string& tex
 }
 constexpr const char* of_fields =
     "on (also without a value), off or auto (default): sample a table around each link first (1 MiB; up to seconds a "
-    "link on a host, 5 ms on a GPU). Configurations take less time then, and every answer is the same; auto: for "
-    "100,000 and more (rows times frames) without --d-max";
+    "link on a host, 5 ms on a GPU), once: the cache keeps it. Configurations take less time then, and every answer is "
+    "the same; auto, without --d-max: sample for 100,000 and more (rows times frames), and take what the cache has for "
+    "100 "
+    "(on a GPU 10,000) and more";
 
 void add_fields(CLI::App& app, raw_options& raw) {
   app.add_option_function<std::vector<std::string>>(
@@ -314,14 +316,14 @@ void read_uncertainty(const raw_options& raw, query_options& o) {
   for (cloud_options& cloud : o.clouds) set_age(cloud);
 }
 
-/// Throws if an option is about spheres, but the model has none.
+/// Throws if an option is about spheres, but the model has none; or about what is kept, but nothing is.
 void check_model(const query_options& o) {
-  const std::pair<const char*, bool> of_spheres[] = {{"--packing", !o.packing.empty()},
-                                                     {"--spheres", o.spheres.has_value()},
-                                                     {"--cache", !o.cache.empty()},
-                                                     {"--no-cache", o.no_cache}};
-  for (const auto& [option, given] : of_spheres)
-    if (given && o.model != model_kind::spheres) throw usage_error(option, "is for --model spheres");
+  if (o.model == model_kind::spheres) return;
+  for (const auto& [option, given] : {std::pair("--packing", !o.packing.empty()), {"--spheres", o.spheres.has_value()}})
+    if (given) throw usage_error(option, "is for --model spheres");
+  if (o.plans() && uses_fields(o, ~std::size_t(0)) != field_use::none) return;
+  for (const auto& [option, given] : {std::pair("--cache", !o.cache.empty()), {"--no-cache", o.no_cache}})
+    if (given) throw usage_error(option, "is for --model spheres, and for --fields");
 }
 
 /// The questions besides the least distance.
@@ -367,7 +369,7 @@ void read_questions(const raw_options& raw, query_options& o) {
     throw usage_error("--between", "cannot be mixed with --attach: how what is held moves is not bounded yet");
   o.recording.plan = raw.plan;
   if (raw.fields) {
-    if (o.configurations.empty() && o.recording.plan.empty()) throw usage_error("--fields", "is for --plan");
+    if (!o.plans()) throw usage_error("--fields", "is for --plan");
     const std::size_t how = raw.fields->empty() ? 0 : choice("--fields", *raw.fields, {"on", "off", "auto"});
     if (how != 2) o.fields = how == 0;
   }
@@ -396,9 +398,9 @@ std::uint64_t bytes_each(const query_options& o) {
   for (const bool asked : {!o.zones.empty(), o.nearest != 0, o.support.has_value(), o.self_filter.has_value(),
                            o.certain.has_value(), o.unseen.has_value(), o.model == model_kind::triangles})
     if (asked) bytes += 16;
-  if (!o.distances.empty()) bytes += 64;                                    // the result, and a record of the file
-  if (!o.scene.empty()) bytes += 128;                                       // several copies of position and colour
-  if (!o.configurations.empty() || !o.recording.plan.empty()) bytes += 80;  // a tree
+  if (!o.distances.empty()) bytes += 64;  // the result, and a record of the file
+  if (!o.scene.empty()) bytes += 128;     // several copies of position and colour
+  if (o.plans()) bytes += 80;             // a tree
   if (o.recording.merge) bytes += 64;
   return bytes;
 }
@@ -439,13 +441,13 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.packing = raw.packing;
   o.no_cache = raw.no_cache;
   o.cache = raw.cache;
-  check_model(o);
   o.excluded = raw.excluded;
   o.on_device = raw.backend.empty() ? find_device().present : is_device(raw.backend);
   o.json = raw.json;
   o.scene = raw.scene;
   read_uncertainty(raw, o);
   read_questions(raw, o);
+  check_model(o);
   read_deadline(raw, o);
   o.recording.camera.bytes_each = bytes_each(o);
   for (cloud_options& cloud : o.clouds) cloud.bytes_each = o.recording.camera.bytes_each;
@@ -557,9 +559,9 @@ void add_model_options(CLI::App& app, raw_options& raw, asking how) {
   app.add_option("--spheres", raw.spheres, "Inner spheres per link that is packed (default 2048)");
   app.add_option("--packing", raw.packing, "The links' spheres: .ist (from clearance pack), .yaml as for cuRobo, .csv");
   app.add_flag("--no-cache", raw.no_cache, "Pack anew, and keep nothing");
-  app.add_option(
-      "--cache", raw.cache,
-      "Keep packings in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, ~/.cache/clearance)");
+  app.add_option("--cache", raw.cache,
+                 "Keep packings and fields in this folder (default: $CLEARANCE_CACHE, $XDG_CACHE_HOME/clearance, "
+                 "~/.cache/clearance)");
   app.add_option("--exclude-link", raw.excluded, "Leave out this link's geometry");
   app.add_option("--attach", raw.attached,
                  "LINK=FILE: this link holds something, which counts as a part of the robot: a mesh, or spheres (.ist, "
@@ -675,9 +677,12 @@ void add_query_questions(CLI::App& app, raw_options& raw) {
 
 }  // namespace
 
-bool uses_fields(const query_options& asked, std::size_t configurations) {
-  constexpr std::size_t pays_from = 100'000;  // docs/cpu-runs/2026-11-26-xeon-fields
-  return asked.fields.value_or(configurations >= pays_from && !(asked.d_max < clearance::infinity));
+field_use uses_fields(const query_options& asked, std::size_t configurations) {
+  // docs/cpu-runs/2026-11-26-xeon-fields, docs/cpu-runs/2026-11-26-kept-fields
+  constexpr std::size_t sampling_pays_from = 100'000, reading_pays_from[] = {100, 10'000};
+  if (asked.fields) return *asked.fields ? field_use::always : field_use::none;
+  if (asked.d_max < clearance::infinity || configurations < reading_pays_from[asked.on_device]) return field_use::none;
+  return configurations < sampling_pays_from ? field_use::if_cached : field_use::always;
 }
 
 std::string questions_of(const query_options& asked) {

@@ -116,11 +116,13 @@ struct query_options {
   bool between = false;            // for `clearance plan`
   std::optional<bool> fields;      // for `clearance plan` and the plan of `clearance run`; auto: not given
   recording_options recording;     // for `clearance run`
+
+  bool plans() const { return !configurations.empty() || !recording.plan.empty(); }
 };
 
-/// Are so many configurations asked about with fields? If not said by --fields: where sampling costs less than it
-/// saves.
-bool uses_fields(const query_options& asked, std::size_t configurations);
+/// Are so many configurations asked about with fields? If not said by --fields: sampled where that costs less than it
+/// saves, else if they are kept.
+field_use uses_fields(const query_options& asked, std::size_t configurations);
 
 enum class asking { query, run, plan };
 

@@ -204,7 +204,7 @@ class robot_of_ranks final : public backend_robot {
       here.attempt([&] { mine = ask(); });
       here.join(answer, mine);
       query = mine_->query, build = mine_->build, upload = mine_->upload;
-      without_field = mine_->without_field;
+      without_field = mine_->without_field, fields = mine_->fields, fields_cached = mine_->fields_cached;
       return answer.result();
     });
   }

@@ -194,10 +194,11 @@ int run_frames(const query_options& asked) {
 
   note_hidden(asked, notes);
   if (!asked.recording.svg.empty()) check_picture(asked.recording.svg, frames, inputs);
-  const std::vector<body> bodies = make_bodies(asked, robot, shown, notes);
+  const field_use fields = uses_fields(asked, to_come.size() * frames.size());
+  const std::vector<body> bodies = make_bodies(asked, robot, shown, notes, fields);
   print(notes, shown);
-  const auto there = robot_on(asked.on_device,
-                              {asked.model, asked.volume, &bodies, uses_fields(asked, to_come.size() * frames.size())});
+  const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies, fields,
+                                                chosen_cache(asked.no_cache, asked.cache).folder()});
   int code = 0;
   double upload = asked.recording.merge ? there->see({merged.finish(moves.poses(0))}) : 0;
   asked_clouds clouds;  // the frame's

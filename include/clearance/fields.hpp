@@ -6,6 +6,9 @@
 #include <clearance/minimum/field_sample.hpp>
 #include <clearance/robot/model.hpp>
 
+#include <exception>
+#include <new>
+#include <optional>
 #include <string>
 
 namespace clearance {
@@ -68,18 +71,37 @@ extent box_around(const Part& part) {
   return box;
 }
 
-/// Makes the field of one part; it says why not otherwise.
-template <backend B, class Part>
-field<host> sampled_field(const B& on, const Part& part, const field_options& options, std::string& why_not) {
+/// A part's field without its cells; it says why not otherwise.
+template <class Part>
+std::optional<field<host>> field_of(const Part& part, const field_options& options, std::string& why_not) {
   const part_facts& facts = part.facts;
   constexpr std::size_t fewest = 512, each = field_view::levels * sizeof(field_cell);
+  constexpr std::uint64_t most = std::uint64_t(1) << 34;  // cells are numbered in 32 bits
   const std::size_t cubes = options.bytes / each;
   if (cubes < fewest)
     return why_not = std::to_string(options.bytes) + " bytes are too few for a field; it needs " +
                      std::to_string(fewest * each),
-           field<host>{};
+           std::nullopt;
+  if (options.bytes > most)
+    return why_not = std::to_string(options.bytes) + " bytes are too many for a field; it takes at most " +
+                     std::to_string(most),
+           std::nullopt;
   if (!(facts.radius > 0 && facts.radius < 1e6f && length(facts.center) < 1e6f))
-    return why_not = "a part without a finite size has no field", field<host>{};
+    return why_not = "a part without a finite size has no field", std::nullopt;
+  return field<host>{{}, field_around(box_around(part), {facts.center, facts.radius}, cubes), options.bytes};
+}
+
+/// Did memory end, on the host or where `on` runs?
+template <backend B>
+bool out_of_memory(const B& on, const std::exception& error) {
+  if constexpr (requires { on.out_of_memory(error); })
+    if (on.out_of_memory(error)) return true;
+  return dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+}
+
+/// Samples what is in the boxes of a field.
+template <backend B, class Part>
+std::vector<field_cell> sampled_cells(const B& on, const Part& part, const field_view& shape, std::string& why_not) {
   const auto there = part.on(on);
   const auto view = there.view();
   const std::uint64_t need = stack_need(view.tree.depth(), view.tree.width());
@@ -87,25 +109,48 @@ field<host> sampled_field(const B& on, const Part& part, const field_options& op
     if (need > near_first::capacity)
       return why_not = "its tree needs a stack of " + std::to_string(need) +
                        " entries, too many for a device; sample its field on a host",
-             field<host>{};
+             std::vector<field_cell>{};
   using part_view = std::remove_const_t<decltype(view)>;
-  field<host> f;
-  f.shape = field_around(box_around(part), {facts.center, facts.radius}, cubes);
-  const auto& last = f.shape.grids[field_view::levels - 1];
-  const std::size_t all = last.first + last.cubes();
+  const std::size_t all = shape.all_cubes();
   const auto views = on.copy_in(std::span<const part_view>(&view, 1));
   auto cells = on.template make_scratch<field_cell>(all);
   auto lost = on.template make_scratch<std::uint32_t>(1);
   const std::uint32_t nothing = 0;
   on.stage(std::span<const std::uint32_t>(&nothing, 1), lost.data());
   const any_depth walk{need};
-  for (const auto& g : f.shape.grids)
+  for (const auto& g : shape.grids)
     on.for_each(g.cubes(),
                 minimum::field_sample<part_view>{views.data(), g, walk, cells.data() + g.first, lost.data()});
   if (on.copy_out(lost.data(), 1)[0] != 0)
-    return why_not = "its distances are not finite, so it has no field", field<host>{};
-  f.cells = on.copy_out(cells.data(), all);
-  return f;
+    return why_not = "its distances are not finite, so it has no field", std::vector<field_cell>{};
+  return on.copy_out(cells.data(), all);
+}
+
+/// Makes the field of one part; it says why not otherwise.
+template <backend B, class Part>
+field<host> sampled_field(const B& on, const Part& part, const field_options& options, std::string& why_not) {
+  auto made = field_of(part, options, why_not);
+  if (!made) return {};
+  try {
+    made->cells = sampled_cells(on, part, made->shape, why_not);
+  } catch (const std::exception& error) {
+    if (!out_of_memory(on, error)) throw;
+    why_not = "there is not enough memory to sample its field";
+  }
+  return std::move(*made);
+}
+
+/// A robot of which part k has the field `make(part, why_not)`. An empty one has its sentence in `why_not`.
+template <class Part, class Make>
+fielded<model<Part>> fielded_by(model<Part> robot, Make make) {
+  using view = typename model<Part>::view_type;
+  static_assert(tangent_primitive<typename view::hierarchy_type::primitive_type>,
+                "a field needs primitives with `tangent_at`, see concepts/tangent.hpp");
+  std::vector<std::string> without(robot.size());
+  std::vector<field<host>> fields;
+  for (std::size_t k = 0; k < robot.size(); ++k) fields.push_back(make(robot.parts()[k], without[k]));
+  robot.set_fields(std::move(fields));
+  return {std::move(robot), std::move(without)};
 }
 
 }  // namespace detail
@@ -115,15 +160,9 @@ field<host> sampled_field(const B& on, const Part& part, const field_options& op
 /// too. A part that can have none keeps its tree alone. Source: Lipschitz and tangent bounds, minimum/field_sample.hpp.
 template <backend B, class Part>
 fielded<model<Part>> with_fields(const B& on, model<Part> robot, const field_options& options = {}) {
-  using view = typename model<Part>::view_type;
-  static_assert(tangent_primitive<typename view::hierarchy_type::primitive_type>,
-                "a field needs primitives with `tangent_at`, see concepts/tangent.hpp");
-  std::vector<std::string> without(robot.size());
-  std::vector<field<host>> fields;
-  for (std::size_t k = 0; k < robot.size(); ++k)
-    fields.push_back(detail::sampled_field(on, robot.parts()[k], options, without[k]));
-  robot.set_fields(std::move(fields));
-  return {std::move(robot), std::move(without)};
+  return detail::fielded_by(std::move(robot), [&](const Part& part, std::string& why_not) {
+    return detail::sampled_field(on, part, options, why_not);
+  });
 }
 
 }  // namespace clearance

@@ -43,9 +43,9 @@ class Robot:
         One part for each {name: array (n, 4) of x, y, z, radius}. Metres. gap: the largest distance of the solid to its spheres (inf: unknown, so there is no lower bound).
         """
 
-    def with_fields(self, bytes: object | None = 1048576, device: str = 'cpu') -> Robot:
+    def with_fields(self, bytes: object | None = 1048576, device: str = 'cpu', cache: bool = True) -> Robot:
         """
-        The same robot with a field of so many bytes around each part: questions about many configurations take less time then, and no answer changes. device: where it is sampled, "cpu" (seconds a part) or "cuda:0". If a part can have none, none is used, and `notes` say why.
+        The same robot with a field of so many bytes around each part: questions about many configurations take less time then, and no answer changes. device: where it is sampled, "cpu" (seconds a part) or "cuda:0"; once, and kept in the cache. If a part can have none, none is used, and `notes` say why.
         """
 
     @property

@@ -6,7 +6,7 @@
 #include "device_entry.hpp"
 #include "values.hpp"
 
-#include <clearance/fields.hpp>
+#include <clearance/io/field_cache.hpp>
 #include <clearance/io/jacobian.hpp>
 #include <clearance/io/mesh.hpp>
 #include <clearance/io/part_radii.hpp>
@@ -194,27 +194,42 @@ std::shared_ptr<robot_model> from_spheres(const nb::dict& given, double gap, dou
   return made;
 }
 
+/// The trees with fields, from the cache or sampled on a device; `without` says why a part has none.
+std::shared_ptr<const robot_trees<>> fielded_trees(const robot_trees<>& trees, std::size_t bytes, int device,
+                                                   const io::field_cache& cache, std::vector<std::string>& without) {
+  const auto owned = [](auto model) { return std::make_shared<const robot_trees<>>(std::move(model)); };
+  return std::visit(
+      [&](const auto& bare) {
+        if (device == on_the_host) {
+          auto made = io::with_fields_cached(host{}, bare, {bytes}, cache);
+          without = std::move(made.without);
+          return owned(std::move(made.model));
+        }
+        if (auto kept = io::with_kept_fields(bare, {bytes}, cache); kept.found > 0) return owned(std::move(kept.model));
+        const auto made = open_device_door().sample(trees, bytes, without, device);
+        const auto& model = std::get<std::remove_cvref_t<decltype(bare)>>(*made);
+        for (std::size_t k = 0; k < model.fields().size(); ++k) cache.keep(model.parts()[k], model.fields()[k]);
+        return made;
+      },
+      trees);
+}
+
 /// A robot that Python holds, with fields.
-std::shared_ptr<robot_model> fielded_robot(const nb::object& self, nb::handle bytes, const std::string& device) {
+std::shared_ptr<robot_model> fielded_robot(const nb::object& self, nb::handle bytes, const std::string& device,
+                                           bool cache) {
   const auto& robot = nb::cast<const robot_model&>(self);
   const std::size_t size = count_of(bytes, "bytes");
   const int where = device_number(device);
   const auto made = std::make_shared<robot_model>();
-  made->maker = "with_fields", made->recipe = nb::make_tuple(self, size);  // on any machine: no answer depends on where
+  made->maker = "with_fields";
+  made->recipe = nb::make_tuple(self, size, "cpu", cache);  // on any machine: no answer depends on where
   const nb::gil_scoped_release others;
   made->name = robot.name, made->names = robot.names, made->bodies = robot.bodies, made->notes = robot.notes;
   made->description = robot.description, made->spheres = robot.spheres;
   std::vector<std::string> without;
-  if (where == on_the_host)
-    made->trees = std::visit(
-        [&](const auto& trees) {
-          auto sampled = with_fields(host{}, trees, {size});
-          without = std::move(sampled.without);
-          return std::make_shared<const robot_trees<>>(std::move(sampled.model));
-        },
-        *robot.trees);
-  else
-    made->trees = open_device_door().sample(*robot.trees, size, without, where);
+  made->trees =
+      fielded_trees(*robot.trees, size, where,
+                    io::field_cache(cache ? io::packing_cache::usual_folder() : std::filesystem::path()), without);
   made->has_fields = true;
   for (std::size_t k = 0; k < without.size(); ++k) {
     if (without[k].empty()) continue;
@@ -372,9 +387,10 @@ void bind_robot(nb::module_& m) {
                   "solid to its spheres (inf: unknown, so there is no lower bound).")
       .def(
           "with_fields", &fielded_robot, nb::arg("bytes").none() = field_options{}.bytes, nb::arg("device") = "cpu",
+          nb::arg("cache") = true,
           "The same robot with a field of so many bytes around each part: questions about many configurations take "
-          "less time then, and no answer changes. device: where it is sampled, \"cpu\" (seconds a part) or \"cuda:0\". "
-          "If a part can have none, none is used, and `notes` say why.")
+          "less time then, and no answer changes. device: where it is sampled, \"cpu\" (seconds a part) or \"cuda:0\"; "
+          "once, and kept in the cache. If a part can have none, none is used, and `notes` say why.")
       .def_prop_ro(
           "has_fields", [](const robot_model& r) { return r.has_fields; },
           "Was it made by with_fields, and are they used?")

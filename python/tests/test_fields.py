@@ -46,6 +46,25 @@ def test_configurations_have_the_same_bits_with_fields_of_triangles(arm, rng):
     assert arm.with_fields(SMALL).with_fields(SMALL).has_fields
 
 
+def test_fields_are_kept_in_the_cache_and_only_there(rng, tmp_path, monkeypatch):
+    monkeypatch.setenv("CLEARANCE_CACHE", str(tmp_path))
+    robot, _, _ = random_robot(rng)
+    plan = np.stack([[rigid(rng) for _ in range(3)] for _ in range(50)])
+    points = rng.normal(0, 0.6, (500, 3)).astype("f4")
+    assert robot.with_fields(SMALL, cache=False).has_fields and not list(tmp_path.iterdir())
+    first = robot.with_fields(SMALL)
+    kept = {f: f.stat().st_mtime_ns for f in tmp_path.iterdir()}
+    assert len(kept) == 3 and {f.suffix for f in kept} == {".fields"}
+    again = pickle.loads(pickle.dumps(robot.with_fields(SMALL)))
+    assert {f: f.stat().st_mtime_ns for f in tmp_path.iterdir()} == kept  # read, not written anew
+    for its in first, again:
+        assert its.has_fields and rows(its, PLANS[0], points, poses=plan) == rows(robot, PLANS[0], points, poses=plan)
+    file = min(kept)
+    file.write_bytes(file.read_bytes()[:-1] + b"?")
+    assert rows(robot.with_fields(SMALL), PLANS[0], points, poses=plan) == rows(robot, PLANS[0], points, poses=plan)
+    assert file.stat().st_mtime_ns != kept[file]
+
+
 def test_why_there_is_no_field_is_a_note_and_what_is_wrong_is_refused(rng):
     robot = clearance.Robot.from_spheres({"huge": [[0, 0, 0, 2e6]], "small": [[0, 0, 0, 0.1]]})
     bare = robot.with_fields(SMALL)

@@ -50,6 +50,9 @@ def seeds_of(target):
         glb = cases["glb"][0]
         data = glb.files[glb.target]
         made += [data[20:20 + int.from_bytes(data[12:16], "little")], *_documents('{"asset')]
+    if target == "fields":  # damages of five bytes, after one that says whether the checksum fits
+        places = (12, 30, 40, 50, 63, 250)
+        made += [b"\1"] + [bytes([k, kind, 0, at, 1, 0]) for k in (0, 1) for kind in range(6) for at in places]
     if target.startswith("same_"):
         made += [bytes([k]) + bytes(range(k, 256, 3)) + bytes([240]) * 5 for k in (0, 1, 7, 255)]
     return sorted(set(made))
@@ -64,7 +67,7 @@ def write(target, folder):
     words = set(_MORE_WORDS.get(target, ())) | {n for n in mutate.NUMBERS if n.isascii()} | {"nan", "-nan", "inf"}
     for number, data in enumerate(made):
         (folder / f"{number:03}").write_bytes(data)
-        if not target.startswith("same_"):
+        if not target.startswith("same_") and target != "fields":
             words |= {w.decode() for w in re.findall(rb"[A-Za-z_][A-Za-z_0-9:]{1,30}", data)}
     dictionary = folder.with_suffix(".dict")
     dictionary.write_text("".join('"' + w.replace('"', '\\"') + '"\n' for w in sorted(words) if w))

@@ -47,6 +47,39 @@ TEST_CASE("A part that can have no field says why, and then no part has one") {
   CHECK(clearance::attach(host{}, whole, clearance::model{std::vector{part}}).view().fields == nullptr);
 }
 
+namespace {
+
+/// A backend without memory for cells.
+struct poor : host {
+  template <class T>
+  scratch<T> make_scratch(std::size_t n) const {
+    if (n > 1000) throw std::bad_alloc();
+    return host::make_scratch<T>(n);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Without enough memory for a field there is a sentence, and the answer of the robot without it") {
+  dice d(437);
+  const clearance::model bare{
+      std::vector{clearance::make_part(clearance::build<clearance::sphere>(random_spheres(d, 50, 0.4)), 0, 0)}};
+  const auto made = with_fields(poor{}, bare);
+  CHECK(made.without[0] == "there is not enough memory to sample its field");
+  CHECK(made.model.view().fields == nullptr);
+  const auto much = with_fields(host{}, bare, {~std::size_t(0)});
+  CHECK(much.without[0] == "18446744073709551615 bytes are too many for a field; it takes at most 17179869184");
+  CHECK(much.model.view().fields == nullptr);
+  configurations poses;
+  for (int c = 0; c < 20; ++c) poses.push_back(d.pose(1));
+  const auto cloud = d.points(300, 1.5);
+  const auto of = [&](const auto& robot) {
+    return ask(host{}, robot, poses, clearance::point_span(cloud), clearance::min_distances{});
+  };
+  CHECK(same_answer(of(made.model), of(bare)));
+  CHECK(same_answer(of(much.model), of(bare)));
+}
+
 TEST_CASE("A copy of a robot reads its own parts and fields") {
   dice d(436);
   const auto original =

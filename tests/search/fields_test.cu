@@ -20,4 +20,23 @@ TEST_CASE("A tree too deep for a device's stack has no field there, and says so"
   CHECK(clearance::with_fields(clearance::host{}, robot).without[0].empty());
 }
 
+TEST_CASE("Where a device's memory ends there is no field, a sentence says so, and the device is as it was") {
+  testing::dice d(438);
+  const clearance::model robot{std::vector{
+      clearance::make_part(clearance::build<clearance::sphere>(testing::random_spheres(d, 50, 0.4)), 0, 0)}};
+  const clearance::device gpu{};
+  std::size_t free = 0, all = 0;
+  REQUIRE(cudaMemGetInfo(&free, &all) == cudaSuccess);
+  constexpr std::size_t gib = std::size_t(1) << 30;
+  if (free < 2 * gib) return;
+  {
+    const clearance::device_buffer<std::byte> held(free - gib, gpu.id);
+    const auto made = clearance::with_fields(gpu, robot, {4 * gib});
+    CHECK(made.without[0] == "there is not enough memory to sample its field");
+    CHECK(made.model.view().fields == nullptr);
+  }
+  CHECK(cudaPeekAtLastError() == cudaSuccess);
+  CHECK(clearance::with_fields(gpu, robot).without[0].empty());
+}
+
 }  // namespace fields_device_test

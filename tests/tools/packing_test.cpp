@@ -151,7 +151,7 @@ TEST_CASE("a cache that can keep nothing says so: one that is named is refused, 
     const outcome usual = run_command(ask, file);
     INFO(usual.err);
     CHECK(usual.code == 0);
-    CHECK(usual.err.starts_with("note: " + file + ": cannot be written to, so new packings are not kept"));
+    CHECK(usual.err.starts_with("note: " + file + ": cannot be written to, so nothing new is kept"));
     CHECK(run_command(ask + " --no-cache", file).err.empty());
   }
   CHECK(parsed(run_command(query, file)).at("notes").size() == 1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `clearance plan`, and the plan of `clearance run`: many configurations, compared with `clearance query` about each.
+#include "io/robot_folder.hpp"
 #include "tools/small_png.hpp"
 #include "tools/two_boxes.hpp"
 
@@ -335,6 +336,99 @@ TEST_CASE("--fields changes no answer, and names a link that can have none") {
   const outcome none = run_command(alone + " --fields");
   CHECK(none.out == run_command(alone).out);
   CHECK(none.err.find(no_field) != std::string::npos);
+}
+
+TEST_CASE("Fields are sampled once: the cache has them for the next plan, which says so") {
+  path p;
+  const auto base_of = [](const std::string& size) {
+    std::string text = testing::boxes_with_eye_text;
+    return text.replace(text.find("0.2 0.2 0.2"), 11, size);
+  };
+  p.urdf.put(base_of("0.21 0.2 0.2"));  // two different links: equal ones share a file
+  const robot_folder cache;
+  const std::string where = cache.path.string(), plain = run_command(p.ask + " --csv").out;
+  const auto counted = [&](const std::string& arguments, const std::string& kept_in) {
+    const outcome o = run_command(arguments, kept_in);
+    CHECK((o.code == 0 && o.err.empty()));
+    const auto last = lines(o).back();
+    return last.contains("fields") ? last.at("fields").dump() : std::string();
+  };
+  const std::string fresh = R"({"cached":0,"links":2})", kept = R"({"cached":2,"links":2})";
+  CHECK(counted(p.ask, where).empty());
+  CHECK(counted(p.ask + " --fields", where) == fresh);
+  CHECK(counted(p.ask + " --fields", where) == kept);
+  CHECK(counted(p.ask + " --fields --cache " + where, "") == kept);
+  CHECK(counted(p.ask + " --fields --no-cache", where) == fresh);
+  CHECK(run_command(p.ask + " --csv --fields", where).out == plain);
+  // Another model, and a robot of which one link is another, have others.
+  CHECK(counted("plan --backend host --spheres 20 --robot " + p.urdf.path + " --cloud " + p.cloud.path +
+                    " --configurations " + p.rows.path + " --fields",
+                where) == fresh);
+  const scratch_file other{".urdf", base_of("0.22 0.2 0.2")};
+  CHECK(counted("plan --backend host --model triangles --robot " + other.path + " --cloud " + p.cloud.path +
+                    " --configurations " + p.rows.path + " --fields",
+                where) == R"({"cached":1,"links":2})");
+  // auto takes what is kept, of 100 rows and more.
+  const auto rows = [&](std::size_t count) {
+    std::string csv = "turn,slide\n";
+    for (std::size_t k = 0; k < count; ++k) csv += "0,0.1\n";
+    return csv;
+  };
+  const scratch_file few{".csv", rows(99)}, many{".csv", rows(100)};
+  CHECK(counted(p.with(few.path), where).empty());
+  CHECK(counted(p.with(many.path), where) == kept);
+  CHECK(counted(p.with(many.path), "").empty());
+  for (const char* never : {" --no-cache", " --d-max 1", " --fields off"})
+    CHECK(counted(p.with(many.path) + never, where).empty());
+  std::size_t damaged = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(cache.path)) {
+    if (entry.path().extension() != ".fields") continue;
+    std::fstream(entry.path(), std::ios::in | std::ios::out | std::ios::binary).seekp(5000).put('\xa5').put('\x5a');
+    ++damaged;
+  }
+  CHECK(damaged == 5);
+  CHECK(counted(p.with(many.path), where).empty());
+  CHECK(run_command(p.ask + " --csv --fields", where).out == plain);
+  CHECK(counted(p.with(many.path), where) == kept);  // repaired
+}
+
+TEST_CASE("The cache of fields: options that change nothing are refused, and what cannot be kept is told") {
+  const path p;
+  const robot_folder place;
+  const std::string file = place.put("file", "no folder").string();
+  for (const std::string option : {"--no-cache", "--cache /tmp"}) {
+    const std::string its = option.substr(0, option.find(' ')) + ": is for --model spheres, and for --fields";
+    refuses(p.ask + " --fields off " + option, its);
+    refuses(p.ask + " --d-max 1 " + option, its);
+  }
+  refuses(p.ask + " --fields --cache " + file, "--cache: " + file + " is no folder, and none can be made");
+  const outcome o = run_command(p.ask + " --csv --fields", file);
+  CHECK(o.err.starts_with("note: " + file + ": cannot be written to, so nothing new is kept"));
+  CHECK(o.out == run_command(p.ask + " --csv").out);
+  const scratch_file still{".csv", "turn,slide\n0,0\n"}, list{".txt", p.cloud.path + "\n"};
+  const std::string run = "run --csv" + p.robot + " --trajectory " + still.path + " --frames " + list.path;
+  refuses(run + " --no-cache", "--no-cache: is for --model spheres");
+  const auto in = place.path / "kept";
+  for (int k = 0; k < 2; ++k)
+    CHECK(run_command(run + " --fields --plan " + p.rows.path + " --cache " + in.string()).code == 0);
+  CHECK(std::distance(std::filesystem::directory_iterator(in), std::filesystem::directory_iterator()) ==
+        1);                               // of equal links
+  const auto full = place.path / "full";  // no room for a field
+  CHECK(run_command(p.ask + " --csv --fields", full.string(), "ulimit -f 500; ").out == o.out);
+  CHECK(std::filesystem::is_empty(full));
+  std::vector<FILE*> running;  // at once
+  for (int k = 0; k < 2; ++k)
+    running.push_back(::popen(("CLEARANCE_CACHE='" + (place.path / "new").string() + "' \"" CLEARANCE_COMMAND "\" " +
+                               p.ask + " --csv --fields 2>&1")
+                                  .c_str(),
+                              "r"));
+  for (FILE* each : running) {
+    REQUIRE(each);
+    std::string said;
+    for (int c; (c = std::fgetc(each)) != EOF;) said += char(c);
+    CHECK(::pclose(each) == 0);
+    CHECK(said == run_command(p.ask + " --csv").out);
+  }
 }
 
 TEST_CASE("Without --fields they are used where it pays, which a link that can have none tells") {

@@ -4,7 +4,7 @@
 
 #include "robot_on.hpp"
 
-#include <clearance/fields.hpp>
+#include <clearance/io/field_cache.hpp>
 #include <clearance/io/robot_bodies.hpp>
 #include <clearance/make_model.hpp>
 
@@ -30,10 +30,14 @@ auto robot_on_backend<Backend>::usual_trees() -> const trees& {
   const auto maybe_fielded = [this](const auto& make) {
     return moved([&](const std::vector<body>& bodies) {
       auto trees = make(bodies);
-      if (!asked_.fields) return trees;
-      auto sampled = clearance::with_fields(on_, std::move(trees));
-      without_field = std::move(sampled.without);
-      return std::move(sampled.model);
+      if (asked_.fields == field_use::none) return trees;
+      const clearance::io::field_cache cache(asked_.cache);
+      auto made = asked_.fields == field_use::always
+                      ? clearance::io::with_fields_cached(on_, std::move(trees), {}, cache)
+                      : clearance::io::with_kept_fields(std::move(trees), {}, cache);
+      without_field = std::move(made.without);
+      fields = made.model.fields().size(), fields_cached = fields == 0 ? 0 : made.found;
+      return std::move(made.model);
     });
   };
   if (asked_.model == model_kind::spheres)

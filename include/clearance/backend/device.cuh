@@ -98,6 +98,12 @@ struct device {
     for_ranges(n, detail::each_body<F>{body});
   }
 
+  /// Is this what is thrown where the device's memory ends?
+  static bool out_of_memory(const std::exception& error) {
+    const auto* its = dynamic_cast<const cuda_error*>(&error);
+    return its != nullptr && its->code == cudaErrorMemoryAllocation;
+  }
+
   void wait() const {
     const device_guard guard(id);
     check_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize");

@@ -4,7 +4,7 @@
 
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/packed_part.hpp>
-#include <clearance/io/png_check.hpp>
+#include <clearance/io/sealed_file.hpp>
 #include <clearance/io/write_file.hpp>
 
 #include <set>
@@ -14,6 +14,7 @@ namespace clearance::io {
 
 inline constexpr std::string_view ist_magic = "\x89IST\r\n\x1a\n";  // a transfer as text would damage it
 inline constexpr std::uint32_t ist_version = 1;
+inline constexpr sealed_form ist_form{ist_magic, ist_version, "an .ist file", ".ist files"};
 
 namespace detail {
 
@@ -89,44 +90,19 @@ inline packed_part take_part(byte_reader& in, const std::string& file) {
 inline std::string ist_bytes(std::span<const packed_part> parts) {
   byte_writer body;
   for (const packed_part& part : parts) detail::put_part(body, part);
-  byte_writer out;
-  out.put(ist_magic);
-  out.put(ist_version);
-  out.put(std::uint32_t(parts.size()));
-  out.put(std::uint64_t(24 + body.bytes().size() + 4));
-  out.put(std::string_view(body.bytes()));
-  out.put(png_crc(out.bytes()));
-  return out.bytes();
+  return sealed(ist_form, std::uint32_t(parts.size()), body.bytes());
 }
 
 /// Parses what `ist_bytes` made; error sentences name `file`.
 inline std::vector<packed_part> read_ist(std::string_view bytes, const std::string& file) {
-  if (!bytes.starts_with(ist_magic)) refuse(file, "is not an .ist file");
-  if (bytes.size() < 28) refuse(file, "is cut short: " + std::to_string(bytes.size()) + " bytes hold no header");
-  byte_reader in(bytes.substr(0, bytes.size() - 4), file);
-  in.take(ist_magic.size());
-  const auto version = in.take<std::uint32_t>();
-  if (version == std::uint32_t(ist_version) << 24)
-    refuse(file, "is written in big-endian byte order, and .ist files are little-endian");
-  if (version != ist_version)
-    refuse(file, "is of version " + std::to_string(version) + ", and this clearance reads version " +
-                     std::to_string(ist_version));
-  const auto count = in.take<std::uint32_t>();
-  const auto size = in.take<std::uint64_t>();
-  if (size != bytes.size())
-    refuse(file, std::string(size > bytes.size() ? "is cut short" : "has bytes after its end") + ": it should have " +
-                     std::to_string(size) + " bytes, and has " + std::to_string(bytes.size()));
-  if (byte_reader(bytes.substr(bytes.size() - 4), file).take<std::uint32_t>() !=
-      png_crc(bytes.substr(0, bytes.size() - 4)))
-    refuse(file, "is damaged (the checksum does not match)");
-  if (count == 0) refuse(file, "holds no part");
+  unsealed records(bytes, file, ist_form);
   std::vector<packed_part> parts;
   std::set<std::string> names;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    parts.push_back(detail::take_part(in, file));
+  for (std::uint32_t i = 0; i < records.count; ++i) {
+    parts.push_back(detail::take_part(records.in, file));
     if (!names.insert(parts[i].name).second) refuse(file, "has two parts " + io::quoted(parts[i].name));
   }
-  if (in.left() != 0) refuse(file, "has " + std::to_string(in.left()) + " bytes after its last part");
+  records.finish(file);
   return parts;
 }
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <clearance/io/ist.hpp>
+#include <clearance/io/kept_files.hpp>
 #include <clearance/packing/pack.hpp>
 
 #include <cstdlib>
-#include <filesystem>
 #include <optional>
 
 namespace clearance::io {
@@ -32,13 +32,11 @@ inline digest packing_key(const closed_mesh& mesh, const pack_options& options, 
   return digest_of(out.bytes());
 }
 
-/// A folder of packings by packing_key, each an .ist file. Any number of programs may use it at once: a file gets its
-/// name only when it is complete. A file that is damaged, or made for another key, counts as absent. You may empty the
-/// folder at any time.
+/// Packings by packing_key, each an .ist file in a folder of kept_files. A file made for another key counts as absent.
 class packing_cache {
  public:
   packing_cache() = default;  ///< Keeps and finds nothing.
-  explicit packing_cache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit packing_cache(std::filesystem::path folder) : files_(std::move(folder), ".ist") {}
 
   /// $CLEARANCE_CACHE (set but empty: no cache), else $XDG_CACHE_HOME/clearance, else ~/.cache/clearance, else no
   /// cache.
@@ -53,36 +51,26 @@ class packing_cache {
     return standard.empty() ? below("HOME", ".cache/clearance") : standard;
   }
 
-  const std::filesystem::path& folder() const { return folder_; }
-  std::filesystem::path file(const digest& key) const { return folder_ / (key.hex() + ".ist"); }
+  const std::filesystem::path& folder() const { return files_.folder(); }
+  std::filesystem::path file(const digest& key) const { return files_.file(key); }
 
   std::optional<packing> find(const digest& key) const {
-    std::error_code none;
-    if (folder_.empty() || !std::filesystem::is_regular_file(file(key), none)) return {};
-    try {
-      auto parts = load_ist(file(key).string());
+    return files_.find(key, [&](const std::string& file) -> std::optional<packing> {
+      auto parts = load_ist(file);
       if (parts.size() == 1 && parts[0].recipe == key) return std::move(parts[0].spheres);
-    } catch (const std::exception&) {
-    }
-    return {};
+      return {};
+    });
   }
 
   /// Returns whether it is kept; a failure to write is no error.
   bool keep(const digest& key, const digest& solid, const packing& made) const {
-    if (folder_.empty() || made.spheres.empty()) return false;
-    std::error_code failed;
-    std::filesystem::create_directories(folder_, failed);
-    try {
-      save_ist(std::vector{packed_part{.name = "", .spheres = made, .solid = solid, .recipe = key}},
-               file(key).string());
-      return true;
-    } catch (const std::exception&) {
-      return false;
-    }
+    return !made.spheres.empty() && files_.keep(key, [&](const std::string& file) {
+      save_ist(std::vector{packed_part{.name = "", .spheres = made, .solid = solid, .recipe = key}}, file);
+    });
   }
 
  private:
-  std::filesystem::path folder_;
+  kept_files files_;
 };
 
 struct cached_packing {

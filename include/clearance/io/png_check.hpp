@@ -12,20 +12,31 @@
 
 namespace clearance::io {
 
-inline constexpr auto png_crc_table = [] {
-  std::array<std::uint32_t, 256> table{};
+/// Table k is of a byte that k others follow.
+inline constexpr auto png_crc_tables = [] {
+  std::array<std::array<std::uint32_t, 256>, 8> tables{};
   for (std::uint32_t i = 0; i < 256; ++i) {
     std::uint32_t c = i;
     for (int bit = 0; bit < 8; ++bit) c = (c & 1u) ? 0xEDB88320u ^ (c >> 1) : c >> 1;
-    table[i] = c;
+    tables[0][i] = c;
   }
-  return table;
+  for (std::size_t k = 1; k < 8; ++k)
+    for (std::size_t i = 0; i < 256; ++i) tables[k][i] = tables[0][tables[k - 1][i] & 255u] ^ (tables[k - 1][i] >> 8);
+  return tables;
 }();
 
-/// The checksum of a PNG chunk's name and data.
+/// The checksum of a PNG chunk's name and data. Eight bytes at once: Kounavis & Berry (2005), "slicing by 8".
 constexpr std::uint32_t png_crc(std::string_view bytes) {
+  const auto& t = png_crc_tables;
   std::uint32_t c = 0xFFFFFFFFu;
-  for (const char byte : bytes) c = png_crc_table[(c ^ std::uint8_t(byte)) & 255u] ^ (c >> 8);
+  std::size_t i = 0;
+  for (; i + 8 <= bytes.size(); i += 8) {
+    const auto at = [&](std::size_t k) { return std::uint32_t(std::uint8_t(bytes[i + k])); };
+    c ^= at(0) | at(1) << 8 | at(2) << 16 | at(3) << 24;
+    c = t[7][c & 255u] ^ t[6][c >> 8 & 255u] ^ t[5][c >> 16 & 255u] ^ t[4][c >> 24] ^ t[3][at(4)] ^ t[2][at(5)] ^
+        t[1][at(6)] ^ t[0][at(7)];
+  }
+  for (; i < bytes.size(); ++i) c = t[0][(c ^ std::uint8_t(bytes[i])) & 255u] ^ (c >> 8);
   return c ^ 0xFFFFFFFFu;
 }
 

@@ -54,6 +54,8 @@ struct field_view {
   real thickness = 0;           ///< How far the first grid reaches beyond that box, at least.
   grid grids[levels] = {};
 
+  /// In all boxes together.
+  std::size_t all_cubes() const { return std::size_t(grids[levels - 1].first) + grids[levels - 1].cubes(); }
   CLEARANCE_HD field_range operator()(vec3 q) const {
     const vec3 d = q - center;
     const real beyond =
@@ -89,7 +91,8 @@ struct field {
   static_assert(backend<B>);
 
   typename B::template buffer<field_cell> cells;
-  field_view shape;  ///< Its pointer is set by `view()`.
+  field_view shape;       ///< Its pointer is set by `view()`.
+  std::size_t bytes = 0;  ///< Of the field_options that it was made by.
 
   bool empty() const { return cells.size() == 0; }
   field_view view() const {
@@ -99,7 +102,7 @@ struct field {
   }
   template <backend Other>
   field<Other> on(const Other& other) const {
-    return {other.copy_in(std::span<const field_cell>(cells)), shape};
+    return {other.copy_in(std::span<const field_cell>(cells)), shape, bytes};
   }
 };
 

@@ -122,6 +122,8 @@ class model {
   model_view<view_type> view() const {
     return {views_.data(), facts_, depth_, width_, fields_.empty() ? nullptr : field_views_.data()};
   }
+  /// One per part, or none.
+  const std::vector<field<B>>& fields() const { return fields_; }
   /// One field per part, see with_fields. If one is empty, none is used.
   void set_fields(std::vector<field<B>> fields, const B& on = {}) {
     std::vector<field_view> views;
