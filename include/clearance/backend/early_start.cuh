@@ -11,8 +11,8 @@ __device__ inline void let_next_start() {
 #endif
 }
 
-/// Waits until all that is in the stream before this kernel has ended. Its writes are seen then. Code for devices before
-/// Hopper does not wait, and such a kernel is not launched early.
+/// Waits until all that is in the stream before this kernel has ended. Its writes are seen then. Code for devices
+/// before Hopper does not wait, and such a kernel is not launched early.
 __device__ inline void wait_for_stream() {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
   asm volatile("griddepcontrol.wait;" ::: "memory");
