@@ -19,4 +19,8 @@ __device__ inline void wait_for_stream() {
 #endif
 }
 
+/// A kernel that is launched early begins with both. What it could do before it waits is not worth it: the first reads
+/// of a frame that comes alone would begin later.
+__device__ inline void start_early() { let_next_start(), wait_for_stream(); }
+
 }  // namespace clearance

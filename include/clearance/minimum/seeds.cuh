@@ -17,8 +17,8 @@ template <class Tally>
 class last_frame {
  public:
   /// Starts to read the last minima; nothing waits for them yet.
-  __device__ void ask(const scan::scan_arguments<Tally>& a) {
-    w_ = a.answer.witnesses[slot()], witnesses_ = a.answer.state->witnesses;
+  explicit __device__ last_frame(const scan::scan_arguments<Tally>& a)
+      : w_(a.answer.witnesses[slot()]), witnesses_(a.answer.state->witnesses) {
     if (a.first != 0 && slot() < (per_part ? a.parts : 1)) known_ = fresh(a.answer.state->bound[slot()]);
   }
 
@@ -77,7 +77,7 @@ class last_frame {
     return key_index(w_.r.key) - a.first + n - (n == 0 ? 0 : each / 2);
   }
   typename Tally::witness_type w_;
-  std::uint32_t witnesses_ = 0, known_ = no_bound;
+  std::uint32_t witnesses_, known_ = no_bound;
   sample p_{{}, drop_reason::not_finite};
 };
 

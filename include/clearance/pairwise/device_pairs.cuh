@@ -134,7 +134,7 @@ struct pairs_of {
     __device__ void hear(block&) {}
   };
   struct seeds {
-    __device__ void ask(const scan::scan_arguments<pairs_of>&) {}
+    explicit __device__ seeds(const scan::scan_arguments<pairs_of>&) {}
     template <class Source>
     __device__ void look(const scan::scan_arguments<pairs_of>&, const Source&) {}
     __device__ void seed(const scan::scan_arguments<pairs_of>&) const {}

@@ -21,12 +21,11 @@ __global__ void __launch_bounds__(block_threads, 2)
   using pairs = pair_search<Tally>;
   auto& s = memory_of_block<Tally>();
   const std::uint32_t t = threadIdx.x, rounds = a.rounds, ahead = a.ahead, clusters = (a.parts + cluster - 1) / cluster;
-  let_next_start();
-  if (a.far) wait_for_stream();  // the parts are in memory
+  start_early();
+  typename Tally::seeds before(a);
   const cards<Tally> all(rounds);
   point_reader<Source, Tally> reader(source, ahead, all);
-  typename Tally::seeds before;
-  pairs::prepare(a, [&] { wait_for_stream(), before.ask(a), reader.fetch(0), before.look(a, source); });
+  pairs::prepare(a, [&] { reader.fetch(0), before.look(a, source); });
   before.seed(a);
   __syncthreads();
   std::uint32_t bound = Tally::seeds::found(a.parts);

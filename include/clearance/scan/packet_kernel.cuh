@@ -51,6 +51,7 @@ template <class Tally, class Source>
 __global__ void __launch_bounds__(block_threads, 2)
     packet_kernel(const __grid_constant__ Source source, const __grid_constant__ scan_arguments<Tally> a) {
   using walks = packet_walks<Tally>;
+  start_early();
   auto& s = memory_of_block<Tally>();
   const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds,
                       packets = (a.points + 31) / 32;
@@ -60,9 +61,7 @@ __global__ void __launch_bounds__(block_threads, 2)
     return i < a.points ? source[i] : sample{{not_a_number, 0, 0}};
   };
   sample next;
-  let_next_start();
-  if (a.far) wait_for_stream();  // the parts are in memory
-  frame_parts<Tally>::prepare(a, [&] { wait_for_stream(), next = read(packet); });
+  frame_parts<Tally>::prepare(a, [&] { next = read(packet); });
   __syncthreads();
   sharpen<Tally>(t, 0);
   __syncthreads();
