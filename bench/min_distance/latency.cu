@@ -3,6 +3,7 @@
 // that stay, frames back to back on one stream, and the worst cloud. Percentiles are counters, in microseconds.
 #include "device.cuh"
 #include "shell.hpp"
+#include "tables.cuh"
 
 #include <clearance/points/depth_image.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -102,25 +103,29 @@ void back_to_back(benchmark::State& state) {
 }
 
 /// Every point is 0.3 m from the robot, up to rounding: no bound culls anything.
-void shell(benchmark::State& state, bool cold) {
+void shell(benchmark::State& state, bool cold, bool ordered, tables its) {
   if (no_device(state)) return;
   const scene& s = the_scene();
   const device gpu;
-  const auto model = robot().on(gpu);
-  clearance::query query(gpu, model, clearance::min_distance{});
-  const clearance::device_buffer<vec3> there(static_cast<std::size_t>(state.range(0)), gpu.id);
-  put_shell(gpu, model, s.poses, 0.3f, there.data(), there.size());
-  const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
-  const device_clock clock;
-  const auto frame = [&] { query.enqueue(s.poses, clearance::point_span(there.data(), there.size()), result.data()); };
-  frame();  // the first loads the kernel and is cold
-  for (auto _ : state) {
-    if (cold) query.forget();
-    state.SetIterationTime(clock.seconds(frame));
-  }
-  const auto r = gpu.copy_out(result)[0];
-  state.counters["distance_mm"] = r.distance * 1e3;
-  state.counters["valid"] = double(r.valid);
+  with_tables(gpu, robot(), its, [&](const auto& model) {
+    clearance::query query(gpu, model, clearance::min_distance{});
+    const clearance::device_buffer<vec3> there(static_cast<std::size_t>(state.range(0)), gpu.id);
+    put_shell(gpu, model, s.poses, 0.3f, there.data(), there.size());
+    if (ordered) put_in_order(gpu, there.data(), there.size());
+    const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
+    const device_clock clock;
+    const auto frame = [&] {
+      query.enqueue(s.poses, clearance::point_span(there.data(), there.size()), result.data());
+    };
+    frame();  // the first loads the kernel and is cold
+    for (auto _ : state) {
+      if (cold) query.forget();
+      state.SetIterationTime(clock.seconds(frame));
+    }
+    const auto r = gpu.copy_out(result)[0];
+    state.counters["distance_mm"] = r.distance * 1e3;
+    state.counters["valid"] = double(r.valid);
+  });
 }
 
 #define ONCE ->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(1)
@@ -132,8 +137,14 @@ BENCHMARK_CAPTURE(pinned_points, copied, way::copied)->Arg(307200)->Arg(5000000)
 BENCHMARK_CAPTURE(pinned_points, copy_alone, way::copy_alone)->Arg(307200)->Arg(5000000) ONCE;
 BENCHMARK(new_pose) ONCE;
 BENCHMARK(back_to_back)->Arg(307200)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(20);
-BENCHMARK_CAPTURE(shell, warm, false)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(50);
-BENCHMARK_CAPTURE(shell, cold, true)->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(50);
+constexpr tables bare{}, cells{.cells = true};
+#define SHELL ->Arg(5000000)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(50)
+BENCHMARK_CAPTURE(shell, warm, false, false, bare) SHELL;
+BENCHMARK_CAPTURE(shell, cold, true, false, bare) SHELL;
+BENCHMARK_CAPTURE(shell, warm_ordered, false, true, bare) SHELL;
+BENCHMARK_CAPTURE(shell, warm_cells, false, false, cells) SHELL;
+BENCHMARK_CAPTURE(shell, cold_cells, true, false, cells) SHELL;
+BENCHMARK_CAPTURE(shell, warm_ordered_cells, false, true, cells) SHELL;
 
 }  // namespace
 }  // namespace latency_bench

@@ -5,8 +5,8 @@
 #include "crowds.hpp"
 #include "device.cuh"
 #include "scene_files.hpp"
+#include "tables.cuh"
 
-#include <clearance/fields.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -27,13 +27,13 @@ class cache_flush {
 
 /// How to ask and time a frame.
 struct manner {
-  bool cold = false;     ///< Nothing is known about the last frame.
-  bool plain = false;    ///< The loop over points with a traversal.
-  bool once = false;     ///< In one call, unprepared.
-  bool each = false;     ///< Also every part's minimum.
-  bool flushed = false;  ///< The cache is cold.
-  bool queued = false;   ///< Behind other work.
-  bool fields = false;   ///< Its parts have fields.
+  bool cold = false;       ///< Nothing is known about the last frame.
+  bool plain = false;      ///< The loop over points with a traversal.
+  bool once = false;       ///< In one call, unprepared.
+  bool each = false;       ///< Also every part's minimum.
+  bool flushed = false;    ///< The cache is cold.
+  bool queued = false;     ///< Behind other work.
+  bench::tables its = {};  ///< What its parts have.
 };
 
 void empty(benchmark::State& state, bool queued) {
@@ -68,32 +68,33 @@ void ask(benchmark::State& state, const bench::scene& s, const Model& model, man
   const auto& points = repeated(s.cloud, std::size_t(state.range(0)));
   const auto there = gpu.copy_in(std::span<const clearance::vec3>(points));
   const clearance::point_span view(there.data(), points.size());
-  const auto placed_there = (how.fields ? clearance::with_fields(gpu, model).model : model).on(gpu);
-  clearance::query query(gpu, placed_there, clearance::min_distance{});
-  clearance::query each(gpu, placed_there, clearance::min_distance_per_part{});
-  const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
-  const clearance::device_buffer<clearance::part_minimum> minima(s.poses.size(), gpu.id);
-  const device_clock clock(how.queued);
-  const cache_flush flush;
-  const clearance::placed cloud{view, s.world_from_camera};
-  const auto frame = [&] {
-    if (how.plain)
-      clearance::enqueue(clearance::plain{gpu, clearance::near_first{}}, placed_there, s.poses, cloud,
-                         clearance::min_distance{}, result.data());
-    else if (how.once)
-      clearance::enqueue(gpu, placed_there, s.poses, cloud, clearance::min_distance{}, result.data());
-    else if (how.each)
-      each.enqueue(s.poses, cloud, {result.data(), minima.data()});
-    else
-      query.enqueue(s.poses, cloud, result.data());
-  };
-  frame();
-  for (auto _ : state) {
-    if (how.cold) how.each ? each.forget() : query.forget();
-    if (how.flushed) flush();
-    state.SetIterationTime(clock.seconds(frame));
-  }
-  state.counters["distance_mm"] = gpu.copy_out(result)[0].distance * 1e3;
+  bench::with_tables(gpu, model, how.its, [&](const auto& placed_there) {
+    clearance::query query(gpu, placed_there, clearance::min_distance{});
+    clearance::query each(gpu, placed_there, clearance::min_distance_per_part{});
+    const clearance::device_buffer<clearance::min_distance_result> result(1, gpu.id);
+    const clearance::device_buffer<clearance::part_minimum> minima(s.poses.size(), gpu.id);
+    const device_clock clock(how.queued);
+    const cache_flush flush;
+    const clearance::placed cloud{view, s.world_from_camera};
+    const auto frame = [&] {
+      if (how.plain)
+        clearance::enqueue(clearance::plain{gpu, clearance::near_first{}}, placed_there, s.poses, cloud,
+                           clearance::min_distance{}, result.data());
+      else if (how.once)
+        clearance::enqueue(gpu, placed_there, s.poses, cloud, clearance::min_distance{}, result.data());
+      else if (how.each)
+        each.enqueue(s.poses, cloud, {result.data(), minima.data()});
+      else
+        query.enqueue(s.poses, cloud, result.data());
+    };
+    frame();
+    for (auto _ : state) {
+      if (how.cold) how.each ? each.forget() : query.forget();
+      if (how.flushed) flush();
+      state.SetIterationTime(clock.seconds(frame));
+    }
+    state.counters["distance_mm"] = gpu.copy_out(result)[0].distance * 1e3;
+  });
 }
 template <class Model>
 void ask(benchmark::State& state, const Model& model, manner how = {}) {
@@ -169,8 +170,17 @@ void triangles_cold_queued(benchmark::State& state) {
 }
 
 void with_fields(benchmark::State& state, manner how) {
-  how.fields = true;
+  how.its.fields = true;
   if (!no_device(state)) ask(state, spheres<clearance::sphere>(), how);
+}
+
+void with_cells(benchmark::State& state, manner how) {
+  how.its.cells = true;
+  if (!no_device(state)) ask(state, spheres<clearance::sphere>(), how);
+}
+void triangles_with_cells(benchmark::State& state, manner how) {
+  how.its.cells = true;
+  if (!no_device(state)) ask(state, triangles<clearance::aabb>(), how);
 }
 
 template <bench::scene (*Make)(const bench::scene&)>
@@ -215,6 +225,13 @@ BENCHMARK_CAPTURE(with_fields, cold, {.cold = true}) FRAME;
 BENCHMARK_CAPTURE(with_fields, cold_queued, {.cold = true, .queued = true}) FRAME;
 BENCHMARK_CAPTURE(with_fields, every_part_cold, {.cold = true, .each = true}) FRAME;
 BENCHMARK_CAPTURE(with_fields, warm_queued, {.queued = true}) FRAME;
+BENCHMARK_CAPTURE(with_cells, cold, {.cold = true}) FRAME;
+BENCHMARK_CAPTURE(with_cells, cold_queued, {.cold = true, .queued = true}) FRAME;
+BENCHMARK_CAPTURE(with_cells, every_part_cold, {.cold = true, .each = true}) FRAME;
+BENCHMARK_CAPTURE(with_cells, every_part_warm, {.each = true}) FRAME;
+BENCHMARK_CAPTURE(with_cells, warm_queued, {.queued = true}) MORE;
+BENCHMARK_CAPTURE(triangles_with_cells, cold_queued, {.cold = true, .queued = true}) FRAME;
+BENCHMARK_CAPTURE(triangles_with_cells, warm_queued, {.queued = true}) FRAME;
 BENCHMARK_CAPTURE(sixty_four_parts, warm, {}) FRAME;
 BENCHMARK_CAPTURE(sixty_four_parts, cold, {.cold = true}) FRAME;
 BENCHMARK_CAPTURE(sixty_four_parts, every_part_warm, {.each = true}) FRAME;

@@ -3,25 +3,16 @@
 // Gives the parts of a robot fields: what is known of the distance to them, from one look into a table.
 
 #include <clearance/backend/host.hpp>
+#include <clearance/equipped.hpp>
 #include <clearance/minimum/field_sample.hpp>
 #include <clearance/robot/model.hpp>
 
-#include <exception>
-#include <new>
 #include <optional>
-#include <string>
 
 namespace clearance {
 
 struct field_options {
   std::size_t bytes = std::size_t(1) << 20;  ///< Memory for each part, about.
-};
-
-/// A robot whose parts have fields, and for each part that has none a sentence that says why; else it is empty.
-template <class Model>
-struct fielded {
-  Model model;
-  std::vector<std::string> without;
 };
 
 namespace detail {
@@ -91,14 +82,6 @@ std::optional<field<host>> field_of(const Part& part, const field_options& optio
   return field<host>{{}, field_around(box_around(part), {facts.center, facts.radius}, cubes), options.bytes};
 }
 
-/// Did memory end, on the host or where `on` runs?
-template <backend B>
-bool out_of_memory(const B& on, const std::exception& error) {
-  if constexpr (requires { on.out_of_memory(error); })
-    if (on.out_of_memory(error)) return true;
-  return dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
-}
-
 /// Samples what is in the boxes of a field.
 template <backend B, class Part>
 std::vector<field_cell> sampled_cells(const B& on, const Part& part, const field_view& shape, std::string& why_not) {
@@ -142,7 +125,7 @@ field<host> sampled_field(const B& on, const Part& part, const field_options& op
 
 /// A robot of which part k has the field `make(part, why_not)`. An empty one has its sentence in `why_not`.
 template <class Part, class Make>
-fielded<model<Part>> fielded_by(model<Part> robot, Make make) {
+equipped<model<Part>> fielded_by(model<Part> robot, Make make) {
   using view = typename model<Part>::view_type;
   static_assert(tangent_primitive<typename view::hierarchy_type::primitive_type>,
                 "a field needs primitives with `tangent_at`, see concepts/tangent.hpp");
@@ -159,7 +142,7 @@ fielded<model<Part>> fielded_by(model<Part> robot, Make make) {
 /// configurations then need one look where they walked a tree; no answer changes. `model.on(device)` copies fields,
 /// too. A part that can have none keeps its tree alone. Source: Lipschitz and tangent bounds, minimum/field_sample.hpp.
 template <backend B, class Part>
-fielded<model<Part>> with_fields(const B& on, model<Part> robot, const field_options& options = {}) {
+equipped<model<Part>> with_fields(const B& on, model<Part> robot, const field_options& options = {}) {
   return detail::fielded_by(std::move(robot), [&](const Part& part, std::string& why_not) {
     return detail::sampled_field(on, part, options, why_not);
   });

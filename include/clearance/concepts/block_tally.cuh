@@ -71,7 +71,8 @@ concept leaf_first_tally =
       T::close_all(s);
     };
 
-/// For the kernel of packets (scan/packet_kernel.cuh): each lane has a point with a visitor of its own.
+/// For the kernel of packets (scan/packet_kernel.cuh): each lane has a point with a visitor of its own. `how` is one of
+/// scan::packets_by.
 ///
 /// Law: `visitor(block, index, counts)` begins a lane's point, `remind` may lower its reach by what the last frame
 /// knows, and `take` ends it. A visitor `hear`s another's and `join`s it, if lanes share a walk.
@@ -80,7 +81,7 @@ concept packet_tally =
     block_tally<T> && requires(const typename T::block& s, const typename T::arguments& a, typename T::visitor_type& v,
                                const typename T::visitor_type& other, std::uint32_t n, vec3 x, bool counts) {
       { T::all_near(a) } -> std::same_as<bool>;
-      { T::by_tangents } -> std::convertible_to<bool>;
+      T::how;
       { T::visitor(s, n, counts) } -> std::same_as<typename T::visitor_type>;
       T::remind(s, n, x, v);
       T::take(s, n, counts, other);

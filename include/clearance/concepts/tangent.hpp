@@ -25,6 +25,15 @@ struct primitive_tangent : tangent {
   real radius;
 };
 
+/// The place of a primitive's core that is nearest to a point. The core is convex; the primitive is what is within
+/// `radius` of it: a sphere is that of its centre, a triangle its own, with no radius.
+///
+/// Law: the primitive's distance from q is the way from q to `at`, less `radius`, which is the same for every q.
+struct core_place {
+  vec3 at;
+  real radius;
+};
+
 /// A vector's length and direction, roughly. The direction is 0 if the length is below 1e-18.
 struct unit_way {
   real length;

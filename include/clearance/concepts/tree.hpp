@@ -56,6 +56,12 @@ concept tangent_primitive = primitive<P> && requires(const P p, vec3 q) {
   { p.tangent_at(q) } -> std::same_as<primitive_tangent>;
 };
 
+/// A primitive that tells its core: see core_place. Parts of such primitives can have cells (cells.hpp).
+template <class P>
+concept cored_primitive = tangent_primitive<P> && requires(const P p, vec3 q) {
+  { p.core_at(q) } -> std::same_as<core_place>;
+};
+
 /// `primitive<P>` with reasons: nvcc does not say which requirement of a concept failed.
 template <class P>
 consteval bool explain_primitive() {

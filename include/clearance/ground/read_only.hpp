@@ -13,7 +13,8 @@ namespace clearance {
 template <class T>
 CLEARANCE_HD T read_only(const T* from) {
 #if defined(__CUDA_ARCH__)
-  using word = std::conditional_t<alignof(T) % 16 == 0, uint4, std::uint32_t>;
+  using word =
+      std::conditional_t<alignof(T) % 16 == 0, uint4, std::conditional_t<alignof(T) % 8 == 0, uint2, std::uint32_t>>;
   if constexpr (sizeof(T) % sizeof(word) == 0 && alignof(T) >= 4) {
     union copy {
       __device__ copy() {}

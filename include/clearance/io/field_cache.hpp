@@ -49,7 +49,7 @@ class field_cache {
 
 /// A robot with fields, as by `with_fields`, and how many of them came from a cache.
 template <class Model>
-struct cached_fields : fielded<Model> {
+struct cached_fields : equipped<Model> {
   std::size_t found = 0;
 };
 

@@ -18,15 +18,14 @@ struct remembered {
   typename scan::node_of<typename PartView::hierarchy_type>::place place;
 };
 
-/// `Tangents`: packets walk trees that know their tangents by these (scan/tangent_walk.cuh).
-template <class PartView, bool Tangents>
+template <class PartView, scan::packets_by How>
 struct points_of {
   using part_type = PartView;
   using hierarchy_type = typename PartView::hierarchy_type;
   using place_type = typename scan::node_of<hierarchy_type>::place;
-  static constexpr bool by_tangents = Tangents;
+  static constexpr scan::packets_by how = How;
   using scan_type = scan::by_packets;
-  using block = scan::packet_memory<points_of>;
+  using block = typename scan::packet_walk<points_of, How>::memory;
   static constexpr bool bound_per_part = true, goes_ahead = false;
   static constexpr std::size_t top_bytes = 0;  ///< 32 points share each read of a node, so no copy is needed.
 
@@ -149,11 +148,12 @@ class device_points {
   template <class Clouds, class Here>
   distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
                              real d_max, point_counts* counts, const Here& here) {
+    if constexpr (has_cells<PartView>) return pass<scan::packets_by::cells>(poses, clouds, out, d_max, counts, here);
     if (remembers_) make_room(clouds);
     if constexpr (scan::tangent_hierarchy<typename PartView::hierarchy_type>)
       if (by_tangents.value_or(d_max == infinity && worth_tangents(clouds)))
-        return pass<true>(poses, clouds, out, d_max, counts, here);
-    return pass<false>(poses, clouds, out, d_max, counts, here);
+        return pass<scan::packets_by::tangents>(poses, clouds, out, d_max, counts, here);
+    return pass<scan::packets_by::bounds>(poses, clouds, out, d_max, counts, here);
   }
 
   /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
@@ -179,15 +179,15 @@ class device_points {
     return worth;
   }
 
-  template <bool Tangents, class Clouds, class Here>
+  template <scan::packets_by How, class Clouds, class Here>
   distance_certainty pass(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
                           real d_max, point_counts* counts, const Here& here) {
-    using tally = points_of<PartView, Tangents>;
+    using tally = points_of<PartView, How>;
     return certainty_of(launch_.pass(
         facts_, poses, clouds,
         [&](const auto& source, std::uint32_t group, const frames::turn& now) {
           // Many points do not wait for their first primitives.
-          const bool look_up = d_max == infinity && source.size() < 1u << 20;
+          const bool look_up = How != scan::packets_by::cells && d_max == infinity && source.size() < 1u << 20;
           return launch_.template begin<tally>(group, now,
                                                {out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr,
                                                 last_.data(), look_up ? launch_.fields(group) : nullptr});

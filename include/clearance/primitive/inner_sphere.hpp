@@ -39,6 +39,7 @@ struct inner_sphere {
     const real off = slack * (way.length + absolute(radius)), d = way.length - radius;
     return {{d - off, way.direction}, d + off, way.length};
   }
+  CLEARANCE_HD core_place core_at(vec3) const { return {center, radius}; }
   std::array<ball, 1> balls() const { return {{{center, radius}}}; }
 };
 

@@ -109,6 +109,7 @@ struct triangle {
   }
 
   CLEARANCE_HD vec3 nearest(vec3 q) const { return q - away(q); }
+  CLEARANCE_HD core_place core_at(vec3 q) const { return {nearest(q), 0}; }
 
   CLEARANCE_HD vec3 normal(vec3 q) const {
     const vec3 d = away(q);

@@ -4,6 +4,7 @@
 // A part's field, if there is one, decides most pairs before.
 
 #include <clearance/ground/ordered.hpp>
+#include <clearance/robot/cells.hpp>
 #include <clearance/robot/field.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/team.cuh>
@@ -17,13 +18,13 @@ struct leaf_first : tree_steps<Tally> {
 
   /// All pairs of the table go down greedily at once, with eight, four, two or one lanes per pair: the fewer pairs, the
   /// more lanes. A pair is done if everything that it passed by is too far away to matter. The others are left open,
-  /// with a bound for their walk. If parts have fields, only those pairs go down that these do not decide. The whole
-  /// block calls it.
+  /// with a bound for their walk. If parts have fields, only those pairs go down that these do not decide; if parts
+  /// have cells, none. The whole block calls it.
   static __device__ void go(std::uint32_t count) {
     auto& s = frame::here();
     if (const field_view* const fields = Tally::fields(s); fields != nullptr) {
       go_by_field(count, fields);
-    } else if (count <= Tally::few) {
+    } else if (count <= Tally::few || has_cells<typename Tally::part_type>) {
       for (std::uint32_t i = threadIdx.x; i < count; i += block_threads) Tally::leave_open(s, i);
     } else {
       const auto every = [](std::uint32_t n) { return n; };
@@ -60,7 +61,7 @@ struct leaf_first : tree_steps<Tally> {
       if (may_matter(i)) Tally::leave_open(s, i);
     __syncthreads();
     const std::uint32_t left = Tally::open_pairs(s);
-    if (left <= Tally::few_left) return;
+    if (left <= Tally::few_left || has_cells<typename Tally::part_type>) return;
     const auto open = [&](std::uint32_t n) { return Tally::open_pair(s, n); };
     if (left <= block_threads / 8)
       go_as<lanes<8>>(left, open);

@@ -6,7 +6,7 @@
 #include <clearance/backend/early_start.cuh>
 #include <clearance/scan/filter.cuh>
 #include <clearance/scan/finish.cuh>
-#include <clearance/scan/tangent_packets.cuh>
+#include <clearance/scan/packet_walks.cuh>
 
 #include <algorithm>
 
@@ -50,7 +50,7 @@ __device__ inline std::uint32_t place_in_packet(std::uint32_t b, std::uint32_t c
 template <class Tally, class Source>
 __global__ void __launch_bounds__(block_threads, 2)
     packet_kernel(const __grid_constant__ Source source, const __grid_constant__ scan_arguments<Tally> a) {
-  using walks = packet_walks<Tally>;
+  using walks = typename packet_walk<Tally, Tally::how>::type;
   start_early();
   auto& s = memory_of_block<Tally>();
   const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds,

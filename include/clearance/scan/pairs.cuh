@@ -4,16 +4,14 @@
 // lanes per node, from its own stack. What is too much for it is dealt to all warps at the end.
 
 #include <clearance/ground/ordered.hpp>
-#include <clearance/scan/alone.cuh>
-#include <clearance/scan/interior.hpp>
+#include <clearance/scan/cell_pairs.cuh>
 #include <clearance/scan/leaf_first.cuh>
-#include <clearance/scan/pair_elements.cuh>
 #include <clearance/scan/reader.cuh>
 
 namespace clearance::scan {
 
 template <class Tally>
-struct pair_search : pair_elements<Tally> {
+struct pair_search : cell_pairs<Tally> {
   using frame = frame_parts<Tally>;
   using steps = tree_steps<Tally>;
   using hierarchy = typename Tally::part_type::hierarchy_type;
@@ -21,6 +19,7 @@ struct pair_search : pair_elements<Tally> {
   using pending = typename memory::pending_type;
   using node_type = typename steps::node_type;
   using typename pair_elements<Tally>::element;
+  using cell_pairs<Tally>::mates, cell_pairs<Tally>::lane, cell_pairs<Tally>::group, cell_pairs<Tally>::inside;
   using pair = pair_of<element>;
   static constexpr bool any_size = node_of<hierarchy>::any_size;
 
@@ -60,25 +59,7 @@ struct pair_search : pair_elements<Tally> {
   }
 
  private:
-  static constexpr std::uint32_t mates = 4;             ///< Lanes that share a node, two children per lane.
   static constexpr std::uint32_t at_once = 32 / mates;  ///< Nodes that a warp tests together.
-  static __device__ std::uint32_t lane() { return threadIdx.x % mates; }
-  static __device__ std::uint32_t group() { return threadIdx.x % 32 / mates; }
-
-  /// Is it in the part's solid? Then its distance is 0, and the tree need not be searched.
-  static __device__ bool inside(const element& e, std::uint32_t point, std::uint32_t k, std::uint32_t pair) {
-    if constexpr (has_interior<typename Tally::part_type>) {
-      memory& s = frame::here();
-      if (pair_search::settled(s, k, point, e)) return true;
-      const auto& view = frame::view(k);
-      if (!view.interior.inside(start_of(e))) return false;
-      Tally::take_inside(s, k, point, pair);
-      if (pair_search::is_certain(s) && certainly_inside(view, start_of(e), frame::place(k).error, walk_alone<Tally>{}))
-        Tally::take_certain(s);
-      return true;
-    }
-    return false;
-  }
 
   /// Transforms a pair's point into its part's frame. Pushes the root's children within reach, or the root if it is a
   /// leaf, unless the pair ends here. Four lanes per pair.
@@ -97,6 +78,7 @@ struct pair_search : pair_elements<Tally> {
     }
     __syncwarp();  // all lanes have read the pair
     if (live && lane() == 0) s.pair_table[i].x = q;
+    if constexpr (pair_search::by_cells) live = pair_search::look_up(live, i, part, q);
     node_type root{};
     if (live) root = steps::root(part);
     const bool leaf = live && steps::is_leaf(part, root);

@@ -68,12 +68,4 @@ struct tangent_packets : lone_search<Tally> {
   }
 };
 
-/// How a tally's packets walk its trees.
-template <class Tally>
-inline constexpr bool by_tangents = Tally::by_tangents && tangent_hierarchy<typename Tally::part_type::hierarchy_type>;
-template <class Tally>
-using packet_memory = std::conditional_t<by_tangents<Tally>, tangent_packet_memory<Tally>, shared_packet_memory<Tally>>;
-template <class Tally>
-using packet_walks = std::conditional_t<by_tangents<Tally>, tangent_packets<Tally>, packet_search<Tally>>;
-
 }  // namespace clearance::scan
