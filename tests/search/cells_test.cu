@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cells that a device makes keep their laws, and distances that are looked up in cells are the host's without them.
+#include "search/celled.hpp"
+#include "support/held_stream.cuh"
+#include "support/product_device.cuh"
+
+#include <clearance/backend/pinned_buffer.cuh>
+#include <clearance/chunked_query.hpp>
+#include <clearance/device.cuh>
+#include <clearance/fields.hpp>
+#include <clearance/points/depth_image.hpp>
+#include <clearance/questions/distances.hpp>
+
+namespace cells_device_test {
+
+using namespace testing;
+using clearance::cell_options, clearance::device, clearance::devices, clearance::distances, clearance::host,
+    clearance::placed, clearance::point_span;
+
+namespace {
+
+/// The laws of cells that the device makes, and distances to a robot with them, cut to its size.
+struct on_device {
+  device gpu = {};
+  cells_law<device> law{gpu};
+  dice d{451};
+
+  template <class Model, class Clouds>
+  void operator()(const Model& bare, const std::vector<Eigen::Isometry3d>& poses, const Clouds& clouds, double size,
+                  const cell_options& options, const std::string& what, bool needed = true) {
+    const auto celled = law.equip(bare, what, options, needed);
+    law.check(celled, d, what);
+    require_same_distances(gpu, bare, celled.on(gpu), poses, clouds, size, law.v, what);
+  }
+};
+
+/// Points along rows of a camera, as depths.
+std::vector<std::uint16_t> depths(std::uint32_t width, std::uint32_t height) {
+  std::vector<std::uint16_t> all;
+  for (std::uint32_t i = 0; i < width * height; ++i)
+    all.push_back(std::uint16_t(i % 11 == 0 ? 0 : 700 + 13 * (i % width) + 7 * (i / width)));
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("By cells to inner spheres: all scenes, points and images") {
+  on_device check;
+  for (const auto& s : scenes<inner_sphere>()) {
+    const sources<inner_sphere> all(s);
+    const std::tuple clouds(placed{all.span, s.cloud_pose}, placed{all.raw, all.camera_pose});
+    const auto bare = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+    for (const double reach : {0.3, 5.0})
+      check(bare, s.poses, clouds, s.size, {1 << 24, reach * s.size}, s.name + ", reach " + std::to_string(reach),
+            s.name != "coincident");
+  }
+  CHECK((check.law.leaves[0] == 0 && check.law.leaves[1] > 1000 && check.law.ties > 1000));
+}
+
+TEST_CASE("By cells to triangles: all scenes, several clouds") {
+  on_device check;
+  for (const auto& s : scenes<triangle>()) {
+    const sources<triangle> all(s);
+    const std::vector clouds(2, placed{all.span, s.cloud_pose});
+    const auto bare = make_model<clearance::obb>(s, {.width = 4, .leaf_size = 1}, clearance::wrapped{});
+    for (const double reach : {0.3, 5.0})
+      check(bare, s.poses, clouds, s.size, {1 << 26, reach * s.size}, s.name + ", reach " + std::to_string(reach),
+            s.name != "coincident");
+  }
+  CHECK((check.law.leaves[1] > 1000 && check.law.ties > 1000));
+}
+
+namespace {
+
+template <class V, class P>
+void odd_ones() {
+  on_device check;
+  auto all = odd_parts<P>();
+  all.push_back(equal_in_a_box<P>(100));
+  all.push_back(equal_in_a_box<P>(300));
+  for (const odd_part<P>& part : all) {
+    const auto one = model_of<V>(part);
+    const double size = double(one.parts()[0].facts.radius);
+    const auto& ball = one.parts()[0].facts;
+    const clearance::model bare{std::vector(2, one.parts()[0])};
+    const Eigen::Isometry3d here = shifted(-ball.center.x, -ball.center.y, -ball.center.z);
+    auto points = scattered(check.d, 3000, 1.5 * size);
+    for (int k = 0; k < 200; ++k)
+      points.push_back(
+          part.primitives[check.d.below(unsigned(part.primitives.size()))].nearest(check.d.point(size, ball.center)) -
+          ball.center);
+    for (const auto& poses : {std::vector{here, here}, std::vector{here, check.d.pose(size) * here}})
+      check(bare, poses, placed{point_span(points), shifted(0, 0, 0)}, size, part.options, part.name);
+  }
+  CHECK((check.law.leaves[0] > 500 && check.law.leaves[1] > 1000 && check.law.long_lists > 500));
+}
+
+}  // namespace
+
+TEST_CASE("By cells to spheres that are hard to tell apart") { odd_ones<clearance::sphere, inner_sphere>(); }
+TEST_CASE("By cells to triangles that are hard to tell apart") { odd_ones<clearance::obb, triangle>(); }
+
+TEST_CASE("By cells to robots of extreme numbers") {
+  on_device check;
+  for (const auto& s : edge_scenes()) {
+    if (std::ranges::any_of(s.parts, [](const auto& p) { return p.size() > 1000; })) continue;
+    check(make_model<clearance::sphere>(s, {}, clearance::wrapped{}), s.poses,
+          placed{point_span(s.points), s.cloud_pose}, s.size, {1 << 24, 1}, s.name, false);
+  }
+  CHECK((check.law.with > 0 && check.law.without > 0));
+}
+
+TEST_CASE("By cells to solids: inside, outside, and signed") {
+  on_device check;
+  for (const double tolerance : {0.0, 0.3, 2.0}) {
+    auto points = scattered(check.d, 5000, 1.5);
+    for (int k = 0; k < 3000; ++k)  // on faces, edges and corners of a part that is there twice
+      points.push_back({real(check.d.below(9)) / 4 - 1, real(check.d.below(9)) / 4 - 1, real(k / 400) / 4 - 1});
+    const Eigen::Isometry3d here = shifted(0, 0, 0);
+    for (const auto& poses : {std::vector{here, here}, std::vector{here, check.d.pose(0.5)}})
+      check(solid_robot(tolerance), poses, point_span(points), 1, {1 << 24, 3},
+            "solids, tolerance " + std::to_string(tolerance));
+  }
+  CHECK((check.law.leaves[2] > 100 && check.law.outside > 1000));
+  const closed_parts parts = closed_scene(61);
+  const auto bare = clearance::make_model<clearance::aabb>(parts.meshes);
+  const auto points = scattered(check.d, 5000, 0.7);
+  for (const double reach : {0.1, 4.0})
+    check(bare, parts.poses, placed{point_span(points), check.d.pose(0.1)}, 0.5, {1 << 26, reach}, "closed meshes");
+}
+
+TEST_CASE("By cells: more parts than a kernel takes", "[slow]") {
+  on_device check;
+  const scene<inner_sphere> s = many_parts(check.d);
+  const auto points = scattered(check.d, 5000, 1.5);
+  const auto bare = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const auto celled = check.law.equip(bare, "200 parts", {1 << 20, 0.5});
+  require_same_distances(check.gpu, bare, celled.on(check.gpu), s.poses, point_span(points), 1, check.law.v,
+                         "200 parts");
+}
+
+TEST_CASE("By cells: a picture's pixels, in tiles and not, behind a cloud") {
+  on_device check;
+  const scene<inner_sphere> s = scenes<inner_sphere>()[0];
+  const auto bare = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const auto points = scattered(check.d, 777, 2);
+  for (const auto& [width, height] : {std::pair(64u, 48u), std::pair(40u, 4u), std::pair(8u, 36u), std::pair(65u, 48u),
+                                      std::pair(64u, 47u), std::pair(3u, 1u)}) {
+    const auto depth = depths(width, height);
+    const clearance::depth_image image(depth.data(), width, height, {50, 50, width / 2.0, height / 2.0});
+    check(bare, s.poses,
+          std::tuple(placed{point_span(points), s.cloud_pose}, placed{image, s.poses[0] * shifted(0, 0, -1.5)}), 1,
+          {1 << 24, 2}, std::to_string(width) + " x " + std::to_string(height));
+  }
+}
+
+TEST_CASE("By cells and fields: distances are the same with both, in either order") {
+  verdict v;
+  dice d(452);
+  const device gpu;
+  const auto bare = solid_robot(0);
+  const auto fielded = clearance::with_fields(gpu, bare).model;
+  const auto both = clearance::with_cells(gpu, fielded, {1 << 24, 2}).model;
+  const auto turned = clearance::with_fields(gpu, clearance::with_cells(gpu, bare, {1 << 24, 2}).model).model;
+  const std::vector poses{d.pose(0.5), d.pose(1.5)};
+  const auto points = scattered(d, 5000, 2);
+  for (const auto* robot : {&both, &turned}) {
+    REQUIRE((robot->view().fields != nullptr && robot->view().cells != nullptr));
+    require_same_distances(gpu, bare, robot->on(gpu), poses, point_span(points), 1, v, "fields and cells");
+  }
+}
+
+TEST_CASE("By cells in a stream that is held, and in a graph that is launched again", "[concurrent]") {
+  verdict v;
+  dice d(453);
+  const own_stream stream;
+  const device gpu{0, stream.handle};
+  const scene<inner_sphere> s = scenes<inner_sphere>()[0];
+  const auto bare = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const auto there = clearance::with_cells(gpu, bare, {1 << 24, 2}).model.on(gpu);
+  REQUIRE(there.view().cells != nullptr);
+  const auto points = scattered(d, 5000, 2);
+  const auto cloud = gpu.copy_in(std::span<const vec3>(points));
+  const placed placed_there{point_span(cloud.data(), points.size()), s.cloud_pose};
+  const auto expected = ask(host{1}, bare, s.poses, placed{point_span(points), s.cloud_pose}, distances{.which = true});
+  clearance::pinned_buffer<real> distance(points.size(), 0);
+  clearance::pinned_buffer<std::uint32_t> part(points.size(), 0), primitive(points.size(), 0);
+  clearance::pinned_buffer<clearance::point_counts> counts(1, 0);
+  clearance::query query(gpu, there, distances{});
+  const distances::out out{{distance.data(), part.data(), primitive.data()}, counts.data()};
+  const auto clear = [&] {
+    std::fill_n(distance.data(), distance.size(), real(-1));
+    std::fill_n(part.data(), part.size(), 77u), std::fill_n(primitive.data(), primitive.size(), 77u);
+    *counts.data() = {};
+  };
+  const auto look = [&](const std::string& what) {
+    gpu.wait();
+    clearance::point_distances found = expected;
+    found.distance.assign(distance.data(), distance.data() + distance.size());
+    found.part.assign(part.data(), part.data() + part.size());
+    found.primitive.assign(primitive.data(), primitive.data() + primitive.size());
+    found.counts = *counts.data();
+    require_same(found, expected, v, what);
+    clear();
+  };
+  const auto once = [&] { clearance::enqueue(gpu, there, s.poses, placed_there, distances{.which = true}, out); };
+  const auto prepared = [&] { query.enqueue(s.poses, placed_there, distances{.which = true}, out); };
+  once();
+  look("once");
+  prepared();
+  look("prepared");
+  {
+    gate held(stream.handle);
+    once();
+    v.require(cudaStreamQuery(stream.handle) == cudaErrorNotReady, "it has waited");
+    held.release();
+  }
+  look("on a stream that was held");
+  const captured_graph graph(stream.handle, once), again(stream.handle, prepared);
+  for (int launch = 0; launch < 2; ++launch) {
+    graph.launch();
+    look("a graph, launch " + std::to_string(launch));
+    again.launch();
+    look("a prepared question's graph, launch " + std::to_string(launch));
+  }
+}
+
+TEST_CASE("By cells: a cloud in chunks, and several devices") {
+  verdict v;
+  dice d(454);
+  const device gpu;
+  const devices several{0, 0};
+  const auto bare = solid_robot(0);
+  const auto celled = clearance::with_cells(gpu, bare, {1 << 24, 1}).model;
+  REQUIRE(celled.view().cells != nullptr);
+  const std::vector poses{d.pose(0.5), d.pose(1.5)};
+  const auto points = scattered(d, 20000, 2);
+  clearance::chunked cloud(point_span(points), 1 << 12);
+  const auto there = celled.on(gpu);
+  const auto on_each = celled.on(several);
+  clearance::chunked_query query(gpu, there, distances{});
+  for (const double d_max : {0.2, double(infinity)}) {
+    const distances q{d_max, true};
+    const auto expected = ask(host{1}, bare, poses, point_span(points), q);
+    require_same(query(poses, cloud, Eigen::Isometry3d::Identity(), q), expected, v, "chunked");
+    require_same(query(poses, cloud, Eigen::Isometry3d::Identity(), q), expected, v, "chunked, again");
+    require_same(ask(several, on_each, poses, point_span(points), q), expected, v, "twice on one device");
+    const clearance::signed_distances s{d_max, true};
+    require_same(ask(several, on_each, poses, point_span(points), s), ask(host{1}, bare, poses, point_span(points), s),
+                 v, "twice on one device, signed");
+  }
+}
+
+}  // namespace cells_device_test
