@@ -128,7 +128,7 @@ struct cells_law {
     const vec3 from_low = q - cells.low;
     if (std::min({from_low.x, from_low.y, from_low.z}) < 0 || std::max({from_low.x, from_low.y, from_low.z}) > side)
       v.require(count == 0, what, ": a list beyond the cells, at ", q), ++beyond;
-    else
+    else if (std::max({from_low.x, from_low.y, from_low.z}) < side * 0.999f)
       ++leaves[int(leaf.node.kind)];
     sides(part, leaf, q, what);
     if (count == 0) return;
@@ -258,9 +258,9 @@ inline void add_odd(std::vector<odd_part<triangle>>& all, dice& d) {
   for (int k = 0; k < 20; ++k) some.push_back(some[k]);
   for (int k = 0; k < 10; ++k) some.push_back(triangle::from(some[k].b, some[k].c, some[k].a));
   all.push_back({"doubled", some, {1 << 23, 1}});
-  const auto globe = [&](double radius, Eigen::Vector3d center, int rings) {
+  const auto globe = [&](double radius, Eigen::Vector3d center, int rings, int sectors) {
     std::vector<triangle> faces;
-    const auto mesh = shapes::globe(center, radius, rings, 8);
+    const auto mesh = shapes::globe(center, radius, rings, sectors);
     const auto corner = [&](std::uint32_t k) {
       const Eigen::Vector3f c = mesh.vertices[k].cast<float>();
       return vec3{c.x(), c.y(), c.z()};
@@ -268,9 +268,9 @@ inline void add_odd(std::vector<odd_part<triangle>>& all, dice& d) {
     for (const auto& t : mesh.triangles) faces.push_back(triangle::from(corner(t[0]), corner(t[1]), corner(t[2])));
     return faces;
   };
-  all.push_back({"a globe", globe(1, {0, 0, 0}, 5), {1 << 23, 1}});
-  all.push_back({"a speck", globe(1e-5, {0, 0, 0}, 3), {1 << 24, 2}});
-  all.push_back({"a speck far off", globe(0.01, {300, -400, 500}, 3), {1 << 24, 1}});
+  all.push_back({"a globe", globe(1, {0, 0, 0}, 4, 6), {1 << 23, 1}});
+  all.push_back({"a speck", globe(1e-5, {0, 0, 0}, 2, 6), {1 << 24, 2}});
+  all.push_back({"a speck far off", globe(0.01, {300, -400, 500}, 2, 6), {1 << 24, 1}});
 }
 
 /// Parts of all sizes, near their frame's origin and far from it, of few primitives and of one.
@@ -314,13 +314,57 @@ odd_part<P> equal_in_a_box(int count) {
 }
 
 template <class V, class P>
-auto model_of(const odd_part<P>& part) {
+auto odd_model(const odd_part<P>& part) {
   return clearance::model(std::vector{clearance::make_part(clearance::build<V>(part.primitives))});
 }
 
-/// Solids whose inside is known but for a tolerance, in a robot of two equal ones.
-inline auto solid_robot(double tolerance) {
-  return clearance::make_model<clearance::aabb>(std::vector(2, clearance::close_mesh(shapes::cube(1))),
+/// A primitive of one's own: what is within a radius of a segment.
+struct rod {
+  vec3 a, b;
+  real radius;
+
+  CLEARANCE_HD vec3 on_axis(vec3 q) const {
+    const vec3 edge = b - a;
+    const real squared = clearance::dot(edge, edge);
+    if (!(squared > 0)) return a;
+    return clearance::fma(clearance::clamp01(clearance::divide(clearance::dot(q - a, edge), squared)), edge, a);
+  }
+  CLEARANCE_HD real distance(vec3 q) const { return clearance::length(q - on_axis(q)) - radius; }
+  CLEARANCE_HD vec3 normal(vec3 q) const {
+    const vec3 d = q - on_axis(q);
+    const real l = clearance::length(d);
+    return l > 0 ? clearance::scaled(clearance::divide(1, l), d) : vec3{0, 0, 0};
+  }
+  CLEARANCE_HD vec3 nearest(vec3 q) const { return clearance::fma(radius, normal(q), on_axis(q)); }
+  CLEARANCE_HD clearance::core_place core_at(vec3 q) const { return {on_axis(q), radius}; }
+  /// Both ends lie behind the half-space.
+  CLEARANCE_HD clearance::primitive_tangent tangent_at(vec3 q) const {
+    const clearance::unit_way way(q - on_axis(q));
+    const real off = 4 * clearance::slack * (way.length + radius + clearance::length(b - a)) + 0x1p-60f,
+               behind =
+                   clearance::rough_min(clearance::dot(way.direction, q - a), clearance::dot(way.direction, q - b));
+    return {{behind - radius - off, way.direction}, way.length - radius + off, way.length};
+  }
+  std::array<ball, 2> balls() const { return {{{a, radius}, {b, radius}}}; }
+};
+static_assert(clearance::cored_primitive<rod>);
+
+/// Rods of all thicknesses, some of them twice, and joined ones.
+inline std::vector<rod> rods(dice& d) {
+  std::vector<rod> all;
+  for (int k = 0; k < 30; ++k) {
+    const vec3 a = d.point(1), b = d.point(1);
+    all.push_back({a, b, real(std::pow(10, d.uniform(-4, -0.5)))});
+    if (k % 3 == 0) all.push_back(all.back());
+    if (k % 3 == 1) all.push_back({b, d.point(1), all.back().radius});
+    if (k % 9 == 2) all.push_back({a, a, 0});
+  }
+  return all;
+}
+
+/// Equal solids whose inside is known but for a tolerance.
+inline auto solid_robot(std::size_t parts, double tolerance) {
+  return clearance::make_model<clearance::aabb>(std::vector(parts, clearance::close_mesh(shapes::cube(1))),
                                                 clearance::part_options{.tolerance = tolerance});
 }
 

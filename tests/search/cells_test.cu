@@ -79,7 +79,7 @@ void odd_ones() {
   all.push_back(equal_in_a_box<P>(100));
   all.push_back(equal_in_a_box<P>(300));
   for (const odd_part<P>& part : all) {
-    const auto one = model_of<V>(part);
+    const auto one = odd_model<V>(part);
     const double size = double(one.parts()[0].facts.radius);
     const auto& ball = one.parts()[0].facts;
     const clearance::model bare{std::vector(2, one.parts()[0])};
@@ -118,7 +118,7 @@ TEST_CASE("By cells to solids: inside, outside, and signed") {
       points.push_back({real(check.d.below(9)) / 4 - 1, real(check.d.below(9)) / 4 - 1, real(k / 400) / 4 - 1});
     const Eigen::Isometry3d here = shifted(0, 0, 0);
     for (const auto& poses : {std::vector{here, here}, std::vector{here, check.d.pose(0.5)}})
-      check(solid_robot(tolerance), poses, point_span(points), 1, {1 << 24, 3},
+      check(solid_robot(2, tolerance), poses, point_span(points), 1, {1 << 24, 3},
             "solids, tolerance " + std::to_string(tolerance));
   }
   CHECK((check.law.leaves[2] > 100 && check.law.outside > 1000));
@@ -158,7 +158,7 @@ TEST_CASE("By cells and fields: distances are the same with both, in either orde
   verdict v;
   dice d(452);
   const device gpu;
-  const auto bare = solid_robot(0);
+  const auto bare = solid_robot(2, 0);
   const auto fielded = clearance::with_fields(gpu, bare).model;
   const auto both = clearance::with_cells(gpu, fielded, {1 << 24, 2}).model;
   const auto turned = clearance::with_fields(gpu, clearance::with_cells(gpu, bare, {1 << 24, 2}).model).model;
@@ -230,7 +230,7 @@ TEST_CASE("By cells: a cloud in chunks, and several devices") {
   dice d(454);
   const device gpu;
   const devices several{0, 0};
-  const auto bare = solid_robot(0);
+  const auto bare = solid_robot(2, 0);
   const auto celled = clearance::with_cells(gpu, bare, {1 << 24, 1}).model;
   REQUIRE(celled.view().cells != nullptr);
   const std::vector poses{d.pose(0.5), d.pose(1.5)};
