@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cells that a device makes keep their laws, and distances that are looked up in cells are the host's without them.
 #include "search/celled.hpp"
+#include "search/far_scenes.hpp"
+#include "search/tangent_scenes.hpp"
+#include "support/frame_after_frame.hpp"
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"
 
@@ -19,18 +22,23 @@ using clearance::cell_options, clearance::device, clearance::devices, clearance:
 
 namespace {
 
-/// The laws of cells that the device makes, and distances to a robot with them, cut to its size.
+/// The laws of cells that the device makes, and distances to a robot with them.
 struct on_device {
   device gpu = {};
   cells_law<device> law{gpu};
   dice d{451};
 
+  /// The robot with cells on the device; without them, if it is not `needed` that it has any.
+  template <class Model>
+  auto equip(const Model& bare, const cell_options& options, const std::string& what, bool needed = true) {
+    const auto celled = law.equip(bare, what, options, needed);
+    law.check(celled, d, what);
+    return celled.on(gpu);
+  }
   template <class Model, class Clouds>
   void operator()(const Model& bare, const std::vector<Eigen::Isometry3d>& poses, const Clouds& clouds, double size,
                   const cell_options& options, const std::string& what, bool needed = true) {
-    const auto celled = law.equip(bare, what, options, needed);
-    law.check(celled, d, what);
-    require_same_distances(gpu, bare, celled.on(gpu), poses, clouds, size, law.v, what);
+    require_same_distances(gpu, bare, equip(bare, options, what, needed), poses, clouds, size, law.v, what);
   }
 };
 
@@ -89,8 +97,10 @@ void odd_ones() {
       points.push_back(
           part.primitives[check.d.below(unsigned(part.primitives.size()))].nearest(check.d.point(size, ball.center)) -
           ball.center);
+    const auto there = check.equip(bare, part.options, part.name);
     for (const auto& poses : {std::vector{here, here}, std::vector{here, check.d.pose(size) * here}})
-      check(bare, poses, placed{point_span(points), shifted(0, 0, 0)}, size, part.options, part.name);
+      require_same_distances(check.gpu, bare, there, poses, placed{point_span(points), shifted(0, 0, 0)}, size,
+                             check.law.v, part.name);
   }
   CHECK((check.law.leaves[0] > 500 && check.law.leaves[1] > 1000 && check.law.long_lists > 500));
 }
@@ -99,6 +109,28 @@ void odd_ones() {
 
 TEST_CASE("By cells to spheres that are hard to tell apart") { odd_ones<clearance::sphere, inner_sphere>(); }
 TEST_CASE("By cells to triangles that are hard to tell apart") { odd_ones<clearance::obb, triangle>(); }
+
+TEST_CASE("By cells to a primitive of somebody else's, near and in neighbours") {
+  on_device check;
+  const clearance::model bare{
+      std::vector(2, clearance::make_part(clearance::build<clearance::obb>(rods(check.d)), 0, 0))};
+  const auto points = patches(check.d, 1.5);
+  check(bare, {shifted(0, 0, 0), shifted(0.1, 0.2, 0)}, point_span(points), 1, {1 << 24, 1}, "rods");
+  CHECK((check.law.leaves[1] > 1000 && check.law.ties > 50));
+}
+
+TEST_CASE("Where most lists would be too long there are no cells, and distances are the same") {
+  on_device check;
+  const auto one = random_primitives<inner_sphere>(check.d, 1, 1, 0.3)[0];
+  const clearance::model bare{
+      std::vector{clearance::make_part(clearance::build<clearance::sphere>(std::vector(300, one)))}};
+  const auto made = clearance::with_cells(check.gpu, bare, {1 << 22, 1});
+  CHECK(made.without[0] == "its 300 primitives are too many for cells of 4194304 bytes");
+  CHECK(made.model.view().cells == nullptr);
+  const auto points = scattered(check.d, 500, 1);
+  require_same_distances(check.gpu, bare, made.model.on(check.gpu), {check.d.pose(0.1)}, point_span(points), 1,
+                         check.law.v, "300 equal ones");
+}
 
 TEST_CASE("By cells to robots of extreme numbers") {
   on_device check;
@@ -110,6 +142,19 @@ TEST_CASE("By cells to robots of extreme numbers") {
   CHECK((check.law.with > 0 && check.law.without > 0));
 }
 
+TEST_CASE("By cells to robots and points that are far away") {
+  on_device check;
+  each_far_question<ball_body>(6, [&]<class Source>(const auto& robot, const auto& poses, const Source& source,
+                                                    const truth& t, const std::string& name) {
+    if constexpr (std::is_same_v<Source, point_span>)
+      check(model_of(robot), poses, placed{source, t.pose}, 1, {1 << 22, 2}, name);
+  });
+  each_far_pose<box_body>(
+      8, [&](const auto& robot, const auto& poses, const point_span& source, const truth& t, const std::string& name) {
+        check(model_of(robot), poses, placed{source, t.pose}, 1, {1 << 22, 2}, name);
+      });
+}
+
 TEST_CASE("By cells to solids: inside, outside, and signed") {
   on_device check;
   for (const double tolerance : {0.0, 0.3, 2.0}) {
@@ -117,9 +162,11 @@ TEST_CASE("By cells to solids: inside, outside, and signed") {
     for (int k = 0; k < 3000; ++k)  // on faces, edges and corners of a part that is there twice
       points.push_back({real(check.d.below(9)) / 4 - 1, real(check.d.below(9)) / 4 - 1, real(k / 400) / 4 - 1});
     const Eigen::Isometry3d here = shifted(0, 0, 0);
+    const std::string what = "solids, tolerance " + std::to_string(tolerance);
+    const auto bare = solid_robot(2, tolerance);
+    const auto there = check.equip(bare, {1 << 24, 1 + tolerance}, what);
     for (const auto& poses : {std::vector{here, here}, std::vector{here, check.d.pose(0.5)}})
-      check(solid_robot(2, tolerance), poses, point_span(points), 1, {1 << 24, 3},
-            "solids, tolerance " + std::to_string(tolerance));
+      require_same_distances(check.gpu, bare, there, poses, point_span(points), 1, check.law.v, what);
   }
   CHECK((check.law.leaves[2] > 100 && check.law.outside > 1000));
   const closed_parts parts = closed_scene(61);
@@ -137,6 +184,26 @@ TEST_CASE("By cells: more parts than a kernel takes", "[slow]") {
   const auto celled = check.law.equip(bare, "200 parts", {1 << 20, 0.5});
   require_same_distances(check.gpu, bare, celled.on(check.gpu), s.poses, point_span(points), 1, check.law.v,
                          "200 parts");
+}
+
+TEST_CASE("By cells: a crowd, frame after frame") {
+  on_device check;
+  const scene<inner_sphere> s = crowd(455);
+  const auto bare = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
+  const auto there = check.equip(bare, {1 << 24, 1}, "a crowd");
+  auto poses = s.poses;
+  clearance::query query(check.gpu, there, distances{});
+  const auto neighbours = patches(check.d, 0.5);
+  const std::vector clouds{point_span(s.points), point_span(neighbours)};
+  frame_after_frame(
+      poses,
+      [&](const std::string& when) {
+        for (const double d_max : {0.1, double(infinity)}) {
+          const distances q{d_max, true};
+          require_same(query(poses, clouds, q), ask(host{}, bare, poses, clouds, q), check.law.v, when);
+        }
+      },
+      [&] { query.forget(); });
 }
 
 TEST_CASE("By cells: a picture's pixels, in tiles and not, behind a cloud") {
