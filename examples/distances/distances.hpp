@@ -2,6 +2,7 @@
 #pragma once
 // How far is every point of a cloud from a robot, and from which of its links?
 
+#include <clearance/cells.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/distances.hpp>
@@ -39,6 +40,17 @@ int example(const Backend& on) {
   std::printf("that point is %.1f cm from link 0 and %.1f cm from link 1\n", 100.0 * each.of(0)[first],
               100.0 * each.of(1)[first]);
   // [parts]
+
+  // [cells]
+  const auto listed = clearance::with_cells(on, clearance::make_model<clearance::sphere>(links), {.reach = 2});
+  for (const std::string& why_not : listed.without)
+    if (!why_not.empty()) std::printf("no cells: %s\n", why_not.c_str());
+  const auto there = listed.model.on(on);
+  clearance::query sooner(on, there, clearance::distances{});
+  // [cells]
+  if (sooner(poses, wall).distance != clearance::ask(on, robot, poses, wall, clearance::distances{}).distance ||
+      listed.model.view().cells == nullptr)
+    return 1;
 
   for (std::size_t i = 0; i < wall.size(); ++i) {
     if (all.distance[i] <= 0.5f && all.distance[i] != std::min(each.of(0)[i], each.of(1)[i])) return 1;

@@ -5,6 +5,7 @@
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/bvh/flat_list.hpp>
+#include <clearance/cells.hpp>
 #include <clearance/chunked_query.hpp>
 #include <clearance/compacted.hpp>
 #include <clearance/deadline.hpp>
