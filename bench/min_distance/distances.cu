@@ -141,6 +141,23 @@ BENCHMARK_CAPTURE(shell, cells_ordered, true, true)
     ->Unit(benchmark::kMicrosecond)
     ->Iterations(20);
 
+/// How long cells of all parts take to be made on the device, without the way to it.
+template <class Make>
+void making_cells(benchmark::State& state, Make make) {
+  if (no_device(state)) return;
+  const auto model = make(the_scene(), clearance::build_options{});
+  double bytes = 0;
+  for (auto _ : state) {
+    bytes = 0;
+    for (const auto& part : clearance::with_cells(device{}, model).model.parts())
+      bytes += double(part.cells.nodes.size() * sizeof(clearance::cell_node) +
+                      part.cells.entries.size() * sizeof(clearance::cell_entry));
+  }
+  state.counters["MB"] = bytes / 1e6;
+}
+BENCHMARK_CAPTURE(making_cells, spheres, of_spheres)->Unit(benchmark::kMillisecond)->Iterations(3);
+BENCHMARK_CAPTURE(making_cells, triangles, of_triangles)->Unit(benchmark::kMillisecond)->Iterations(3);
+
 constexpr options cold{}, warm{.warm = true}, within_10cm{.d_max = 0.1f}, close_cold{.close = true},
     close_warm{.warm = true, .close = true}, fields{.fields = true}, fields_10cm{.d_max = 0.1f, .fields = true},
     fields_close{.close = true, .fields = true}, fields_warm{.warm = true, .fields = true}, cells{.cells = true},

@@ -18,6 +18,11 @@ cells<host> made_cells(const B& on, const Part& part, const cell_options& option
   if (!(options.reach >= 0 && options.reach < 1e6))
     throw std::invalid_argument("clearance::with_cells: cells reach " + std::to_string(options.reach) +
                                 " m, which must be from 0 to 1,000,000");
+  constexpr std::uint64_t most = std::uint64_t(1) << 34;  // entries are numbered in 32 bits
+  if (options.bytes > most)
+    return why_not = std::to_string(options.bytes) + " bytes are too many for cells; they take at most " +
+                     std::to_string(most),
+           cells<host>{};
   if (!(facts.radius > 0 && facts.radius < 1e6f && length(facts.center) < 1e6f))
     return why_not = "a part without a finite size has no cells", cells<host>{};
   try {

@@ -31,29 +31,27 @@ struct cells_law {
 
   /// The robot with cells; `needed`: all its parts must have them.
   template <class Model>
-  Model equip(const Model& model, const std::string& what, const clearance::cell_options& options, bool needed = true) {
+  auto equip(const Model& model, const std::string& what, const clearance::cell_options& options, bool needed = true) {
     auto made = clearance::with_cells(on, model, options);
-    bool all = true;
-    for (const auto& why_not : made.without) {
-      all = all && why_not.empty();
+    for (std::size_t k = 0; k < model.size(); ++k) {
+      const std::string& why_not = made.without[k];
       v.require(why_not.empty() || !needed, what, ": ", why_not);
+      v.require(made.model.parts()[k].cells.empty() == !why_not.empty(), what, ": cells, and a sentence why not");
+      ++(why_not.empty() ? with : without);
     }
-    v.require((made.model.view().cells != nullptr) == all, what, ": cells, and a sentence why not");
-    ++(all ? with : without);
     return std::move(made.model);
   }
 
   template <class Model>
   void check(const Model& model, dice& d, const std::string& what, int looks = 1500) {
-    const auto view = model.view();
-    if (view.cells == nullptr) return;
-    for (std::size_t k = 0; k < view.size(); ++k) {
+    for (std::size_t k = 0; k < model.size(); ++k) {
+      const auto part = model.parts()[k].view();
+      if (part.cells.nodes == nullptr) continue;
       const std::span primitives(model.parts()[k].tree.primitives.data(), model.parts()[k].tree.primitives.size());
-      const std::string part = what + ", part " + std::to_string(k);
+      const std::string which = what + ", part " + std::to_string(k);
       for (int i = 0; i < looks; ++i)
-        look(view.parts[k], view.cells[k], primitives, probe(view.parts[k].facts, view.cells[k], primitives, d, i),
-             part);
-      v.require(view.cells[k]({clearance::not_a_number, 0, 0}).node.kind == clearance::cell_kind::unlisted, part,
+        look(part, part.cells, primitives, probe(part.facts, part.cells, primitives, d, i), which);
+      v.require(part.cells({clearance::not_a_number, 0, 0}).node.kind == clearance::cell_kind::unlisted, which,
                 ": NaN is in a cell");
     }
   }

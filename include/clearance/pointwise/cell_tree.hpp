@@ -12,7 +12,7 @@
 namespace clearance {
 
 struct cell_options {
-  std::size_t bytes = std::size_t(64) << 20;  ///< Memory for each part, at most.
+  std::size_t bytes = std::size_t(64) << 20;  ///< Memory for each part, at most; up to 16 GiB.
   double reach = 4;                           ///< Metres around a part's ball that its cells cover.
 };
 
@@ -47,7 +47,10 @@ class cell_tree {
       const std::vector<cell_found> found = mark(tasks);
       const bool in_table = tasks[0].up >= cells_view::deepest - cells_view::top;
       if (!fits(tasks.size(), found)) {
-        if (in_table) return why_not = too_many(), cells<host>{};
+        if (in_table)
+          return why_not = std::to_string(bytes_) + " bytes are too few for cells of its " +
+                           std::to_string(primitives_) + " primitives",
+                 cells<host>{};
         enter(inner);
         break;
       }
@@ -60,17 +63,15 @@ class cell_tree {
       if (inner.empty()) break;
       tasks = children(inner);
     }
-    if (unlisted_ > leaves_ / 8) return why_not = too_many(), cells<host>{};
+    if (unlisted_ > leaves_ / 8)
+      return why_not = "its " + std::to_string(primitives_) + " primitives are too close together for cells of " +
+                       std::to_string(bytes_) + " bytes",
+             cells<host>{};
     return std::move(made_);
   }
 
  private:
   static constexpr std::uint32_t first_level = 2;
-
-  std::string too_many() const {
-    return "its " + std::to_string(primitives_) + " primitives are too many for cells of " + std::to_string(bytes_) +
-           " bytes";
-  }
 
   /// All cells of the first level, with all primitives.
   std::vector<cell_task> first_cells() {
