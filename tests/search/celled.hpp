@@ -138,6 +138,8 @@ struct cells_law {
       if (c.place >= primitives.size()) return;
       listed[c.place] = true;
       const real distance = primitives[c.place].distance(q);
+      for (std::uint32_t l = j; j % 8 == 0 && l < count; ++l)
+        v.require(c.rest <= primitives[cells.candidate(leaf, l).place].distance(q), what, ": rest at ", q, ",", c.rest);
       v.require(c.low <= distance, what, ": primitive", c.place, " is", distance, " away at ", q, ", not", c.low);
     }
     std::size_t equal = 0;

@@ -52,12 +52,14 @@ struct alignas(8) cell_node {
 struct cell_leaf {
   cell_node node;
   vec3 from_middle;
+  real away = 0;  ///< At least as long as `from_middle`, and as its product with a tangent's direction.
 };
 
-/// A primitive of a leaf's list. Law: its computed distance from the leaf's position is at least `low`.
+/// A primitive of a leaf's list. Law: its computed distance from the leaf's position is at least `low`, and that of all
+/// that follow it at least `rest`.
 struct cell_candidate {
   std::uint32_t place;  ///< In the tree's array of primitives.
-  real low;
+  real low, rest;
 };
 
 /// An octree over a cube around a part; or nothing, and no cell is listed.
@@ -96,12 +98,13 @@ struct cells_view {
       --up;
       n = read_only(nodes + n.first + ((x >> up & 1) | (y >> up & 1) << 1 | (z >> up & 1) << 2));
     }
-    return {n, q - middle(x >> up, y >> up, z >> up, up)};
+    const vec3 from_middle = q - middle(x >> up, y >> up, z >> up, up);
+    return {n, from_middle, rough_length(from_middle) * 1.001f};
   }
   /// Number j of those that the leaf lists.
   CLEARANCE_HD cell_candidate candidate(const cell_leaf& leaf, std::uint32_t j) const {
     const cell_entry e = read_only(entries + leaf.node.first + j);
-    return {e.place, e.lower_bound(leaf.from_middle)};
+    return {e.place, e.lower_bound(leaf.from_middle), e.distance - leaf.away};
   }
 };
 

@@ -48,15 +48,18 @@ struct cell_pairs : pair_elements<Tally> {
     if (live) leaf = its(q);
     const std::uint32_t count = leaf.node.kind == cell_kind::list ? leaf.node.count : 0;
 #pragma unroll 1
-    for (std::uint32_t k = lane(); __any_sync(all_lanes, k < count); k += mates) {  // the nearest to the middle first
+    for (std::uint32_t k = lane();; k += mates) {  // the nearest to the middle first
+      cell_candidate c{none, infinity, infinity};
+      if (k < count) c = its.candidate(leaf, k);
+      const real reach = Tally::reach_of_pair(s, part, i);
+      if (__all_sync(all_lanes, k >= count || c.rest > reach)) break;
       typename Tally::record r;
       typename hierarchy::primitive_type primitive;
-      if (k < count)
-        if (const cell_candidate c = its.candidate(leaf, k); c.low <= Tally::reach_of_pair(s, part, i)) {
-          primitive = steps::whole_primitive(part, c.place);
-          if (const real d = primitive.distance(q); d <= Tally::reach_of_pair(s, part, i))
-            r = {make_key(d, s.pair_table[i].point), part, steps::id(part, c.place), c.place};
-        }
+      if (k < count && c.low <= reach) {
+        primitive = steps::whole_primitive(part, c.place);
+        if (const real d = primitive.distance(q); d <= reach)
+          r = {make_key(d, s.pair_table[i].point), part, steps::id(part, c.place), c.place};
+      }
       if (__any_sync(all_lanes, r.key != no_key)) Tally::take(s, r, primitive, i);
     }
     return live && leaf.node.kind == cell_kind::unlisted;
