@@ -269,8 +269,7 @@ inline void add_odd(std::vector<odd_part<triangle>>& all, dice& d) {
     return faces;
   };
   all.push_back({"a globe", globe(1, {0, 0, 0}, 4, 6), {1 << 23, 1}});
-  all.push_back({"a speck", globe(1e-5, {0, 0, 0}, 2, 6), {1 << 24, 2}});
-  all.push_back({"a speck far off", globe(0.01, {300, -400, 500}, 2, 6), {1 << 24, 1}});
+  all.push_back({"a small globe far off", globe(0.01, {300, -400, 500}, 2, 6), {1 << 24, 1}});
 }
 
 /// Parts of all sizes, near their frame's origin and far from it, of few primitives and of one.
@@ -286,6 +285,11 @@ std::vector<odd_part<P>> odd_parts() {
                      some,
                      {1 << 23, (away == 0 ? 3 : 0.5) * size}});
     }
+  auto some = random_primitives<P>(d, 15, 1, 0.3);  // few, because cells are widened by half of what they are
+  for (P& p : some) p = moved(p, {50000, -40000, 30000});
+  all.push_back({"where numbers are millimetres apart", some, {1 << 23, 0.2}});
+  all.push_back(
+      {"a speck, of which rounding hides which is nearest", random_primitives<P>(d, 15, 1e-6, 3e-7), {1 << 23, 2}});
   all.push_back({"one alone", random_primitives<P>(d, 1, 1, 0.3), {1 << 23, 1}});
   all.push_back({"reach 0", random_primitives<P>(d, 20, 1, 0.3), {1 << 23, 0}});
   add_odd(all, d);
