@@ -81,14 +81,8 @@ struct cell_packets : lone_search<Tally> {
       const std::uint32_t count = begin < leaf.node.count ? lower_of(32, leaf.node.count - begin) : 0;
       unsigned wanted = 0;
 #pragma unroll 4
-      for (std::uint32_t j = 0; j < count; ++j) {
-        const cell_candidate c = cells.candidate(leaf, begin + j);
-        if (c.low <= v.reach(k)) wanted |= 1u << j;
-        if (c.rest > v.reach(k)) {
-          leaf.node.count = 0;
-          break;
-        }
-      }
+      for (std::uint32_t j = 0; j < count; ++j)
+        if (cells.candidate(leaf, begin + j).low <= v.reach(k)) wanted |= 1u << j;
 #pragma unroll 1
       while (__any_sync(all_lanes, wanted != 0)) {
         if (wanted != 0) {
