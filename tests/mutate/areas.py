@@ -56,6 +56,7 @@ TESTS = {
     "pairwise/own_points.hpp": ["search/self_filter"],
     "pairwise/support.hpp": ["search/min_support"],
     "pointwise/*": ["search/distances", "search/distances_per_part", "search/signed_distances"],
+    "pointwise/cell_*.hpp": ["search/cells"],
     "questions/*": ["search/distances", "search/within"],
     "questions/certain_distance.hpp": ["search/uncertain"],
     "questions/collect.hpp": ["search/collect"],

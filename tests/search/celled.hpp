@@ -27,7 +27,7 @@ struct cells_law {
   On on;
   verdict v = {};
   std::size_t leaves[4] = {};  ///< How many of each cell_kind have been met,
-  std::size_t outside = 0, beyond = 0, ties = 0, long_lists = 0, with = 0, without = 0;
+  std::size_t outside = 0, beyond = 0, ties = 0, listed = 0, long_lists = 0, with = 0, without = 0;
 
   /// The robot with cells; `needed`: all its parts must have them.
   template <class Model>
@@ -131,12 +131,12 @@ struct cells_law {
     sides(part, leaf, q, what);
     if (count == 0) return;
     const real least = primitives[nearest(primitives, q)].distance(q);
-    std::vector<bool> listed(primitives.size());
+    std::vector<bool> in_list(primitives.size());
     for (std::uint32_t j = 0; j < count; ++j) {
       const clearance::cell_candidate c = cells.candidate(leaf, j);
-      v.require(c.place < primitives.size() && !listed[c.place], what, ": a list names", c.place, " wrongly");
+      v.require(c.place < primitives.size() && !in_list[c.place], what, ": a list names", c.place, " wrongly");
       if (c.place >= primitives.size()) return;
-      listed[c.place] = true;
+      in_list[c.place] = true;
       const real distance = primitives[c.place].distance(q);
       for (std::uint32_t l = j; j % 8 == 0 && l < count; ++l)
         v.require(c.rest <= primitives[cells.candidate(leaf, l).place].distance(q), what, ": rest at ", q, ",", c.rest);
@@ -146,9 +146,9 @@ struct cells_law {
     for (std::size_t n = 0; n < primitives.size(); ++n)
       if (primitives[n].distance(q) == least) {
         ++equal;
-        v.require(listed[n], what, ": primitive", n, " is nearest at ", q, ",", least, " away, and not listed");
+        v.require(in_list[n], what, ": primitive", n, " is nearest at ", q, ",", least, " away, and not listed");
       }
-    ties += equal > 1, long_lists += count > 32;
+    ties += equal > 1, listed += count, long_lists += count > 32;
     // The first is the nearest to the middle, but for what rounding does to bounds.
     const vec3 middle = q - leaf.from_middle;
     const real first = primitives[cells.candidate(leaf, 0).place].distance(middle),

@@ -57,6 +57,7 @@ TEST_CASE("A part's cells list every primitive that can be nearest, in all scene
   check_scenes<clearance::aabb, triangle>(law);
   CHECK((law.leaves[1] > 20000 && law.beyond > 5000 && law.ties > 2000 && law.with == 22 && law.without == 2));
   CHECK((law.leaves[0] == 0 && law.leaves[2] == 0));
+  CHECK(law.listed < 4 * law.leaves[1]);  // of 20 to 90 primitives
 }
 
 TEST_CASE("Cells of primitives that are hard to tell apart") {
@@ -119,7 +120,18 @@ TEST_CASE("Cells reach no less than 0, and not beyond all numbers") {
   refused(std::numeric_limits<double>::quiet_NaN(), "nan");
   refused(1e7, "10000000.000000");
   refused(std::numeric_limits<double>::infinity(), "inf");
-  CHECK(!with_cells(host{}, robot, {1 << 21, 0}).model.parts()[0].cells.empty());
+  for (const double reach : {0.0, 0.7}) {
+    const auto made = with_cells(host{}, robot, {1 << 21, reach}).model;
+    REQUIRE(!made.parts()[0].cells.empty());
+    const auto cells = made.parts()[0].cells.view();
+    const auto& facts = robot.parts()[0].facts;
+    const auto listed = [&](real share) {
+      const real away = share * (facts.radius + real(reach));
+      const vec3 ways[] = {{away, 0, 0}, {-away, 0, 0}, {0, away, 0}, {0, -away, 0}, {0, 0, away}, {0, 0, -away}};
+      return std::ranges::count_if(ways, [&](vec3 way) { return cells(facts.center + way).node.count != 0; });
+    };
+    CHECK((listed(0) == 6 && listed(0.9999f) == 6 && listed(1.01f) == 0));
+  }
 }
 
 TEST_CASE("A part without a size has no cells") {

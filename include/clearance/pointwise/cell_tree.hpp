@@ -44,9 +44,10 @@ class cell_tree {
   cells<host> make(std::string& why_not) {
     std::vector<cell_task> tasks = first_cells();
     for (std::vector<cell_task> inner;;) {
-      const std::vector<cell_found> found = mark(tasks);
       const bool in_table = tasks[0].up >= cells_view::deepest - cells_view::top;
-      if (!fits(tasks.size(), found)) {
+      std::vector<cell_found> found;
+      if (quick(tasks)) found = mark(tasks);
+      if (found.empty() || !fits(tasks.size(), found)) {
         if (in_table)
           return why_not = std::to_string(bytes_) + " bytes are too few for cells of its " +
                            std::to_string(primitives_) + " primitives",
@@ -107,6 +108,13 @@ class cell_tree {
     on_.for_each(tasks.size(), mark_candidates<PartView>{part_.data(), made_.shape, tasks_.data(), lists_.data(),
                                                          marks_.data(), found.data()});
     return on_.copy_out(found.data(), tasks.size());
+  }
+  /// Is looking at these cells worth the memory? It would not be if their lists never became shorter, as of primitives
+  /// that are all equal.
+  bool quick(const std::vector<cell_task>& tasks) const {
+    std::uint64_t looks = 0;
+    for (const cell_task& t : tasks) looks += t.count;
+    return looks <= 2 * std::uint64_t(bytes_);
   }
   /// Is there room for these cells, were they all leaves, and for lists of their candidates meanwhile?
   bool fits(std::size_t cells, const std::vector<cell_found>& found) const {
