@@ -2,6 +2,7 @@
 #pragma once
 // Makes the octree of a part's cells, level by level.
 
+#include <clearance/backend/host.hpp>
 #include <clearance/pointwise/cell_lists.hpp>
 #include <clearance/result.hpp>
 
