@@ -3,6 +3,7 @@
 // Points look for what may be nearest to them in cells of the parts (robot/cells.hpp). A warp takes the parts in one
 // order, the nearest first, and each lane its own leaf. Points whose cells list nothing walk the trees, alone.
 
+#include <clearance/ground/ordered.hpp>
 #include <clearance/robot/cells.hpp>
 #include <clearance/scan/lane_sharing.cuh>
 #include <clearance/scan/lone_search.cuh>

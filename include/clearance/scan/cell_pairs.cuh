@@ -2,6 +2,8 @@
 #pragma once
 // Pairs that need no walk: the point is inside the part's solid, or the part's cells list what can be nearest.
 
+#include <clearance/ground/ordered.hpp>
+#include <clearance/result.hpp>
 #include <clearance/robot/cells.hpp>
 #include <clearance/scan/alone.cuh>
 #include <clearance/scan/interior.hpp>

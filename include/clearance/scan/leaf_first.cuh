@@ -4,6 +4,7 @@
 // A part's field, if there is one, decides most pairs before.
 
 #include <clearance/ground/ordered.hpp>
+#include <clearance/result.hpp>
 #include <clearance/robot/cells.hpp>
 #include <clearance/robot/field.hpp>
 #include <clearance/scan/interior.hpp>

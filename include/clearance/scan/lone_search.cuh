@@ -2,6 +2,7 @@
 #pragma once
 // Points that are not neighbours: every lane walks by itself.
 
+#include <clearance/ground/ordered.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/steps.cuh>
 
