@@ -19,8 +19,10 @@ struct triangle {
   vec3 unit_normal;  ///< (b-a) x (c-a), normalised in double; (0,0,0) for a triangle without area.
 
   static triangle from(vec3 a, vec3 b, vec3 c) {
-    const double ux = double(b.x) - a.x, uy = double(b.y) - a.y, uz = double(b.z) - a.z;
-    const double vx = double(c.x) - a.x, vy = double(c.y) - a.y, vz = double(c.z) - a.z;
+    // By to_float, because corners may have been rounded just before.
+    const auto way = [](real to, real from) { return double(to_float(to)) - double(to_float(from)); };
+    const double ux = way(b.x, a.x), uy = way(b.y, a.y), uz = way(b.z, a.z);
+    const double vx = way(c.x, a.x), vy = way(c.y, a.y), vz = way(c.z, a.z);
     const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
     const double l = std::sqrt(nx * nx + ny * ny + nz * nz);
     const double edges = std::sqrt((ux * ux + uy * uy + uz * uz) * (vx * vx + vy * vy + vz * vz));
