@@ -122,13 +122,13 @@ TEST_CASE("By cells to a primitive of somebody else's, near and in neighbours") 
   CHECK((check.law.leaves[1] > 1000 && check.law.ties > 50));
 }
 
-TEST_CASE("Where most lists would be too long there are no cells, and distances are the same") {
+TEST_CASE("Where all lists would be too long there are no cells, and distances are the same") {
   on_device check;
   const auto one = random_primitives<inner_sphere>(check.d, 1, 1, 0.3)[0];
   const clearance::model bare{
       std::vector{clearance::make_part(clearance::build<clearance::sphere>(std::vector(300, one)))}};
   const auto made = clearance::with_cells(check.gpu, bare, {1 << 22, 1});
-  CHECK(made.without[0] == "its 300 primitives are too close together for cells of 4194304 bytes");
+  CHECK(made.without[0] == "4194304 bytes are too few for cells of its 300 primitives");
   CHECK(made.model.parts()[0].cells.empty());
   const auto points = scattered(check.d, 500, 1);
   require_same_distances(check.gpu, bare, made.model.on(check.gpu), {check.d.pose(0.1)}, point_span(points), 1,
