@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cells on the host, and what can have none.
 #include "search/celled.hpp"
+#include "support/poor_host.hpp"
 
 #include <clearance/robot/attached.hpp>
 #include <clearance/robot/widened.hpp>
@@ -39,15 +40,6 @@ auto fifty_spheres() {
   dice d(444);
   return clearance::make_part(clearance::build<clearance::sphere>(random_spheres(d, 50, 0.4)));
 }
-
-/// A backend without memory for much.
-struct poor : host {
-  template <class T>
-  scratch<T> make_scratch(std::size_t n) const {
-    if (n > 1000) throw std::bad_alloc();
-    return host::make_scratch<T>(n);
-  }
-};
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fields on the host, and what can have none.
 #include "search/fielded.hpp"
+#include "support/poor_host.hpp"
 
 #include "support/linked_tree.hpp"
 
@@ -46,19 +47,6 @@ TEST_CASE("A part that can have no field says why, and then no part has one") {
   CHECK(whole.view().part(0).fields == whole.view().fields);
   CHECK(clearance::attach(host{}, whole, clearance::model{std::vector{part}}).view().fields == nullptr);
 }
-
-namespace {
-
-/// A backend without memory for cells.
-struct poor : host {
-  template <class T>
-  scratch<T> make_scratch(std::size_t n) const {
-    if (n > 1000) throw std::bad_alloc();
-    return host::make_scratch<T>(n);
-  }
-};
-
-}  // namespace
 
 TEST_CASE("Without enough memory for a field there is a sentence, and the answer of the robot without it") {
   dice d(437);
